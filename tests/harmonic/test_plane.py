@@ -231,3 +231,20 @@ def test_what_the_file_says_of_a_contact_in_a_plane():
     f_x, f_y, _ = fcm.planar_forces(loop.u_x, loop.u_y, loop.v, loop.mu, loop.k_u, loop.k_v, loop.n_0)
     assert response.friction_x.isel(**point).item() == pytest.approx(abs(f_x[1]), rel=1e-9)
     assert response.friction_y.isel(**point).item() == pytest.approx(abs(f_y[1]), rel=1e-9)
+
+
+def test_the_bundled_damper_and_what_one_direction_misses():
+    """Each direction alone leaves the other without friction; its own peak is too high as well."""
+    scene = fcm.load_scene("platform-damper")
+    (damper,) = scene.contacts
+    along_x, along_y = (replace(damper, tangential=one, second=None) for one in damper.directions[:2])
+    tips = []
+    for contact in (damper, along_x, along_y):
+        response = fcm.respond(replace(scene, contacts=(contact,), draft=None), "closed-form")
+        assert response.complete[0] == 1
+        tips.append(response.peak_amplitude.sel(dof=["tip_x", "tip_y"]).values[0])
+    plane, x, y = tips
+    assert (x / plane)[1] > 2.0
+    assert (y / plane)[0] > 2.5
+    assert 1.05 < (x / plane)[0] < 1.2
+    assert 1.05 < (y / plane)[1] < 1.2

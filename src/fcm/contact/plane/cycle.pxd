@@ -11,6 +11,7 @@ cdef class Cycle:
     cdef readonly Resting resting
     cdef readonly Crossings crossings
     cdef readonly int kind, behaviour, periods
+    cdef double moved_x, moved_y
     cdef double[::1] cut
     cdef int[::1] cut_kind
     cdef int solve(self, int behaviour, double s_x, double s_y, bint gradient) noexcept nogil

@@ -35,6 +35,7 @@ PERIODS = cython.declare(cython.int, 100)
 # the fixed point is double, and as uncertain as the square root of the rounding.
 DOUBLE = cython.declare(cython.double, 1e-9)
 SLIGHT = cython.declare(cython.double, 0.02)  # of the radius, by which the discs of a slider miss one place
+HARDLY = cython.declare(cython.double, 1e-3)  # a way in a period that is summed, and no difference of places
 INSIDE = cython.declare(cython.double, 0.1)  # and by which it lies within one of them, at least
 CLOSES = cython.declare(cython.int, 0)
 OPENS = cython.declare(cython.int, 1)
@@ -61,6 +62,7 @@ class Cycle:
         self.cut_kind = np.zeros(self.crossings.capacity, dtype=np.intc)
         self.kind = self.behaviour = UNKNOWN
         self.periods = 0
+        self.moved_x = self.moved_y = 0.0
 
     def solve(self, behaviour: cython.int, s_x: float, s_y: float, gradient: bool) -> cython.int:
         """The cycle of the motion that is loaded, of a slider that began at a place, from the means of u."""
@@ -183,17 +185,20 @@ class Cycle:
                 return UNSOLVED
             if change < nearest:
                 nearest, nearest_x, nearest_y = change, w_x, w_y
-            x: float = self.slider.w_x - w_x
-            y: float = self.slider.w_y - w_y
-            if change <= fine + rounding:
-                w_x, w_y = self.slider.w_x, self.slider.w_y
-                break
+            x: float = self.moved_x
+            y: float = self.moved_y
             a: float = 1.0 - self.slider.derivatives.w_x[0]
             b: float = -self.slider.derivatives.w_x[1]
             c: float = -self.slider.derivatives.w_y[0]
             d: float = 1.0 - self.slider.derivatives.w_y[1]
             by: float = a * d - b * c
-            if change < 0.5 * before and fabs(by) > 1e-12:
+            hardly: cython.bint = self.slider.gone < HARDLY * self.motion.reach and fabs(by) > 1e-13
+            if change <= fine + rounding and not (
+                hardly and hypot(d * x - b * y, a * y - c * x) > (fine + rounding) * fabs(by)
+            ):
+                w_x, w_y = w_x + x, w_y + y
+                break
+            if change < 0.5 * before and fabs(by) > 1e-13:
                 before = change
                 w_x, w_y = w_x + (d * x - b * y) / by, w_y + (a * y - c * x) / by
                 # the next change is of the square of this one
@@ -201,7 +206,7 @@ class Cycle:
                     break
             else:
                 before = 2.0 * change if change < before else 1e300
-                w_x, w_y = self.slider.w_x, self.slider.w_y
+                w_x, w_y = w_x + x, w_y + y
         else:
             if nearest > DOUBLE * self.motion.reach:
                 return UNSOLVED
@@ -218,5 +223,9 @@ class Cycle:
             self.slider.derivatives.start()
         self.slider.enter(begin, w_x, w_y)
         self.slider.advance(begin + TWO_PI, False)
-        moved: float = hypot(self.slider.w_x - w_x, self.slider.w_y - w_y)
+        if self.slider.gone < HARDLY * self.motion.reach:
+            self.moved_x, self.moved_y = self.slider.gone_x, self.slider.gone_y
+        else:
+            self.moved_x, self.moved_y = self.slider.w_x - w_x, self.slider.w_y - w_y
+        moved: float = hypot(self.moved_x, self.moved_y)
         return moved

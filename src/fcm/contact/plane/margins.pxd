@@ -16,6 +16,8 @@ cdef class PlanarMargins:
     cdef void note(self, int kind, double angle, double value) noexcept nogil
     cdef void loads(self, int behaviour) noexcept nogil
     cdef void rests(self, double s_x, double s_y) noexcept nogil
+    cdef double other(self) noexcept nogil
+    cdef double weaker(self, double s_x, double s_y) noexcept nogil
     cdef void pushes(self) noexcept nogil
     cdef void within(self, int p, double end) noexcept nogil
     cdef double outside(self, int p, double theta) noexcept nogil

@@ -5,6 +5,7 @@ As on a line, the derivatives of its forces jump, or begin like a root, where
 - an extreme of the load passes zero: the contact closes once more, or opens once more;
 - all discs come to have a place in common, or no longer: it begins to slip;
 - the place where the slider of a contact that never slips began leaves what is common to them;
+- another disc comes to hold a slider that never slips, beside the one that does;
 - a disc that passes a resting slider comes to touch it: another slip begins, and leaves it elsewhere.
 
 Where a slip halts, lambda vanishing for an instant, the derivatives are continuous.
@@ -34,10 +35,11 @@ CLOSES = cython.declare(cython.int, 0)  # kinds of margins; those of the load as
 OPENS = cython.declare(cython.int, 1)
 SLIPS = cython.declare(cython.int, 2)
 STARTS = cython.declare(cython.int, 3)
+HOLDS = cython.declare(cython.int, 4)
 PUSHES = cython.declare(cython.int, 5)
 MINIMUM = cython.declare(cython.int, 7)
 MAXIMUM = cython.declare(cython.int, 8)
-FIXED = cython.declare(cython.int, 4)  # kinds of which there is one each
+FIXED = cython.declare(cython.int, 5)  # kinds of which there is one each
 PAST = cython.declare(cython.double, 1.0)  # a margin of which only the sign is known
 FAR = cython.declare(cython.double, 1e300)
 STEPS = cython.declare(
@@ -78,10 +80,9 @@ class PlanarMargins:
             return kind
         if self.cycle.behaviour == CLOSED:
             self.resting.encloses(True)
+            # slips are as long as the root of this, and turn by that
             beyond: float = self.resting.overlap if self.resting.overlap > 0.0 else PAST
-            if self.cycle.slider.pieces == 1:  # slip all around begins like a root
-                beyond = sqrt(beyond * self.motion.reach)
-            self.note(SLIPS, 0.0, beyond)
+            self.note(SLIPS, 0.0, sqrt(beyond * self.motion.reach))
         else:
             self.note(SLIPS, 0.0, PAST)
         if kind != UNSOLVED:
@@ -148,6 +149,10 @@ class PlanarMargins:
             self.note(STARTS, 0.0, PAST)
             return
         corner: cython.bint = self.resting.held == 2
+        if self.resting.held == 1:
+            self.note(HOLDS, 0.0, self.other())
+        elif self.resting.held == 2:
+            self.note(HOLDS, 0.0, -min(self.weaker(s_x, s_y), PAST))
         self.resting.farthest(s_x, s_y)
         starts: float = -self.resting.beyond
         self.resting.encloses(True)
@@ -155,6 +160,43 @@ class PlanarMargins:
         # a corner of what is common to the discs moves as its root, and so do the forces
         self.note(SLIPS, 0.0, -sqrt(room * self.motion.reach) if corner else -room)
         self.note(STARTS, 0.0, starts)
+
+    def other(self) -> float:
+        """How far the next disc is from holding the place that one disc holds."""
+        j: cython.int
+        n: cython.int = self.resting.nodes
+        near: float = self.resting.basis[0, 3]
+        self.resting.farthest(self.resting.w_x, self.resting.w_y)
+        self.resting.beyond = -FAR
+        for j in range(n):
+            here: float = self.resting.gap[j]
+            theta: float = self.resting.step * (j + 0.1171)
+            off: float = fabs(theta - near)
+            while off > 0.5 * TWO_PI:
+                off = fabs(off - TWO_PI)
+            if off <= 2.0 * self.resting.step or here < self.resting.gap[j - 1 if j > 0 else n - 1]:
+                continue
+            if here >= self.resting.gap[j + 1 if j + 1 < n else 0]:
+                self.resting.refine(theta)
+        room: float = min(-self.resting.beyond, PAST)
+        return room
+
+    def weaker(self, s_x: float, s_y: float) -> float:
+        """How far the weaker of two discs that hold a place pushes it: w - s = p_1 e_1 + p_2 e_2."""
+        a_x: float = self.resting.basis[0, 0] - self.resting.w_x
+        a_y: float = self.resting.basis[0, 1] - self.resting.w_y
+        b_x: float = self.resting.basis[1, 0] - self.resting.w_x
+        b_y: float = self.resting.basis[1, 1] - self.resting.w_y
+        across: float = a_x * b_y - a_y * b_x
+        x: float = self.resting.w_x - s_x
+        y: float = self.resting.w_y - s_y
+        least: float = PAST
+        if across == 0.0:
+            return least
+        one: float = (x * b_y - y * b_x) / across * hypot(a_x, a_y)
+        two: float = (a_x * y - a_y * x) / across * hypot(b_x, b_y)
+        least = min(one, two)
+        return least
 
     def pushes(self) -> None:
         """Of every stick: the discs that nearly touch its slider, and how far the next slip takes it."""

@@ -14,7 +14,7 @@ cdef class Slider:
     cdef readonly int[::1] state
     cdef readonly double[::1] begin, rest_x, rest_y
     cdef readonly double[:, ::1] record
-    cdef readonly double theta, w_x, w_y, e_x, e_y
+    cdef readonly double theta, w_x, w_y, e_x, e_y, gone_x, gone_y, gone
     cdef readonly double longest
     cdef double next_length, gap, gap_slope, noise, stalled, first_step
     cdef public double tolerance

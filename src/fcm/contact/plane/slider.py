@@ -54,6 +54,9 @@ class Slider:
         Of a piece: STICK, SLIP or SEPARATION, the angle at which it begins, and where the slider rests then.
     theta, sliding, w_x, w_y, e_x, e_y
         The present angle; whether it slips; where it rests if it does not, else its direction.
+    gone, gone_x, gone_y
+        Its way since it was entered, and where that led, as sums over its slips: no difference of places,
+        whose rounding would be all there is of a slider that hardly moves.
     longest
         Of a panel [rad], so that Radau's rule integrates the harmonics.
     tolerance
@@ -77,6 +80,7 @@ class Slider:
         self.record, self.most_panels = np.zeros((most_panels, 4 + motion.stages)), most_panels
         self.pieces = self.panels = 0
         self.theta = self.w_x = self.w_y = self.e_x = self.e_y = self.next_length = 0.0
+        self.gone_x = self.gone_y = self.gone = 0.0
         self.gap = self.gap_slope = self.noise = self.stalled = 0.0
         self.first_step = FIRST_STEP
         self.tolerance = 1e-8
@@ -98,6 +102,7 @@ class Slider:
     def enter(self, theta: float, w_x: float, w_y: float) -> None:
         """Begin at an angle with a slider at a place, which the disc may hold elsewhere."""
         self.theta, self.w_x, self.w_y, self.stalled = theta, w_x, w_y, -1e300
+        self.gone_x = self.gone_y = self.gone = 0.0
         self.measure(theta)
         d_x: float = self.motion.value[SCAN, 0] - w_x
         d_y: float = self.motion.value[SCAN, 1] - w_y
@@ -107,6 +112,7 @@ class Slider:
         if d < r * (1.0 - 4.0 * EPSILON) or d == 0.0:
             return
         self.e_x, self.e_y = d_x / d, d_y / d
+        self.gone, self.gone_x, self.gone_y = d - r, (d - r) * self.e_x, (d - r) * self.e_y
         if self.push() > 0.0 and r > 0.0:
             self.sliding = True
             self.next_length = self.first_length()
@@ -247,6 +253,11 @@ class Slider:
         self.e_x, self.e_y = self.panel.e_x[s - 1], self.panel.e_y[s - 1]
         size: float = 1.0 / hypot(self.e_x, self.e_y)
         self.e_x, self.e_y = self.e_x * size, self.e_y * size
+        for i in range(s):
+            way: float = self.panel.weight[i] * self.panel.length * self.panel.push[i + 1]
+            self.gone += way
+            self.gone_x += way * self.panel.e_x[i]
+            self.gone_y += way * self.panel.e_y[i]
         if self.gathering:
             self.sums.slip(self.panel)
             if self.panels < self.most_panels:
