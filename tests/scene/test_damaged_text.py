@@ -73,6 +73,8 @@ def damaged(rng, content):
 def words(content):
     """The numbers that can be read anywhere in a text, by Python alone; of two that touch, each."""
     found = {0.0, 1.0}
+    for number, exponent in re.findall(rb"(\d+\.\d*|\.\d+)([-+]\d{1,3})", content):  # as Nastran writes
+        found |= {float(f"{number.decode()}e{exponent.decode()}")}
     for line in content.split(b"\n"):
         for part in (line, *line.split()):
             for text in NUMBER.findall(part):

@@ -96,6 +96,11 @@ def test_preloads_in_a_file(tmp_path, text):
         ("node,other,n_0,mu\n40,41,1,5,0.1\n", "line 2 has 5 entries; the first line names 4"),
         ('node,other,n_0,mu\n40,41,"1,5",0.1\n', 'line 2: n_0: "1,5" has a decimal comma: write 1.5'),
         ("node,n_0,mu\n40,1,0.1\n", 'line 1: has no column "other"'),
+        ("node;other;n_0;mu\n40;41;1;0.1\n", "names have commas between, as node,other,n_0"),
+        (
+            "node,other,n_0,mu\n40;41;1;0.1\n",
+            "line 2 has 1 entry; the first line names 4, with commas between",
+        ),
         ("node,other,n_0,mu,n_0\n", 'has two columns "n_0"'),
         ("node,other,n_0,mu\n", "holds no pair of nodes"),
         ("", "is empty; its first line must name its columns"),
@@ -126,6 +131,7 @@ def test_wrong_files_of_pairs(tmp_path, text, words):
         ("40 1\n", 'has no number for the pair of node "50"'),
         ("40 1\n2\n", "line 2: must be a number, or a node and a number"),
         ("1kN\n2\n", 'line 1: "1kN" has "kN" behind the number'),
+        ("40,5\n50,5\n", '"40,5" may be a number with a decimal comma, or a node and its number'),
     ],
 )
 def test_wrong_files_of_numbers(tmp_path, text, words):
@@ -161,10 +167,10 @@ def test_one_pair_alone_is_swept_by_its_name():
         ({"nodes": [[40, 2.5]]}, "nodes[0]: must be two nodes"),
         ({"tangential": "40x"}, "tangential: must be one of x, y, z, rx, ry, rz, or a table"),
         ({"tangential": {"x": "1"}}, "tangential.x: must be a number"),
-        ({"areas": [1.0]}, "areas: must have one number for each of the 2 pairs, has 1"),
+        ({"areas": [1.0]}, "areas: must have one number for each of 2 pairs, has 1"),
         ({"areas": [1.0, 0.0]}, "areas[1]: must be greater than 0"),
         ({"nodes": [[40, 40], [50, 51]], "areas": [1.0, 2.0]}, "nodes[0]: is the same node twice"),
-        ({"nodes": [[40, 40], [50, 51]], "areas": [1.0]}, "one number for each of the 2 pairs, has 1"),
+        ({"nodes": [[40, 40], [50, 51]], "areas": [1.0]}, "one number for each of 2 pairs, has 1"),
     ],
 )
 def test_mistakes_of_pairs(change, words):

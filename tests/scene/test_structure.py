@@ -187,6 +187,8 @@ def test_names_from_a_text_file(tmp_path, key, text):
     [
         ("1x, 2x, 3x\n", "line 1 has 3 words: write one name on each line"),
         ("1x\n2x\ntip of blade\n", "line 3 has 3 words"),
+        ("1x 2x\n3x\n", 'line 1: "2x" is no direction (x, y, z, rx, ry, rz, or 1 to 6): write one name on'),
+        ("1 x\n2 7\n3x\n", 'line 2: "7" is no direction'),
         ("1x\n2x\n3\xe9\n", "it is no text in UTF-8"),
     ],
 )

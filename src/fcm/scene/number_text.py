@@ -12,6 +12,7 @@ _EXPONENT = r"[EeDdQq][-+]?\d+"
 _LETTERLESS = r"(?:\d+\.\d*|\.\d+)[-+]\d{3}(?![\d.])"  # Fortran leaves the letter out for three digits
 NUMBER = rf"[-+]?(?:{_LETTERLESS}|{_DIGITS}(?:{_EXPONENT})?)"
 _WHOLE = re.compile(NUMBER, re.ASCII)
+_HEXADECIMAL = re.compile(r"[-+]?0[xX]")
 _PARTS = re.compile(rf"([-+]?{_DIGITS})(?:[EeDdQq]?([-+]?\d+))?", re.ASCII)
 _COMMA = re.compile(rf"([-+]?\d+),(\d+)((?:{_EXPONENT})?)", re.ASCII)
 _BEHIND = re.compile(rf"({NUMBER})\s*(\S.*)", re.ASCII)
@@ -45,6 +46,8 @@ def fault_of_number(text: str) -> str:
         return f"{quoted(text)} is too large for a number: 1.8e308 is the largest"
     if match := _COMMA.fullmatch(text):
         return f"{quoted(text)} has a decimal comma: write {match[1]}.{match[2]}{match[3]}"
+    if _HEXADECIMAL.match(text):
+        return f"{quoted(text)} is hexadecimal: write it in decimals"
     if ((match := _BEHIND.fullmatch(text)) and match[2][0].isalpha()) or (match and match[2][0] in "%°[("):
         return f"{quoted(text)} has {quoted(match[2])} behind the number: write {match[1]}"
     return f"{quoted(text)} is not a number"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,6 +12,7 @@ from fcm.scene.errors import choices, quoted
 from fcm.scene.files import DataFileError
 from fcm.scene.number_text import fault_of_number, number_in
 
+_COMMA = re.compile(r"\d+,\d+", re.ASCII)
 NODES = ("node", "other")  # columns of the two nodes; other is empty where a node touches the ground
 NUMBERS = ("area", "mu", "k_u", "k_v", "n_0", "gap")
 COORDINATES = ("x", "y", "z")
@@ -46,12 +48,16 @@ def read_pair_table(path: Path) -> PairTable:
     twice = [name for name in dict.fromkeys(header) if header.count(name) > 1]
     if missing or twice:
         what = f"has no column {choices(missing)}" if missing else f"has two columns {choices(twice)}"
-        raise DataFileError(f"{quoted(path.name)}, line {lines[0][0]}: {what}; it names {choices(header)}")
+        raise DataFileError(
+            f"{quoted(path.name)}, line {lines[0][0]}: {what}; it names {choices(header)}, "
+            "and names have commas between, as node,other,n_0"
+        )
     faults: list[str] = []
     table = PairTable([], {name: [] for name in header if name in NUMBERS}, _unused(header))
     for number, words in lines[1:]:
         if len(words) != len(header):
-            faults.append(f"line {number} has {len(words)} entries; the first line names {len(header)}")
+            has = f"line {number} has {len(words)} {'entry' if len(words) == 1 else 'entries'}"
+            faults.append(f"{has}; the first line names {len(header)}, with commas between")
             continue
         row = dict(zip(header, (word.strip() for word in words), strict=True))
         if not row["node"]:
@@ -82,7 +88,9 @@ def read_numbers_of_pairs(path: Path, pairs: Sequence[tuple[str, ...]]) -> list[
     """
     rows: list[list[str]] = []
     faults: list[str] = []
+    commas = list[str]()  # words that may be numbers with decimal commas
     for number, words in _lines(path):
+        commas += [",".join(words)] if _COMMA.fullmatch(",".join(words)) else []
         words = [word for one in words for word in one.split()]
         value = number_in(words[-1]) if words else None
         if len(words) not in (1, 2) or (rows and len(rows[0]) != len(words)):
@@ -91,6 +99,10 @@ def read_numbers_of_pairs(path: Path, pairs: Sequence[tuple[str, ...]]) -> list[
             faults.append(f"line {number}: {fault_of_number(words[-1])}")
         else:
             rows.append(words)
+    if rows and len(commas) == len(rows):
+        one, point = commas[0], commas[0].replace(",", ".")
+        what = f"{quoted(one)} may be a number with a decimal comma, or a node and its number"
+        faults.append(f"{what}, and so may all others: write {point}, or {one.replace(',', ' ')}")
     if faults:
         raise DataFileError(*(f"{quoted(path.name)}, {fault}" for fault in faults[:5]))
     values = [number_in(words[-1]) or 0.0 for words in rows]

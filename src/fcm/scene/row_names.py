@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -9,13 +10,15 @@ from typing import Any
 import numpy as np
 import scipy.sparse
 
-from fcm.scene.errors import choices
+from fcm.scene.errors import choices, quoted
 from fcm.scene.files import DataFileError, Files, UnreadableError
 from fcm.scene.formats.calculix import calculix_names
 from fcm.scene.formats.harwell_boeing import ansys_names
 from fcm.scene.formats.labelled import Labelled
 from fcm.scene.names import Names, RowNames, checked_names
 from fcm.scene.section import Section
+
+_DIRECTION = re.compile(r"r?[xyz]|[1-6]", re.IGNORECASE)  # of a node
 
 
 def row_names(section: Section, files: Files, labels: Sequence[str]) -> Names | None:
@@ -98,7 +101,7 @@ def _text(path: Path) -> str:
 def names_of(text: str) -> list[str]:
     """Names, one on each line; a node and a direction beside each other are one name.
 
-    ValueError where there are more words on a line.
+    ValueError where a line holds something else.
 
     >>> names_of("40x  # tip\\n40 y\\n\\n41:3\\n41 1")
     ['40x', '40y', '41:3', '41:1']
@@ -109,5 +112,10 @@ def names_of(text: str) -> list[str]:
             raise UnreadableError(
                 f"line {number} has {len(words)} words: write one name on each line, "
                 "or a node and a direction"
+            )
+        if len(words) == 2 and not _DIRECTION.fullmatch(words[1]):
+            what = f"{quoted(words[1])} is no direction (x, y, z, rx, ry, rz, or 1 to 6)"
+            raise UnreadableError(
+                f"line {number}: {what}: write one name on each line, or a node and a direction"
             )
     return [(":" if words[-1].isdecimal() else "").join(words) for words in lines if words]

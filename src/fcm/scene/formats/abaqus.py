@@ -16,7 +16,7 @@ PLACES = 4  # node and direction of the row and of the column
 
 
 def is_abaqus(path: Path) -> bool:
-    """Whether the first line that is no comment has five entries with commas between.
+    """Whether the first line that is no comment has entries with commas between.
 
     MatrixMarket files, which have the same ending, begin with %%MatrixMarket.
     """
@@ -24,7 +24,7 @@ def is_abaqus(path: Path) -> bool:
         for line in file:
             text = line.removeprefix(MARK).strip()
             if text and not text.startswith(b"**"):
-                return text.count(b",") == PLACES and not text.startswith(b"%")
+                return text.count(b",") > 1 and not text.startswith(b"%")
     return False
 
 

@@ -51,7 +51,7 @@ def calculix_names(lines: list[str], file: str) -> list[str]:
         if not word:
             continue
         node, _, direction = word.partition(".")
-        if not (node.isdecimal() and direction in ("1", "2", "3", "4", "5", "6")):
+        if not (node.isascii() and node.isdecimal() and direction in ("1", "2", "3", "4", "5", "6")):
             raise UnreadableError(f'"{file}", line {number}: "{word[:40]}" must be node.direction, as 40.1')
         found.append(f"{int(node)}{DIRECTIONS[int(direction) - 1]}")
     return found

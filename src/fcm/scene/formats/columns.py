@@ -72,12 +72,11 @@ def _row(words: Sequence[str], kind: np.dtype[Any], number: int, between: str | 
     count = kind["whole"].shape[0] + 1
     if len(words) != count:
         apart = "commas" if between == "," else "blanks"
-        raise UnreadableError(
-            f"line {number} has {len(words)} entries; {count} are needed, with {apart} between"
-        )
+        has = f"line {number} has {len(words)} {'entry' if len(words) == 1 else 'entries'}"
+        raise UnreadableError(f"{has}; {count} are needed, with {apart} between")
     places = []
     for word in words[:-1]:
-        if not re.fullmatch(r"[+-]?\d{1,18}", word):
+        if not re.fullmatch(r"[+-]?\d{1,18}", word, re.ASCII):
             raise UnreadableError(f"line {number}: {quoted(word)} must be a whole number")
         places.append(int(word))
     return tuple(places), real_of(words[-1], number)

@@ -16,9 +16,11 @@ import numpy as np
 
 from fcm.scene.files import UnreadableError
 from fcm.scene.formats.columns import real_of
-from fcm.scene.formats.labelled import Labelled, labelled_from
+from fcm.scene.formats.labelled import DIRECTIONS, Labelled, labelled_from
 
 SMALL, LARGE = 8, 16  # characters of a field
+FREE = 10  # columns, in which a comma makes an entry of free format
+NUMERIC = re.compile(r"[-.\d]", re.ASCII)  # how what is no mark of a continuation begins
 SYMMETRIC, SQUARE = 6, 1  # forms
 REAL = (1, 2)  # types
 
@@ -56,21 +58,26 @@ def _entries(text: str) -> Iterator[tuple[int, list[str]]]:
             continue
         if body[0] in "*+" or (body[0] == "," and fields) or (body[0] == " " and fields):
             if fields:  # else a continuation of an entry that is not read
-                fields += _fields(body)[1:]
+                fields += _fields(body, number)[1:]
             continue
         if fields:
             yield first, fields
         kind = body.replace(",", " ").split()[0].upper()
-        first, fields = number, _fields(body) if kind in ("DMIG", "DMIG*") else []
+        first, fields = number, _fields(body, number) if kind in ("DMIG", "DMIG*") else []
     if fields:
         yield first, fields
 
 
-def _fields(line: str) -> list[str]:
-    """Fields of a line without its continuation mark; the first is the entry's name."""
-    if "," in line:
+def _fields(line: str, number: int) -> list[str]:
+    """Fields of a line without its continuation mark; the first is the entry's name.
+
+    ValueError where there are fields too many.
+    """
+    if "," in line[:FREE]:
         words = [one.strip() for one in line.split(",")]
         count = 5 if words[0].endswith("*") else 9
+        if any(words[count + 1 :]) or NUMERIC.match("".join(words[count : count + 1])):
+            raise UnreadableError(f"line {number} has {len(words)} fields; there are {count} and a mark")
         return words[:count] + [""] * (count - len(words))
     line = line.expandtabs(SMALL)
     wide = LARGE if "*" in line[:SMALL] else SMALL
@@ -91,11 +98,14 @@ def _take(found: dict[str, Entries], number: int, fields: list[str]) -> None:
             raise UnreadableError(f"line {number}: DMIG {name} is of form {form}; 6 (symmetric) or 1 is read")
         if kind not in REAL:
             raise UnreadableError(
-                f"line {number}: DMIG {name} is complex (type {kind}); damping as a loss_factor is"
+                f"line {number}: DMIG {name} is complex (type {kind}), and real ones are read; "
+                "hysteretic damping is structure.damping = { loss_factor = }"
             )
         found[name] = Entries(form)
         return
     entries, column = found[name], (_whole(body[0], number), _whole(body[1] or "0", number))
+    _blank(body[2], number, f"DMIG {name}: behind the column")
+    _components(column, number)
     rest = body[3:]  # a blank field stands behind the column
     for start in range(0, len(rest), 4):
         group = rest[start : start + 3]
@@ -103,10 +113,26 @@ def _take(found: dict[str, Entries], number: int, fields: list[str]) -> None:
             continue
         if len(group) < 3 or not group[0] or not group[2]:
             raise UnreadableError(f"line {number}: DMIG {name} has a row without a point, or without a value")
+        _blank("".join(rest[start + 3 : start + 4]), number, f"DMIG {name} is real: behind a value")
         value = nastran_real(group[2], number)
         entries.line.append(number)
-        entries.places.append((_whole(group[0], number), _whole(group[1] or "0", number), *column))
+        row = _whole(group[0], number), _whole(group[1] or "0", number)
+        _components(row, number)
+        entries.places.append((*row, *column))
         entries.value.append(value)
+
+
+def _blank(word: str, number: int, where: str) -> None:
+    """ValueError where a field holds something that would not be read."""
+    if word:
+        raise UnreadableError(f'line {number}: {where} the field must be blank, but holds "{word}"')
+
+
+def _components(place: tuple[int, int], number: int) -> None:
+    """ValueError where a point or its component is none."""
+    if place[0] < 1 or not 0 <= place[1] <= len(DIRECTIONS):
+        what = f"point {place[0]}, component {place[1]}"
+        raise UnreadableError(f"line {number}: there is no {what}: points are from 1, components 0 to 6")
 
 
 def nastran_real(word: str, line: int) -> float:
@@ -119,7 +145,7 @@ def nastran_real(word: str, line: int) -> float:
 
 
 def _whole(word: str, number: int) -> int:
-    if not word.lstrip("+-").isdecimal():
+    if not re.fullmatch(r"[+-]?\d{1,18}", word, re.ASCII):
         raise UnreadableError(f'line {number}: "{word}" must be a whole number')
     return int(word)
 

@@ -70,7 +70,7 @@ def _count(line: str, field: int, number: int) -> int:
     word = line[14 * field : 14 * (field + 1)].strip()
     if field == 4 and not word:  # no right-hand sides
         return 0
-    if not word.isdecimal():
+    if not (word.isascii() and word.isdecimal()):
         raise UnreadableError(
             f'line {number}: "{word}" in columns {14 * field + 1} on must be a whole number'
         )
@@ -139,7 +139,7 @@ def ansys_names(lines: list[str]) -> list[str]:
     found: list[str] = []
     for number, line in enumerate(lines, 1):
         words = line.split()
-        if len(words) != 3 or not words[0].isdecimal() or not words[1].isdecimal():
+        if len(words) != 3 or not re.fullmatch(r"\d+ \d+", " ".join(words[:2]), re.ASCII):
             if found and words:
                 raise UnreadableError(f"line {number}: must be an equation, a node and UX to ROTZ")
             continue
