@@ -249,10 +249,18 @@ for path in sorted(folder.glob("case*")):
 """
 
 
-def read_apart(folder, ending, content, seed):
+def with_bytes_changed(rng, content):
+    """A content of the same length, with one to three bytes changed."""
+    found = bytearray(content)
+    for at in rng.integers(len(found), size=rng.integers(1, 4)).tolist():
+        found[at] = rng.integers(256)
+    return bytes(found)
+
+
+def read_apart(folder, ending, content, seed, change=damaged):
     """The arrays that are read of each damaged content; what is said of the others is looked at."""
     rng = np.random.default_rng([seed, len(content)])
-    changed = [damaged(rng, content) for _ in range(max(CASES // 4, 5))]
+    changed = [change(rng, content) for _ in range(max(CASES // 4, 5))]
     for number, one in enumerate(changed):
         (folder / f"case{number:05d}{ending}").write_bytes(one)
     done = python("-c", READER, folder)
@@ -277,6 +285,32 @@ def test_packed_matlab_files(tmp_path):
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+@pytest.mark.parametrize("kind", ["K.mat", "K.h5", "matlab 7.3"])
+def test_binary_files_without_checksums(tmp_path, kind):
+    """Each number that is read stands in the file by its bytes, of either order."""
+    name = "K.mat" if kind == "matlab 7.3" else kind
+    if kind == "K.mat":
+        scipy.io.savemat(tmp_path / name, {"K": K})
+    else:
+        h5py = pytest.importorskip("h5py")
+        with h5py.File(tmp_path / name, "w", userblock_size=512 * (kind == "matlab 7.3")) as file:
+            file["K"] = K
+            if kind == "matlab 7.3":
+                file["K"].attrs["MATLAB_class"] = np.bytes_("double")
+        if kind == "matlab 7.3":
+            head = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(116) + bytes(8) + b"\x00\x02IM"
+            content = (tmp_path / name).read_bytes()
+            (tmp_path / name).write_bytes(head.ljust(512, b"\0") + content[512:])
+    count = 0
+    content = (tmp_path / name).read_bytes()
+    for changed, found in read_apart(tmp_path, name[1:], content, 8, with_bytes_changed):
+        for array in (one for key, one in found.items() if "." not in key and one.dtype.kind == "f"):
+            count += 1
+            assert all(one.tobytes() in changed or one.tobytes()[::-1] in changed for one in array.ravel())
+    assert count
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
 @pytest.mark.parametrize("form", ["dense", "nonbigmat"])
 def test_nastran_output4_as_text(tmp_path, form):
     op4 = pytest.importorskip("pyyeti.nastran.op4")
@@ -298,3 +332,13 @@ def test_nastran_output4_with_a_format_narrower_than_its_numbers(tmp_path):
     (tmp_path / "K.op4").write_text(text.replace("3E23.16", "3E2"))
     with pytest.raises(SceneError, match="a format of numbers is narrower than they are"):
         scene(tmp_path, of_matrix("K.op4"))
+
+
+def test_an_archive_whose_list_of_names_is_damaged(tmp_path):
+    """Names have no checksum of their own: the masses, by another name, would be taken as 1."""
+    np.savez(tmp_path / "m.npz", dofs=["1x"], frequency=[1.0], damping=[0.1], shapes=[[1.0]], mass=[2.0])
+    content = (tmp_path / "m.npz").read_bytes()
+    at = content.rindex(b"mass.npy")
+    (tmp_path / "m.npz").write_bytes(content[:at] + b"tass.npy" + content[at + 8 :])
+    with pytest.raises(SceneError, match=r"m\.npz"):
+        scene(tmp_path, {"modal": {"file": "m.npz"}})

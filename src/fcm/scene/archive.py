@@ -26,10 +26,13 @@ def read_npz(path: Path, wanted: Collection[str] | None, files: Files) -> Arrays
         members = {one.filename.removesuffix(".npy"): one for one in archive.infolist()}
         chosen = {name: one for name, one in members.items() if wanted is None or name in wanted}
         files.check_size(path, sum(one.file_size for one in chosen.values()))
+        if len(members) < len(archive.infolist()):
+            raise UnreadableError("it has two arrays of one name")
         found = {}
-        for name, one in chosen.items():
-            with archive.open(one) as stream:
-                found[name] = _array(stream, one.file_size)
+        for name, one in members.items():
+            with archive.open(one) as stream:  # which fails where the list of names is not that of the arrays
+                if name in chosen:
+                    found[name] = _array(stream, one.file_size)
         return found
 
 
