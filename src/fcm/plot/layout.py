@@ -17,7 +17,7 @@ _LAYOUT = {
     **dict.fromkeys(("modal_amplitude", "damping_ratio"), _POINT),
     "amplitude": _DOF,
     **dict.fromkeys(("regime", "n0_bar", "b_bar", "phi", "tangential_amplitude", "spring_force"), _CONTACT),
-    "dissipated_energy": _CONTACT,
+    **dict.fromkeys(("dissipated_energy", "slip_path", "greatest_normal_force"), _CONTACT),
     "contact_harmonic": ("contact_harmonic",),
     "contact_mean": (*_CONTACT, "direction"),
     **dict.fromkeys(("contact_amplitude", "contact_phase"), (*_CONTACT, "direction", "contact_harmonic")),

@@ -1,0 +1,64 @@
+"""``fcm plot contacts``: which contacts of a response stick, slip and open, and what they bear."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from fcm.cli.drawing import draws_file, picture_of, save_picture_of
+from fcm.cli.messages import Messages, pass_messages
+from fcm.cli.options import FiniteRange
+
+MOST_ROWS = 10  # of the table: contacts that take most
+HEAD = ("contact", "state", "energy", "of all", "slip path", "normal force")
+
+
+@click.command()
+@draws_file("-contacts.png")
+@click.option(
+    "--at", type=FiniteRange(min=0.0), multiple=True, metavar="F",
+    help="The frequency, in the file's unit; several make a film strip.  [default: of the greatest peak]",
+)  # fmt: skip
+@click.option("--curve", type=click.IntRange(min=0), default=0, show_default=True, help="Of a sweep.")
+@click.option(
+    "--places", type=click.Path(exists=True, dir_okay=False, readable=True, path_type=Path), metavar="PLACES",
+    help="A text file with a line NAME X Y for each contact.  [default: the contacts in a row]",
+)  # fmt: skip
+@pass_messages
+def contacts(
+    messages: Messages,
+    file: Path,
+    output: Path | None,
+    at: tuple[float, ...],
+    curve: int,
+    places: Path | None,
+) -> None:
+    """Draw what the contacts do of FILE, the netCDF file of `fcm respond -o FILE`.
+
+    At points of the curve: which contacts stick, slip and open, the energy and the slip path of each in a
+    cycle, and its greatest normal force. Those that take most energy are listed.
+    """
+    from fcm.plot.interface import (
+        MOST,
+        draw_interface,
+        greatest_takers,
+        points_of,
+        read_interface,
+        read_places,
+    )
+
+    output = picture_of(file, output, "-contacts.png", places)
+    if len(at) > MOST:
+        raise click.UsageError(f"--at is given {len(at)} times; a picture has room for {MOST}.")
+    read = read_interface(file)
+    points = points_of(read, at, curve)
+    where = None if places is None else read_places(places, read.contacts)
+    for point in points:
+        rows = [HEAD, *greatest_takers(read, point, MOST_ROWS)]
+        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        for row in rows:
+            messages.info("  ".join(word.rjust(width) for word, width in zip(row, widths, strict=True)))
+        messages.info(f"at {point.frequency:.6g} {read.unit}; {len(read.contacts)} contacts")
+    save_picture_of(file, lambda: draw_interface(read, points, where), output)
+    messages.info(f"wrote {output}")

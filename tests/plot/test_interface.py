@@ -1,0 +1,113 @@
+"""Pictures of the contacts of a response, and what is read for them."""
+
+import numpy as np
+import pytest
+
+from fcm.plot import PlotError
+from fcm.plot.interface import draw_interface, greatest_takers, points_of, read_interface, read_places
+
+from ..harmonic.strips import strip
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory):
+    """A response of twelve contacts, and the dataset that was written."""
+    from fcm.response import respond
+
+    path = tmp_path_factory.mktemp("interface") / "strip.nc"
+    dataset = respond(strip(), harmonics=1)
+    dataset.to_netcdf(path)
+    return path, dataset
+
+
+def test_states_are_those_of_the_loops(file):
+    path, dataset = file
+    read = read_interface(path)
+    (top,) = points_of(read, ())
+    amplitude = dataset.amplitude.values[0]
+    k = int(np.nanargmax(np.nanmax(np.nan_to_num(amplitude, nan=-1.0), axis=1)))
+    assert top.frequency == dataset.frequency.values[0, k]
+    assert np.array_equal(top.borne[0], dataset.dissipated_energy.values[0, k])
+
+
+def test_each_state_is_what_the_letters_of_the_loop_say(file):
+    path, dataset = file
+    read, seen = read_interface(path), set()
+    omega = dataset.frequency.values[0]
+    for at in (0.91, 1.05, 1.2, 1.35, 1.49):
+        (point,) = points_of(read, (at,))
+        (k,) = np.flatnonzero(omega == point.frequency)[:1]
+        for word, state in zip(dataset.regime.values[0, k], point.state, strict=True):
+            letters = set(str(word))
+            seen.add(state)
+            if state == 3:
+                assert letters == {"S"}
+            elif state == 2:
+                assert "S" in letters and letters > {"S"}
+            else:
+                assert "S" not in letters and (letters == {"E"}) == (state == 0)
+    assert len(seen) > 1
+
+
+def test_the_contacts_that_take_most_are_listed_first(file):
+    read = read_interface(file[0])
+    (top,) = points_of(read, (1.2,))
+    rows = greatest_takers(read, top, 5)
+    energy = [float(row[2]) for row in rows]
+    assert energy == sorted(energy, reverse=True)
+    assert energy[0] == pytest.approx(np.nanmax(top.borne[0]), rel=1e-3)
+    assert sum(float(row[3].split()[0]) for row in greatest_takers(read, top, 12)) == pytest.approx(
+        100, abs=1
+    )
+
+
+def test_a_column_for_each_frequency_and_marks_at_the_places(file):
+    read = read_interface(file[0])
+    points = points_of(read, (1.0, 1.2))
+    assert [abs(one.frequency - at) < 0.05 for one, at in zip(points, (1.0, 1.2), strict=True)] == [
+        True,
+        True,
+    ]
+    row = draw_interface(read, points)
+    assert len(row.axes) == 8
+    places = np.array([(i % 4, i // 4) for i in range(12)], dtype=float)
+    drawn = draw_interface(read, points, places)
+    panels = [axes for axes in drawn.axes if axes.get_label() != "<colorbar>"]
+    assert len(panels) == 8
+    for axes in panels:
+        marks = np.vstack([one.get_offsets() for one in axes.collections])
+        assert sorted(map(tuple, np.asarray(marks).tolist())) == sorted(map(tuple, places.tolist()))
+        assert axes.get_xlim()[0] < 0.0 and axes.get_ylim()[1] > 2.0
+
+
+def test_places_that_do_not_fit_are_all_said_at_once(tmp_path):
+    file = tmp_path / "places.txt"
+    file.write_text("a 0 0\nb, 1.5, 2e-3  # a remark\n\n")
+    assert read_places(file, ("a", "b")).tolist() == [[0.0, 0.0], [1.5, 2e-3]]
+    with pytest.raises(PlotError, match="no line for c"):
+        read_places(file, ("a", "b", "c"))
+    file.write_text("a 0\nd 1 2\na 0 0\na 1 1\nb 1 nan\n")
+    with pytest.raises(PlotError) as raised:
+        read_places(file, ("a", "b"))
+    said = str(raised.value).splitlines()
+    assert [one.partition("line ")[2][0] for one in said] == ["1", "2", "4", "5"]
+    file.write_bytes(b"\xff\xfe a")
+    with pytest.raises(PlotError, match="not a text"):
+        read_places(file, ("a",))
+
+
+def test_what_is_not_in_the_file_is_said(file):
+    read = read_interface(file[0])
+    with pytest.raises(PlotError, match=r"the curve goes from 0\.9 to 1\.5 rad/s"):
+        points_of(read, (7.0,))
+    with pytest.raises(PlotError, match="there is no curve 3"):
+        points_of(read, (), 3)
+
+
+def test_the_command_writes_a_picture_and_lists_contacts(file, fcm):
+    path = file[0]
+    done = fcm("plot", "contacts", path, "--at", "1.2", "-o", path.with_suffix(".svg"))
+    assert done.code == 0
+    assert "contact" in done.err and "wrote" in done.err and path.with_suffix(".svg").stat().st_size > 5000
+    many = [word for _ in range(7) for word in ("--at", "1.2")]
+    assert fcm("plot", "contacts", path, *many).code == 2
