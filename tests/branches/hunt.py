@@ -1,6 +1,6 @@
 """Branches that a response lacks, hunted by marching from random states and by deflation; no part of a run.
 
-usage: python -m tests.branches.hunt meets|stops [FIRST LAST] [--deflate]
+usage: python -m tests.branches.hunt meets|stops [FIRST LAST [SECONDS]] [--deflate]   (of a processor, in all)
 
 A march that settles at a motion of one period, where contacts do more than stick or stay open, is at a stable
 one: it has to be on a branch. Deflation (Farrell, Birkisson, Funke 2015) turns Newton's method away from the
@@ -8,6 +8,7 @@ solutions that it has found, and so finds others, stable or not.
 """
 
 import sys
+import time
 from dataclasses import dataclass
 
 import numpy as np
@@ -120,13 +121,18 @@ def hunt(scene, looks=5, tries=6, deflate=False):
 
 def main(arguments):
     """Hunt in scenes of a kind, and say what was found."""
-    numbers = [int(one) for one in arguments[1:3] if one.isdigit()] or [0, EACH]
-    count = 0
-    for seed in range(*numbers):
-        for miss in hunt(KINDS[arguments[0]](seed), deflate="--deflate" in arguments):
+    kind, *numbers = (one for one in arguments if not one.startswith("--"))
+    first, last, seconds = (*map(int, numbers), *(0, EACH, sys.maxsize)[len(numbers) :])
+    count, seed = 0, first - 1
+    for seed in range(first, last):
+        if time.process_time() > seconds:
+            seed -= 1
+            break
+        for miss in hunt(KINDS[kind](seed), deflate="--deflate" in arguments):
             count += 1
-            print(f"{arguments[0]} {seed}: {miss.amplitude} at {miss.frequency:.6g} by {miss.found_by}")
-    print(f"{count} missed in {arguments[0]} {numbers[0]} to {numbers[1] - 1}")
+            at = f"{miss.amplitude} at {miss.frequency:.6g} by {miss.found_by}"
+            print(f"{kind} {seed}: {at}", flush=True)
+    print(f"{count} missed in {kind} {first} to {seed}, {time.process_time():.0f} s")
 
 
 if __name__ == "__main__":
