@@ -29,7 +29,7 @@ OFF = {
     "folds followed": [(all_branches, "with_isolas", lambda system, found: found)],
     "branch points": [
         (all_branches, "with_branching", lambda system, found: found),
-        (all_branches, "breaks_symmetry", lambda system, found: False),
+        (all_branches, "symmetry_lost", lambda system, found: ()),
     ],
     "prolongation": [
         (outline, "near", lambda before, harmonics: []),

@@ -51,3 +51,18 @@ def test_both_sides_of_a_branch_point_are_mirror_images_of_which_one_is_traced()
         assert np.abs(off).max() < 1e-3 and np.allclose(mirror.image(mirror.image(one)), one)
         on = [sum(contains(path, z, system.afresh()) for path in found.branches.paths) for z in (one, other)]
         assert sorted(on) == [0, 1]
+
+
+def test_where_odd_harmonics_alone_are_given_it_is_said_where_symmetry_is_lost(fcm, tmp_path):
+    """The branch points are those of all harmonics; the unsymmetric motions have even ones."""
+    odd = traced_curve(SCENE, Wanted((1, 3, 5)))
+    system = System(SCENE, (1, 2, 3, 4, 5))
+    there = [
+        point.z[-1]
+        for point in branch_points(system, (1, 3, 5), traced(System(SCENE, (1, 3, 5))).branches.paths)
+    ]
+    assert odd.symmetry_lost and odd.symmetry_lost == pytest.approx(there)
+    whole = traced_curve(SCENE, Wanted((1, 2, 3, 4, 5)))
+    assert whole.symmetry_lost == [] and whole.mirrored and not odd.mirrored
+    done = fcm("respond", Path(__file__).parent / "scenes/equal_stops.toml", "--harmonics", "1,3,5", "--json")
+    assert "loses its symmetry" in done.err and f"{odd.symmetry_lost[0]:.5g} rad/s" in done.err

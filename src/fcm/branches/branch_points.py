@@ -59,10 +59,7 @@ def branch_points(
         whole = path
         if tuple(harmonics) != system.harmonics:
             newton = newton or Newton(system.balance())
-            solved = _solved(system, newton, path, tuple(harmonics), options)
-            if solved is None:
-                continue
-            whole = solved
+            whole = _with_all(system, newton, path, tuple(harmonics), options)
         change = whole.orientation[:-1] * whole.orientation[1:] < 0.0
         for i in np.flatnonzero(change).tolist():
             balance = balance or system.balance()
@@ -72,25 +69,24 @@ def branch_points(
                 yield BranchPoint(z, starts)
 
 
-def _solved(
+def _with_all(
     system: System, newton: Newton, path: Path, fewer: tuple[int, ...], options: BranchingOptions
-) -> Path | None:
-    """A path of fewer harmonics with the orientations that all give it; None if they are no solutions with
+) -> Path:
+    """A path of fewer harmonics with the orientations that all give it; NaN where it is no solution with
     nothing of the others, as where these are driven."""
     z = np.array([system.extended(one, fewer) for one in path.z])
     direction = np.array([system.extended(one, fewer) for one in path.direction])
-    orientation = np.empty(len(z))
+    orientation = np.full(len(z), np.nan)
     for i, (one, way) in enumerate(zip(z, direction, strict=True)):
         newton.problem.measure(one)
         newton.scale[:], newton.z[:] = newton.problem.scale, one
         row = way / np.asarray(newton.scale)
         newton.row[:] = row / np.linalg.norm(row)
         if not newton.look():
-            return None
+            continue
         off = np.asarray(newton.problem.residual) / np.asarray(newton.scale)[:-1]
-        if np.abs(off).max(initial=0.0) > options.driven:
-            return None
-        orientation[i] = newton.orientation
+        if np.abs(off).max(initial=0.0) < options.driven:
+            orientation[i] = newton.orientation
     return replace(path, z=z, direction=direction, orientation=orientation)
 
 

@@ -35,17 +35,19 @@ def with_isolas(system: System, found: Traced) -> Traced:
     return with_further(system, found, (), met.solutions) if met.solutions else found
 
 
-def breaks_symmetry(system: System, found: Traced) -> bool:
-    """Whether a branch has branch points that take harmonics which the system lacks."""
+def symmetry_lost(system: System, found: Traced) -> tuple[float, ...]:
+    """Frequencies [rad/s] of branch points that take harmonics which the system lacks: where a symmetric
+    motion loses its symmetry."""
     whole = all_up_to(system)
     if whole.harmonics == system.harmonics or not system.scene.contacts:
-        return False
-    return any(True for _ in branch_points(whole, system.harmonics, found.branches.paths))
+        return ()
+    points = branch_points(whole, system.harmonics, found.branches.paths)
+    return tuple(float(point.z[-1]) for point in points)
 
 
 def with_branching(system: System, found: Traced, options: BranchingOptions = BRANCHING) -> Traced:
     """With the branches that leave others at branch points, of two mirror images one."""
-    if not system.scene.contacts or all_up_to(system).harmonics != system.harmonics:
+    if not system.scene.contacts:
         return found
     known, left = 0, options.most
     for _ in range(options.rounds):

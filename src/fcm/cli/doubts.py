@@ -32,6 +32,12 @@ def folds_unsure(summary: Mapping[str, Any]) -> str:
     return _may_be_missing(summary, "folds_unsure_at", "isolated branches", f"from {{}} on {why}")
 
 
+def symmetry_lost(summary: Mapping[str, Any]) -> str:
+    """Where symmetric motions lose their symmetry by harmonics that are not balanced; empty if nowhere."""
+    why = "the symmetric motion loses its symmetry, by even harmonics that are not among those balanced"
+    return _may_be_missing(summary, "symmetry_lost_at", "unsymmetric branches", f"at {{}} {why}")
+
+
 def _may_be_missing(summary: Mapping[str, Any], key: str, what: str, where: str) -> str:
     unsure = [curve[key] for curve in summary["curves"] if curve.get(key)]
     if not unsure:

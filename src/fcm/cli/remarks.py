@@ -16,6 +16,7 @@ from fcm.cli.doubts import (
     mirrored,
     nothing_stable,
     short_of_accuracy,
+    symmetry_lost,
     tracked_unsure,
 )
 from fcm.cli.guard import DEFECT, NOT_COMPLETED
@@ -61,8 +62,9 @@ def close(messages: Messages, result: dict[str, Any], defects: list[str], writte
         messages.info(nothing)
     if short := short_of_accuracy(result):
         messages.warning(short)
-    for unsure in filter(None, (branches_unsure(result), folds_unsure(result), tracked_unsure(result))):
-        messages.warning(unsure)
+    unsure = (branches_unsure, folds_unsure, symmetry_lost, tracked_unsure)
+    for doubt in filter(None, (one(result) for one in unsure)):
+        messages.warning(doubt)
     for doubt in fit.doubts(result):
         messages.warning(doubt)
     histories = result.get("histories", [])

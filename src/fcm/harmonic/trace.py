@@ -26,13 +26,16 @@ class Traced:
     """Branches, and what was found at the frequencies where solutions were looked for, maybe with fewer
     harmonics; work is what that took, in seconds of `fcm.harmonic.cost`. mirrored: the numbers of the
     branches whose mirror images are branches, too, and are not among them. folds_lost: frequencies [rad/s]
-    from where curves of folds were not followed further, so that isolated branches may be missing."""
+    from where curves of folds were not followed further, so that isolated branches may be missing.
+    symmetry_lost: where a symmetric motion loses its symmetry by harmonics that are not among those balanced.
+    """
 
     branches: Branches
     found: tuple[Found, ...]
     work: float = 0.0
     mirrored: tuple[int, ...] = ()
     folds_lost: tuple[float, ...] = ()
+    symmetry_lost: tuple[float, ...] = ()
 
 
 def traced(

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from fcm.accuracy.refinement import Accurate, enlarged, finer
 from fcm.branches.branch_points import all_up_to
 from fcm.branches.prolongation import prolongated
-from fcm.branches.search import breaks_symmetry, with_branching, with_isolas
+from fcm.branches.search import symmetry_lost, with_branching, with_isolas
 from fcm.harmonic.trace import with_further
 from fcm.response.further_levels import with_levels_below_peaks, with_traced
 
@@ -19,9 +21,10 @@ def with_all_branches(found: Accurate, accuracy: float | None) -> Accurate:
     most = np.inf if accuracy is None else accuracy
     known = found.traced
     found = _searched(found, most)
+    lost = symmetry_lost(found.system, found.traced)
     for _ in range(0 if accuracy is None else ROUNDS):
         more = found.system.harmonics
-        if breaks_symmetry(found.system, found.traced):
+        if lost:
             more = all_up_to(found.system).harmonics
         elif found.traced is not known and not _enough(found, most):
             more = enlarged(found, most)
@@ -30,7 +33,8 @@ def with_all_branches(found: Accurate, accuracy: float | None) -> Accurate:
             break
         known = again.traced
         found = _searched(_with_prolongated(again, found, most), most)
-    return found
+        lost = symmetry_lost(found.system, found.traced)
+    return replace(found, traced=replace(found.traced, symmetry_lost=lost)) if lost else found
 
 
 def _enough(found: Accurate, accuracy: float) -> bool:

@@ -207,6 +207,7 @@ def _curve(followed: _Followed) -> Curve:
         loose=int(loose(scene, words).sum()),
         unsure=[one.omega for one in found.traced.found if not one.complete],
         folds_unsure=list(found.traced.folds_lost),
+        symmetry_lost=list(found.traced.symmetry_lost),
         levels=[one.omega for one in found.traced.found],
         digits=bool(rounding.any()),
         folds_between=(FOLDS.lowest, FOLDS.highest) if scene.contacts else None,

@@ -54,6 +54,10 @@ def _doubts(response: Response, gists: Sequence[Gist]) -> dict[str, Field]:
         meaning = "frequencies from where folds of the force level were lost: branches may be missing"
         unsure = by_fold(curves, lambda curve: in_unit(np.array(curve.folds_unsure), unit))
         out["folds_unsure_at"] = Field(("curve", "lost_fold"), unsure, {"long_name": meaning} | in_file)
+    if any(curve.symmetry_lost for curve in curves):
+        meaning = "frequencies at which symmetry is lost by harmonics that are not balanced"
+        lost = by_fold(curves, lambda curve: in_unit(np.array(curve.symmetry_lost), unit))
+        out["symmetry_lost_at"] = Field(("curve", "symmetry_lost"), lost, {"long_name": meaning} | in_file)
     if any(gist.unstable for gist in gists):
         meaning = "from and to which frequency no stable motion was found"
         most = max(len(gist.unstable) for gist in gists)

@@ -36,6 +36,8 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
         out["branches_unsure_at"] = in_unit(curve.unsure, unit).tolist()
     if curve.folds_unsure:
         out["folds_unsure_at"] = in_unit(curve.folds_unsure, unit).tolist()
+    if curve.symmetry_lost:
+        out["symmetry_lost_at"] = in_unit(curve.symmetry_lost, unit).tolist()
     if gist.unstable:
         out["no_stable_motion"] = in_unit(sorted(gist.unstable), unit).tolist()
     missing = [] if curve.levels is None else not_looked_at(gist.unstable, curve.levels)

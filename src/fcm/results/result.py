@@ -65,6 +65,7 @@ class Curve:
     short_of: str = ""  # what keeps it from the accuracy that was asked for, if anything
     unsure: list[float] = field(default_factory=list)  # [rad/s] where branches may have been missed
     folds_unsure: list[float] = field(default_factory=list)  # [rad/s] from where no folds were followed
+    symmetry_lost: list[float] = field(default_factory=list)  # [rad/s] by harmonics that are not balanced
     levels: list[float] | None = None  # [rad/s] at which the level of the forces was followed, if known
     folds_between: tuple[float, float] | None = None  # levels of the forces, see `fcm.branches.isolas`
     mirrored: int = 0  # branches whose mirror images are branches, too, and are not traced
