@@ -119,7 +119,7 @@ def test_an_interruption_keeps_the_modes_that_are_finished(fcm, scene, monkeypat
     assert first["mode"] == every[0]["mode"] and first["reason"].endswith("known with 3 harmonics")
     assert [one["reason"] for one in rest] == ["interrupted before it was traced"] * 2
     begun[:] = [None] * 5  # and so, if the error with more is not known
-    told = Mock(side_effect=[np.ones(1), KeyboardInterrupt])
+    told = Mock(side_effect=[(np.ones(1), np.full(4, np.nan)), KeyboardInterrupt])  # of any points
     monkeypatch.setattr("fcm.response.mode.truncation", told)
     first = json.loads(fcm(*mode, "--accuracy", 1e-4).out)["curves"][0]
     assert first["mode"] == every[0]["mode"] and first["harmonics"] == [1]

@@ -10,6 +10,7 @@ from fcm.cli.messages import Messages
 from fcm.cli.sensitivity import added
 from fcm.harmonic.sensitivity import sensitivities
 from fcm.response import trace
+from fcm.results.cause import Cause
 from fcm.scene import load_scene
 
 
@@ -111,7 +112,8 @@ def test_after_an_interruption_none_is_begun(scene):
     scene.write_text(scene.read_text() + '\n[sweep]\n"contact.shroud.mu" = [0.3, 0.4]\n')
     loaded = load_scene(scene)
     response = trace(loaded, harmonics=1)
-    response.curves[1].complete, response.curves[1].reason = False, "interrupted at 1 rad/s"
+    cut_off = response.curves[1]
+    cut_off.complete, cut_off.reason, cut_off.cause = False, "interrupted at 1 rad/s", Cause.INTERRUPTED
     added(Messages(), response, loaded)
     assert [curve.sensitivity for curve in response.curves] == [None, None]
     reasons = ["interrupted before its sensitivities were known", "interrupted at 1 rad/s"]

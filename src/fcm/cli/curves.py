@@ -202,10 +202,10 @@ def incomplete(summary: Mapping[str, Any]) -> str:
 
 def all_lost_to_defects(summary: Mapping[str, Any]) -> bool:
     """Whether no curve came out, each for a defect of fcm: the program failed, and not the calculation."""
-    from fcm.results.result import DEFECT
+    from fcm.results.cause import Cause
 
     curves = summary["curves"]
-    return bool(curves) and all(curve.get("reason", "").startswith(DEFECT) for curve in curves)
+    return bool(curves) and all(curve.get("cause") == Cause.DEFECT.name.lower() for curve in curves)
 
 
 def _worst(curves: Sequence[Curve], key: str) -> float | None:

@@ -12,7 +12,7 @@ import numpy as np
 from fcm.at_rest import at_rest
 from fcm.motion.errors import SimulationError
 from fcm.motion.plan import Plan
-from fcm.motion.record import INTERRUPTED, Passed, Record, record, unfinished
+from fcm.motion.record import Passed, Record, record, unfinished
 from fcm.motion.run import Progress
 from fcm.scene.model import Scene
 
@@ -78,9 +78,9 @@ def histories(scene: Scene, progress: Progress | None = None, kept: Kept | None 
     for number, curve in enumerate(curves):
         made = _record(number, curve, plan, _share(progress, number, len(curves)), kept)
         records.append(made)
-        if made.reason == INTERRUPTED:
+        if made.interrupted:
             break
-    if not any(one.cycles for one in records) and records[-1].reason == INTERRUPTED:
+    if not any(one.cycles for one in records) and records[-1].interrupted:
         raise KeyboardInterrupt
     records += [unfinished(curve, plan) for curve in curves[len(records) :]]
     return Histories(scene, plan, list(map(_without_rounding, records)), time.perf_counter() - begin)
@@ -105,7 +105,7 @@ def _record(number: int, curve: Scene, plan: Plan, progress: Progress | None, ke
         return whole
     passed: Sequence[Passed] = kept.states.get(number, ())
     made = record(curve, plan, progress, passed, lambda one: kept.save(number, one))
-    if made.reason != INTERRUPTED:
+    if not made.interrupted:
         kept.add(number, [made])
     return made
 

@@ -75,6 +75,11 @@ class Record:
         return not self.reason
 
     @property
+    def interrupted(self) -> bool:
+        """Whether an interruption has cut it off, or left it out."""
+        return self.reason in (INTERRUPTED, NOT_BEGUN)
+
+    @property
     def cycles(self) -> float:
         """Cycles that were simulated."""
         return sum(phase.cycles for phase in self.phases)

@@ -25,6 +25,7 @@ from fcm.response.search import Search
 from fcm.response.taken_over import Released
 from fcm.response.unreached import unreached
 from fcm.response.visit import Visitor
+from fcm.results.cause import Cause
 from fcm.results.result import INTERRUPTED, Curve
 from fcm.run import Interrupted, Report
 from fcm.scene.errors import counted
@@ -33,8 +34,7 @@ from fcm.scene.model import FloatArray, Held, Scene
 FEWEST = 2  # contacts of a scene of which some may be foreseen to keep their state
 ENOUGH = 10.0  # [s] of processor time for a curve that a stiff contact may keep from ever being finished
 BESIDE = 0.5  # of the time for a curve, that the search for what leads to further branches may take
-STOPPED = f"{INTERRUPTED} at "  # how the reason of a curve begins that an interruption has cut off
-AT_END = f"{STOPPED}its end, while other motions beside its points were sought"
+AT_END = f"{INTERRUPTED} at its end, while other motions beside its points were sought"
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class ExactWork:
         except SimulationError as error:  # there is no rest to begin with
             curve = lost_curve(scene, str(error))
         curve = replace(curve, seconds=time.perf_counter() - begin)
-        if curve.reason.startswith(STOPPED):
+        if not curve.complete and curve.cause is Cause.INTERRUPTED:
             raise Interrupted([curve])
         return curve
 
@@ -102,8 +102,10 @@ class _Followed:
                 curve, lost = lost_curve(scene, found.reason), found.places
             if not (held and (lost or not curve.points)):
                 return curve
-            if curve.reason.startswith(STOPPED) or self.clock.over:
-                return lost_curve(scene, curve.reason)  # what there is is not the motion of these contacts
+            if curve.cause is Cause.INTERRUPTED or self.clock.over:
+                return lost_curve(
+                    scene, curve.reason, curve.cause
+                )  # what there is is not the motion of these contacts
             held = tuple(one for one in held if lost and one.place not in lost)
 
     def _held_or_lost(self, scene: Scene, held: tuple[Held, ...]) -> Curve:
@@ -117,9 +119,9 @@ class _Followed:
 
     def curve(self, scene: Scene) -> Curve:
         """The curve with all contacts that the scene computes."""
-        groups, reason = self.branches(scene)
+        groups, reason, cause = self.branches(scene)
         search = Search(self.clock.look, self.report)
-        return _doubted(_finished(partial(orbit_curve, groups), reason, search), self.doubts)
+        return _doubted(_finished(partial(orbit_curve, groups), reason, search, cause), self.doubts)
 
     def peaks(self, scene: Scene) -> Curve:
         """The peaks, folds and jumps alone."""
@@ -130,14 +132,14 @@ class _Followed:
             where = shown(scene, known[-1].frequency) if known else "the start"
             reason = _cut_off(stop, self.clock.limit) + where + self.stiff
             found = Alone(sorted(known, key=lambda one: one.frequency))
-            return _finished(partial(peaks_curve, scene, found), reason, search)
+            return _finished(partial(peaks_curve, scene, found), reason, search, _cause(stop))
         if alone is not None:
             return _doubted(_finished(partial(peaks_curve, scene, alone), "", search), alone.doubts)
-        groups, reason = self.branches(scene)
-        return _doubted(_finished(partial(peaks_of, groups), reason, search), self.doubts)
+        groups, reason, cause = self.branches(scene)
+        return _doubted(_finished(partial(peaks_of, groups), reason, search, cause), self.doubts)
 
-    def branches(self, scene: Scene) -> tuple[list[OrbitBranches], str]:
-        """All branches, and why they are not complete, else ''; what is stiff is said then, too.
+    def branches(self, scene: Scene) -> tuple[list[OrbitBranches], str, Cause]:
+        """All branches, and why they are not complete, else ''; what is stiff is said then, too; the cause.
 
         Raises
         ------
@@ -145,7 +147,7 @@ class _Followed:
             If a contact that is held would not have kept its state.
         """
         legs = Legs(scene.frequency_range, self.report, self.clock.look, _watched if scene.held else None)
-        problems, groups = [OrbitProblem(scene)], list[OrbitBranches]()
+        problems, groups, cause = [OrbitProblem(scene)], list[OrbitBranches](), Cause.CALCULATION
         try:
             for problem, found in self.before:
                 legs.take(Released(problem, problems[0]).legs(found.found(problem)))
@@ -166,20 +168,22 @@ class _Followed:
                 problems.append(further)
             groups = [OrbitBranches(one, legs.paths(one), cut_off=True) for one in problems]
             paths = [path for group in groups for path in group.paths]
-            reason = _cut_off(stop, self.clock.limit) + reached(scene, paths)
-        return groups, reason + self.stiff if reason else ""
+            reason, cause = _cut_off(stop, self.clock.limit) + reached(scene, paths), _cause(stop)
+        return groups, reason + self.stiff if reason else "", cause
 
 
-def _finished(made: Callable[[str, Search], Curve], reason: str, search: Search) -> Curve:
+def _finished(
+    made: Callable[[str, Search], Curve], reason: str, search: Search, cause: Cause = Cause.CALCULATION
+) -> Curve:
     """A curve of what was found; once it is interrupted, no other motions are looked for beside that."""
-    if reason.startswith(STOPPED):
+    if cause is Cause.INTERRUPTED:
         search.end()
-        return made(reason, search)
     try:
-        return made(reason, search)
+        return replace(made(reason, search), cause=cause)
     except KeyboardInterrupt:
         search.end()
-        return made(f"{AT_END}; {reason}" if reason else AT_END, search)
+        curve = made(f"{AT_END}; {reason}" if reason else AT_END, search)
+        return replace(curve, cause=Cause.INTERRUPTED)
 
 
 def _doubted(curve: Curve, doubts: Doubts) -> Curve:
@@ -202,7 +206,13 @@ def _watched(problem: OrbitProblem, z: FloatArray) -> None:
 
 def _cut_off(stop: BaseException, limit: float | None) -> str:
     """How the reason of a curve begins that has been stopped."""
-    return f"not finished in {limit:g} s of processor time, at " if isinstance(stop, TimeOver) else STOPPED
+    over = isinstance(stop, TimeOver)
+    return f"not finished in {limit:g} s of processor time, at " if over else f"{INTERRUPTED} at "
+
+
+def _cause(stop: BaseException) -> Cause:
+    """Why it is not complete then."""
+    return Cause.CALCULATION if isinstance(stop, TimeOver) else Cause.INTERRUPTED
 
 
 def _too_stiff(scene: Scene, limit: float | None) -> tuple[str, float | None]:
@@ -221,15 +231,16 @@ def _visited(scene: Scene, at: tuple[float, ...], report: Report, limit: float |
     stiff, limit = _too_stiff(replace(scene, frequency_range=(at[0], at[-1])), limit)
     look = Clock(limit, report).look
     visitor, others, reason, doubts = Visitor(around, look), list[Sample](), "", Doubts()
+    cause = Cause.CALCULATION
     try:
         visitor.run(at, report)
         others.extend(unreached(scene, at, visitor.points, report, look, doubts))
     except (KeyboardInterrupt, TimeOver) as stop:
         where = shown(scene, visitor.points[-1].frequency) if visitor.points else "the start"
-        reason = _cut_off(stop, limit) + where
+        reason, cause = _cut_off(stop, limit) + where, _cause(stop)
     except SimulationError as error:
         reason = str(error)
     reason = reason or visitor.reason
     reason = reason + stiff if reason else ""
-    found = _finished(partial(visited_curve, scene, visitor, others), reason, Search(look, report))
+    found = _finished(partial(visited_curve, scene, visitor, others), reason, Search(look, report), cause)
     return _doubted(found, doubts)

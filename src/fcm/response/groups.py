@@ -13,6 +13,7 @@ import numpy as np
 from fcm.harmonic.common_levels import forget
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
+from fcm.results.cause import Cause
 from fcm.results.gist import Gist, without_points
 from fcm.results.greatest import Greatest
 from fcm.results.jumps import Jump, Swept, Untold
@@ -26,6 +27,7 @@ from fcm.scene.model import Scene
 Group = Sequence[Scene]
 SLOW = 1.0  # [s] after which finished curves are saved before their group is, and no kill can lose them
 KINDS = (
+    Cause,
     Curve,
     Gist,
     Orbits,
@@ -112,13 +114,15 @@ def fits(expected: Scene | Curve, curve: Any) -> bool:
 
 
 def as_curve(scene: Scene, result: Curve | Lost | None, reason: str = "") -> Curve:
-    """A result of a sweep; a curve without points where there is none."""
+    """A result of a sweep; a curve without points where there is none, as the run was interrupted."""
     if isinstance(result, Lost):
-        return lost_curve(scene, f"{DEFECT}, {result.reason}" if result.defect else result.reason)
-    return lost_curve(scene, reason) if result is None else result
+        if result.defect:
+            return lost_curve(scene, f"{DEFECT}, {result.reason}", Cause.DEFECT)
+        return lost_curve(scene, result.reason)
+    return lost_curve(scene, reason, Cause.INTERRUPTED) if result is None else result
 
 
-def lost_curve(scene: Scene, reason: str) -> Curve:
+def lost_curve(scene: Scene, reason: str, cause: Cause = Cause.CALCULATION) -> Curve:
     """A curve without points, and why."""
     none, dofs = np.empty(0), scene.modal.dofs
     return Curve(
@@ -138,6 +142,7 @@ def lost_curve(scene: Scene, reason: str) -> Curve:
         truncation_error=none,
         complete=False,
         reason=reason,
+        cause=cause,
         peaks=dict.fromkeys(dofs, Peak(np.nan, np.nan)),
         folds=[],
         seconds=0.0,

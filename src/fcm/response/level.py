@@ -35,6 +35,7 @@ from fcm.response.one_by_one import one_by_one
 from fcm.response.trace import Rows, pick
 from fcm.response.wanted import ResponseError, Wanted, wanted_of
 from fcm.results.at_rest import without_rounding
+from fcm.results.cause import Cause
 from fcm.results.greatest import greatest_of
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
@@ -84,7 +85,7 @@ def trace_levels(
         (curve, frequency * UNIT[scene.frequency_unit]) for curve in scene.each_curve() for frequency in at
     ]
     tasks = [
-        (_without(curve, omega, NOT_BEGUN), partial(_level, curve, wanted, omega, span))
+        (_without(curve, omega, NOT_BEGUN, Cause.INTERRUPTED), partial(_level, curve, wanted, omega, span))
         for curve, omega in ways
     ]
     mark = (
@@ -110,10 +111,10 @@ def level_fault(low: float, high: float) -> str:
     return "" if high > REST else f"up to a level of {REST:g} there is but rest"
 
 
-def _without(scene: Scene, omega: float, reason: str) -> Curve:
+def _without(scene: Scene, omega: float, reason: str, cause: Cause = Cause.CALCULATION) -> Curve:
     """A curve without points, and why."""
     parameters = {**scene.parameters, EXCITATION: float(in_unit(omega, scene.frequency_unit))}
-    return replace(lost_curve(scene, reason), parameters=parameters, level=np.empty(0))
+    return replace(lost_curve(scene, reason, cause), parameters=parameters, level=np.empty(0))
 
 
 def _level(scene: Scene, wanted: Wanted, omega: float, span: tuple[float, float]) -> Curve:
@@ -134,7 +135,7 @@ def _level(scene: Scene, wanted: Wanted, omega: float, span: tuple[float, float]
             break
         system, curve = more, then
     if stopped:
-        curve.complete, curve.reason = False, stopped
+        curve.complete, curve.reason, curve.cause = False, stopped, Cause.INTERRUPTED
     elif wanted.harmonics is None and curve.complete and not (worst := _worst(curve)) <= wanted.accuracy:
         what = (
             "the errors of some peaks cannot be told"

@@ -26,6 +26,7 @@ from fcm.response.one_by_one import one_by_one
 from fcm.response.trace import pick
 from fcm.response.wanted import ResponseError, Wanted, wanted_of
 from fcm.results.at_rest import without_rounding
+from fcm.results.cause import Cause
 from fcm.results.greatest import greatest_of
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance
 from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
@@ -81,7 +82,10 @@ def trace_modes(
     try:
         curves = one_by_one(
             [
-                (lost_curve(one, NOT_BEGUN), partial(_curve, one, number, span, wanted, levels))
+                (
+                    lost_curve(one, NOT_BEGUN, Cause.INTERRUPTED),
+                    partial(_curve, one, number, span, wanted, levels),
+                )
                 for one in scene.each_curve()
             ],
             progress,
@@ -128,7 +132,7 @@ def _curve(
         count = counted(len(mode.system.harmonics), "harmonic")
         curve.short_of = f"with {count} an estimated error of {_worst(error):.1e} remains"
     if stopped:
-        curve.complete, curve.reason = False, stopped
+        curve.complete, curve.reason, curve.cause = False, stopped, Cause.INTERRUPTED
     curve.seconds = time.perf_counter() - begin
     return curve
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from fcm.response.groups import KINDS, fits
+from fcm.results.cause import Cause
 from fcm.results.result import INTERRUPTED, Curve
 from fcm.run import Checkpoint, Progress, Results
 
@@ -34,7 +35,7 @@ def one_by_one(
     for i, (none, followed) in enumerate(tasks):
         if progress is not None:
             progress(i / len(tasks), f"{i} of {len(tasks)} curves")
-        if curves and curves[-1].reason.startswith(INTERRUPTED):
+        if curves and _cut_off(curves[-1]):
             curves.append(none)
             continue
         if i in kept.finished:
@@ -42,14 +43,19 @@ def one_by_one(
             continue
         try:
             curves.append(followed())
-            if not curves[-1].reason.startswith(INTERRUPTED):
+            if not _cut_off(curves[-1]):
                 kept.add(i, [curves[-1]])
         except KeyboardInterrupt:
             if not curves:
                 raise
             if len(curves) == i:
-                curves.append(replace(none, reason=f"{INTERRUPTED} at the start"))
+                curves.append(replace(none, reason=f"{INTERRUPTED} at the start", cause=Cause.INTERRUPTED))
     return curves
+
+
+def _cut_off(curve: Curve) -> bool:
+    """Whether an interruption has cut a curve off."""
+    return not curve.complete and curve.cause is Cause.INTERRUPTED
 
 
 def _fit(tasks: Sequence[Task], number: int, results: object) -> bool:

@@ -12,6 +12,7 @@ from fcm.harmonic.sensitivity import Sensitivities, sensitivities
 from fcm.reduction.put_back import unknowns
 from fcm.response.around import check_no_ring
 from fcm.response.optimum import scenes_at
+from fcm.results.cause import Cause
 from fcm.results.result import INTERRUPTED, Curve, Response
 from fcm.run import Progress
 from fcm.scene.model import FloatArray, Scene
@@ -48,6 +49,7 @@ def without_sensitivities(curves: Iterable[Curve]) -> None:
     """Say of curves that they have none, as the run was interrupted."""
     for curve in curves:
         curve.complete, curve.reason = False, curve.reason or WITHOUT
+        curve.cause = Cause.INTERRUPTED
 
 
 def _of_curve(curve: Curve, scene: Scene) -> Sensitivities:

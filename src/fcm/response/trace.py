@@ -31,6 +31,7 @@ from fcm.response.loose import loose
 from fcm.response.short_of import short_of
 from fcm.response.so_far import SoFar, Tell
 from fcm.response.wanted import ONE_HARMONIC, Wanted
+from fcm.results.cause import Cause
 from fcm.results.greatest import greatest_of
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve
@@ -81,7 +82,7 @@ def _unfinished(so_far: SoFar, scene: Scene) -> Curve:
     if found.system.scene is not scene:
         found = of_all(found, scene, np.inf)
     curve = _curve(_Followed(found, stable, []))
-    curve.complete, curve.reason = False, so_far.reason()
+    curve.complete, curve.reason, curve.cause = False, so_far.reason(), Cause.INTERRUPTED
     return curve
 
 

@@ -17,7 +17,7 @@ from fcm.harmonic.system import System
 from fcm.response.around import check_no_ring
 from fcm.response.curve_sweep import checkpoint_of
 from fcm.response.leading import leading
-from fcm.response.tracked_work import KINDS, STATES, STOPPED, Followed, TrackedWork
+from fcm.response.tracked_work import KINDS, STATES, Followed, TrackedWork
 from fcm.response.wanted import ResponseError, Wanted, wanted_of
 from fcm.results.result import DEFECT, NOT_BEGUN, Response
 from fcm.results.tracked import Tracking
@@ -168,7 +168,8 @@ def _add(response: Response, scene: Scene, found: Followed | Lost | None) -> Non
         response.tracking.curves += found.curves
         response.tracking.unsure += found.unsure
     problems = found.problems if isinstance(found, Followed) else [reason]
-    response.tracking.interrupted |= found is None or STOPPED in problems
+    cut_off = found is None or (isinstance(found, Followed) and found.interrupted)
+    response.tracking.interrupted |= cut_off
     where = ", ".join(f"{key} = {value:g}" for key, value in scene.parameters.items())
     response.tracking.problems += [f"{where}: {text}" if where else text for text in problems]
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TypeVar
 
@@ -48,6 +48,7 @@ class Followed:
     curves: list[TrackedCurve]
     problems: list[str]
     unsure: list[tuple[float, float]] = field(default_factory=list)  # see `Tracking`
+    interrupted: bool = False
 
 
 KINDS = (Followed, TrackedCurve, TrackedError)  # what results consist of
@@ -86,7 +87,7 @@ class TrackedWork:
             followed.curves.append(as_curve(scene, way, one, stable, told))
         if not stopped:
             return followed
-        followed.problems.append(STOPPED)
+        followed = replace(followed, problems=[*followed.problems, STOPPED], interrupted=True)
         raise Interrupted([followed] if followed.curves else [])
 
 

@@ -27,7 +27,7 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
     swept, dofs = gist.swept, tuple(curve.peaks)
     out: dict[str, Any] = {"parameters": curve.parameters, "points": gist.points, "complete": curve.complete}
     if not curve.complete:
-        out["reason"] = curve.reason
+        out["reason"], out["cause"] = curve.reason, curve.cause.name.lower()
     if curve.harmonics:
         out["harmonics"] = list(curve.harmonics)
     if curve.short_of:

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.results.cause import Cause
 from fcm.results.curve_summary import curve_summary
 from fcm.results.directions import directions_of
 from fcm.results.gist import Gist
@@ -28,8 +29,8 @@ if TYPE_CHECKING:
     from fcm.results.orbits import Orbits
     from fcm.results.tracked import Tracking
 
-DEFECT = "a defect of fcm"  # how the reason of a curve begins that was lost to one
-INTERRUPTED = "interrupted"  # how it begins where an interruption has cut the curve off, or left it out
+DEFECT = "a defect of fcm"  # how the reason of a curve that was lost to one is worded,
+INTERRUPTED = "interrupted"  # and that of one which an interruption has cut off, or left out; see `Cause`
 NOT_BEGUN = f"{INTERRUPTED} before it was traced"
 
 
@@ -57,7 +58,7 @@ class Curve:
         FloatArray  # (point,) the greatest of these that matters, see `fcm.accuracy.embedded_pair`
     )
     complete: bool
-    reason: str  # why it is not complete, else ''
+    reason: str  # why it is not complete, in words, else ''
     peaks: dict[str, Peak]  # of each dof
     folds: list[float]  # frequencies [rad/s] in the order along the curve
     seconds: float
@@ -82,6 +83,7 @@ class Curve:
     digits: bool = False  # whether displacements far below the greatest have digits, as contacts are stiff
     sensitivity: Sensitivities | None = None  # of the peaks
     in_plane: InPlane | None = None  # of contacts that slide in a plane, where there is one
+    cause: Cause = Cause.CALCULATION  # why it is not complete, if it is not
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """From another process or a file: what is the same in all curves is there once."""
@@ -178,8 +180,9 @@ class Response:
         if any(one is not None and one.interrupted for one in (self.tracking, self.fitted)):
             return True
         simulated = [] if self.histories is None else self.histories.records
-        reasons = [*(curve.reason for curve in self.curves), *(record.reason for record in simulated)]
-        return any(reason.startswith(INTERRUPTED) for reason in reasons)
+        curves = (curve for curve in self.curves if not curve.complete)
+        cut_off = any(curve.cause is Cause.INTERRUPTED for curve in curves)
+        return cut_off or any(record.interrupted for record in simulated)
 
     @property
     def parameters(self) -> list[dict[str, float]]:

@@ -1,0 +1,13 @@
+"""Why a curve is not complete, as what programs decide by; the reason in words is for people alone."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+
+class Cause(Enum):
+    """What kept a curve from being complete."""
+
+    CALCULATION = "the calculation could not be completed"
+    INTERRUPTED = "the run was interrupted"
+    DEFECT = "fcm failed"
