@@ -92,7 +92,7 @@ def test_the_error_of_a_closed_branch_of_twice_the_true_height():
     )
     off = np.abs(true / height - 1.0)
     assert off.max() > 0.4
-    assert (found.peak > off / 2.0).all() and (found.peak < 2.0 * off).all()
+    assert found.peak == pytest.approx(off, rel=0.1)
 
 
 def test_errors_and_multipliers_do_not_depend_on_the_curve_before():
@@ -141,12 +141,12 @@ def test_an_unstable_closed_branch_has_the_error_of_the_exact_motion():
         ),
         key=lambda one: one[1].max(),
     )
-    for d in (0, 1):
+    for d in (0, 2):
         top = int(amplitude[:, d].argmax())
         motion = exact(truth.many, truth.beside(path.z[top], path.direction[top]))
         true = abs(motion[d] / amplitude[top, d] - 1.0)
         assert true > 0.05
-        assert true / 2.0 < found.peak[d] < 2.0 * true
+        assert found.peak[d] == pytest.approx(true, rel=0.15)
 
 
 @pytest.mark.parametrize(
@@ -161,7 +161,7 @@ def test_the_errors_of_peaks_of_irregular_curves_are_those_of_the_exact_motion(s
     for d in dofs:
         now = found.shown[0].amplitude[:, d].max()
         true = abs(now / height(found, problem, known, 0, d) - 1.0)
-        assert true > 4e-4 and true / 2.0 < found.peak[d] < 2.0 * true
+        assert true > 4e-4 and found.peak[d] == pytest.approx(true, rel=0.25)
 
 
 def test_what_hardly_moves_says_nothing_of_what_moves():

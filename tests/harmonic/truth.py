@@ -40,7 +40,8 @@ def state(system, z):
         block = force[:, 2 + 4 * j : 6 + 4 * j]
         F = block[:, [0, 2]] + 1j * block[:, [1, 3]]
         w = h * omega
-        modal = (linear.force if h == 1 else 0.0) - linear.ports @ F.ravel()
+        driven = linear.force[linear.driven.index(h)] if h in linear.driven else 0.0
+        modal = driven - linear.ports @ F.ravel()
         modal = modal / (linear.natural**2 - w**2 + 2j * linear.damping * linear.natural * w)
         q, velocity, friction = q + modal.real, velocity + (1j * w * modal).real, friction + F[:, 0].real
     unit = np.sqrt(system.scene.modal.mass)

@@ -112,10 +112,13 @@ def errors_along(
     now = shown.amplitude[tops, d] + np.where(inside, rise, 0.0)
     settles = inside | ~partner.linear[tops]
     told = settles & np.isfinite(height)
-    error[tops[told], d[told]] = _of_peaks(np.abs(height - now) / unit[tops, d], options)[told]
     every = np.unique(tops[told])
-    for top, beyond in zip(every.tolist(), np.abs(partner.left_out(every)) / unit[every], strict=True):
-        error[top] = np.where(tops == top, np.maximum(error[top], beyond), error[top])
+    further, beyond = partner.lacking(every, np.array([inside[tops == top][0] for top in every], dtype=bool))
+    which = np.searchsorted(every, tops[told])
+    height[told] += further[which, d[told]]
+    at_tops = _of_peaks(np.abs(height - now) / unit[tops, d], options)[told]
+    left = np.abs(beyond[which, d[told]]) / unit[tops[told], d[told]]
+    error[tops[told], d[told]] = np.maximum(at_tops, left)
     error *= unit / np.where(shown.amplitude > 0.0, shown.amplitude, unit)
     comes: Mask = ~np.any(np.isnan(error), axis=1)
     pieces = partner.pieces(compared, followed)
@@ -127,7 +130,7 @@ def errors_along(
         met=comes,
         peak=np.where(told | ~settles, error[tops, d], np.nan),
         height=height,
-        fold=_of_folds(partner, folds, change, followed),
+        fold=_of_folds(partner, folds, change, followed, pieces),
         share=share,
         partner=more,
         borne=borne,
@@ -227,10 +230,14 @@ def _of_peaks(error: FloatArray, options: PairOptions) -> FloatArray:
 
 
 def _of_folds(
-    partner: PartnerCurve, folds: Indices, change: FloatArray, followed: list[Followed]
+    partner: PartnerCurve,
+    folds: Indices,
+    change: FloatArray,
+    followed: list[Followed],
+    pieces: Sequence[CurvePiece],
 ) -> FloatArray:
-    """Errors (fold,) of the frequencies of folds: to the partner's own beside them, or in their order
-    where the partner was followed and has as many."""
+    """Errors (fold,) of the frequencies of folds: to the partner's own beside them, in their order where the
+    partner was followed and has as many, or to the nearest that it is known to have."""
     error, parameter = np.full(len(folds), np.nan), partner.path.parameter
     theirs = parameter * (1.0 + change[:, 0])
     for k, fold in enumerate(folds.tolist()):
@@ -248,7 +255,23 @@ def _of_folds(
         )
         if len(one.pieces) == 1 and len(theirs) == mine.sum():
             error[mine] = np.abs(theirs / parameter[folds[mine]] - 1.0)
+    for k in np.flatnonzero(np.isnan(error)).tolist():
+        error[k] = _to_the_nearest(partner, int(folds[k]), pieces)
     return error
+
+
+def _to_the_nearest(partner: PartnerCurve, fold: int, pieces: Sequence[CurvePiece]) -> float:
+    """Relative distance in frequency of a fold to that of the partner's, in pieces of it, whose amplitudes
+    are nearest, of those where the frequency turns back to the same side; NaN where there is none near."""
+    now, parameter = partner.amplitude[fold], partner.path.parameter
+    beside = parameter[[max(fold - 1, 0), min(fold + 1, len(parameter) - 1)]].mean()
+    side, least, found = np.sign(parameter[fold] - beside), partner.options.same * now.max(), np.nan
+    for piece in pieces:
+        for i in piece.turns(side).tolist():
+            off = float(np.abs(piece.value[i, : len(now)] - now).max())
+            if off < least:
+                least, found = off, abs(float(piece.frequency[i] / parameter[fold]) - 1.0)
+    return found
 
 
 def _medians(values: FloatArray) -> FloatArray:

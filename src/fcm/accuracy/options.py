@@ -56,10 +56,14 @@ class PairOptions:
         curve and partner cross,
     again_named : int
         with so many more that the spectrum names,
+    dearest : int
+        and with no more unknowns than this,
     crossings, hidden : int, float
         at so many places at most, those of the crossings that hide most, and at least this;
     near : int
         points apart, up to which they are one place.
+    beside : tuple of int
+        Points to either side of a top where it is looked for, too, if it is not at the top.
     rival : float
         Part of the greatest amplitude: what is this high may become the greatest.
     gap : float
@@ -98,9 +102,11 @@ class PairOptions:
     chance_at_peaks: float = 0.05
     again: int = 2
     again_named: int = 8
+    dearest: int = 480
     crossings: int = 12
     hidden: float = 1e-4
     near: int = 4
+    beside: tuple[int, ...] = (1, 2, 4, 8)
     rival: float = 0.8
     gap: float = 0.2
     past: float = 1.5
@@ -111,6 +117,8 @@ class PairOptions:
 
 
 PAIR = PairOptions()
+# at single points, where many harmonics take little: as many as the partner of a partner has
+AT_POINTS = PairOptions(times=PAIR.times * PAIR.again, least=PAIR.least * PAIR.again, named=PAIR.again_named)
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,6 @@ from fcm.accuracy.stretch import Piece, Stretches
 from fcm.continuation import Mark, Path
 from fcm.harmonic.cost import seconds_of
 from fcm.harmonic.further import LEAST_AMPLITUDE, Further
-from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.record import borne_along
 from fcm.harmonic.reported import Reported
 from fcm.harmonic.runs import runs
@@ -54,6 +53,31 @@ class Compared:
     change: FloatArray
 
 
+class Second:
+    """The partner of a partner, looked for at single points of that."""
+
+    def __init__(self, finer: System, more: tuple[int, ...]) -> None:
+        self.finer, self.more = finer, more
+        self.system, self.lifted = finer.with_harmonics(more), lifted_of(finer, more)
+        self.before = self.lifted.newton.evaluations
+        self.amplitude = np.empty(0)
+
+    def found(self, z: FloatArray, direction: FloatArray | None) -> bool:
+        """Whether it is found from a point of the partner: at its frequency, or normal to a direction;
+        amplitude (dof,) is then there."""
+        if direction is None:
+            there = self.lifted.abreast(self.system.extended(z, self.finer.harmonics), True)
+        else:
+            there = self.lifted.beside(z, direction, True)
+        self.amplitude = np.array(self.lifted.found[1:])
+        return bool(there)
+
+    def seconds(self) -> float:
+        """About what looking for it has taken."""
+        count = self.lifted.newton.evaluations - self.before
+        return float(count * seconds_of(self.finer, 1, len(self.more)))
+
+
 class PartnerCurve:
     """Relative displacements from the points of a path to its partner: of the frequency, then of amplitudes.
 
@@ -74,8 +98,8 @@ class PartnerCurve:
         lifted, finer = lifted_of(system, more), system.with_harmonics(more)
         self.finding, self.stretches = Displacement(lifted), Stretches(system, finer, lifted, path, options)
         self.each = seconds_of(finer, 1, len(more))  # evaluation
-        self.second: tuple[System, Lifted] | None = None  # its own partner
-        self.spent = 0.0  # seconds on that
+        self.second: Second | None = None  # its own partner, if that is not too dear
+        self.dear = False
         self.vain, self.before = options.seconds / self.each, lifted.newton.evaluations
         count, dofs = self.amplitude.shape
         self.place, self.weight = np.zeros((2, count))
@@ -113,7 +137,8 @@ class PartnerCurve:
     def seconds(self) -> float:
         """About what all that was looked for has taken."""
         point_by_point = self.finding.lifted.newton.evaluations - self.before
-        return float(self.each * (point_by_point + self.stretches.evaluations) + self.spent)
+        seconds = self.each * (point_by_point + self.stretches.evaluations)
+        return float(seconds + (self.second.seconds() if self.second else 0.0))
 
     def find(self, points: Indices) -> None:
         """The displacements of some points, which are then known."""
@@ -123,52 +148,80 @@ class PartnerCurve:
             self.change, self.theirs, self.known.view(np.uint8), self.vain,
         )  # fmt: skip
 
-    def left_out(self, tops: Indices) -> FloatArray:
-        """By how much (top, dof) the harmonics that the partner lacks would change its amplitudes beside
-        points, in their order; of those that lie closely together as at the first."""
-        each = np.zeros((len(tops), self.amplitude.shape[1]))
-        alone = distinct(self.place[tops], self._near)
-        for k in alone.tolist():
-            there = self._there(int(tops[k]))
-            if there is not None:
-                each[k] = left_out(self.stretches.finer, there, self.options)
-        found: FloatArray = each[alone[np.searchsorted(alone, np.arange(len(tops)), "right") - 1]]
-        return found
-
-    def _there(self, i: int) -> FloatArray | None:
-        """The partner beside a point, if there is one that may be anything else."""
-        lifted, path = self.finding.lifted, self.path
-        if self.linear[i]:
-            return None
-        if self.known[i] and np.isfinite(self.theirs[i, 0]):
-            there: FloatArray = self.theirs[i]
-            return there
-        if lifted.beside(path.z[i], path.direction[i], True) or lifted.abreast(self._padded(i), True):
-            return np.array(lifted.newton.z)
-        return None
-
     def off(self, i: int) -> FloatArray | None:
         """By how much (dof,) a partner of its own differs from it at the frequency of a point, in the unit of
         that; None where either has no motion there."""
-        lifted, options, finer = self.finding.lifted, self.options, self.stretches.finer
+        lifted = self.finding.lifted
         if not lifted.abreast(self._padded(i), True):
             return None
         z, amplitude = np.array(lifted.newton.z), np.array(lifted.found[1:])
+        second = self._second(z, amplitude)
+        if second is None or not second.found(z, None):
+            return None
+        off: FloatArray = np.abs(second.amplitude - amplitude) / self.unit[i]
+        return off
+
+    def lacking(self, tops: Indices, inside: Mask) -> tuple[FloatArray, FloatArray]:
+        """What the partner lacks at tops, in their order: by how much (top, dof) the amplitudes of a partner
+        of its own differ, and by how much the harmonics that this lacks, too, would change them.
+
+        Normal to its curve inside of that, beside the nearest point that has both, else at the frequency of
+        the end. Nothing of the first where there is none. Of tops closely together as at the first.
+        """
+        each = np.zeros((2, len(tops), self.amplitude.shape[1]))
+        alone = distinct(self.place[tops], self._near)
+        for k in alone.tolist():
+            each[:, k] = self._lacking(int(tops[k]), bool(inside[k]))
+        which = alone[np.searchsorted(alone, np.arange(len(tops)), "right") - 1]
+        return each[0, which], each[1, which]
+
+    def _lacking(self, top: int, inside: bool) -> FloatArray:
+        """The same at one top (2, dof)."""
+        nothing, known = np.zeros(self.amplitude.shape[1]), None
+        if self.linear[top]:
+            return np.stack((nothing, nothing))
+        for i in self._beside_top(top) if inside else (top,):
+            if not self._at(i, inside):
+                continue
+            lifted = self.finding.lifted
+            z, amplitude = np.array(lifted.newton.z), np.array(lifted.found[1:])
+            direction = np.array(lifted.newton.tangent) * np.array(lifted.newton.scale)
+            known = z if known is None else known
+            second = self._second(z, amplitude)
+            if second is not None and second.found(z, direction if inside else None):
+                there = np.array(second.lifted.newton.z)
+                return np.stack((second.amplitude - amplitude, left_out(second.system, there, self.options)))
+            if second is None:
+                break
+        left = nothing if known is None else left_out(self.stretches.finer, known, self.options)
+        return np.stack((nothing, left))
+
+    def _beside_top(self, top: int) -> list[int]:
+        """A top and points to either side of it, as long as contacts slip or separate there."""
+        beside = (0, *(way * step for step in self.options.beside for way in (-1, 1)))
+        places = [top + step for step in beside if 0 <= top + step < len(self.linear)]
+        return [i for i in places if not self.linear[i]]
+
+    def _at(self, i: int, normal: bool) -> bool:
+        """Whether the partner has a point normal to a point of the curve, or at its frequency."""
+        lifted, path = self.finding.lifted, self.path
+        if normal and lifted.beside(path.z[i], path.direction[i], True):
+            return True
+        return not normal and bool(lifted.abreast(self._padded(i), True))
+
+    def _second(self, z: FloatArray, amplitude: FloatArray) -> Second | None:
+        """A partner of its own; None where that has no more harmonics, or too many unknowns. It is that of
+        the place from which it is asked first."""
+        finer, options = self.stretches.finer, self.options
+        if self.dear:
+            return None
         if self.second is None:
             share = Further(finer).shares(z[None], amplitude[None])[0]
             own = replace(options, times=options.again, named=options.again_named)
             more = partner_of(finer.harmonics, share, finer.layout.ports, own)
-            if more == finer.harmonics:
-                return None
-            self.second = finer.with_harmonics(more), lifted_of(finer, more)
-        system, second = self.second
-        before = second.newton.evaluations
-        found = second.abreast(system.extended(z, finer.harmonics), True)
-        self.spent += (second.newton.evaluations - before) * seconds_of(finer, 1, len(system.harmonics))
-        if not found:
-            return None
-        off: FloatArray = np.abs(np.array(second.found[1:]) - amplitude) / self.unit[i]
-        return off
+            self.dear = more == finer.harmonics or finer.layout.ports * (1 + 2 * len(more)) > options.dearest
+            self.second = None if self.dear else Second(finer, more)
+        return self.second
 
     def abreast(self, i: int) -> FloatArray | None:
         """Amplitudes (dof,) of the partner at the frequency of a point; None where Newton's method finds

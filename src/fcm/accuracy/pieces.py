@@ -35,6 +35,12 @@ class CurvePiece:
         inside: npt.NDArray[np.bool_] = (self.frequency.min() <= omega) & (omega <= self.frequency.max())
         return inside
 
+    def turns(self, side: float) -> npt.NDArray[np.intp]:
+        """Its points where the frequency turns back: highest where side is 1, lowest where it is -1."""
+        rise = side * np.diff(self.frequency)
+        found: npt.NDArray[np.intp] = np.flatnonzero((rise[:-1] > 0.0) & (rise[1:] <= 0.0)) + 1
+        return found
+
     def passed(
         self,
         omega: FloatArray,

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fcm.accuracy.foreseen import Foreseen, needed
+from fcm.accuracy.options import AT_POINTS
 from fcm.accuracy.partner import lifted_of, partner_of
 from fcm.continuation import Path, Segment
 from fcm.continuation.root_finding import Secants
@@ -71,7 +72,7 @@ def _lost(
     z, direction = one.z[None], one.direction[None]
     amplitude = reported_at(system, z, direction).amplitude[0]
     share = Further(system).shares(z, amplitude[None])[0]
-    more = partner_of(system.harmonics, share, system.layout.ports)
+    more = partner_of(system.harmonics, share, system.layout.ports, AT_POINTS)
     if more == system.harmonics:  # nothing is left out
         return Lost(one.frequency, 0.0, more)
     if more not in known:

@@ -1,8 +1,8 @@
 r"""What the harmonics left out would change at chosen points of a tracked curve.
 
-The same extended system with the harmonics of the partner is solved at the same value of the number.
-Where the number turns back that has no solution on one
-side: there the curve with more harmonics is followed from beside the turn to its own turn.
+The same extended system with the harmonics of the partner's partner is solved at the same value of the
+number. Where the number turns back that has no solution on one side: there the curve with more harmonics is
+followed from beside the turn to its own turn.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fcm.accuracy.options import AT_POINTS
 from fcm.accuracy.partner import partner_of
 from fcm.harmonic.further import Further
 from fcm.track.curve import Track
@@ -101,7 +102,7 @@ def _more(found: _Found) -> tuple[int, ...]:
     problem.measure(z)
     amplitude = problem.along(z)[1]
     share = further.shares(y, amplitude[None])[0]
-    return partner_of(system.harmonics, share, system.layout.ports)
+    return partner_of(system.harmonics, share, system.layout.ports, AT_POINTS)
 
 
 def _landed(wider: Way, condition: Condition, start: _Found, turn: Spot, turns: bool) -> _Found | None:
