@@ -4,8 +4,9 @@ usage: python -m tests.faults.damage [KIND ...] [--each N] [--seed N]
 
 Of each kind of picture the file of a run is taken apart and written anew with a variable left out, of another
 type or shape, with numbers that are no results, with other attributes; or its bytes are changed, set to zero
-or cut off. Every case runs in a process of its own, with a limit on its time and its memory. A process that
-the library ends by damaged bytes is no fault: there the program reads by a process of its own.
+or cut off. "resume" is unfinished work that a sweep goes on from, damaged or forged. Every case runs in a
+process of its own, with a limit on its time and its memory. A process that the library ends by damaged bytes
+is no fault: there the program reads by a process of its own.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import pickle
 import random
 import resource
 import signal
@@ -110,8 +112,8 @@ def _number(rng: random.Random, content: Content, name: str) -> None:
         if where > 0.9:
             values[...] = rng.choice(NUMBERS)
     elif values.dtype.kind in "iu":
-        values = np.asarray(values + rng.choice((-(10**5), -1, 1, 10**5))).astype(kind)
-    else:
+        values = (values.astype(np.int64) + rng.choice((-(10**5), -1, 1, 10**5))).astype(kind)
+    elif values.size:
         values = values.copy()
         values.flat[rng.randrange(values.size)] = rng.choice(WORDS)
     content.variables[name] = kind, dimensions, values, described
@@ -216,6 +218,45 @@ def corrupted(rng: random.Random, whole: bytes, path: Path) -> str:
     return f"bytes {way}"
 
 
+def forged(rng: random.Random, whole: bytes, path: Path) -> str:
+    """Write unfinished work with results that no run had, sealed as if one had."""
+    from fcm.run.lock import LENGTH
+    from fcm.run.records import Record, packed
+    from fcm.run.records import whole as records_of
+
+    path.write_bytes(whole)
+    with path.open("r+b") as file:
+        records = list(records_of(file.fileno(), len(whole), LENGTH))
+    out, said = whole[:LENGTH], []
+    for mark, number, payload in records:
+        results = pickle.loads(payload)
+        if isinstance(results, list) and results and hasattr(results[0], "__dict__"):
+            name = rng.choice(
+                [key for key, value in vars(results[0]).items() if isinstance(value, np.ndarray)]
+            )
+            content = Content({}, {}, {name: (None, (), getattr(results[0], name), {})})
+            _number(rng, content, name)
+            values = content.variables[name][2]
+            way = rng.randrange(4)
+            values = (values, values[:-1], values.astype("U3"), None)[way] if way else values
+            setattr(results[0], name, values)
+            said.append(f"{name} {way}")
+        out += packed(Record(mark, number, pickle.dumps(results, protocol=5)))
+    path.write_bytes(out)
+    return f"forged {', '.join(said)}"
+
+
+def unfinished(name: str, arguments: list[str]) -> None:
+    """Write what is kept of a run, as if it had been ended before its file was written."""
+    from fcm.run import Checkpoint
+
+    done = Checkpoint.done
+    Checkpoint.done = Checkpoint.close  # type: ignore[method-assign]
+    code, words = run([*arguments, "-o", name])
+    Checkpoint.done = done  # type: ignore[method-assign]
+    assert code == 0 and Path(f"{name}.unfinished").exists(), words
+
+
 def run(arguments: list[str]) -> tuple[int, str]:
     """How the program ends in a process of its own, and its last words."""
     reading, writing = os.pipe()
@@ -265,7 +306,7 @@ RESPOND: dict[str, list[str]] = {
 PICTURES = {  # of each kind: the file that is damaged, and how it is drawn
     "response": ("plain", ["response", "FILE"]),
     "page": ("plain", ["response", "FILE", "-o", "a.html"]),
-    "points": ("exact", ["response", "plain.nc", "--points", "FILE"]),
+    "points": ("exact", ["response", "harmonics.nc", "--points", "FILE"]),
     "peak": ("plain", ["peak", "FILE"]),
     "tracked": ("track", ["peak", "FILE"]),
     "loop": ("harmonics", ["loop", "FILE"]),
@@ -291,7 +332,7 @@ def wrong(code: int, words: str, bytes_changed: bool) -> str:
 def main() -> None:
     arguments = sys.argv[1:]
     named = {key: arguments[i + 1] for i, key in enumerate(arguments) if key.startswith("--")}
-    kinds = [one for one in arguments if one in PICTURES] or list(PICTURES)
+    kinds = [one for one in arguments if one in (*PICTURES, "resume")] or [*PICTURES, "resume"]
     each, seed = int(named.get("--each", 500)), int(named.get("--seed", 0))
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
     import matplotlib.backends.backend_agg  # once, for all
@@ -304,22 +345,35 @@ def main() -> None:
         Path("MODEL.toml").write_text(MODEL + "[response]\nfrequency = [0.7, 1.7]\n")
         Path("SWEPT.toml").write_text(MODEL + SWEPT)
         Path("SCHEDULE.toml").write_text(MODEL + "[response]\nfrequency = [0.7, 1.7]\n" + SCHEDULE)
-        for name in sorted({"plain", *(PICTURES[kind][0] for kind in kinds)}):
+        for name in sorted({"harmonics", *(PICTURES[kind][0] for kind in kinds if kind in PICTURES)}):
             scene, *options = RESPOND[name]
             code, words = run(["respond", f"{scene}.toml", *options, "-o", f"{name}.nc", "-q"])
             assert code == 0, (name, words)
+        sweep = ["respond", "SWEPT.toml", "-q", "--jobs", "1"]
+        unfinished("resumed.nc", sweep)
+        kept = Path("resumed.nc.unfinished").read_bytes()
         found = 0
         for kind in kinds:
-            name, command = PICTURES[kind]
-            whole, content = Path(f"{name}.nc").read_bytes(), Content.of(Path(f"{name}.nc"))
             ends: Counter[int] = Counter()
             for number in range(each):
                 rng = random.Random(f"{seed} {kind} {number}")
                 path, by_bytes = Path("damaged.nc"), number % 3 == 2
-                what = corrupted(rng, whole, path) if by_bytes else changed(rng, content, path)
-                code, words = run(["plot", *(str(path) if one == "FILE" else one for one in command)])
+                if kind == "resume":
+                    path = Path("resumed.nc.unfinished")
+                    what = corrupted(rng, kept, path) if by_bytes else forged(rng, kept, path)
+                    command = [*sweep, "-o", "resumed.nc", "--resume"]
+                else:
+                    name, words_of = PICTURES[kind]
+                    whole = Path(f"{name}.nc")
+                    what = (
+                        corrupted(rng, whole.read_bytes(), path)
+                        if by_bytes
+                        else changed(rng, Content.of(whole), path)
+                    )
+                    command = ["plot", *(str(path) if one == "FILE" else one for one in words_of)]
+                code, words = run(command)
                 ends[code] += 1
-                if fault := wrong(code, words, by_bytes):
+                if fault := wrong(code, words, by_bytes and kind != "resume"):
                     found += 1
                     print(f"{kind} {number}: {fault}: {what}: {words.strip()[-400:]}", flush=True)
             print(f"{kind}: {each} files, ends {dict(sorted(ends.items()))}", flush=True)

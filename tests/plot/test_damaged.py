@@ -65,3 +65,27 @@ def test_an_output_that_is_a_loop_of_links_is_refused(fcm):
     refused(fcm("respond", "yang1998-n5", "-o", "c.nc"), "it is a loop of symbolic links")
     refused(fcm("respond", "yang1998-n5", "--csv", "d.csv"), "it is a loop of symbolic links")
     refused(fcm("tabulate", "-o", "c.nc"), "it is a loop of symbolic links")
+
+
+def test_a_defect_in_drawing_is_not_taken_for_damage(fcm, whole, monkeypatch):
+    """Numbers are checked when they are read; what drawing raises after that is its own."""
+
+    def fails(*_args, **_named):
+        raise ValueError("of ours")
+
+    Path("a.nc").write_bytes(whole)
+    monkeypatch.setattr("fcm.plot.draw_response", fails)
+    done = fcm("plot", "response", "a.nc")
+    assert done.code == 1 and "defect: ValueError: of ours" in done.err
+
+
+@pytest.mark.parametrize("value", [9e99, -9e99, 1e-300, 5e-324, 0.0, np.nan])
+@pytest.mark.parametrize("kind", ["response", "peak"])
+def test_numbers_far_apart_are_drawn(fcm, whole, kind, value):
+    Path("a.nc").write_bytes(whole)
+    names = {"response": ("frequency", "amplitude", "error"), "peak": ("peak_amplitude", "peak_frequency")}
+    with netCDF4.Dataset("a.nc", "a") as data:
+        for name in names[kind]:
+            data[name][0, 0] = value
+    done = fcm("plot", kind, "a.nc")
+    assert done.code == 0 or (done.code == 2 and "a.nc" in done.err)

@@ -1,10 +1,14 @@
 """What a run has while it looks for more harmonics: it is told, and kept where the run is interrupted."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from fcm import load_scene
 from fcm.harmonic.system import System
-from fcm.response.groups import Work
+from fcm.response import trace
+from fcm.response.groups import Work, fits
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
 from fcm.run import Interrupted
@@ -82,3 +86,17 @@ def test_a_group_hands_over_the_curve_that_is_not_finished_and_saves_it_not():
     (curve,) = stopped.value.results
     assert curve.peaks["u"].amplitude > 10.0 and not curve.complete
     assert not saved and told[-1].startswith("1 harmonic, error")
+
+
+@pytest.mark.parametrize(
+    "name", ["frequency", "stable", "truncation_error", "amplitude", "regime", "cycle_error"]
+)
+def test_a_curve_of_another_kind_is_not_gone_on_with(name):
+    """As of unfinished work that something else has written."""
+    scene = replace(load_scene("yang1998-n5"), max_step=0.5, harmonics=(1,), curves=())
+    (curve,) = trace(scene).curves
+    assert fits(scene, curve)
+    array = getattr(curve, name)
+    other = np.zeros(array.shape) if array.dtype.kind == "U" else array.astype("U3")
+    for wrong in (other, array[:-1], array[..., None], None):
+        assert not fits(scene, replace(curve, **{name: wrong}))

@@ -28,5 +28,5 @@ def accuracy(messages: Messages, file: Path, output: Path | None, quantity: str)
 
     output = picture_of(file, output, ".png")
     read = read_accuracy(file, quantity.replace("-", "_"))
-    save_picture_of(file, lambda: draw_accuracy(read), output)
+    save_picture_of(lambda: draw_accuracy(read), output)
     messages.info(f"wrote {output}")

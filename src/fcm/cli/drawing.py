@@ -85,26 +85,15 @@ def save_picture(figure: Figure, output: Path) -> None:
         save(figure, partial)
 
 
-def save_picture_of(file: Path, drawn: Callable[[], Figure], output: Path) -> None:
-    """Write the picture of a file of results."""
-    with drawable(file):
+def save_picture_of(drawn: Callable[[], Figure], output: Path) -> None:
+    """Draw a file of results, whose numbers are checked when they are read, and write the picture."""
+    with drawing():
         save_picture(drawn(), output)
 
 
 @contextmanager
-def drawable(file: Path) -> Iterator[None]:
-    """Where the numbers of a file of results cannot be drawn, `PlotError` says so of it.
-
-    Whatever has written or damaged a file, they may have no place on an axis, though each can be a result.
-    """
-    from fcm.plot.errors import PlotError
-
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", RuntimeWarning)  # of the sums of such numbers
-            yield
-    except (PlotError, OSError, MemoryError, click.ClickException):
-        raise
-    except (ArithmeticError, ValueError) as error:  # of an axis without room for them; others are defects
-        reason = str(error).partition("\n")[0] or type(error).__name__
-        raise PlotError(f"{file}: its numbers cannot be drawn: {reason}") from error
+def drawing() -> Iterator[None]:
+    """Of what is read from a file, numbers may be so far apart that their sums are none."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)
+        yield

@@ -54,7 +54,7 @@ def history(
     read = read_history(file, dof, against)
     if curves:
         read = replace(read, motions=_chosen(read.motions, curves))
-    save_picture_of(file, lambda: draw_history(read, window), output)
+    save_picture_of(lambda: draw_history(read, window), output)
     messages.info(f"wrote {output}")
 
 

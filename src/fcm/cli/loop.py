@@ -173,7 +173,7 @@ def loop(
     if file is None:
         save_picture(_drawn(cases, scaled, units, cosine), output)
     else:
-        save_picture_of(file, lambda: _drawn(cases, scaled, units, cosine), output)
+        save_picture_of(lambda: _drawn(cases, scaled, units, cosine), output)
     if to_json:
         records = [case.record(cosine) for case in cases]
         click.echo(json.dumps({"loops": records}, indent=2, allow_nan=False))

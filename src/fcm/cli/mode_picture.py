@@ -22,5 +22,5 @@ def mode(messages: Messages, file: Path, output: Path | None) -> None:
 
     output = picture_of(file, output, "-mode.png")
     read = read_modes(file)
-    save_picture_of(file, lambda: draw_modes(read), output)
+    save_picture_of(lambda: draw_modes(read), output)
     messages.info(f"wrote {output}")

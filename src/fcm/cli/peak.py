@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from fcm.cli.drawing import drawable, draws_file, is_page, picture_of, save_picture_of
+from fcm.cli.drawing import drawing, draws_file, is_page, picture_of, save_picture_of
 from fcm.cli.messages import Messages, pass_messages
 from fcm.files import replacing
 
@@ -38,15 +38,15 @@ def peak(
             raise click.UsageError("tracked peaks and folds are drawn to .png, .svg or .pdf, not to a page.")
         from fcm.plot.interactive import peak_page
 
-        with drawable(file), replacing(output) as partial:
+        with drawing(), replacing(output) as partial:
             peak_page(read_peaks(file), dof, against, partial)
         messages.info(f"wrote {output}")
         return
     if tracked is not None and against is None:
-        save_picture_of(file, lambda: draw_tracked(tracked, dof=dof, folds=folds), output)
+        save_picture_of(lambda: draw_tracked(tracked, dof=dof, folds=folds), output)
     elif folds:
         raise click.UsageError(f"{file} holds no tracked folds; write it with fcm respond --track folds.")
     else:
         peaks = read_peaks(file)
-        save_picture_of(file, lambda: draw_peak(peaks, dof=dof, against=against), output)
+        save_picture_of(lambda: draw_peak(peaks, dof=dof, against=against), output)
     messages.info(f"wrote {output}")

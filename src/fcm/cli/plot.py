@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fcm.cli.drawing import drawable, draws_file, is_page, picture_of, save_picture_of
+from fcm.cli.drawing import drawing, draws_file, is_page, picture_of, save_picture_of
 from fcm.cli.lazy import LazyGroup
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.options import FiniteRange
@@ -91,12 +91,12 @@ def response(
             )
         from fcm.plot.interactive import response_page
 
-        with drawable(file), replacing(output) as partial:
+        with drawing(), replacing(output) as partial:
             response_page(read_response(file), dof, log, partial)
         messages.info(f"wrote {output}")
         return
     if band is not None:
-        save_picture_of(file, lambda: _bands(file, dof, log, points, band), output)
+        save_picture_of(lambda: _bands(file, dof, log, points, band), output)
         messages.info(f"wrote {output}")
         return
     read = read_response(file)
@@ -108,7 +108,7 @@ def response(
         read = replace(read, measured=(*read.measured, own))
     elif points is not None:
         marked = read_points(points)
-    save_picture_of(file, lambda: draw_response(read, dof=dof, log=log, errors=errors, points=marked), output)
+    save_picture_of(lambda: draw_response(read, dof=dof, log=log, errors=errors, points=marked), output)
     messages.info(f"wrote {output}")
 
 

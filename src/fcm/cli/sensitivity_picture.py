@@ -25,5 +25,5 @@ def sensitivity(messages: Messages, file: Path, output: Path | None, dof: str | 
 
     output = picture_of(file, output, "-sensitivity.png")
     read = read_sensitivity(file)
-    save_picture_of(file, lambda: draw_sensitivity(read, dof=dof, curve=curve), output)
+    save_picture_of(lambda: draw_sensitivity(read, dof=dof, curve=curve), output)
     messages.info(f"wrote {output}")

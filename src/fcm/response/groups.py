@@ -107,10 +107,18 @@ def fits(expected: Scene | Curve, curve: Any) -> bool:
     """Whether what was read from a file can be the curve of a scene, or that of which this one is to be."""
     if not isinstance(curve, Curve) or vars(curve).keys() != {field.name for field in fields(Curve)}:
         return False
-    arrays = [curve.frequency, *(getattr(curve, name) for name in _BY_POINT)]
-    if not all(isinstance(array, np.ndarray) and array.ndim for array in arrays):
+    model = lost_curve(expected, "") if isinstance(expected, Scene) else expected
+    names = ("frequency", *_BY_POINT)
+    arrays = [getattr(curve, name) for name in names]
+    if not all(_alike(array, getattr(model, name)) for array, name in zip(arrays, names, strict=True)):
         return False
     return curve.parameters == expected.parameters and len({array.shape[0] for array in arrays}) == 1
+
+
+def _alike(array: Any, model: Any) -> bool:
+    """Whether an array is by points as another is, and of the same kind."""
+    same = isinstance(array, np.ndarray) and array.ndim == model.ndim
+    return same and array.shape[1:] == model.shape[1:] and array.dtype.kind == model.dtype.kind
 
 
 def as_curve(scene: Scene, result: Curve | Lost | None, reason: str = "") -> Curve:
