@@ -11,15 +11,22 @@ import numpy as np
 import pytest
 
 import fcm
+from fcm.contact.periodic.workspace import periodic_contact
+from fcm.contact.plane.workspace import planar_contact
+from fcm.harmonic.periodic import Periodic
+from fcm.harmonic.planar import Planar
 from fcm.harmonic.reported import reported_at
 from fcm.harmonic.start import solutions
 from fcm.harmonic.system import System
 from fcm.response import ResponseError
 from fcm.response.exact import trace_exact
 from fcm.response.level import trace_levels
+from fcm.response.mode import trace_modes
+from fcm.response.track import track
 from fcm.scene import scene_from_dict
 from fcm.stability.floquet import multipliers
 from fcm.stability.planar_monodromy import PlanarMonodromy, PlanarSequence
+from fcm.track.onset import onset
 
 from .plane_march import Oscillators
 
@@ -248,3 +255,52 @@ def test_the_bundled_damper_and_what_one_direction_misses():
     assert (y / plane)[0] > 2.5
     assert 1.05 < (x / plane)[0] < 1.2
     assert 1.05 < (y / plane)[1] < 1.2
+
+
+def test_levels_modes_sensitivities_and_tracks_of_a_still_direction_are_those_of_a_line():
+    data = single("yang1998-n5", response={"frequency": [1.1, 1.4], "max_step": 0.1})
+    line, plane = (scene_from_dict(one) for one in (data, with_still(data)))
+    levels = [trace_levels(one, [1.2], (0.2, 1.5), harmonics=(1, 2, 3)).curves[0] for one in (line, plane)]
+    assert levels[1].level_folds == pytest.approx(levels[0].level_folds, rel=1e-9)
+    assert levels[1].amplitude[-1][:2] == pytest.approx(levels[0].amplitude[-1], rel=1e-9)
+    modes = [trace_modes(one, 1, (0.1, 20.0), harmonics=(1, 3)).curves[0] for one in (line, plane)]
+    assert modes[1].frequency[-1] == pytest.approx(modes[0].frequency[-1], rel=1e-9)
+    assert modes[1].mode.damping.max() == pytest.approx(modes[0].mode.damping.max(), rel=1e-9)
+    peaks = [fcm.respond(one, "closed-form", harmonics=1, sensitivity=True) for one in (line, plane)]
+    numbers = peaks[0].number.values
+    assert peaks[1].sensitivity.values[0, 0, : numbers.size] == pytest.approx(
+        peaks[0].sensitivity.values[0, 0], rel=1e-6, abs=1e-9
+    )
+    tracks = [track(one, "folds", "contact.shroud.n_0", (4.9, 5.1), harmonics=(1,)) for one in (line, plane)]
+    ends = [sorted(float(curve.frequency[-1]) for curve in one.tracking.curves) for one in tracks]
+    assert ends[1] == pytest.approx(ends[0], rel=1e-9)
+
+
+def test_the_onset_of_slip_in_a_plane_moves_as_its_slopes_say():
+    """Overlap of all discs, and how far the start is from them, against differences."""
+    rng = np.random.default_rng(3)
+    numbers = {"mu": 0.5, "k_u": 1.3, "k_v": 0.7, "n_0": 4.0}
+    for harmonics in ((1,), (1, 2, 3)):
+        kernel, width = planar_contact(harmonics, harmonics), 3 + 6 * len(harmonics)
+        for kind in ("slip", "start"):
+            x = rng.standard_normal(width)
+            found = onset(Planar(kernel, **numbers), x, kind, harmonics)
+
+            def value(at, kind=kind, harmonics=harmonics, kernel=kernel, **other):
+                return onset(Planar(kernel, **(numbers | other)), at, kind, harmonics).value
+
+            h = 1e-6
+            slope = [(value(x + h * one) - value(x - h * one)) / (2.0 * h) for one in np.eye(width)]
+            assert found.slope == pytest.approx(slope, abs=1e-6)
+            by = [(value(x, **{k: v + h}) - value(x, **{k: v - h})) / (2.0 * h) for k, v in numbers.items()]
+            assert found.by_number == pytest.approx(by, abs=1e-6)
+
+
+def test_the_onset_of_slip_on_a_straight_way_is_that_of_a_line():
+    x = np.array([0.1, 0.3, 1.0, 0.2, 0.4, -0.5])
+    numbers = (0.5, 1.3, 0.7, 4.0)
+    line = onset(Periodic(periodic_contact((1,), (1,)), *numbers), x, "slip", (1,))
+    oblique = np.array([0.06, 0.08, 0.3, 0.6, 0.12, 0.8, 0.16, 0.4, -0.5])
+    plane = onset(Planar(planar_contact((1,), (1,)), *numbers), oblique, "slip", (1,))
+    assert plane.value == pytest.approx(line.value, rel=1e-12)
+    assert plane.by_number == pytest.approx(line.by_number, abs=1e-7)

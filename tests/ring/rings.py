@@ -33,6 +33,12 @@ DAMPER = {
 }  # fmt: skip
 
 
+IN_PLANE = SHROUD | {
+    "tangential": [{"next.tip": 1.0, "tip": -1.0}, {"next.blade": 1.0, "disk": -1.0}],
+    "k_u": 1.5e5,
+}
+
+
 def sector(sectors, engine_order, contacts=(SHROUD,), coupling=SKEW, amplitude=400.0, **response):
     """The scene of one sector, with a coupling and a force that distinguish left from right."""
     structure = STRUCTURE | {"coupling": {"stiffness": coupling}}
@@ -90,6 +96,8 @@ def written_out(scene):
 
 
 def _at(direction, k, count):
+    if isinstance(direction, list):  # of a contact in a plane
+        return [_at(one, k, count) for one in direction]
     terms = {direction: 1.0} if isinstance(direction, str) else direction
     found = {}
     for name, weight in terms.items():
@@ -108,12 +116,13 @@ def scene_of(name):
 def around(z, harmonics, contacts, ring):
     """Unknowns of the ring from those of one sector: harmonic h of sector k turns by h k phi."""
     blocks = z[:-1].reshape(contacts, -1)
+    each = blocks.shape[1] // (1 + 2 * len(harmonics))  # directions of a contact
     phi = 2.0 * np.pi * ring.engine_order / ring.sectors
     out = []
     for k in range(ring.sectors):
         turned = blocks.copy()
         for j, h in enumerate(harmonics):
-            for first in (2 + 4 * j, 4 + 4 * j):
+            for first in range(each * (1 + 2 * j), each * (3 + 2 * j), 2):
                 X = (blocks[:, first] + 1j * blocks[:, first + 1]) * np.exp(1j * h * k * phi)
                 turned[:, first], turned[:, first + 1] = X.real, X.imag
         out.append(turned.ravel())

@@ -20,6 +20,7 @@ BOTH = (rings.SHROUD, rings.DAMPER)
 WAVES = [  # sectors, engine order, contacts: below and beyond half, half, none, beyond all, backwards
     (6, 1, BOTH), (6, 5, (rings.SHROUD,)), (6, 3, BOTH), (5, 2, BOTH), (4, 0, (rings.DAMPER,)),
     (5, 8, (rings.SHROUD,)), (2, 1, (rings.SHROUD,)), (5, -1, (rings.SHROUD,)),
+    (5, 2, (rings.IN_PLANE,)), (4, 1, (rings.IN_PLANE, rings.DAMPER)),
 ]  # fmt: skip
 
 
@@ -95,11 +96,12 @@ def test_an_accuracy_takes_the_harmonics_that_the_ring_takes():
     assert one.peak_amplitude.values == pytest.approx(whole.peak_amplitude.values[:, :3], rel=1e-8)
 
 
+@pytest.mark.parametrize("contacts", [BOTH, (rings.IN_PLANE, rings.DAMPER)], ids=["lines", "plane"])
 @pytest.mark.parametrize(("sectors", "order"), [(5, 2), (6, -1), (6, 2), (6, 0)])
-def test_multipliers_are_those_of_the_ring(sectors, order):
+def test_multipliers_are_those_of_the_ring(sectors, order, contacts):
     """All of them where the wave repeats after all sectors; else of those disturbances that repeat as it."""
-    one, whole = (System(scene, (1, 3)) for scene in both(sectors, order, BOTH))
-    (z,) = solutions(one, 2.0 * np.pi * 190.0).solutions
+    one, whole = (System(scene, (1, 3)) for scene in both(sectors, order, contacts))
+    z = solutions(one, 2.0 * np.pi * 190.0).solutions[0]
     around = rings.around(z, (1, 3), 2, one.scene.ring)
     found, expected = (
         np.sort(np.abs(values)) for values in (multipliers(one, z), multipliers(whole, around))

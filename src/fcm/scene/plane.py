@@ -46,7 +46,7 @@ def check_axes(section: Section, directions: Mapping[str, Mapping[str, float]]) 
     if not size[0] or not size[1]:
         section.wrong("tangential", "has a direction with only zero weights, so it moves nothing")
     elif abs(size[0] - size[1]) > SQUARE * max(size):
-        section.wrong("tangential", _scales(float(size[1] / size[0])))
+        section.wrong("tangential", "has directions " + _scales(float(size[1] / size[0])))
     elif abs(a @ b) > SQUARE * size[0] * size[1]:
         angle = np.degrees(np.arccos(min(abs(a @ b) / (size[0] * size[1]), 1.0)))
         section.wrong("tangential", f"must be {TWO}; these are {angle:.4g} degrees apart")
@@ -65,7 +65,7 @@ def check_plane(contact: Contact, mistakes: Mistakes, where: str) -> None:
     if sizes[0].size == sizes[1].size:
         ratio = sizes[1] / sizes[0]
         if np.ptp(ratio) <= SAME * ratio[0] and abs(ratio[0] - 1.0) > SAME:
-            mistakes.add(where, f"{name}: {_scales(float(ratio[0]))}")
+            mistakes.add(where, f"{name} are {_scales(float(ratio[0]))}")
 
 
 def notes_of_planes(scene: Scene) -> list[str]:
@@ -89,7 +89,7 @@ def _oblique(contact: Contact) -> bool:
 
 def _scales(ratio: float) -> str:
     return (
-        f"has directions of different scale, the second {ratio:.6g} times the first; both are displacements "
+        f"of different scale, the second {ratio:.6g} times the first; both are displacements "
         "in the same unit, with weights of the same size"
     )
 
