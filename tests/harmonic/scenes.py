@@ -91,5 +91,5 @@ def displacements(system, z):
     balance = system.balance()
     balance.evaluate(z)
     balance.report(z, np.zeros(z.size))
-    j = balance.seen.driven
+    j = system.harmonics.index(1)
     return np.hypot(balance.shown.re[j], balance.shown.im[j]), np.array(balance.output)

@@ -315,6 +315,7 @@ def follow(
     Examples
     --------
     >>> import numpy as np
+    >>> from fcm.continuation import Mark, Problem, follow
     >>> class Circle(Problem):
     ...     def evaluate(self, z):
     ...         x, y = z
