@@ -60,5 +60,5 @@ def contacts(
         for row in rows:
             messages.info("  ".join(word.rjust(width) for word, width in zip(row, widths, strict=True)))
         messages.info(f"at {point.frequency:.6g} {read.unit}; {len(read.contacts)} contacts")
-    save_picture_of(file, lambda: draw_interface(read, points, where), output)
+    save_picture_of(lambda: draw_interface(read, points, where), output)
     messages.info(f"wrote {output}")
