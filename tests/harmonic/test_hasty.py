@@ -1,12 +1,17 @@
 """Curves of the level of the forces of which only the passings of the level 1 matter."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from fcm.harmonic import start
 from fcm.harmonic.linear_contacts import highest, least
-from fcm.harmonic.start import BEFORE, LONG, STEP, level_curve, looked_at
+from fcm.harmonic.start import BEFORE, LEVELS, LONG, STEP, LevelOptions, level_curve, looked_at
 from fcm.harmonic.system import System
 from fcm.scene import load_scene
+
+from .strips import strip
 
 
 def test_a_hasty_curve_of_many_contacts_comes_to_the_same_with_less():
@@ -25,3 +30,21 @@ def test_a_hasty_curve_of_many_contacts_comes_to_the_same_with_less():
         passed += len(true)
     assert passed > 1
     assert hasty < 1.03 * careful, (hasty, careful)
+
+
+def test_with_many_contacts_the_level_is_followed_no_further_than_allowed(monkeypatch):
+    """To the same solutions, with less; strips of stiff contacts slip and open at ever higher levels."""
+    one = strip(n_0=12.0)
+    contacts = tuple(replace(c, n_0=c.n_0 * (1.0 + i) ** 2) for i, c in enumerate(one.contacts))
+    system = System(replace(one, contacts=contacts))
+    taken, found = [], []
+    assert all(highest(system, omega) > LEVELS.most for omega in looked_at(system))
+    for contacts in (LEVELS.contacts, 10**6):
+        monkeypatch.setattr(start, "LEVELS", LevelOptions(contacts))
+        before = system.work.seconds
+        found.append([start.solutions(system, omega) for omega in looked_at(system)])
+        taken.append(system.work.seconds - before)
+    for near, far in zip(*found, strict=True):
+        assert near.complete and len(near.solutions) == len(far.solutions) > 0
+        assert np.allclose(near.solutions, far.solutions, rtol=1e-9, atol=1e-12)
+    assert taken[0] < 0.8 * taken[1]

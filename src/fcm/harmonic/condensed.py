@@ -17,6 +17,7 @@ the solution is, after few iterations, as what is left out changes little.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -170,23 +171,32 @@ class Condensed:
         enough = self.options.accurate * max(1.0, size)
         if size <= self.options.accurate:
             return change, True
-        basis, H = np.empty((most + 1, change.size)), np.zeros((most + 1, most))
+        basis, R = np.empty((most + 1, change.size)), np.zeros((most, most))
         basis[0] = change / size
-        part: FloatArray = np.zeros(0)
-        left = size
+        turns, right = list[tuple[float, float]](), [size]  # of the planes in which R is made triangular
+        left, taken = size, 0
         for k in range(most):
             new = self._condensed(self._image(basis[k] * self.scale)) / self.scale
-            H[: k + 1, k] = basis[: k + 1] @ new
-            new -= H[: k + 1, k] @ basis[: k + 1]
-            H[k + 1, k] = np.linalg.norm(new)
-            right = np.zeros(k + 2)
-            right[0] = size
-            part = np.asarray(np.linalg.lstsq(H[: k + 2, : k + 1], right, rcond=None)[0], dtype=np.float64)
-            left = float(np.linalg.norm(right - H[: k + 2, : k + 1] @ part))
-            if not left > enough or H[k + 1, k] == 0.0:
+            column = basis[: k + 1] @ new
+            new -= column @ basis[: k + 1]
+            further = float(np.linalg.norm(new))
+            column = column.tolist()
+            for i, (c, s) in enumerate(turns):
+                column[i : i + 2] = c * column[i] + s * column[i + 1], c * column[i + 1] - s * column[i]
+            long = math.hypot(column[k], further)
+            if not 0.0 < long < math.inf:
                 break
-            basis[k + 1] = new / H[k + 1, k]
-        return part @ basis[: part.size], not left > enough
+            c, s = column[k] / long, further / long
+            column[k] = long
+            turns.append((c, s))
+            right[k:] = [c * right[k], -s * right[k]]
+            R[: k + 1, k], left, taken = column, abs(right[k + 1]), k + 1
+            if not left > enough or further == 0.0:
+                break
+            basis[k + 1] = new / further
+        part = np.linalg.solve(R[:taken, :taken], right[:taken])
+        moved: FloatArray = part @ basis[:taken]
+        return moved, not left > enough
 
     def _condensed(self, right: FloatArray) -> FloatArray:
         """The solution with the modes that are condensed to alone."""

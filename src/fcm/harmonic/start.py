@@ -60,6 +60,18 @@ class Found:
     turns: tuple[Turn, ...] = ()
 
 
+@dataclass(frozen=True)
+class LevelOptions:
+    """How far the level of the forces is followed with many contacts, of which there always is one that slips
+    or opens only far above 1: contacts, from so many on up to the level most."""
+
+    contacts: int = 12
+    most: float = 12.0
+
+
+LEVELS = LevelOptions()  # where nothing else is said
+
+
 def solutions(system: System, omega: float, reach: float | None = None) -> Found:
     """All solutions at omega that hang together with rest.
 
@@ -68,6 +80,8 @@ def solutions(system: System, omega: float, reach: float | None = None) -> Found
     otherwise a few are taken for that.
     """
     most, linear = highest(system, omega), BEFORE * least(system, omega)
+    if len(system.scene.contacts) >= LEVELS.contacts:
+        most = min(most, LEVELS.most)
     if reach is None and len(system.harmonics) > few_of(system):
         few = system.with_harmonics(system.harmonics[: few_of(system)])
         reach = _followed(few, omega, linear, most, most).reach
