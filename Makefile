@@ -38,7 +38,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help design fuzz kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence multipliers kept-modes demo picture paper figures test check tables \
+.PHONY: help design fuzz kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence fold-curves multipliers kept-modes demo picture paper figures test check tables \
 	clean bench study
 
 help:  ## this list
@@ -196,6 +196,9 @@ $(REPORT)/index.html: $(COMPARED:%=$(REPORT)/%.png) $(wildcard src/fcm/report/*.
 		build/convergence.txt build/kept-modes.txt build/published.json \
 		$(wildcard build/calibration.txt build/extremes.json build/study.txt $(OTHERS)/*.json)
 	$(BIN)/python -m fcm.report evidence $(REPORT) $(COMPARED:%=--scene %) --results build
+
+fold-curves: $(VENV)/installed  ## curves of folds of an impact oscillator, the picture of the guide
+	$(BIN)/python -m tests.branches.fold_picture .github/fold-curves.png
 
 convergence: build/convergence.txt  ## error against run time with 1 to 15 harmonics, as the picture of README.md
 	cp build/convergence.png .github/convergence.png

@@ -1,0 +1,94 @@
+"""The picture of the guide: curves of folds in (frequency, level), and the isolated branch that one shows.
+
+usage: python -m tests.branches.fold_picture PICTURE.png
+"""
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+
+from fcm.branches.fold_continuation import folds_from
+from fcm.branches.options import FOLDS
+from fcm.branches.search import every_branch
+from fcm.branches.surface import Surface
+from fcm.continuation import Status
+from fcm.harmonic.reported import reported
+from fcm.harmonic.start import looked_at, solutions
+from fcm.harmonic.system import System
+from fcm.scene import load_scene
+
+SCENE = Path(__file__).parent / "scenes/closed_impact.toml"
+HARMONICS = (1, 2, 3, 4)
+
+
+@dataclass(frozen=True)
+class Picture:
+    """Curves of folds, places where the level turned at the frequencies looked at, and the branches."""
+
+    folds: list[np.ndarray]  # of each curve (point, 2): frequency [rad/s], level
+    turns: np.ndarray  # (turn, 2)
+    branches: list[np.ndarray]  # of each (point, 2): frequency, amplitude
+    closed: list[bool]
+
+    def crossings(self):
+        """The frequencies at which curves of folds cross the level 1."""
+        for curve in self.folds:
+            off = curve[:, 1] - 1.0
+            for i in np.flatnonzero(off[:-1] * off[1:] < 0.0):
+                part = off[i] / (off[i] - off[i + 1])
+                yield curve[i, 0] + part * (curve[i + 1, 0] - curve[i, 0])
+
+
+def calculated():
+    """What the picture shows."""
+    system = System(load_scene(SCENE).each_curve()[0], HARMONICS)
+    folds, turns = [], []
+    for omega in looked_at(system):
+        for turn in solutions(system, omega, np.inf).turns:
+            if not (turn.short and FOLDS.within(turn.level)):
+                continue
+            turns.append((omega, turn.level))
+            start, span = np.append(turn.z, turn.level), system.scene.frequency_range
+            curve = folds_from(Surface(system.balance()), start, turn.directions, span)
+            if curve is not None:
+                folds.append(np.column_stack((curve.frequency, curve.level)))
+    paths = every_branch(system).branches.paths
+    branches = [np.column_stack((path.parameter, reported(system, path).amplitude[:, 0])) for path in paths]
+    return Picture(folds, np.array(turns), branches, [path.status is Status.CLOSED for path in paths])
+
+
+def draw(picture):
+    """The figure."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(6.0, 5.2), layout="constrained")
+    above, below = figure.subplots(2, 1, sharex=True)
+    for curve in picture.folds:
+        above.plot(*curve.T, color="C0", linewidth=1.2)
+    above.plot(*picture.turns.T, "o", color="C0", markersize=4, label="the level turns here")
+    above.axhline(1.0, color="black", linewidth=0.8)
+    above.set_yscale("log")
+    above.set_ylim(FOLDS.lowest, FOLDS.highest)
+    levels = [FOLDS.lowest, 0.5, 1.0, 2.0, FOLDS.highest]
+    above.set_yticks(levels, [f"{level:g}" for level in levels])
+    above.minorticks_off()
+    above.set_ylabel("level of the forces")
+    for points, closed in zip(picture.branches, picture.closed, strict=True):
+        below.plot(*points.T, color="C3" if closed else "black", linewidth=1.2)
+    for k, omega in enumerate(picture.crossings()):
+        label = "a curve of folds crosses the level 1" if k == 0 else None
+        above.plot(omega, 1.0, "s", color="C3", markersize=5, label=label)
+        for axes in (above, below):
+            axes.axvline(omega, color="C3", linewidth=0.6, linestyle=":")
+    above.legend(fontsize=8)
+    below.set_ylabel("amplitude at the level 1")
+    below.set_xlabel("frequency [rad/s]")
+    return figure
+
+
+if __name__ == "__main__":
+    mpl.use("Agg")
+    draw(calculated()).savefig(sys.argv[1], dpi=110)
