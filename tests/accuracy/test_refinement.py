@@ -49,8 +49,13 @@ def test_a_blade_to_one_percent(preload):
     assert found.reached
     assert found.worst <= 1e-2
     at = list(one.modal.dofs).index("40z")
-    height = max(shown.amplitude[:, at].max() for shown in found.shown)
-    assert height == pytest.approx(EXACT[preload], rel=2e-2)
+    # closed branches with light preloads are higher at 5500 rad/s and more, and unstable all along
+    heights = [
+        shown.amplitude[:, at].max()
+        for path, shown in zip(found.traced.branches.paths, found.shown, strict=True)
+        if path.parameter.min() == one.frequency_range[0]
+    ]
+    assert max(heights) == pytest.approx(EXACT[preload], rel=2e-2)
 
 
 @pytest.mark.parametrize("preload", [300, 100])

@@ -8,8 +8,8 @@ from fcm.harmonic.system import System
 from fcm.motion import State, simulate
 from fcm.scene import scene_from_dict
 
+from ..branches.test_prolongation import amplitudes_at
 from .scenes import up_to
-from .test_beside import amplitudes_at
 
 CLOSED_AT_REST = {
     "modal": {"dofs": ["u", "v"], "frequency": [1.0], "damping": [0.0143], "shapes": [[-0.631, 0.674]]},
