@@ -195,3 +195,26 @@ def test_of_a_stable_motion_the_extent_is_that_of_stable_ones(monkeypatch):
         last = simulate(scene, omega, 400, pushed).measures(last=20)
         away = max(abs(one.amplitude[2] / amplitude[id(shot)] - 1.0) for one in last)
         assert away < 1e-3 if stays else away > 0.05
+
+
+BEGUN = [  # one motion, begun with other roundings
+    (
+        (-0.47410816462340916, 0.8413213360780477, -0.029646197792734766),
+        (0.13609457664039534, -0.6700556387376853, 0.03549498060371679),
+        (-0.23409214111286983, -3.3101920919155616e-35, -0.03679012841908941),
+    ),
+    (
+        (-0.4741081646234087, 0.8413213360780473, -0.029646197792734717),
+        (0.13609457664039518, -0.6700556387376856, 0.03549498060371699),
+        (-0.23409214111286966, 0.0, -0.03679012841908936),
+    ),
+]
+
+
+@pytest.mark.parametrize("begun", BEGUN)
+def test_an_extent_does_not_hang_on_the_rounding_of_the_motion_it_is_begun_at(begun):
+    """The least of one amplitude lies between the end of a line and the next motion on it."""
+    scene = fcm.load_scene(Path(__file__).parent / "scenes/in_parts.toml").each_curve()[0]
+    found = family(scene, 1.01345, State(*map(np.array, begun)))
+    rest = State(np.zeros(3), np.zeros(3), np.array([-3.0, 0.0, 0.0]))
+    assert found.least[2] < simulate(scene, 1.01345, 400, rest).measures(last=1)[0].amplitude[2]

@@ -144,16 +144,43 @@ class _Seen:
 
 
 def _finer(line: list[Shot], look: Look) -> list[Shot]:
-    """More motions beside those, within a line, at which an amplitude is greatest or least."""
+    """More motions beside those, within a line, at which an amplitude is greatest or least.
+
+    Where it is so at an end, it may be more so beside that.
+    """
     amplitude = np.array([shot.amplitude for shot in line])
-    added = list[Shot]()
+    flat = np.ptp(amplitude, axis=0) <= SAME * amplitude.max(axis=0)
+    middles, last = _Middles(look), len(line) - 1
     for sense in (1.0, -1.0):
-        tops = np.argmax(sense * amplitude, axis=0).tolist()
-        flat = np.ptp(amplitude, axis=0) <= SAME * amplitude.max(axis=0)
-        for k, dof in {k: dof for dof, k in enumerate(tops) if not flat[dof]}.items():
-            if 0 < k < len(line) - 1:
-                added += _about(line[k - 1 : k + 2], sense, dof, look)
-    return added
+        for dof in np.flatnonzero(~flat).tolist():
+            k = int(np.argmax(sense * amplitude[:, dof]))
+            if 0 < k < last:
+                _about(line[k - 1 : k + 2], sense, dof, middles)
+                continue
+            one, other = line[k], line[1] if k == 0 else line[-2]
+            middle = middles.of(one, other)
+            if middle is not None and sense * (middle.amplitude[dof] - one.amplitude[dof]) > 0.0:
+                _about([one, middle, other], sense, dof, middles)
+    return middles.found()
+
+
+class _Middles:
+    """The motions between two, each looked for once: several amplitudes are often extreme together."""
+
+    def __init__(self, look: Look) -> None:
+        self.look = look
+        self.known: dict[tuple[int, int], tuple[Shot, Shot, Shot | None]] = {}
+
+    def of(self, one: Shot, other: Shot) -> Shot | None:
+        """That of two; None where it is not found."""
+        key = min(id(one), id(other)), max(id(one), id(other))
+        if key not in self.known:  # which keeps both, and with them their numbers
+            self.known[key] = one, other, between(one, other, self.look)
+        return self.known[key][2]
+
+    def found(self) -> list[Shot]:
+        """All."""
+        return [middle for _, _, middle in self.known.values() if middle is not None]
 
 
 def _last_stable(line: list[Shot], look: Look) -> list[Shot]:
@@ -176,18 +203,15 @@ def _stable(shot: Shot) -> bool:
     return within_unit_circle(shot.multipliers)
 
 
-def _about(near: list[Shot], sense: float, dof: int, look: Look) -> list[Shot]:
-    """Motions ever nearer to the greatest, or least, amplitude of a degree of freedom among three."""
-    added = list[Shot]()
+def _about(near: list[Shot], sense: float, dof: int, middles: _Middles) -> None:
+    """Look ever nearer to the greatest, or least, amplitude of a degree of freedom among three motions."""
     for _ in range(HALVINGS):
-        one, other = between(near[0], near[1], look), between(near[1], near[2], look)
+        one, other = middles.of(near[0], near[1]), middles.of(near[1], near[2])
         if one is None or other is None:
             break
-        added += [one, other]
         five = [near[0], one, near[1], other, near[2]]
         top = max((1, 2, 3), key=lambda i: sense * float(five[i].amplitude[dof]))
         near = five[top - 1 : top + 2]
-    return added
 
 
 def _directions(count: int) -> list[FloatArray]:
