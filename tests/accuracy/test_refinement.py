@@ -175,7 +175,8 @@ def test_what_has_been_taken_counts_in_what_takes_too_long(monkeypatch):
 
 
 def test_what_is_taken_is_levels_branches_and_error_points(monkeypatch):
-    """Each of them as it is counted from outside: by evaluations of balances of their sizes."""
+    """Of levels and branches as counted from outside, by evaluations of balances of their sizes; curves of
+    folds, which are followed in the level as well, take no more than these again."""
     system = System(scene("yang1998", 5), (1, 2, 3))
     paths = {}
     for module in (start, trace):
@@ -187,7 +188,8 @@ def test_what_is_taken_is_levels_branches_and_error_points(monkeypatch):
     found = outlined(system)
     assert paths[start] and paths[trace]
     evaluations = sum(path.evaluations for some in paths.values() for path in some)
-    assert found.seconds == pytest.approx(seconds_of(system, evaluations, 3))
+    counted = seconds_of(system, evaluations, 3)
+    assert counted <= found.seconds < 2.0 * counted
     judged(found, 1e-3)
     assert system.work.seconds > found.seconds
     assert found.seconds_with((1, 2, 3)) == pytest.approx(found.seconds)
