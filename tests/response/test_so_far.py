@@ -13,6 +13,7 @@ from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
 from fcm.run import Interrupted
 from fcm.run.work import Report
+from fcm.scene import scene_from_dict
 
 from ..harmonic.truth import scene
 
@@ -100,3 +101,58 @@ def test_a_curve_of_another_kind_is_not_gone_on_with(name):
     other = np.zeros(array.shape) if array.dtype.kind == "U" else array.astype("U3")
     for wrong in (other, array[:-1], array[..., None], None):
         assert not fits(scene, replace(curve, **{name: wrong}))
+
+
+def _joint():
+    """Twenty contacts along a beam of three modes."""
+    x, count = np.linspace(0.0, 1.0, 20), 20
+    along = [np.sin((m + 1) * np.pi * x / 2.0 + 0.3) for m in range(3)]
+    across = [0.3 * np.cos((m + 1) * np.pi * x / 2.0) for m in range(3)]
+    shapes = [np.ravel(both, order="F").tolist() for both in zip(along, across, strict=True)]
+    common = {"mu": 0.4, "k_u": 0.1, "k_v": 0.1, "n_0": 0.3}
+    return scene_from_dict(
+        {
+            "modal": {
+                "dofs": [f"{axis}{k}" for k in range(count) for axis in "uv"],
+                "frequency": [1.0, 3.1, 6.3], "damping": [0.02, 0.02, 0.02], "shapes": shapes,
+            },
+            "contact": [
+                {"name": f"c{k}", "tangential": f"u{k}", "normal": f"v{k}", **common} for k in range(count)
+            ],
+            "force": [{"dof": "u19", "amplitude": 0.3}],
+            "response": {"frequency": [0.8, 2.2]},
+        }
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def whole():
+    """How often a whole run of many contacts looks for an interruption, and what it has said before which."""
+    told, calls = [], 0
+
+    def look():
+        nonlocal calls
+        calls += 1
+
+    traced_curve(_joint(), Wanted(None, 1e-2), look, lambda text: told.append((calls, text)))
+    return calls, told
+
+
+@pytest.mark.parametrize("share", [0.2, 0.75, 0.95])
+def test_many_contacts_stopped_at_any_time_leave_the_best_curve_that_there_was(whole, share):
+    """What the whole run has at that time is written, with its error; before the first curve nothing."""
+    calls, told = whole
+    left = iter(range(int(share * calls)))
+
+    def stop():
+        if next(left, None) is None:
+            raise KeyboardInterrupt
+
+    known = [text for at, text in told if at <= int(share * calls)]
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        traced_curve(_joint(), Wanted(None, 1e-2), stop)
+    assert isinstance(stopped.value, Interrupted) == bool(known)
+    if known:
+        (curve,) = stopped.value.results
+        assert not curve.complete and known[-1].split(";")[0] in curve.reason
+        assert np.isfinite([peak.error for peak in curve.peaks.values()]).all()
