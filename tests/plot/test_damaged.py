@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from fcm import load_scene
+from fcm.plot.errors import PlotError
+from fcm.plot.read import opened
 from fcm.response import trace
 from fcm.results.output import write_netcdf
 
@@ -89,3 +91,13 @@ def test_numbers_far_apart_are_drawn(fcm, whole, kind, value):
             data[name][0, 0] = value
     done = fcm("plot", kind, "a.nc")
     assert done.code == 0 or (done.code == 2 and "a.nc" in done.err)
+
+
+def test_a_variable_that_is_looked_for_and_not_there_is_named(tmp_path):
+    """Whatever variable that is, of whatever kind of file."""
+    with netCDF4.Dataset(tmp_path / "a.nc", "w") as data:
+        data.title = "a title"
+    said = r"a\.nc: not a file: it has no variable tracked_trough$"
+    with pytest.raises(PlotError, match=said), opened(tmp_path / "a.nc", "a file", ()) as held:
+        assert held.title == "a title" and getattr(held, "units", "") == ""
+        held["tracked_trough"]

@@ -38,6 +38,9 @@ _LAYOUT = {
     **dict.fromkeys(
         ("tracked_number", "tracked_frequency", "tracked_turn", "tracked_trough", "tracked_stable"), _TRACKED
     ),
+    "optimum_number": ("optimum", "varied"),
+    "optimum_peak": ("optimum",),
+    **dict.fromkeys(("optimum_frequency", "optimum_stable"), ("optimum", "equal")),
 }
 _TEXTS = {
     "dof",

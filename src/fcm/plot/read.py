@@ -89,10 +89,30 @@ def read_response(path: Path) -> DrawnResponse:
         return _response(dataset)
 
 
+class _Variables(dict[str, Any]):
+    """By name; ValueError says which is not there."""
+
+    def __missing__(self, name: str) -> Any:
+        raise ValueError(f"it has no variable {name}")
+
+
+class Held:
+    """What an open netCDF dataset holds: its variables by name, and its attributes as its own."""
+
+    def __init__(self, dataset: Any) -> None:
+        self._dataset, self.variables = dataset, _Variables(dataset.variables)
+
+    def __getitem__(self, name: str) -> Any:
+        return self.variables[name]
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._dataset, name)
+
+
 @contextmanager
 def opened(path: Path, kind: str, needed: Sequence[str], also: Sequence[str] = ()) -> Iterator[Any]:
-    """The open netCDF dataset; PlotError if it has not the variables needed, or if they, or others that are
-    read where they are there, are laid out otherwise."""
+    """The open netCDF dataset, see `Held`; PlotError if it has not the variables needed, or if they, or
+    others that are read where they are there, are laid out otherwise."""
     from netCDF4 import Dataset
 
     if what := no_file(path):
@@ -106,7 +126,7 @@ def opened(path: Path, kind: str, needed: Sequence[str], also: Sequence[str] = (
             raise PlotError(f"{path}: not {kind}: it has no variable {names}{_hint(dataset)}")
         with read(path, f"not {kind}"):
             check_layout(dataset.variables, (*needed, *also))
-            yield dataset
+            yield Held(dataset)
 
 
 @contextmanager

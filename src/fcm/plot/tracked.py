@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 _NEEDED = ("tracked_number", "tracked_frequency", "tracked_amplitude", "tracked_turn", "track_what", "dof")
 _ALSO = ("tracked_trough", "tracked_stable")
+_OPTIMUM = ("optimum_number", "optimum_peak", "optimum_frequency", "optimum_stable")
 _MARK, _SHADE = "#c03020", "#c0d4ea"
 
 
@@ -63,7 +64,7 @@ class DrawnTracking:
 @apart
 def read_tracked(path: Path) -> DrawnTracking | None:
     """Read what ``fcm respond`` has written with --track, or of an [optimum]; None of another file."""
-    with opened(path, "a response file", (), (*_NEEDED, *_ALSO)) as data:
+    with opened(path, "a response file", (), (*_NEEDED, *_ALSO, *_OPTIMUM)) as data:
         variables = data.variables
         if any(name not in variables for name in _NEEDED):
             return None
@@ -78,7 +79,9 @@ def read_tracked(path: Path) -> DrawnTracking | None:
             tracks.append(DrawnTrack(what, *columns))
         optimum, stays = None, ""
         if "optimum_peak" in variables and variables["optimum_peak"].shape == (1,):
-            number_at, peak = (floats(variables[name]) for name in ("optimum_number", "optimum_peak"))
+            number_at, peak = (floats(variables[name]) for name in _OPTIMUM[:2])
+            if not number_at.size:
+                raise ValueError("its optimum has no number")
             optimum = (float(number_at[0, 0]), float(peak[0]))
             stays = _stays(variables)
         return DrawnTracking(
