@@ -112,3 +112,54 @@ def test_matrices_whose_modes_are_all_kept_lack_none(listed):
     fewer = text.replace("damping", "modes = 2\nflexibility = false\ndamping", 1)
     (said,) = json.loads(listed(fewer, "--json").out)["warnings"]
     assert "a contact lacks the flexibility of all modes above" in said
+
+
+MATRICES = """
+[structure]
+dofs = ["u", "v"]
+mass = "M.mtx"
+stiffness = "K.mtx"
+damping = 0.01
+[[force]]
+dof = "u"
+amplitude = 1.0
+[response]
+frequency = [{}, {}]
+"""
+
+
+@pytest.fixture
+def matrices(tmp_path):
+    head = "%%MatrixMarket matrix coordinate real symmetric\n2 2 {}\n"
+    (tmp_path / "K.mtx").write_text(head.format(3) + "1 1 5.0e4\n2 1 -1.0e4\n2 2 1.0e4\n")
+    (tmp_path / "M.mtx").write_text(head.format(2) + "1 1 1.0\n2 2 1.0\n")
+
+
+def test_what_was_read_of_matrices_is_told(listed, matrices):
+    """Their frequencies, by the eigenvalues: 87.44 and 228.7 rad/s."""
+    done = listed(MATRICES.format(50, 300))
+    low, high = np.sqrt(np.linalg.eigvalsh([[5e4, -1e4], [-1e4, 1e4]]))
+    assert "read: stiffness: K.mtx: 2 rows, 4 entries that are not 0, symmetric" in done.err
+    assert "read: mass: M.mtx: 2 rows, 2 entries that are not 0, diagonal" in done.err
+    hertz = low / (2 * np.pi), high / (2 * np.pi)
+    assert (
+        f"read: no rigid-body mode; others from {hertz[0]:.6g} to {hertz[1]:.6g} Hz, which are {low:.6g} to "
+        f"{high:.6g} rad/s" in done.err
+    )
+    assert "the range would hold" not in done.err
+
+
+@pytest.mark.parametrize(
+    ("ends", "more", "said"),
+    [
+        ((13, 20), "", 'frequency_unit = "Hz"'),
+        ((80, 300), 'frequency_unit = "Hz"\n', 'frequency_unit = "rad/s"'),
+        ((2500, 3500), "", "give the mass in t"),
+        ((2.5, 3.5), "", "give the mass in kg"),
+        ((1e7, 2e7), "", ""),
+    ],
+)
+def test_units_that_look_mixed_are_asked_about(listed, matrices, ends, more, said):
+    found = json.loads(listed(more + MATRICES.format(*ends), "--json").out)["read"]
+    asked = [text for text in found if "the range would hold" in text]
+    assert [said in text for text in asked] == ([True] if said else [])

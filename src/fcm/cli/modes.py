@@ -27,7 +27,8 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
     The participation is the share of a mode in the static flexibility along a contact or a force. Modes that
     stand for the flexibility of those left out are marked "flexibility". Of a ring of sectors they are listed
     by nodal diameter, with the share among the modes of the same; `fcm plot campbell` draws those. This is a
-    list, and draws no picture.
+    list, and draws no picture. Below it stands what was read: matrices with their rows, entries and symmetry,
+    rigid bodies, frequencies in both units, and whether these look as if units were mixed.
     """
     from fcm.scene import load_scene
     from fcm.scene.listing import listing
@@ -41,6 +42,8 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
         if shown < count:
             messages.info(f"{shown} of {count} directions of contacts and forces: --json has all")
         messages.info(f"shapes: {found['normalisation']}")
+        for text in found["read"]:
+            messages.info(f"read: {text}")
         for note in found["notes"]:
             messages.info(note)
     for warning in found["warnings"]:

@@ -30,10 +30,11 @@ def check_numbers(section: Section, key: str, matrix: Any) -> bool:
     return False
 
 
-def check_symmetric(section: Section, key: str, matrix: Any, dofs: Sequence[str] | None) -> None:
-    """Note the entries that differ from those across the diagonal."""
+def check_symmetric(section: Section, key: str, matrix: Any, dofs: Sequence[str] | None) -> float:
+    """The greatest difference across the diagonal, relative to the greatest entry; note those that are no
+    rounding."""
     if matrix is None:
-        return
+        return 0.0
     difference = abs(matrix - matrix.T).tocoo()
     size = abs(matrix)
     both = scipy.sparse.csc_array(size.maximum(size.T))
@@ -44,7 +45,7 @@ def check_symmetric(section: Section, key: str, matrix: Any, dofs: Sequence[str]
         (difference.data > ASYMMETRY * of_both) & (difference.data > NEGLIGIBLE * largest) & (row < column)
     )
     if not wrong.any():
-        return
+        return float(difference.max()) / largest if difference.nnz and largest else 0.0
     worst = np.flatnonzero(wrong)[np.argsort(-difference.data[wrong], kind="stable")][:MOST_SHOWN]
     named = dofs is not None and len(dofs) == matrix.shape[0]
     names = [quoted(name) for name in dofs or ()] if named else [str(i) for i in range(matrix.shape[0])]
@@ -56,6 +57,7 @@ def check_symmetric(section: Section, key: str, matrix: Any, dofs: Sequence[str]
     count = int(wrong.sum())
     differ = "a pair of entries differs" if count == 1 else f"{count} pairs of entries differ"
     section.wrong(key, f"is not symmetric: {differ}; {entries}{_one_triangle(matrix)}")
+    return float("inf")
 
 
 def _one_triangle(matrix: Any) -> str:

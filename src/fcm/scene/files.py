@@ -49,6 +49,7 @@ class Files:
     folder: Path = Path()
     largest: int = LARGEST  # bytes, unpacked
     read: list[Path] = field(default_factory=list, compare=False)  # those that were opened
+    said: list[str] = field(default_factory=list, compare=False)  # of the matrices that were read
 
     @contextmanager
     def opened(self, name: str) -> Iterator[Path]:

@@ -11,6 +11,8 @@ from fcm.scene.ring import Ring
 
 ROUNDING = 1e-12  # relative: a displacement this small is none
 SPARSE_ABOVE = 2.0  # times the range's end: modes ought to reach there, or their flexibility be kept
+NEAR = 2.0  # times the range's ends: a mode within that is near it
+METRE_AND_MILLIMETRE = float(np.sqrt(1000.0))  # of frequencies, where stiffness and mass mix the two systems
 UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}
 
 
@@ -45,6 +47,7 @@ def listing(scene: Scene) -> dict[str, Any]:
         "frequency_unit": scene.frequency_unit,
         "modes": modes,
         "normalisation": _normalisation(scene),
+        "read": _read(scene, modal.frequency[:own]),
         "notes": list(scene.notes),
         "warnings": _warnings(scene, directions, motion),
     }
@@ -83,9 +86,49 @@ def _of_ring(scene: Scene, ring: Ring) -> dict[str, Any]:
         "frequency_unit": scene.frequency_unit,
         "modes": modes,
         "normalisation": "every modal mass is 1 for each sector",
+        "read": _read(scene, ring.frequency[~ring.added]),
         "notes": list(scene.notes),
         "warnings": [f"{name}: no mode moves along it" for name in idle],
     }
+
+
+def _read(scene: Scene, frequency: FloatArray) -> list[str]:
+    """What was read as the structure: matrices, rigid bodies, frequencies in both units, and whether these
+    look as if units were mixed."""
+    elastic = np.sort(frequency[frequency > 0.0])
+    rigid = int((frequency == 0.0).sum())
+    bodies = {0: "no rigid-body mode", 1: "1 rigid-body mode"}.get(rigid, f"{rigid} rigid-body modes")
+    if not elastic.size:
+        return [*scene.read, f"{bodies}, and no other"]
+    low, high = elastic[0], elastic[-1]
+    in_hertz = f"{low / (2.0 * np.pi):.6g} to {high / (2.0 * np.pi):.6g} Hz"
+    said = [*scene.read, f"{bodies}; others from {in_hertz}, which are {low:.6g} to {high:.6g} rad/s"]
+    if scene.has_range and (slip := _slip_of_units(elastic, scene.frequency_range, scene.frequency_unit)):
+        said.append(slip)
+    return said
+
+
+def _slip_of_units(elastic: FloatArray, ends: tuple[float, float], unit: str) -> str:
+    """What a structure without a frequency near the range [rad/s] looks like, if that is a usual slip of
+    units; else ''."""
+
+    def near(factor: float, room: float) -> bool:
+        return bool(((elastic * factor >= ends[0] / room) & (elastic * factor <= ends[1] * room)).any())
+
+    if near(1.0, NEAR):
+        return ""
+    hertz = 2.0 * np.pi
+    slips = {
+        1.0 / hertz: 'the range would hold modes if its numbers were in Hz: frequency_unit = "Hz"',
+        hertz: 'the range would hold modes if its numbers were in rad/s: frequency_unit = "rad/s"',
+        METRE_AND_MILLIMETRE: "the range would hold modes if frequencies were 31.6 times as high, as with a "
+        "stiffness in N/mm and a mass in kg: give the mass in t",
+        1.0
+        / METRE_AND_MILLIMETRE: "the range would hold modes if frequencies were 31.6 times as low, as with "
+        "a stiffness in N/m and a mass in t: give the mass in kg",
+    }
+    del slips[hertz if unit == "rad/s" else 1.0 / hertz]  # it is in that unit already
+    return next((text for factor, text in slips.items() if near(factor, 1.0)), "")
 
 
 def _directions(scene: Scene) -> dict[str, FloatArray]:

@@ -150,6 +150,7 @@ def _read(top: Section, files: Files) -> dict[str, Any]:
         "start": start,
         "reported": reported,
         "notes": tuple(notes),
+        "read": tuple(files.said),
         "optimum": read_optimum(top, draft, reported or tuple(parts["modal"]["dofs"] or ())),
         "fit": read_fit(top, files, draft, reported or tuple(parts["modal"]["dofs"] or ()), unit),
         "draft": draft,

@@ -196,6 +196,7 @@ class Scene:
     units: tuple[str, str] = ("", "")  # of length and force, for labels; empty where they are not given
     ring: Ring | None = None  # that this is a sector of; modal is then what the mean meets
     notes: tuple[str, ...] = ()  # what the reader of a result should know of how the scene was read
+    read: tuple[str, ...] = ()  # what was read as the matrices of [structure], for `fcm plot modes`
     optimum: Optimum | None = None
     fit: Fit | None = None
     of_matrices: bool = False  # whether its modes are those of [structure]; if not, they are of [modal]

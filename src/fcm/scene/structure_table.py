@@ -67,7 +67,9 @@ def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices |
         section.wrong("dofs", f"names {counted(len(dofs), 'row')}, but the stiffness has {rows}")
     read = top.mistakes.count
     for key, matrix in (("stiffness", K), ("mass", M)):
-        check_symmetric(section, key, matrix, dofs)
+        off = check_symmetric(section, key, matrix, dofs)
+        if matrix is not None:
+            files.said.append(said_of(section.data[key], key, matrix, off, given[key]))
     if sound:
         _check_rows(section, K, M, dofs)
     sound = sound and top.mistakes.count == read
@@ -84,6 +86,22 @@ def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices |
     return dofs, Matrices(
         dofs, symmetric(K), symmetric(M), modes=modes, flexibility=keep, coupling=coupling, **damping
     )
+
+
+def said_of(value: Any, key: str, matrix: Any, off: float, given: Labelled | None) -> str:
+    """What was read as a matrix, in a sentence; off is the greatest difference across its diagonal.
+
+    >>> said_of("K.mtx", "stiffness", scipy.sparse.csc_array([[2.0, -1.0], [-1.0, 2.0]]), 0.0, None)
+    'stiffness: K.mtx: 2 rows, 4 entries that are not 0, symmetric'
+    """
+    entries, diagonal = matrix.count_nonzero(), np.count_nonzero(matrix.diagonal())
+    form = "diagonal" if entries == diagonal else "symmetric" if off == 0.0 else f"symmetric to {off:.1g}"
+    source = f"{value}: " if isinstance(value, str) else ""
+    rows = given.rows if given is not None else ()
+    named = f"; the file names its rows, {rows[0]} to {rows[-1]}" if rows else ""
+    size = counted(matrix.shape[0], "row")
+    many = "1 entry that is" if entries == 1 else f"{entries} entries that are"
+    return f"{key}: {source}{size}, {many} not 0, {form}{named}"
 
 
 def _check_rows(section: Section, K: Any, M: Any, dofs: Names | None) -> None:
