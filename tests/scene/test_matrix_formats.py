@@ -193,6 +193,23 @@ def test_modes_of_matlab_7_3(tmp_path):
     assert found.dofs == ("u", "tip") and found.shapes.tolist() == [[1.0, 0.5], [0.0, -1.0]]
 
 
+def test_hdf5_numbers_of_another_form_are_not_converted(tmp_path):
+    """A bias of the exponent that one damaged byte has changed makes other numbers of all."""
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "K.h5", "w") as file:
+        file["K"] = K
+    form = h5py.h5t.IEEE_F64LE.copy()
+    form.set_ebias(1000)
+    with h5py.File(tmp_path / "odd.h5", "w") as file:
+        space = h5py.h5s.create_simple(K.shape)
+        h5py.h5d.create(file.id, b"K", form, space).write(h5py.h5s.ALL, h5py.h5s.ALL, K)
+    assert modal(tmp_path, stiffness="K.h5", mass=[1.0] * 4, dofs=list(ROWS)).frequency == pytest.approx(
+        EXACT
+    )
+    odd = refused(tmp_path, stiffness="odd.h5", mass=[1.0] * 4, dofs=list(ROWS))
+    assert "holds numbers that are no IEEE ones of 16 to 64 bits" in odd
+
+
 REFUSED = [
     ("K.sti", "1 1 1.0\n2 2\n", "line 2 has 2 entries; 3 are needed"),
     ("K.sti", "1 1 1.0\n1 2 3,5\n", 'line 2: "3,5" has a decimal comma'),

@@ -13,8 +13,10 @@ from typing import Any
 import numpy as np
 import scipy.sparse
 
+from fcm.scene.errors import quoted
 from fcm.scene.files import UnreadableError
 
+FLOATS = tuple(f"IEEE_F{bits}{order}" for bits in (16, 32, 64) for order in ("LE", "BE"))
 MATLAB = ("data", "ir", "jc")
 SCIPY = ("data", "indices", "indptr")
 
@@ -66,10 +68,28 @@ def _bytes(one: Any) -> int:
     return sum(int(part.size) * 8 for part in parts if hasattr(part, "size"))
 
 
+def _values(one: Any) -> Any:
+    """The array of a dataset.
+
+    UnreadableError where its numbers are of no usual form: a library converts any, and what is damaged to
+    such a form would be read as other numbers.
+    """
+    from h5py import h5t
+
+    kind, form = one.dtype.kind, one.id.get_type()
+    if kind == "f" and not any(form.equal(getattr(h5t, name)) for name in FLOATS):
+        raise UnreadableError(
+            f"{quoted(one.name.lstrip('/'))} holds numbers that are no IEEE ones of 16 to 64 bits"
+        )
+    if kind in "iu" and (form.get_precision() != 8 * form.get_size() or form.get_offset()):
+        raise UnreadableError(f"{quoted(one.name.lstrip('/'))} holds whole numbers of a part of their bytes")
+    return np.asarray(one[()])
+
+
 def _variable(file: Any, one: Any, matlab: bool) -> Any:
     if _is_sparse(one):
         return _sparse(one)
-    array = np.asarray(one[()])
+    array = _values(one)
     if array.dtype.kind == "O":  # references of a cell, or strings
         return np.array([_text(file, item) for item in array.T.ravel()], dtype=str)
     if matlab and one.attrs.get("MATLAB_class") == b"char":
@@ -88,7 +108,7 @@ def _text(file: Any, item: Any) -> str:
 def _sparse(one: Any) -> Any:
     names = _parts(one)
     assert names is not None
-    data, indices, pointer = (np.asarray(one[name][()]) for name in names)
+    data, indices, pointer = (_values(one[name]) for name in names)
     size = len(pointer) - 1
     if names == MATLAB:
         shape, by_row = (int(one.attrs.get("MATLAB_sparse", size)), size), False
