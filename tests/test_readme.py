@@ -120,7 +120,7 @@ def tables_in(data, path=""):
 
 def test_every_block_is_of_a_kind_that_is_tested():
     kinds = re.findall(r"^```(\S+)$", text_of(), re.M)
-    assert set(kinds) <= {"sh", "toml", "text", "pycon"}
+    assert set(kinds) <= {"sh", "toml", "text", "pycon", "mermaid"}
 
 
 OTHERS = [ROOT / ".github/CHANGELOG.md", ROOT / ".github/CONTRIBUTING.md"]

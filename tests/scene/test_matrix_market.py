@@ -84,7 +84,7 @@ def test_what_scipy_writes_of_complex_numbers(tmp_path):
         (REAL + "1 1 1\n1 1 -Infinity\n", ['line 3: "-Infinity" is not a number']),
         (REAL + "1 1 1\n1 1 1e999\n", ['line 3: "1e999" is too large for a number']),
         (REAL + "1 1 1\n1 1 1_000\n", ['"1_000" is not a number']),
-        (REAL + "1 1 1\n1 1 0x10\n", ['"0x10" has "x10" behind the number']),
+        (REAL + "1 1 1\n1 1 0x10\n", ['"0x10" is hexadecimal: write it in decimals']),
         (REAL.replace("real", "integer") + "1 1 1\n1 1 2.5\n", ['line 3: "2.5" is not a whole number']),
         (
             REAL.replace("real", "complex") + "1 1 1\n1 1 2.5\n",

@@ -12,7 +12,7 @@ from scipy.linalg import expm
 from fcm.continuation import FollowOptions, Mark, Status, follow
 from fcm.harmonic.start import solutions
 from fcm.harmonic.system import System
-from fcm.motion import State, simulate
+from fcm.motion import simulate
 from fcm.orbit import periodic
 from fcm.response import trace
 from fcm.scene import Contact, Force, Modal, Scene, scene_from_dict
@@ -23,6 +23,7 @@ from fcm.stability.floquet import multipliers
 from fcm.stability.multipliers import Multipliers
 from fcm.stability.verdict import Bifurcation, Spectrum, Verdict, even
 
+from ..harmonic.truth import state
 from ..motion.cases import SCENES, one_mode, yang
 
 
@@ -356,27 +357,8 @@ def test_small_disturbances_grow_as_the_multipliers_say():
     of = system(scene, 13)
     for z in solutions(of, omega).solutions:
         first = multipliers(of, z)[0]
-        orbit = periodic(scene, omega, _state(of, z))
+        orbit = periodic(scene, omega, state(of, z))
         ends = simulate(scene, omega, 6, replace(orbit.state, q=orbit.state.q * (1.0 + 1e-7))).end
         left = np.abs(ends.q - orbit.state.q).max() / np.abs(1e-7 * orbit.state.q).max()
         grows = abs(first) > 1.0
         assert (left > 1.0) == grows
-
-
-def _state(of, z):
-    """The start of the balanced motion."""
-    balance, linear, omega = of.balance(), of.linear, z[-1]
-    balance.evaluate(z)
-    force = np.asarray(balance.force).reshape(balance.contacts, -1)
-    q = -linear.flexibility @ (linear.ports @ force[:, :2].ravel())
-    p = np.zeros_like(q)
-    friction = force[:, 0].copy()
-    for j, h in enumerate(of.harmonics):
-        f = force[:, 2 + 4 * j : 6 + 4 * j : 2] + 1j * force[:, 3 + 4 * j : 6 + 4 * j : 2]
-        external = linear.force if h == 1 else 0.0
-        wave = (external - linear.ports @ f.ravel()) / (
-            linear.natural**2 - (h * omega) ** 2 + 2j * linear.damping * linear.natural * h * omega
-        )
-        q, p = q + wave.real, p + (1j * h * omega * wave).real
-        friction += f[:, 0].real
-    return State(q, p, friction)

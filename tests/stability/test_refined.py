@@ -14,7 +14,8 @@ from fcm.stability.finer import beyond
 from fcm.stability.multipliers import Multipliers
 from fcm.stability.refined import Refined
 
-from .test_balanced_motions import _state, only, system
+from ..harmonic.truth import state
+from .test_balanced_motions import only, system
 
 
 def impacts(frequency, damping, shapes, contact, pushed):
@@ -56,7 +57,7 @@ def judged(scene, omega, highest):
     """The verdict of the balanced solution, and whether the exact motion beside it is stable."""
     of = system(scene, highest)
     z = only(scene, omega, highest)
-    orbit = periodic(scene, omega, _state(of, z))
+    orbit = periodic(scene, omega, state(of, z))
     balance = of.balance()
     balance.report(z, np.zeros_like(z))
     np.testing.assert_allclose(orbit.measure.amplitude, np.asarray(balance.output), rtol=0.02)
