@@ -53,7 +53,7 @@ def test_a_curve_after_one_that_was_interrupted(harmonics, error):
             raise error
 
     expected = points(wanted, 0.5)
-    for count in range(1, 100, EVERY):
+    for count in range(1, 10_000, 8 * EVERY):
         left = count
         try:
             points(wanted, 2.0, look)

@@ -194,6 +194,7 @@ class Section:
 def _combination(dofs: Names | None) -> str:
     """An example of weights, with the names that the scene has.
 
+    >>> from fcm.scene.names import Names
     >>> _combination(Names(("u", "2x"))), _combination(None)
     ('{ u = 1.0, "2x" = -1.0 }', '{ tip = 1.0, neighbour = -1.0 }')
     """
