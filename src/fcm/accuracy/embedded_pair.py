@@ -124,13 +124,15 @@ def errors_along(
     pieces = partner.pieces(compared, followed)
     pieces += partner.elsewhere(error, pieces)
     system.work.take(partner.seconds())
+    of_folds = _of_folds(partner, folds, change, followed, pieces)
+    partner.done()
     return Errors(
         amplitude=error,
         truncation=_truncation(error, shown.amplitude),
         met=comes,
         peak=np.where(told | ~settles, error[tops, d], np.nan),
         height=height,
-        fold=_of_folds(partner, folds, change, followed, pieces),
+        fold=of_folds,
         share=share,
         partner=more,
         borne=borne,

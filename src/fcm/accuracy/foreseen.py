@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from fcm.accuracy.options import PAIR, REFINEMENT, PairOptions, RefinementOptions
 from fcm.accuracy.outline import LOW, Outline
-from fcm.accuracy.partner import lifted_of, partner_of
+from fcm.accuracy.partner import give_back, lifted_of, partner_of
 from fcm.continuation import Mark, Path
 from fcm.harmonic.further import HIGHEST, Further
 from fcm.harmonic.lifted import Lifted
@@ -68,6 +68,7 @@ def foreseen(found: Outline, options: RefinementOptions = REFINEMENT, pair: Pair
             continue
         motions.append(np.array(lifted.newton.z))
         change = max(change, float((values / np.append(1.0, size))[place.counts].max(initial=0.0)))
+    give_back(lifted, system, more)
     if motions:
         finer = Further(system.with_harmonics(more))
         theirs = _most(finer, np.array(motions), size, ())

@@ -66,18 +66,27 @@ _KEPT = _Kept()
 
 def lifted_of(system: System, more: tuple[int, ...]) -> Lifted:
     """From points of a system to those of its partner; as if it were new: in a sweep the contacts are
-    others."""
-    scene = system.scene
-    key = (*system.linear.numbers, scene.frequency_range, system.harmonics, more)
-    plain = scene.ring is None and not scene.loads
-    made = _KEPT.of.get(key) if plain else None
+    others. Nobody else has it until it is given back, see `give_back`."""
+    made = _KEPT.of.pop(_key(system, more), None) if _plain(system) else None
     if made is None:
-        made = Lifted(system.with_harmonics(more).balance(), list(system.harmonics), list(more), ENOUGH)
-        if plain:
-            _KEPT.of[key] = made
-            if len(_KEPT.of) > MOST:
-                _KEPT.of.popitem(last=False)
-        return made
-    _KEPT.of.move_to_end(key)
-    made.take(list(system.harmonics), [(c.mu, c.k_u, c.k_v, c.n_0) for c in scene.contacts])
+        return Lifted(system.with_harmonics(more).balance(), list(system.harmonics), list(more), ENOUGH)
+    contacts = system.scene.contacts
+    made.take(list(system.harmonics), [(c.mu, c.k_u, c.k_v, c.n_0) for c in contacts])
     return made
+
+
+def give_back(lifted: Lifted, system: System, more: tuple[int, ...]) -> None:
+    """Keep what `lifted_of` the same has made for the next curve."""
+    if _plain(system):
+        _KEPT.of[_key(system, more)] = lifted
+        if len(_KEPT.of) > MOST:
+            _KEPT.of.popitem(last=False)
+
+
+def _plain(system: System) -> bool:
+    """Whether the next curve may have the same structure, seen by other contacts."""
+    return system.scene.ring is None and not system.scene.loads
+
+
+def _key(system: System, more: tuple[int, ...]) -> tuple[object, ...]:
+    return (*system.linear.numbers, system.scene.frequency_range, system.harmonics, more)

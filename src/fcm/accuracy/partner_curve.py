@@ -12,7 +12,7 @@ import numpy.typing as npt
 from fcm.accuracy.displacement import Displacement
 from fcm.accuracy.interpolation import Filled, places, steepness
 from fcm.accuracy.options import PairOptions
-from fcm.accuracy.partner import lifted_of, partner_of
+from fcm.accuracy.partner import give_back, lifted_of, partner_of
 from fcm.accuracy.pieces import CurvePiece, distinct, piece_of, piece_through, rates
 from fcm.accuracy.residual import left_out
 from fcm.accuracy.same_frequency import shifted
@@ -96,6 +96,7 @@ class PartnerCurve:
         self.unit = np.maximum(self.amplitude, LEAST_AMPLITUDE * self.amplitude.max(axis=1, keepdims=True))
         self.unit[self.unit == 0.0] = 1.0
         lifted, finer = lifted_of(system, more), system.with_harmonics(more)
+        self.system, self.more = system, more
         self.finding, self.stretches = Displacement(lifted), Stretches(system, finer, lifted, path, options)
         self.each = seconds_of(finer, 1, len(more))  # evaluation
         self.second: Second | None = None  # its own partner, if that is not too dear
@@ -133,6 +134,12 @@ class PartnerCurve:
                 np.concatenate((middle[more], after[more])),
             )
         return self.interpolated(np.arange(count))
+
+    def done(self) -> None:
+        """Give back what the next curve can use."""
+        give_back(self.finding.lifted, self.system, self.more)
+        if self.second is not None:
+            give_back(self.second.lifted, self.second.finer, self.second.more)
 
     def seconds(self) -> float:
         """About what all that was looked for has taken."""

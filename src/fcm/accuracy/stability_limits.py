@@ -15,7 +15,7 @@ import numpy as np
 
 from fcm.accuracy.foreseen import Foreseen, needed
 from fcm.accuracy.options import AT_POINTS
-from fcm.accuracy.partner import lifted_of, partner_of
+from fcm.accuracy.partner import give_back, lifted_of, partner_of
 from fcm.continuation import Path, Segment
 from fcm.continuation.root_finding import Secants
 from fcm.harmonic.further import HIGHEST, Further
@@ -50,7 +50,10 @@ def lost_along(
 ) -> list[Lost]:
     """Errors of the crossings of a path, which may be as large as accuracy."""
     known: dict[tuple[int, ...], _Beside] = {}
-    return [_lost(system, path, one, accuracy, known) for one in crossings]
+    found = [_lost(system, path, one, accuracy, known) for one in crossings]
+    for more, beside in known.items():
+        give_back(beside.lifted, system, more)
+    return found
 
 
 def moved(lost: Sequence[Lost], fewer: Sequence[Lost]) -> list[Lost]:
