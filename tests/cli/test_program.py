@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from fcm.cli import COMMANDS, main
 from fcm.cli.guard import guarded
 from fcm.cli.messages import Messages
-from fcm.continuation import dense
+from fcm.continuation import dense_solver
 
 from ..program import AS_A_MODULE, python, shell
 
@@ -47,7 +47,7 @@ def test_what_only_few_commands_need_is_imported_by_them():
 
 
 @pytest.mark.skipif(
-    dense.__file__.endswith(".py"), reason="interpreted, LAPACK is faster from few unknowns on"
+    dense_solver.__file__.endswith(".py"), reason="interpreted, LAPACK is faster from few unknowns on"
 )
 def test_the_curves_of_the_paper_are_traced_without_lapack():
     """Its import takes longer than all of them."""

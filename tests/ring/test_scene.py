@@ -48,7 +48,7 @@ def wrong(**tables):
         ({"contact": [rings.SHROUD | {"tangential": "next.tp"}]}, ['unknown degree of freedom "next.tp"']),
         ({"sweep": {"cyclic.engine_order": [1, 1.5]}}, ['"cyclic.engine_order"[1]: must be a whole number']),
         ({"sweep": {"cyclic.sectors": [5, 6]}}, ['did you mean "cyclic.engine_order"?']),
-        ({"structure": rings.STRUCTURE | {"coupling": {"stiffness": [[1.0]]}}}, ["has 1 rows, but"]),
+        ({"structure": rings.STRUCTURE | {"coupling": {"stiffness": [[1.0]]}}}, ["has 1 row, but"]),
         ({"structure": rings.STRUCTURE | {"stiffness": [1.0, 1.0, 1.0]}}, ["negative eigenvalue"]),
         ({"structure": None, "modal": MODAL | {"nodal_diameter": [0, 1]}}, ["has 2 numbers, but"]),
         ({"structure": None, "modal": MODAL | {"nodal_diameter": [0, 1, 4]}}, ["[2]: is 4, but those"]),

@@ -225,3 +225,11 @@ def test_written_through_a_link(copy, tmp_path):
     link.symlink_to(copy)
     build_table(link, (5, 5, 5, 5), points=10_000)
     assert link.is_symlink() and open_table(copy).resolution == (5, 5, 5, 5)
+
+
+def test_how_numpy_prints_does_not_matter():
+    """As other packages set it, for all the process."""
+    expected = open_table(shipped.DEFAULT)(1.0, 0.5, 0.3)
+    with np.printoptions(legacy="1.25"):
+        found = open_table(shipped.DEFAULT)(1.0, 0.5, 0.3)
+    assert found == expected

@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import json
 import zlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -96,14 +96,20 @@ def _write(path: Path, arrays: Arrays, attributes: dict[str, Any]) -> None:
 
 def _checksum(arrays: Arrays, attributes: Mapping[str, Any]) -> str:
     """Of the shapes and bytes of all arrays, and of the attributes that say what they are worth."""
-    part = list(attributes["part"]) if "part" in attributes else ""
-    value = zlib.crc32(f"{attributes['measured_error']} {list(attributes['resolution'])}{part}".encode())
+    part = _written(attributes["part"]) if "part" in attributes else ""
+    resolution = _written(attributes["resolution"])
+    value = zlib.crc32(f"{attributes['measured_error']} {resolution}{part}".encode())
     for key in sorted(arrays):
         array = np.ascontiguousarray(arrays[key])
         value = zlib.crc32(
             array.tobytes(), zlib.crc32(f"{key} {array.dtype.str} {array.shape}".encode(), value)
         )
     return f"crc32:{value:08x}"
+
+
+def _written(numbers: Iterable[int]) -> str:
+    """As every table has had it written, whatever the options are by which numpy prints."""
+    return f"[{', '.join(f'np.int32({int(number)})' for number in numbers)}]"
 
 
 def load(path: str | Path) -> tuple[FloatArray, FloatArray, dict[str, Any], Part]:
