@@ -84,8 +84,13 @@ def test_the_curve_does_not_depend_on_units(yang, name):
         scene.forces[0].amplitude / scene.contacts[0].k_u
     )
     assert curve.points == plain.points
-    assert curve.frequency == pytest.approx(time * plain.frequency, rel=1e-9)
-    assert curve.amplitude == pytest.approx(length * plain.amplitude, rel=1e-9)
+    # behind a corner, which is met to some 1e-9 of a step, all points are moved along the curve by as much
+    assert curve.frequency == pytest.approx(time * plain.frequency, rel=1e-8)
+    assert curve.amplitude == pytest.approx(length * plain.amplitude, rel=1e-8)
+    for dof, (height, at, *_) in curve.peaks.items():
+        assert height == pytest.approx(length * plain.peaks[dof].amplitude, rel=1e-9)
+        assert at == pytest.approx(time * plain.peaks[dof].frequency, rel=1e-9)
+    assert curve.folds == pytest.approx([time * fold for fold in plain.folds], rel=1e-9)
     differ = curve.regime != plain.regime  # on a boundary of two regimes a contact is in either
     assert differ.sum() <= 2 * (len(plain.folds) + 4)
     judged = np.isclose(
