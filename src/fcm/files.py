@@ -11,6 +11,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 PROBE = 1 << 20  # bytes that have to fit beside a file that failed for its disk not to be the reason
+MEASURED = (".csv", ".txt", ".dat", ".mat", ".npz", ".uff", ".unv")  # endings of measured points
 NETCDF = "NetCDF:"  # how a RuntimeError begins that comes from that library
 
 

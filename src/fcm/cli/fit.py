@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from fcm.response import Response
     from fcm.scene.model import Scene
 
-STRONG = 0.9  # correlations that are said
-
 
 def check_scene(scene: Scene, asked: Asked) -> None:
     """A usage error if a scene with a [fit] is asked for what has no meaning with it."""

@@ -12,12 +12,11 @@ from fcm.cli.drawing import drawing, draws_file, is_page, picture_of, save_pictu
 from fcm.cli.lazy import LazyGroup
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.options import FiniteRange
-from fcm.files import replacing
+from fcm.files import MEASURED, replacing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-MEASURED = (".csv", ".txt", ".dat", ".mat", ".npz", ".uff", ".unv")  # endings of measured points
 PICTURES = {
     "response": ("fcm.cli.plot:response", "Amplitude against frequency, one line a curve."),
     "modes": ("fcm.cli.modes:modes", "The modes of a scene and what moves them, as a table."),
@@ -82,6 +81,7 @@ def response(
     point under the mouse.
     """
     from fcm.plot import draw_response, read_points, read_response
+    from fcm.plot.measured import read_measured_points
 
     output = picture_of(file, output, ".png", points, page=True)
     if is_page(output):
@@ -102,8 +102,6 @@ def response(
     read = read_response(file)
     marked = None
     if points is not None and points.suffix.lower() in MEASURED:
-        from fcm.plot.measured import read_measured_points
-
         own = read_measured_points(points, read.frequency_unit)
         read = replace(read, measured=(*read.measured, own))
     elif points is not None:

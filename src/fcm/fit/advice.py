@@ -8,15 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from fcm.fit.forced import NoMotionError, errors_of, forced_rows, sampled
-from fcm.fit.options import FIT, FitOptions
+from fcm.fit.options import ADVICE, FIT, FitOptions
 from fcm.fit.parameters import Parameters
 from fcm.fit.rows import Rows
 from fcm.scene.model import FloatArray, Measured
-
-FACTORS = (0.1, 0.3, 3.0, 10.0)  # of the levels that were measured
-MOST_DOFS = 4
-POINTS = 40  # of a measurement that is imagined
-BETTER = 0.5  # part of the standard error, above which a measurement is not worth a sentence
 
 
 @dataclass(frozen=True)
@@ -50,23 +45,24 @@ def advice(
     before = _errors(known)
     best: dict[int, Advice] = {}
     model = responses[0]
-    dofs = list(dict.fromkeys([*(one.dof for one in responses), *scene.modal.dofs]))[:MOST_DOFS]
+    dofs = list(dict.fromkeys([*(one.dof for one in responses), *scene.modal.dofs]))[: ADVICE.dofs]
     levels = [float(one.level.min()) for one in responses] + [float(one.level.max()) for one in responses]
     tried = sorted(
-        {min(levels) * f for f in FACTORS if f < 1.0} | {max(levels) * f for f in FACTORS if f > 1.0}
+        {min(levels) * f for f in ADVICE.factors if f < 1.0}
+        | {max(levels) * f for f in ADVICE.factors if f > 1.0}
     )
     tried += sorted(set(levels)) if len(dofs) > 1 else []
     for dof in dofs:
         for level in tried:
             try:
-                imagined = sampled(scene, model, dof, level, POINTS, harmonics, options)
+                imagined = sampled(scene, model, dof, level, ADVICE.points, harmonics, options)
                 errors = errors_of(imagined, False, options)
                 found = forced_rows(scene, parameters.keys, harmonics, imagined, errors, options)
             except (NoMotionError, np.linalg.LinAlgError):
                 continue
             after = _errors(known + _information(found.rates * rates))
             for k in doubtful:
-                if after[k] < BETTER * min(before[k], options.untold / BETTER) and (
+                if after[k] < min(ADVICE.better * before[k], options.untold) and (
                     k not in best or after[k] < best[k].error
                 ):
                     best[k] = Advice(parameters.keys[k], dof, level, float(after[k]))
@@ -88,6 +84,6 @@ def _errors(information: FloatArray) -> FloatArray:
     if seen.any():
         scaled = information[np.ix_(seen, seen)] / np.outer(size[seen], size[seen])
         values, vectors = np.linalg.eigh(scaled)
-        values = np.maximum(values, 1e-14)
+        values = np.maximum(values, ADVICE.least)
         errors[seen] = np.sqrt(((vectors**2) / values).sum(axis=1)) / size[seen]
     return errors

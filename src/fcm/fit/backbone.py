@@ -13,19 +13,14 @@ import numpy as np
 
 from fcm.continuation.corrector import Newton
 from fcm.fit.forced import NoMotionError
-from fcm.fit.options import FitOptions
+from fcm.fit.options import BACKBONE, FitOptions
 from fcm.fit.rows import Rows
 from fcm.harmonic.autonomous import Autonomous
-from fcm.harmonic.mode import Mode, nonlinear_mode
+from fcm.harmonic.mode import Mode, linear_modes, nonlinear_mode
+from fcm.harmonic.peak import STENCIL
 from fcm.harmonic.system import System
 from fcm.scene.draft import Number
 from fcm.scene.model import FloatArray, Measured, Scene
-
-STEP = 1e-5  # of a difference of the residual by a number, relative: the order is the fourth
-STENCIL = ((1, 2.0 / 3.0), (2, -1.0 / 12.0))
-AMPLITUDE_STEPS = 20  # of the secant method to where a displacement has the measured amplitude
-AMPLITUDE_CLOSE = 1e-10  # of the last of them, in ln a
-BEYOND = 3.0  # by which the mode is followed past the amplitudes measured
 
 
 def backbone_rows(
@@ -80,13 +75,12 @@ class _Followed:
         if self.dof is not None:
             low, high = self._modal_span(low, high, data.mode)
         self.mode: Mode = nonlinear_mode(
-            system, data.mode, (low / BEYOND, high * BEYOND), system.scene.max_step
+            system, data.mode, (low / BACKBONE.beyond, high * BACKBONE.beyond), system.scene.max_step
         )
         if not len(self.mode.path.z):
             raise NoMotionError
         self.problem: Autonomous = self.mode.problem
         self.newton = Newton(self.problem)
-        self.ends = (float(self.mode.path.z[:, -1].min()), float(self.mode.path.z[:, -1].max()))
         sizes = (
             self.mode.amplitude if self.dof is None else np.array([self._size(z) for z in self.mode.path.z])
         )
@@ -94,8 +88,6 @@ class _Followed:
 
     def _modal_span(self, low: float, high: float, number: int) -> tuple[float, float]:
         """Modal amplitudes of displacements, as in the linear mode."""
-        from fcm.harmonic.mode import linear_modes
-
         shape = abs(float(linear_modes(self.system, number)[0].Q @ self.system.linear.dofs[:, self.dof]))
         if not shape > 0.0:
             raise NoMotionError
@@ -121,9 +113,9 @@ class _Followed:
         z = self._solved(points[i] + part * (points[i + 1] - points[i]))
         if z is None:
             return points[i], False
-        for _ in range(AMPLITUDE_STEPS if self.dof is not None else 0):
+        for _ in range(BACKBONE.steps if self.dof is not None else 0):
             off = target - np.log(self._size(z))
-            if abs(off) < AMPLITUDE_CLOSE:
+            if abs(off) < BACKBONE.close:
                 break
             there = self._solved(np.append(z[:-1], z[-1] + off))
             if there is None:
@@ -155,9 +147,9 @@ class _Followed:
 
     def _growth(self, z: FloatArray, direction: FloatArray, of_log: float) -> float:
         """Of the logarithm of the measured amplitude along a direction."""
-        step = STEP * np.append(direction, of_log)
+        step = BACKBONE.difference * np.append(direction, of_log)
         ends = [np.log(self._size(z + sign * step)) for sign in (1.0, -1.0)]
-        return float(ends[0] - ends[1]) / (2.0 * STEP)
+        return float(ends[0] - ends[1]) / (2.0 * BACKBONE.difference)
 
 
 @dataclass(frozen=True)
@@ -178,7 +170,7 @@ class Moved:
 def _moved(scene: Scene, number: Number, harmonics: tuple[int, ...], problem: Autonomous) -> Moved:
     """With the values of a number on both sides; the structure's modes are the same in their order."""
     value = number.value(scene)
-    step = STEP * (abs(value) or 1.0)
+    step = BACKBONE.difference * (abs(value) or 1.0)
     terms = []
     for k, weight in STENCIL:
         for sign in (1.0, -1.0):

@@ -22,8 +22,6 @@ from fcm.fit.parameters import Parameters
 from fcm.fit.rows import Rows
 from fcm.scene.model import FloatArray
 
-RANK = 1e-10  # of the greatest singular value, below which a combination is not seen at all
-
 
 @dataclass(frozen=True)
 class Estimate:
@@ -54,7 +52,7 @@ def estimated(parameters: Parameters, values: FloatArray, rows: Rows, options: F
     covariance = np.full((count, count), np.nan)
     freedom = max(rows.independent - told.size, 1)
     if told.size:
-        covariance[np.ix_(told, told)] = _covariance(rows.residual, J[:, :, told], freedom)
+        covariance[np.ix_(told, told)] = _covariance(rows.residual, J[:, :, told], freedom, options.rank)
     spread = np.sqrt(np.where(np.isnan(np.diag(covariance)), np.inf, np.diag(covariance)))
     with np.errstate(invalid="ignore", divide="ignore"):
         correlation = covariance / np.outer(spread, spread)
@@ -87,15 +85,15 @@ def _values(parameters: Parameters, x: FloatArray) -> FloatArray:
     return np.where(parameters.log > 0.0, np.exp(np.where(parameters.log > 0.0, x, 0.0)), x * parameters.unit)
 
 
-def _covariance(residual: FloatArray, J: FloatArray, freedom: int) -> FloatArray:
+def _covariance(residual: FloatArray, J: FloatArray, freedom: int, rank: float) -> FloatArray:
     """C (number, number); infinite along a combination that the points do not see."""
     flat = J.reshape(-1, J.shape[-1])
     size = np.sqrt((flat**2).sum(axis=0))
     _, singular, V = np.linalg.svd(flat / size, full_matrices=False)
-    seen = singular > RANK * singular.max(initial=0.0)
+    seen = singular > rank * singular.max(initial=0.0)
     inverse = (V[seen].T / singular[seen] ** 2) @ V[seen]
     found: FloatArray = inverse / np.outer(size, size) * float((residual**2).sum()) / freedom
-    hidden = np.abs(V[~seen]).max(axis=0, initial=0.0) > np.sqrt(RANK)
+    hidden = np.abs(V[~seen]).max(axis=0, initial=0.0) > np.sqrt(rank)
     found[np.diag_indices(len(found))] = np.where(hidden, np.inf, np.diag(found))
     return found
 

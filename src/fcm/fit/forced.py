@@ -31,9 +31,9 @@ from fcm.harmonic.trace import traced
 from fcm.harmonic.whole import jacobian_of
 from fcm.scene.draft import LEVEL, number_of
 from fcm.scene.model import FloatArray, Measured, Scene
+from fcm.units import QUANTITIES
 
 ComplexArray = npt.NDArray[np.complex128]
-POWER = {"displacement": 0, "velocity": 1, "acceleration": 2}  # of i omega
 
 
 class NoMotionError(ArithmeticError):
@@ -70,7 +70,7 @@ class Observed:
         self.balance = system.balance()
         self.dof = list(system.scene.modal.dofs).index(data.dof)
         self.first = system.harmonics.index(1)
-        self.power = POWER[data.quantity]
+        self.power = QUANTITIES[data.quantity]
         self.phased = data.phase is not None
         self.fundamental = self.phased or self.power > 0
 

@@ -29,6 +29,9 @@ class FitOptions:
     alike : correlation from which two numbers are not told apart.
     confidence : of the intervals.
     reweighted : times that errors which are not stated are estimated, and the fit is made again.
+    least_error : of a measured value, relative to the greatest: what is below is rounding.
+    rank : of the greatest singular value, below which a combination of numbers is not seen at all.
+    lost : residual where the model has no response, in units of the errors.
     """
 
     amplitude_error: float = 0.01
@@ -52,6 +55,9 @@ class FitOptions:
     alike: float = 0.98
     confidence: float = 0.95
     reweighted: int = 2
+    least_error: float = 1e-8
+    rank: float = 1e-10
+    lost: float = 1e6
 
 
 @dataclass(frozen=True)
@@ -70,4 +76,37 @@ class NearestOptions:
     halvings: int = 8
 
 
-FIT, NEAREST = FitOptions(), NearestOptions()
+@dataclass(frozen=True)
+class BackboneOptions:
+    """How a mode of the model is met at the amplitudes of a backbone.
+
+    beyond : factor by which it is followed past the amplitudes measured.
+    difference : of the residual by a number, and of an amplitude along a direction, relative.
+    steps, close : at most, to where a displacement has its amplitude, and the last of them in ln a.
+    """
+
+    beyond: float = 3.0
+    difference: float = 1e-5
+    steps: int = 20
+    close: float = 1e-10
+
+
+@dataclass(frozen=True)
+class AdviceOptions:
+    """Which measurements are imagined.
+
+    factors : of the least and the greatest level that were measured.
+    dofs : at most, those measured first.
+    points : of each.
+    better : part of the standard error that it has to leave at most, to be worth a sentence.
+    least : eigenvalue of the scaled information, below which it is rounding.
+    """
+
+    factors: tuple[float, ...] = (0.1, 0.3, 3.0, 10.0)
+    dofs: int = 4
+    points: int = 40
+    better: float = 0.5
+    least: float = 1e-14
+
+
+FIT, NEAREST, BACKBONE, ADVICE = FitOptions(), NearestOptions(), BackboneOptions(), AdviceOptions()

@@ -18,7 +18,6 @@ from fcm.fit.rows import Rows, joined
 from fcm.fit.weights import reweighted
 from fcm.scene.model import FloatArray, Measured
 
-LOST = 1e6  # residual where the model has no response, in units of the errors
 Tell = Callable[[float, str], None]
 
 
@@ -91,7 +90,7 @@ class Problem:
         parts = self.parts(x)
         if parts is None:
             size = sum(data.points * data.components for data in self.data)
-            return np.full(size, LOST)
+            return np.full(size, self.options.lost)
         return np.concatenate([part.residual.ravel() for part in parts])
 
     def jacobian(self, x: FloatArray) -> FloatArray:

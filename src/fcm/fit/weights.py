@@ -3,8 +3,8 @@ r"""Errors of measured points that nothing is said of, estimated from the residu
 Amplitudes of a response err by a floor and by a share of themselves, sigma^2 = a^2 + (b A)^2: as of a
 sensor with noise and with a calibration. a and b are those of the greatest likelihood of the distances r,
 which are taken as normal: the least of the sum of ln sigma^2 + r^2 / sigma^2; one of them where that is
-hardly less likely. Frequencies and damping ratios
-of a backbone err by one value each, their root mean square.
+hardly less likely. Frequencies and damping ratios of a backbone err by one value each, their root mean
+square.
 Source: Carroll and Ruppert, "Transformation and Weighting in Regression" (1988), chapter 3;
 Schwarz, "Estimating the Dimension of a Model", Annals of Statistics 6 (1978).
 """
@@ -23,8 +23,6 @@ from fcm.fit.options import FitOptions
 from fcm.fit.rows import Rows
 from fcm.scene.model import FloatArray, Measured
 
-LEAST = 1e-8  # of the greatest, that an error is at least: below is rounding
-
 
 def reweighted(data: Sequence[Measured], parts: Sequence[Rows], options: FitOptions) -> list[Measured]:
     """The same points with errors estimated, unless they are stated; responses of a quantity share them."""
@@ -38,7 +36,9 @@ def reweighted(data: Sequence[Measured], parts: Sequence[Rows], options: FitOpti
     for numbers in alike.values():
         amplitude = np.concatenate([data[i].amplitude for i in numbers])
         square = np.concatenate([_squares(data[i], parts[i], options) for i in numbers])
-        sigma = np.split(_errors(amplitude, square), np.cumsum([data[i].points for i in numbers])[:-1])
+        sigma = np.split(
+            _errors(amplitude, square, options.least_error), np.cumsum([data[i].points for i in numbers])[:-1]
+        )
         for i, own in zip(numbers, sigma, strict=True):
             found[i] = replace(data[i], estimated=(own / np.sqrt(data[i].weight))[:, None])
     return found
@@ -51,7 +51,7 @@ def _of_backbone(data: Measured, rows: Rows, options: FitOptions) -> Measured:
     assert data.damping is not None
     distance = rows.residual[:, :2] * backbone_errors(data, options)
     size = np.sqrt((data.weight[:, None] * distance**2).mean(axis=0))
-    size = np.maximum(size, LEAST * np.array([data.frequency.max(), data.damping.max()]))
+    size = np.maximum(size, options.least_error * np.array([data.frequency.max(), data.damping.max()]))
     return replace(data, estimated=size / np.sqrt(data.weight[:, None]))
 
 
@@ -62,22 +62,22 @@ def _squares(data: Measured, rows: Rows, options: FitOptions) -> FloatArray:
     return distance * data.weight / components
 
 
-def _errors(amplitude: FloatArray, square: FloatArray) -> FloatArray:
+def _errors(amplitude: FloatArray, square: FloatArray, least: float) -> FloatArray:
     """sigma (point,) of amplitudes whose distances have these squares: of the likeliest model of errors.
 
     A floor alone, a share alone, or both; a further number must earn its place (Schwarz's criterion).
     """
     top = float(amplitude.max())
-    typical = max(float(np.sqrt(square.mean())), LEAST * top)
-    shapes = {(True, False): np.ones(amplitude.size), (False, True): (amplitude / top) ** 2}
+    typical = max(float(np.sqrt(square.mean())), least * top)
 
     def told(size: FloatArray, numbers: int) -> tuple[float, FloatArray]:
-        size = size + (LEAST * top) ** 2
+        size = size + (least * top) ** 2
         unlikely = float((np.log(size) + square / size).sum())
         return unlikely + numbers * np.log(amplitude.size), np.sqrt(size)
 
     # of one number the likeliest is known: the mean of the squares over the shape
-    found = [told(shape * (square / shape).mean(), 1) for shape in shapes.values()]
+    shapes = (np.ones(amplitude.size), (amplitude / top) ** 2)
+    found = [told(shape * (square / shape).mean(), 1) for shape in shapes]
 
     def both(x: FloatArray) -> FloatArray:
         floor, share = np.exp(np.clip(2.0 * x, -80.0, 80.0)) * typical**2

@@ -31,8 +31,8 @@ _LAYOUT = {
     **dict.fromkeys(("schedule_frequency", "schedule_cycles", "schedule_start"), _PHASE),
     "displacement": ("curve", "instant", "dof"),
     **dict.fromkeys(("cycle_mean", "cycle_greatest", "cycle_least"), _OF_CYCLE),
-    **dict.fromkeys(("data_frequency", "data_amplitude", "data_level"), ("data", "measured")),
-    **dict.fromkeys(("data_dof", "data_quantity"), ("data",)),
+    **dict.fromkeys(("data_frequency", "data_displacement", "data_level"), ("data", "measured")),
+    "data_dof": ("data",),
     "track_what": ("track",),
     "tracked_amplitude": (*_TRACKED, "dof"),
     **dict.fromkeys(
@@ -51,7 +51,6 @@ _TEXTS = {
     "peak_kind",
     "track_what",
     "data_dof",
-    "data_quantity",
 }
 
 

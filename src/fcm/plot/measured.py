@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from fcm.plot.read import DrawnCurve
 
 FloatArray = npt.NDArray[np.float64]
-POWER = {"displacement": 0, "velocity": 1, "acceleration": 2}  # of the frequency, over a displacement
-NEEDED = ("data_frequency", "data_amplitude", "data_level", "data_dof", "data_quantity")
+NEEDED = ("data_frequency", "data_displacement", "data_level", "data_dof")
 SIZE, NEUTRAL = 4.0, "#404040"
 WORD = "measured"
 SAME = 1e-9  # relative: levels that are one
@@ -37,22 +36,20 @@ class DrawnMeasured:
     level: FloatArray | None = None  # of the forces; None where it is not known
 
 
-def measured_of(variables: Any, unit: str) -> tuple[DrawnMeasured, ...]:
+def measured_of(variables: Any) -> tuple[DrawnMeasured, ...]:
     """The responses that a fit was made to, of the variables of a response file; none where it has none."""
     if not all(name in variables for name in NEEDED):
         return ()
     from fcm.plot.read import floats
 
-    frequency, amplitude, level = (floats(variables[name]) for name in NEEDED[:3])
-    dofs, kinds = (np.asarray(variables[name][:], dtype=str) for name in NEEDED[3:])
-    found = []
-    for i, kind in enumerate(kinds.tolist()):
-        if kind in POWER:
-            there = np.isfinite(frequency[i])
-            omega = frequency[i, there] * UNIT.get(unit, 1.0)
-            size = amplitude[i, there] / omega ** POWER[kind]
-            found.append(DrawnMeasured(str(dofs[i]), frequency[i, there], size, level[i, there]))
-    return tuple(found)
+    frequency, displacement, level = (floats(variables[name]) for name in NEEDED[:3])
+    dofs = np.asarray(variables["data_dof"][:], dtype=str).tolist()
+    known = np.isfinite(displacement)  # not of backbones
+    return tuple(
+        DrawnMeasured(dof, frequency[i, there], displacement[i, there], level[i, there])
+        for i, (dof, there) in enumerate(zip(dofs, known, strict=True))
+        if there.any()
+    )
 
 
 def read_measured_points(path: Path, unit: str) -> DrawnMeasured:

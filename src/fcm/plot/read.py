@@ -190,7 +190,7 @@ def _response(dataset: Any) -> DrawnResponse:
     unit = str(getattr(dataset, "frequency_unit", "rad/s")) if level is None else LEVEL
     held = _swept(variables)
     drawn = tuple(key for key in swept if getattr(held[key], "drawn", "") == "true")
-    measured = measured_of(variables, unit)
+    measured = measured_of(variables)
     return DrawnResponse(dofs, unit, curves, length, drawn, swept_units(variables, swept), measured)
 
 

@@ -22,7 +22,7 @@ from fcm.response.mode import check_free
 from fcm.response.sweep import trace
 from fcm.response.wanted import ResponseError, wanted_of
 from fcm.results.fitted import Fitted, FittedData, FittedStart
-from fcm.results.result import INTERRUPTED, Response
+from fcm.results.result import Response
 from fcm.run import Progress
 from fcm.run.progress import part
 from fcm.scene.draft import LEVEL, number_of
@@ -164,10 +164,3 @@ def _advice(parameters: Parameters, found: Solved, told: Estimate, harmonics: tu
     without = [k for k in sorted(doubtful) if parameters.keys[k] not in {one.key for one in every}]
     said += [f"{parameters.keys[k]}: no response at the levels looked at tells it" for k in without]
     return said
-
-
-def reason_of(fitted: Fitted) -> str:
-    """Why a fit is not complete; empty if it is."""
-    return (
-        f"{INTERRUPTED} before the numbers were found; the best so far are told" if fitted.interrupted else ""
-    )

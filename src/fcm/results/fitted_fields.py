@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from fcm.results.field import Field
 from fcm.results.fitted import Fitted, frequencies
 from fcm.results.result import Response
-from fcm.units import CF_UNIT
+from fcm.results.tracked_fields import padded
+from fcm.scene.model import FloatArray, Measured
+from fcm.units import CF_UNIT, QUANTITIES
 
 
 def fitted_fields(response: Response, fitted: Fitted) -> dict[str, Field]:
@@ -49,28 +49,34 @@ def fitted_fields(response: Response, fitted: Fitted) -> dict[str, Field]:
     kinds = ["backbone" if one.damping is not None else one.quantity for one in data]
     add("data_quantity", ("data",), np.array(kinds, dtype=str), "what was measured")
     points = ("data", "measured")
-    add("data_frequency", points, _padded([frequencies(one, unit) for one in data]),
+    add("data_frequency", points, padded([frequencies(one, unit) for one in data]),
         "measured frequency", units=CF_UNIT[unit])  # fmt: skip
     add(
         "data_amplitude",
         points,
-        _padded([one.amplitude for one in data]),
+        padded([one.amplitude for one in data]),
         "measured amplitude of the quantity",
     )
-    add("data_level", points, _padded([one.level for one in data]), "level of the forces there", units="1")
+    add(
+        "data_displacement",
+        points,
+        padded([_displacements(one) for one in data]),
+        "displacement that this is",
+    )
+    add("data_level", points, padded([one.level for one in data]), "level of the forces there", units="1")
     nothing = [np.full(one.points, np.nan) for one in data]
     phase = [n if one.phase is None else one.phase for n, one in zip(nothing, data, strict=True)]
-    add("data_phase", points, _padded(phase), "measured phase", units="rad")
+    add("data_phase", points, padded(phase), "measured phase", units="rad")
     damping = [n if one.damping is None else one.damping for n, one in zip(nothing, data, strict=True)]
-    add("data_damping", points, _padded(damping), "measured damping ratio", units="1")
+    add("data_damping", points, padded(damping), "measured damping ratio", units="1")
     off = [np.sqrt((one.residual**2).sum(axis=1)) for one in fitted.data]
-    add("data_residual", points, _padded(off), "distance to the model, in units of the errors", units="1")
+    add("data_residual", points, padded(off), "distance to the model, in units of the errors", units="1")
     return out
 
 
-def _padded(values: Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:
-    """As rows of one array, with NaN at their ends."""
-    out = np.full((len(values), max(one.size for one in values)), np.nan)
-    for row, one in zip(out, values, strict=True):
-        row[: one.size] = one
-    return out
+def _displacements(one: Measured) -> FloatArray:
+    """Amplitudes (point,) of the displacements of a response; NaN of a backbone."""
+    if one.damping is not None:
+        return np.full(one.points, np.nan)
+    found: FloatArray = one.amplitude / one.frequency ** QUANTITIES[one.quantity]
+    return found

@@ -39,7 +39,7 @@ def tracked_fields(response: Response, tracking: Tracking) -> dict[str, Field]:
 
 def _curves(response: Response, tracking: Tracking) -> dict[str, Field]:
     unit, curves, dims = response.frequency_unit, tracking.curves, ("track", "tracked")
-    values = {name: _padded([getattr(curve, name) for curve in curves]) for name in MEANINGS}
+    values = {name: padded([getattr(curve, name) for curve in curves]) for name in MEANINGS}
     values["frequency"] = in_unit(values["frequency"], unit)
     more = {
         "number": {"key": tracking.key} | _unit_of(tracking.key, response),
@@ -84,7 +84,7 @@ def _errors(tracking: Tracking, unit: dict[str, str]) -> dict[str, Field]:
     for out, curve in zip(told, tracking.curves, strict=True):
         for one in curve.errors:
             out[:, one.point] = one.relative, one.number, float(np.isfinite(one.relative))
-    relative, number, known = (_padded([one[i] for one in told]) for i in range(3))
+    relative, number, known = (padded([one[i] for one in told]) for i in range(3))
     of = "amplitude" if tracking.what == "peaks" else "frequency"
     dims, by = ("track", "tracked"), "by the harmonics left out"
     about_relative = f"estimated relative error of the {of} {by}, at ends, turns, extremes"
@@ -111,16 +111,16 @@ def _optima(response: Response, tracking: Tracking) -> dict[str, Field]:
     add("peak", (), np.array([one.value for one in optima]), f"the greatest of {minimised} with it")
     errors = np.array([one.error for one in optima])
     add("error", (), errors, "estimated relative error of that peak", units="1")
-    places = in_unit(_padded([np.array([omega for _, omega in one.active]) for one in optima]), unit)
+    places = in_unit(padded([np.array([omega for _, omega in one.active]) for one in optima]), unit)
     add("frequency", ("equal",), places, "excitation frequency of that peak, or of those that are equal")
-    stable = _padded([np.array(one.stable) for one in optima])
+    stable = padded([np.array(one.stable) for one in optima])
     dies = "1 where the motion at that peak, or those, is stable, 0 where not"
     add("stable", ("equal",), stable, dies, units="1")
     add("kind", (), np.array([one.kind for one in optima], dtype=str), f"{KINDS}, bound, trials, unfinished")
     return out
 
 
-def _padded(values: Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:
+def padded(values: Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:
     """Arrays of different lengths as rows of one, with NaN, or empty text, at their ends."""
     longest = max(len(one) for one in values)
     text = values[0].dtype.kind == "U"

@@ -16,11 +16,12 @@ from fcm.scene.measured_file import read_measured
 from fcm.scene.modal import UNITS
 from fcm.scene.model import Fit, FloatArray, Measured
 from fcm.scene.names import Names
-from fcm.scene.rules import FRACTION, POSITIVE, Rule, as_float
+from fcm.scene.optimum import pair_of_bounds, words_of
+from fcm.scene.rules import FRACTION, POSITIVE, Rule
 from fcm.scene.section import Section
+from fcm.units import QUANTITIES
 
 MOST = 20  # numbers that are fitted together
-QUANTITIES = ("displacement", "velocity", "acceleration")
 RESPONSE_KEYS = ("dof", "level", "quantity", "amplitude_error", "frequency_error")
 BACKBONE_KEYS = ("dof", "mode", "frequency_error", "damping_error")
 MODE = Rule("a whole number of at least 1", low=1.0, whole=True)
@@ -59,13 +60,7 @@ def read_fit(top: Section, files: Files, draft: Draft, reported: Sequence[str], 
 def _numbers(section: Section, draft: Draft) -> list[Number | None]:
     """The numbers to fit; None in the place of one that there is not."""
     right = 'a list of numbers of the scene, as ["contact.shroud.mu"]'
-    if section.missing("vary", right):
-        return []
-    value = section.data["vary"]
-    keys = [value] if isinstance(value, str) else value
-    if not isinstance(keys, list | tuple) or not keys or not all(isinstance(key, str) for key in keys):
-        section.wrong("vary", f"must be {right}, is {kind(value)}")
-        return []
+    keys = words_of(section, "vary", right)
     if len(keys) > MOST:
         section.wrong("vary", f"has {len(keys)} numbers; there can be {MOST}")
     found: list[Number | None] = []
@@ -92,24 +87,10 @@ def _bounds(section: Section, numbers: Sequence[Number | None]) -> list[tuple[fl
         what = f"a list of {len(value)}" if isinstance(value, list | tuple) else kind(value)
         section.wrong("bounds", f"must be [from, to] for each of the {len(numbers)} that vary, is {what}")
         return [None] * len(numbers)
-    return [_pair(section, number, pair) for number, pair in zip(numbers, value, strict=True)]
-
-
-def _pair(section: Section, number: Number | None, pair: object) -> tuple[float, float] | None:
-    if number is None:
-        return None
-    ends = [as_float(one) for one in pair] if isinstance(pair, list | tuple) else []
-    low, high = ends if len(ends) == 2 else (None, None)
-    path = f"bounds of {number.key}"
-    if low is None or high is None:
-        section.wrong("bounds", f"{path} must be two numbers, [from, to]")
-        return None
-    faults = [fault for end in (low, high) if (fault := number.rule.fault(end))]
-    for fault in faults:
-        section.wrong("bounds", f"{path}: {fault}")
-    if not faults and not low < high:
-        section.wrong("bounds", f"{path} must rise, are [{shown(low)}, {shown(high)}]")
-    return (low, high)
+    return [
+        None if number is None else pair_of_bounds(section, number, pair)
+        for number, pair in zip(numbers, value, strict=True)
+    ]
 
 
 def _data(

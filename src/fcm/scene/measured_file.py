@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fcm.files import MEASURED
 from fcm.scene.apart import NAMES, read_apart
 from fcm.scene.archive import names_in_npz, read_npz
 from fcm.scene.errors import choices, quoted
@@ -20,7 +21,6 @@ from fcm.scene.model import FloatArray
 from fcm.scene.number_text import fault_of_number, number_in
 from fcm.scene.uff_functions import read_functions
 
-ENDINGS = (".csv", ".txt", ".dat", ".mat", ".npz", ".uff", ".unv")
 FAULTS = 5  # of a file that are told
 
 
@@ -38,8 +38,8 @@ def read_measured(
         If it cannot be read, or a column is missing or holds something that is no number.
     """
     ending = Path(name).suffix.lower()
-    if ending not in ENDINGS:
-        raise DataFileError(f"{quoted(name)}: measured points are read from {choices(ENDINGS)}")
+    if ending not in MEASURED:
+        raise DataFileError(f"{quoted(name)}: measured points are read from {choices(MEASURED)}")
     with files.opened(name) as path:
         if ending in (".uff", ".unv"):
             return read_functions(path)

@@ -40,7 +40,7 @@ def read_optimum(top: Section, draft: Draft, reported: Sequence[str]) -> Optimum
 
 def _numbers(section: Section, draft: Draft) -> list[Number | None]:
     """The numbers to vary; None in the place of one that there is not."""
-    keys = _words(section, "vary", 'a list of numbers of the scene, as ["contact.shroud.n_0"]')
+    keys = words_of(section, "vary", 'a list of numbers of the scene, as ["contact.shroud.n_0"]')
     if len(keys) > MOST:
         section.wrong("vary", f"has {len(keys)} numbers; there can be {MOST}")
     found: list[Number | None] = []
@@ -53,7 +53,7 @@ def _numbers(section: Section, draft: Draft) -> list[Number | None]:
     return found
 
 
-def _words(section: Section, key: str, right: str) -> list[str]:
+def words_of(section: Section, key: str, right: str) -> list[str]:
     """A string, or a list of some."""
     if section.missing(key, right):
         return []
@@ -68,7 +68,7 @@ def _words(section: Section, key: str, right: str) -> list[str]:
 
 def _aims(section: Section, reported: Sequence[str]) -> list[Aim]:
     """What is to be least: the greatest of these."""
-    words = _words(section, "minimise", 'what is to be least, as "peak.u", or a list of such')
+    words = words_of(section, "minimise", 'what is to be least, as "peak.u", or a list of such')
     found = []
     for word in words:
         what, _, dof = word.partition(".")
@@ -97,7 +97,7 @@ def _bounds(section: Section, numbers: list[Number | None], draft: Draft) -> lis
         return [_wide(section, number, draft) for number in numbers if number]
     pairs: Any = None
     if isinstance(value, Mapping):
-        keys = _words(section, "vary", "")
+        keys = words_of(section, "vary", "")
         for key in sorted(set(value) - set(keys)):
             section.wrong("bounds", f"{quoted(key)} is not among those that vary")
         pairs = [value.get(key) for key in keys]
@@ -109,14 +109,16 @@ def _bounds(section: Section, numbers: list[Number | None], draft: Draft) -> lis
             "bounds", f"must be [from, to] for each of the {len(numbers)} that vary, is {_said(value)}"
         )
         return []
-    return [_pair(section, number, pair) for number, pair in zip(numbers, pairs, strict=True) if number]
+    return [
+        pair_of_bounds(section, number, pair) for number, pair in zip(numbers, pairs, strict=True) if number
+    ]
 
 
 def _said(value: object) -> str:
     return f"a list of {len(value)}" if isinstance(value, list | tuple) else kind(value)
 
 
-def _pair(section: Section, number: Number, pair: object) -> tuple[float, float]:
+def pair_of_bounds(section: Section, number: Number, pair: object) -> tuple[float, float]:
     """Bounds of one number."""
     path = f"bounds of {number.key}"
     ends = [as_float(one) for one in pair] if isinstance(pair, list | tuple) else []
