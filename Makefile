@@ -54,8 +54,8 @@ picture: demo  ## the same, and its picture as the one of README.md
 
 paper: $(PAPER)/index.html  ## the figures of the paper on a page, build/paper/index.html, with its numbers and ours
 
-$(PAPER)/index.html: $(FIGURES) $(wildcard src/fcm/report/*_figures.py) $(addprefix src/fcm/report/,paper.py page.py rows.py made.py)
-	$(BIN)/python -m fcm.report paper $(PAPER)
+$(PAPER)/index.html: $(FIGURES) $(wildcard tests/report/*_figures.py) $(addprefix tests/report/,paper.py page.py rows.py made.py)
+	$(BIN)/python -m tests.report paper $(PAPER)
 
 # $(call design,ARGUMENTS): run the program in the folder of the design
 define design
@@ -150,9 +150,9 @@ calibration: $(VENV)/installed  ## estimated over true errors of hard curves; so
 
 published: build/published.json  ## the numbers that others have published, beside those obtained
 
-build/published.json: $(SIMULATION) src/fcm/report/published.py $(wildcard src/fcm/scenes/*.toml) $(VENV)/installed
+build/published.json: $(SIMULATION) tests/report/published.py $(wildcard src/fcm/scenes/*.toml) $(VENV)/installed
 	@mkdir -p build
-	$(BIN)/python -m fcm.report published $@
+	$(BIN)/python -m tests.report published $@
 
 bench: $(VENV)/installed  ## run times in multiples of np.sin: kernels, table, scipy, curves; of whole commands
 	$(BIN)/python tests/benchmarks/speed.py
@@ -169,7 +169,7 @@ bench-others: $(VENV)/installed  ## beside pyHarm-os and tmdsimpy, in environmen
 	$(BIN)/python tests/benchmarks/others/problems.py $(OTHERS)/problems.json
 	@for one in pyharm tmdsimpy; do $(MAKE) --no-print-directory $(OTHERS)/$$one.json || \
 		echo "bench-others: $$one is left out: its environment could not be made, or it failed; see above" >&2; done
-	$(BIN)/python -m fcm.report others $(OTHERS)
+	$(BIN)/python -m tests.report others $(OTHERS)
 
 $(OTHERS)/pyharm.json: $(OTHERS)/pyharm/installed $(OTHERS)/problems.json $(wildcard tests/benchmarks/others/*.py)
 	cd $(@D)/pyharm && bin/python $(CURDIR)/tests/benchmarks/others/with_pyharm.py \
@@ -187,15 +187,15 @@ kills: $(VENV)/installed-dev  ## sweeps killed at fifty random instants: nothing
 
 extremes: $(VENV)/installed  ## the stiff and extreme cases as a table; fails if one that passed does not
 	@mkdir -p build
-	$(BIN)/python -m fcm.extremes --known tests/extremes/passed.txt -o build/extremes.json
+	$(BIN)/python -m tests.extremes --known tests/extremes/passed.txt -o build/extremes.json
 
 # with what bench-others, calibration, extremes and study have left, if they were run
 report: $(REPORT)/index.html  ## errors, run times and what failed on a page, build/report/index.html; minutes
 
-$(REPORT)/index.html: $(COMPARED:%=$(REPORT)/%.png) $(wildcard src/fcm/report/*.py src/fcm/compare/tables.py) \
+$(REPORT)/index.html: $(COMPARED:%=$(REPORT)/%.png) $(wildcard tests/report/*.py src/fcm/compare/tables.py) \
 		build/convergence.txt build/kept-modes.txt build/published.json \
 		$(wildcard build/calibration.txt build/extremes.json build/study.txt $(OTHERS)/*.json)
-	$(BIN)/python -m fcm.report evidence $(REPORT) $(COMPARED:%=--scene %) --results build
+	$(BIN)/python -m tests.report evidence $(REPORT) $(COMPARED:%=--scene %) --results build
 
 fold-curves: $(VENV)/installed  ## curves of folds of an impact oscillator, the picture of the guide
 	$(BIN)/python -m tests.branches.fold_picture .github/fold-curves.png
@@ -204,23 +204,23 @@ convergence: build/convergence.txt  ## error against run time with 1 to 15 harmo
 	cp build/convergence.png .github/convergence.png
 	@cat $<
 
-build/convergence.txt: src/fcm/report/convergence.py src/fcm/plot/convergence.py $(SIMULATION) $(VENV)/installed
+build/convergence.txt: tests/report/convergence.py src/fcm/plot/convergence.py $(SIMULATION) $(VENV)/installed
 	@mkdir -p build
-	$(BIN)/python -m fcm.report convergence build/convergence.json --picture build/convergence.png > $@
+	$(BIN)/python -m tests.report convergence build/convergence.json --picture build/convergence.png > $@
 
 multipliers: build/multipliers.json  ## Floquet multipliers, balanced and exact, as the picture of the guide's page of stability
 	cp build/multipliers.png .github/multipliers.png
 
-build/multipliers.json: src/fcm/report/multipliers.py src/fcm/plot/multipliers.py $(SIMULATION) $(VENV)/installed
+build/multipliers.json: tests/report/multipliers.py src/fcm/plot/multipliers.py $(SIMULATION) $(VENV)/installed
 	@mkdir -p build
-	$(BIN)/python -m fcm.report multipliers $@ --picture build/multipliers.png
+	$(BIN)/python -m tests.report multipliers $@ --picture build/multipliers.png
 
 kept-modes: build/kept-modes.txt  ## error of peaks against the number of modes kept of a blade, in build
 	@cat $<
 
-build/kept-modes.txt: src/fcm/report/kept_modes.py src/fcm/report/plane_blade.py $(SOLVER) $(VENV)/installed
+build/kept-modes.txt: tests/report/kept_modes.py tests/report/plane_blade.py $(SOLVER) $(VENV)/installed
 	@mkdir -p build
-	$(BIN)/python -m fcm.report kept-modes build/kept-modes.json --picture build/kept-modes.png > $@
+	$(BIN)/python -m tests.report kept-modes build/kept-modes.json --picture build/kept-modes.png > $@
 
 .SECONDARY: $(COMPARED:%=$(REPORT)/%.nc)
 

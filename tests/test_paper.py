@@ -12,12 +12,13 @@ import xarray
 
 import fcm
 from fcm.orbit import periodic
-from fcm.report import contact_figures, response_figures
-from fcm.report.page import Page, Section, Table, render
-from fcm.report.paper import FIGURES, commands, paper
-from fcm.report.rows import near
 
 from .program import AS_A_MODULE, called, ended, python
+from .report import contact_figures, response_figures
+from .report import paper as page_of_paper
+from .report.page import Page, Section, Table, render
+from .report.paper import FIGURES, commands, paper
+from .report.rows import near
 
 ROOT = Path(__file__).parents[1]
 # what every run of the program imports, or has no part in a result
@@ -136,7 +137,7 @@ def test_the_page_shows_each_figure_with_its_commands_and_numbers(folder, capsys
 
 def test_a_number_that_differs_is_shown_and_said(folder, capsys, monkeypatch):
     row = near("angle", 22.9, 23.1, within=0.05, form=".1f", unit="°")
-    monkeypatch.setattr("fcm.report.paper.FIGURES", (replace(FIGURES[0], rows=lambda _folder: [row]),))
+    monkeypatch.setattr(page_of_paper, "FIGURES", (replace(FIGURES[0], rows=lambda _folder: [row]),))
     paper.main([str(folder)], standalone_mode=False)
     said = capsys.readouterr().err
     assert "fcm: warning: angle: 23.1°, in the paper 22.9°" in said and "0 of 1 numbers agree" in said

@@ -12,11 +12,11 @@ import pytest
 
 import fcm
 from fcm.compare.exact import exact_lines
-from fcm.report.convergence import greatest_error
 from fcm.response import trace
 from fcm.scene.keys import TABLES
 
 from .program import shell
+from .report.convergence import greatest_error
 
 ROOT = Path(__file__).parents[1]
 README = ROOT / "README.md"

@@ -12,8 +12,9 @@ import xarray
 from fcm.compare import MEASURES, comparison, exact, methods
 from fcm.compare import startup as startups
 from fcm.orbit import periodic
-from fcm.report.evidence import evidence as page
 from fcm.scene import load_scene
+
+from ..report.evidence import evidence as page
 
 RANGE = "[0.8, 1.6]"
 

@@ -9,15 +9,17 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.extremes import catalogue, faults, measured
-from fcm.extremes.conditioning import condition_number
-from fcm.extremes.known import changes, read_known
-from fcm.extremes.residual import unbalanced
 from fcm.response import trace
 from fcm.scene import SceneError
 
 from ..program import python
+from .conditioning import condition_number
+from .known import changes, read_known
+from .residual import unbalanced
+from .row import catalogue, measured
+from .verdict import faults
 
+ROOT = Path(__file__).parents[2]
 KNOWN = Path(__file__).with_name("passed.txt")
 SAMPLE = (
     "slip-limit-met",
@@ -171,13 +173,13 @@ def test_changes_against_the_known_rows(rows):
     assert changes(found, {"force-1e-9", "equal-modes"}) == (["equal-modes"], ["slip-limit-met"])
 
 
-EXTREMES = ("-m", "fcm.extremes")
+EXTREMES = ("-m", "tests.extremes")
 
 
 def test_the_command(tmp_path):
     known, output = tmp_path / "passed.txt", tmp_path / "rows.json"
     known.write_text("slip-limit-met  # exactly\n", encoding="utf-8")
-    done = python(*EXTREMES, "slip-limit-met", "no-motion-at-all", "--known", known, "-o", output)
+    done = python(*EXTREMES, "slip-limit-met", "no-motion-at-all", "--known", known, "-o", output, cwd=ROOT)
     assert done.code == 0, done.err
     assert "2 of 2 pass" in done.out and "pass and are not in" in done.err
     (first, second) = json.loads(output.read_text(encoding="utf-8"))
@@ -185,6 +187,6 @@ def test_the_command(tmp_path):
 
 
 def test_a_name_that_does_not_exist():
-    done = python(*EXTREMES, "slip-limit-mett")
+    done = python(*EXTREMES, "slip-limit-mett", cwd=ROOT)
     assert done.code == 2 and 'did you mean "slip-limit-met"?' in done.err
     assert "Traceback" not in done.err

@@ -6,7 +6,8 @@ import pytest
 
 from fcm.plot.convergence import FLOOR, Balanced, Line, draw_convergence
 from fcm.plot.style import save
-from fcm.report.convergence import as_text, convergence_order
+
+from .convergence import as_text, convergence_order
 
 HARMONICS = (1, 2, 3, 5, 9, 15)
 

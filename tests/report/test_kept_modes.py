@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from fcm.report import kept_modes, plane_blade
+from . import kept_modes, plane_blade
 
 
 def test_the_blade_is_one_of_steel():

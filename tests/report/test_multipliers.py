@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from fcm.plot.multipliers import draw_multipliers
-from fcm.report.multipliers import ways_of
 
 from ..motion.cases import yang
+from .multipliers import ways_of
 
 
 @pytest.fixture(scope="module")

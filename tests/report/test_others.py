@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from fcm.report import others, published, recorded
+from . import others, published, recorded
 
 
 def made(name, peak, seconds, state="", folds=2, points=100):

@@ -15,7 +15,6 @@ import numpy as np
 from fcm.cli.messages import Messages, pass_messages
 from fcm.compare.exact import exact_lines
 from fcm.plot.convergence import Balanced, Line, draw_convergence
-from fcm.report.measured import write_measured
 from fcm.response.sweep import trace
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
@@ -23,6 +22,8 @@ from fcm.results.result import Curve
 from fcm.scene.load import load_scene
 from fcm.scene.model import Scene
 from fcm.table import Table, open_table
+
+from .measured import write_measured
 
 HARMONICS = (1, 2, 3, 5, 9, 15)
 FIRST = 2  # harmonics from which the order is taken: with one alone the error is not yet of the series

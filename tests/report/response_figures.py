@@ -11,9 +11,10 @@ import numpy as np
 import xarray
 
 from fcm.contact.limits import FloatArray
-from fcm.report.rows import Row
 from fcm.response import trace
 from fcm.scene import load_scene
+
+from .rows import Row
 
 PRELOAD = "contact.shroud.n_0"
 SEARCHED = (20.0, 120.0)  # preloads, of either sign, between which the response becomes linear

@@ -6,7 +6,7 @@ import shutil
 from pathlib import Path
 from typing import NamedTuple
 
-from fcm.report.page import Section
+from .page import Section
 
 MISSING = "not in this report: {0} makes it, and make report then takes it"
 

@@ -13,7 +13,8 @@ from fcm.contact import fourier_coefficients, normal_coefficients
 from fcm.contact.limits import FloatArray
 from fcm.contact.loop import sequences
 from fcm.contact.surface import B_RANGE, N0_RANGE, boundaries
-from fcm.report.rows import Row, near
+
+from .rows import Row, near
 
 SLIP_ENDS = (22.9, 159.7)  # [degree] printed for figure 5
 FIGURE_7 = {"SEP", "SEN", "SP", "SN", "SNEP", "SPEN", "SEPEN", "SENEP", "SPENEP", "SNEPEN"}

@@ -13,9 +13,10 @@ import click
 from fcm.cli.messages import Messages, pass_messages
 from fcm.compare.tables import Rows, every
 from fcm.files import replacing
-from fcm.report import extremes_table, others, published, recorded
-from fcm.report.made import facts
-from fcm.report.page import Page, Section, Table, render
+
+from . import extremes_table, others, published, recorded
+from .made import facts
+from .page import Page, Section, Table, render
 
 TITLE = "The evidence"
 ABOUT = (

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from fcm.extremes.row import Row
-from fcm.extremes.verdict import faults
+from .row import Row
+from .verdict import faults
 
 
 def read_known(path: Path) -> set[str]:

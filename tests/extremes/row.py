@@ -7,11 +7,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fcm.extremes.beside import Beside, beside_exact
-from fcm.extremes.conditioning import condition_number
-from fcm.extremes.residual import BALANCED, Unbalanced, unbalanced
 from fcm.response import Curve, trace
 from fcm.scene import bundled_scenes, load_scene
+
+from .beside import Beside, beside_exact
+from .conditioning import condition_number
+from .residual import BALANCED, Unbalanced, unbalanced
 
 COLLECTION = "extreme/"
 

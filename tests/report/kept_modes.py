@@ -15,10 +15,11 @@ import numpy.typing as npt
 
 from fcm.cli.messages import Messages, pass_messages
 from fcm.plot.kept_modes import Kept, draw_kept_modes
-from fcm.report.measured import write_measured
-from fcm.report.plane_blade import blade, blade_scene
 from fcm.response.sweep import trace
 from fcm.scene import scene_from_dict
+
+from .measured import write_measured
+from .plane_blade import blade, blade_scene
 
 COUNTS = (3, 5, 10, 30, 100)
 MANY = 300  # modes, with the flexibility of the rest, that errors are measured against

@@ -15,9 +15,10 @@ from __future__ import annotations
 from math import isfinite
 
 from fcm.continuation import Status
-from fcm.extremes.beside import Beside
-from fcm.extremes.residual import BALANCED
-from fcm.extremes.row import Row
+
+from .beside import Beside
+from .residual import BALANCED
+from .row import Row
 
 SAME = 1e-6  # peaks and folds by table and by closed form, relative
 TRUNCATIONS, LINEAR = 5.0, 1e-6  # of the estimated error; where the response is linear

@@ -13,10 +13,11 @@ import click
 from fcm.cli.messages import Messages, pass_messages
 from fcm.files import replacing
 from fcm.plot.style import DPI
-from fcm.report import contact_figures, response_figures
-from fcm.report.made import facts
-from fcm.report.page import Page, Section, Table, render
-from fcm.report.rows import Row
+
+from . import contact_figures, response_figures
+from .made import facts
+from .page import Page, Section, Table, render
+from .rows import Row
 
 COLUMNS = ("quantity", "paper", "obtained")
 

@@ -14,10 +14,11 @@ from fcm.harmonic.start import solutions
 from fcm.harmonic.system import System
 from fcm.orbit import periodic
 from fcm.plot.multipliers import Way, draw_multipliers
-from fcm.report.measured import write_measured
 from fcm.scene.load import load_scene
 from fcm.scene.model import Scene
 from fcm.stability.floquet import ComplexArray, multipliers
+
+from .measured import write_measured
 
 HARMONICS = (1, 3, 9)
 SPAN, POINTS = (0.70, 0.80), 81

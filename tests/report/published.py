@@ -16,12 +16,13 @@ from fcm.files import replacing
 from fcm.harmonic.mode import nonlinear_mode
 from fcm.harmonic.system import System
 from fcm.orbit.start import solution_at
-from fcm.report.page import Section, Table
-from fcm.report.rows import Row
 from fcm.response.sweep import trace
 from fcm.results.result import Curve
 from fcm.scene.load import load_scene
 from fcm.structure.diameters import nodal_diameters
+
+from .page import Section, Table
+from .rows import Row
 
 TMDSIMPY = "tmdsimpy, 2dof_eldry_fric"  # github.com/tmd-lab/tmdsimpy, 1024 samples a cycle
 NLVIB = "NLvib, beam with friction"

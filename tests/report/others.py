@@ -15,8 +15,9 @@ from fcm.cli.messages import Messages, pass_messages
 from fcm.files import replacing
 from fcm.plot.others import Points, draw_others
 from fcm.plot.style import save
-from fcm.report.measured import DPI
-from fcm.report.page import Section, Table
+
+from .measured import DPI
+from .page import Section, Table
 
 PACKAGES = {"pyharm": "pyHarm-os", "tmdsimpy": "tmdsimpy"}  # by the files of their results
 OURS = "fcm"

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 import platform
-import subprocess
 from importlib.metadata import version
 from pathlib import Path
 
 import fcm
+
+from ..program import ended
 
 _PACKAGES = ("numpy", "scipy", "matplotlib", "netCDF4", "xarray")
 
@@ -29,8 +30,8 @@ def _commit() -> str:
     folder = Path(__file__).parent
 
     def git(*args: str) -> str:
-        done = subprocess.run(["git", *args], cwd=folder, capture_output=True, text=True, check=False)
-        return done.stdout.strip() if done.returncode == 0 else ""
+        done = ended("git", *args, cwd=folder)
+        return done.out.strip() if done.code == 0 else ""
 
     try:
         commit = git("rev-parse", "--short", "HEAD")

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from fcm.cli.columns import aligned
-from fcm.extremes.row import Row
-from fcm.extremes.verdict import excess, faults
 from fcm.results.output import without_nan
+
+from .row import Row
+from .verdict import excess, faults
 
 HEADER = ["scene", "points", "time [s]", "residual", "tolerance", "table"]
 HEADER += ["exact", "estimate", "found", "condition", ""]

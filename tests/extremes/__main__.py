@@ -1,4 +1,4 @@
-"""``python -m fcm.extremes``: the stiff and extreme cases as a table; fails if one that passed does not."""
+"""``python -m tests.extremes``: the stiff and extreme cases as a table; fails if one that passed does not."""
 
 from __future__ import annotations
 
@@ -25,10 +25,11 @@ LOST = 1  # a defect of fcm
 @click.pass_context
 def main(ctx: click.Context, names: tuple[str, ...], known: Path | None, output: Path | None) -> None:
     """Measure the scenes of the catalogue, all of them by default, and print them as a table."""
-    from fcm.extremes import catalogue, measured
-    from fcm.extremes.known import changes, read_known
-    from fcm.extremes.show import as_data, as_text
     from fcm.scene.errors import choices, suggestion
+
+    from .known import changes, read_known
+    from .row import catalogue, measured
+    from .show import as_data, as_text
 
     everything = catalogue()
     for name in names:
@@ -54,4 +55,4 @@ def main(ctx: click.Context, names: tuple[str, ...], known: Path | None, output:
 
 
 if __name__ == "__main__":
-    main(prog_name="python -m fcm.extremes")
+    main(prog_name="python -m tests.extremes")

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from fcm.cli.columns import short
-from fcm.report.page import Section, Table
+
+from .page import Section, Table
 
 COLUMNS = ("scene", "points", "time [s]", "residual", "table", "exact", "estimate", "condition", "outcome")
 ABOUT = (

@@ -1,1 +1,0 @@
-"""Pages that show results beside what was expected of them, from result files by ``make``; a measurement."""
