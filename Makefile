@@ -50,7 +50,7 @@ demo: $(VENV)/installed  ## figure 13 of the paper: its response curves and thei
 	$(BIN)/fcm plot response $(DEMO)/yang1998.nc -o $(DEMO)/figure13.png
 
 picture: demo  ## the same, and its picture as the one of README.md
-	cp $(DEMO)/figure13.png .github/figure13.png
+	cp $(DEMO)/figure13.png .github/guide/figures/figure13.png
 
 paper: $(PAPER)/index.html  ## the figures of the paper on a page, build/paper/index.html, with its numbers and ours
 
@@ -198,10 +198,10 @@ $(REPORT)/index.html: $(COMPARED:%=$(REPORT)/%.png) $(wildcard tests/report/*.py
 	$(BIN)/python -m tests.report evidence $(REPORT) $(COMPARED:%=--scene %) --results build
 
 fold-curves: $(VENV)/installed  ## curves of folds of an impact oscillator, the picture of the guide
-	$(BIN)/python -m tests.branches.fold_picture .github/fold-curves.png
+	$(BIN)/python -m tests.branches.fold_picture .github/guide/figures/fold-curves.png
 
 convergence: build/convergence.txt  ## error against run time with 1 to 15 harmonics, as the picture of README.md
-	cp build/convergence.png .github/convergence.png
+	cp build/convergence.png .github/guide/figures/convergence.png
 	@cat $<
 
 build/convergence.txt: tests/report/convergence.py src/fcm/plot/convergence.py $(SIMULATION) $(VENV)/installed
@@ -209,7 +209,7 @@ build/convergence.txt: tests/report/convergence.py src/fcm/plot/convergence.py $
 	$(BIN)/python -m tests.report convergence build/convergence.json --picture build/convergence.png > $@
 
 multipliers: build/multipliers.json  ## Floquet multipliers, balanced and exact, as the picture of the guide's page of stability
-	cp build/multipliers.png .github/multipliers.png
+	cp build/multipliers.png .github/guide/figures/multipliers.png
 
 build/multipliers.json: tests/report/multipliers.py src/fcm/plot/multipliers.py $(SIMULATION) $(VENV)/installed
 	@mkdir -p build

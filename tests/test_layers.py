@@ -10,9 +10,8 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 SOURCES = ROOT / "src/fcm"
-TABLE = re.search(
-    r"^\| package \|.*?\n\n", (ROOT / ".github/guide/work.md").read_text(encoding="utf-8"), re.M | re.S
-)[0]
+SOURCE_PAGE = (ROOT / ".github/guide/reference/source.md").read_text(encoding="utf-8")
+TABLE = re.search(r"^\| package \|.*?\n\n", SOURCE_PAGE, re.M | re.S)[0]
 PACKAGES = [name for row in re.findall(r"^\| (`.*?) \|", TABLE, re.M) for name in re.findall(r"`(\w+)`", row)]
 NUMERICS = (
     "contact",

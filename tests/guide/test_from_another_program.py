@@ -9,11 +9,11 @@ import netCDF4
 import numpy as np
 import pytest
 
-from .program import ended, shell
-from .scene.test_matrix_formats import ABAQUS_K, ABAQUS_M, BEAM, BOEING, PUNCH, ROWS
+from ..program import ended, shell
+from ..scene.test_matrix_formats import ABAQUS_K, ABAQUS_M, BEAM, BOEING, PUNCH, ROWS
 
-ROOT = Path(__file__).parents[1]
-PAGE = (ROOT / ".github/guide/howto.md").read_text("utf-8")
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / ".github/guide/howto/from-another-program.md").read_text("utf-8")
 MAPPING = "Matrix Eqn    Node    DOF\n 1 7 UX\n 2 7 UY\n 3 9 UX\n 4 9 ROTZ\n"
 MASSES = """Masses                                                                  M
              3             1             1             1             0
@@ -44,7 +44,7 @@ def files_of(title, folder):
             for ending in ("sti", "mas", "dof"):
                 shutil.copy(BEAM / f"beam.{ending}", folder)
     elif title == "From modes of a test":
-        shutil.copy(Path(__file__).parent / "scene/two_modes.uff", folder / "test.uff")
+        shutil.copy(ROOT / "tests/scene/two_modes.uff", folder / "test.uff")
     else:
         texts = {
             "From Abaqus": {"job_STIF2.mtx": ABAQUS_K, "job_MASS2.mtx": ABAQUS_M},

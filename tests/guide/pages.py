@@ -1,0 +1,132 @@
+"""The pages as their tests read them: fenced blocks, files, commands, headings, sentences.
+
+A block after a paragraph that ends with "as `NAME`:" is a file. Commands stand in blocks of sh. A block of
+text after one shows what its last command prints first, with a line `...` for lines that are left out.
+
+usage: python -m tests.guide.pages, which prints the median and the longest sentence and paragraph of each
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import median
+
+ROOT = Path(__file__).parents[2]
+README = ROOT / "README.md"
+GUIDE = ROOT / ".github/guide"
+PAGES = [README, *sorted(GUIDE.rglob("*.md"))]
+LONGEST_SENTENCE, LONGEST_PARAGRAPH = 25, 100  # words
+
+FENCED = re.compile(r"^( *)```(\w*)\n(.*?)^\1```$", re.M | re.S)
+NAMED = re.compile(r"as `([\w.-]+)`:\s*\Z")
+
+
+def name_of(page: Path) -> str:
+    return str(page.relative_to(ROOT))
+
+
+def read(page: Path) -> str:
+    return page.read_text(encoding="utf-8")
+
+
+@dataclass(frozen=True)
+class Block:
+    """A fenced block: its kind, its text, and the name of the file that it is, if it is one."""
+
+    kind: str
+    text: str
+    file: str = ""
+
+
+def blocks(page: Path) -> list[Block]:
+    """The fenced blocks of a page, in their order."""
+    text = read(page)
+    found = []
+    for match in FENCED.finditer(text):
+        named = NAMED.search(text[: match.start()])
+        found.append(Block(match[2], match[3], named[1] if named else ""))
+    return found
+
+
+def files(page: Path) -> dict[str, str]:
+    """The files that a reader of the page saves."""
+    return {block.file: block.text for block in blocks(page) if block.file}
+
+
+def commands(page: Path) -> list[tuple[str, str | None]]:
+    """Each command of a page, with the output that is shown of it."""
+    found: list[tuple[str, str | None]] = []
+    for block in blocks(page):
+        if block.kind == "sh":
+            lines = re.sub(r"\\\n\s*", "", block.text).splitlines()
+            found += [(line, None) for line in lines if line and not line.startswith("#")]
+        elif block.kind == "text" and not block.file and found:
+            found[-1] = (found[-1][0], block.text)
+    return found
+
+
+def anchors(page: Path) -> set[str]:
+    """What a link to a heading of the page may name."""
+    text = FENCED.sub("", read(page))
+    return {
+        re.sub(r"[^\w -]", "", title).strip().lower().replace(" ", "-")
+        for title in re.findall(r"^#+ (.*)$", text, re.M)
+    }
+
+
+def links(page: Path) -> list[tuple[str, str]]:
+    """The file and the heading of each link or picture; those of other sites are left out."""
+    found = re.findall(r"\]\(([^)#\s]*)(?:#([^)]*))?\)", FENCED.sub("", read(page)))
+    return [(file, heading) for file, heading in found if not file.startswith("http")]
+
+
+def prose(page: Path) -> list[str]:
+    """The paragraphs and list items of a page, and the cells of its tables; no code, equations or headings.
+
+    A formula, a piece of code or a link counts as a word.
+    """
+    text = FENCED.sub("\n\n", read(page))
+    text = re.sub(r"^\$\$.*?\$\$$", "\n\n", text, flags=re.M | re.S)
+    text = re.sub(r"^(?:    |\t).*$", "", text, flags=re.M)  # code by indentation
+    text = re.sub(r"\$[^$\n]+\$|`[^`\n]+`", "X", text)
+    text = re.sub(r"!?\[([^]]*)\]\([^)]*\)", r"\1", text)
+    found = []
+    for part in re.split(r"\n\s*\n|\n(?=\s*(?:[-*]|\d+\.) )|\n(?=\|)", text):
+        line = part.strip()
+        if line.startswith("|"):
+            found += [cell.strip() for cell in line.strip("|").split("|")]
+        elif line and not line.startswith("#"):
+            found.append(re.sub(r"^(?:[-*]|\d+\.) ", "", line))
+    return [one for one in found if re.search(r"\w", one)]
+
+
+def sentences(paragraph: str) -> list[str]:
+    """Its sentences; a source that is cited is none, as a title may be of any length."""
+    return [one for one in re.split(r"(?<=[.!?])\s+(?=[A-Z0-9*(])", paragraph) if re.search(r"\w", one)]
+
+
+def words(text: str) -> int:
+    return len(re.findall(r"[^\s–—·|]*\w[^\s–—·|]*", text))
+
+
+def measured(page: Path) -> tuple[list[int], list[int]]:
+    """Words of each sentence and of each paragraph of a page."""
+    cited = re.split(r"^## Sources$", read(page), maxsplit=1, flags=re.M)[1:]
+    of_sources = {re.sub(r"^- ", "", one) for part in cited for one in re.split(r"\n(?=- )", part)}
+    texts = [one for one in prose(page) if not any(one[:40] in source for source in of_sources)]
+    return [words(one) for text in texts for one in sentences(text)], [words(text) for text in texts]
+
+
+def main() -> None:
+    for page in PAGES:
+        of_sentences, of_paragraphs = measured(page)
+        print(
+            f"{name_of(page):55} sentences: median {median(of_sentences):4.1f}, longest {max(of_sentences):3}"
+            f"   paragraphs: median {median(of_paragraphs):4.1f}, longest {max(of_paragraphs):3}"
+        )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,52 @@
+"""The pages are whole: what they name exists, and they can be read."""
+
+import re
+
+import pytest
+
+from .pages import GUIDE, PAGES, README, ROOT, anchors, links, name_of, read
+
+OTHERS = [ROOT / ".github/CHANGELOG.md", ROOT / ".github/CONTRIBUTING.md"]
+KINDS = ("tutorials", "howto", "theory", "reference", "validation")
+
+
+@pytest.mark.parametrize("page", [*PAGES, *OTHERS], ids=name_of)
+def test_files_and_headings_that_a_page_links_to_exist(page):
+    for file, heading in links(page):
+        target = page.parent / file if file else page
+        assert target.is_file() or (target / "README.md").is_file(), file
+        assert not heading or heading in anchors(target), f"{file}#{heading}"
+
+
+def test_every_page_is_of_a_kind_and_in_the_index():
+    index = GUIDE / "README.md"
+    listed = {(GUIDE / file).resolve() for file, _ in links(index)}
+    others = [page for page in PAGES if page not in (README, index)]
+    assert {page.parent.name for page in others} <= {*KINDS, "guide"}
+    assert not [name_of(page) for page in others if page.resolve() not in listed]
+    assert (".github/guide/README.md", "") in links(README)
+
+
+def test_every_picture_is_shown():
+    shown = {(page.parent / file).resolve() for page in PAGES for file, _ in links(page)}
+    assert not [path.name for path in (GUIDE / "figures").iterdir() if path.resolve() not in shown]
+
+
+def test_modules_and_programs_that_a_page_names_exist():
+    text = "\n".join(read(page) for page in [*PAGES, *OTHERS])
+    modules = {name for name in re.findall(r"`([a-z_]+/[a-z_/]+)`", text) if not name.startswith("build/")}
+    assert len(modules) > 20
+    assert not [
+        name
+        for name in modules
+        if not (ROOT / "src/fcm" / f"{name}.py").is_file()
+        and not any((root / name).is_dir() for root in (ROOT / "src/fcm", ROOT))
+    ]
+    programs = re.findall(r"\b(?:tests|src)/[\w/]+\.py", text.replace("NAME", "__init__"))
+    programs += [name.replace(".", "/") + ".py" for name in re.findall(r"-m (tests\.[\w.]*\w)", text)]
+    assert programs and all((ROOT / name).is_file() for name in programs)
+
+
+def test_bundled_scenes_are_named():
+    text = "\n".join(map(read, PAGES))
+    assert all(f"`{path.stem}`" in text for path in (ROOT / "src/fcm/scenes").glob("*.toml"))
