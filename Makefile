@@ -38,7 +38,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help design fuzz kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence fold-curves multipliers kept-modes demo picture paper figures test check tables \
+.PHONY: help docs design fuzz kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence fold-curves multipliers kept-modes demo picture paper figures test check tables \
 	clean bench study
 
 help:  ## this list
@@ -230,6 +230,9 @@ $(REPORT)/%.png: $(REPORT)/%.nc src/fcm/plot/accuracy.py src/fcm/plot/style.py
 $(REPORT)/%.nc: src/fcm/scenes/%.toml $(SIMULATION) $(wildcard src/fcm/compare/*.py) tables/fast.nc $(VENV)/installed
 	@mkdir -p $(@D)
 	$(BIN)/fcm respond $* --compare --json -o $@ > $(@:.nc=.json)
+
+docs: $(VENV)/installed-dev  ## the guide as a site that can be searched, in build/docs: to be served, as by python3 -m http.server -d build/docs
+	$(BIN)/python -m mkdocs build --quiet --config-file .github/mkdocs.yml
 
 dist: $(VENV)/installed-dev  ## the source distribution and from it the wheel, in build/dist
 	rm -rf build/dist
