@@ -38,7 +38,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help docs design fuzz kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence fold-curves multipliers kept-modes demo picture paper figures test check tables \
+.PHONY: help docs design fuzz kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence fold-curves multipliers kept-modes demo picture paper figures test test-all check tables \
 	clean bench study
 
 help:  ## this list
@@ -122,7 +122,10 @@ $(PAPER)/figure15.nc: src/fcm/scenes/yang1998-jump.toml $(SIMULATION) $(VENV)/in
 $(PAPER)/figure15.png: $(PAPER)/figure15.nc $(HISTORIES)
 	$(call fcm,plot history $< -o $@)
 
-test: check  ## format, lint, types, then all tests
+test: check  ## format, lint, types, then the tests that are not marked as slow
+	$(BIN)/python -m pytest -n 2 --dist worksteal -m "not slow"
+
+test-all: check  ## the same with all tests
 	$(BIN)/python -m pytest -n 2 --dist worksteal
 
 check: $(VENV)/installed-dev  ## format, lint and types only

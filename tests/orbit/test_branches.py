@@ -128,6 +128,7 @@ def test_a_closed_branch_is_found_that_the_balance_has_at_the_end_of_the_range()
     assert max(one[0] for one in there) == pytest.approx(0.4170, rel=1e-2)
 
 
+@pytest.mark.slow
 def test_closed_branches_that_neither_the_ends_nor_the_resonances_of_the_range_lead_to_are_found():
     """The motions of simulations from states near two of them stay on them."""
     scene = fcm.load_scene(SCENES / "closed_inside.toml")
@@ -147,6 +148,7 @@ def test_closed_branches_that_neither_the_ends_nor_the_resonances_of_the_range_l
         assert np.abs(there / amplitude - 1.0).max(axis=1).min() < 3e-3
 
 
+@pytest.mark.slow
 def test_a_branch_is_found_that_only_the_converged_balance_has():
     """Marched independently: a peaks at 23.4 near 1.5795 rad/s. At the ends of the range, and with one
     harmonic all over it, the contacts stick, and the greatest is 0.058."""
@@ -156,6 +158,7 @@ def test_a_branch_is_found_that_only_the_converged_balance_has():
     assert curve.peaks["a"].frequency == pytest.approx(1.5795, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_a_curve_is_not_complete_while_the_balance_has_a_stable_branch_that_it_has_not(monkeypatch):
     """Where shooting leads to none of its motions, nor does the level of the forces."""
     scene = fcm.load_scene(SCENES / "stuck_at_the_ends.toml")
@@ -165,6 +168,7 @@ def test_a_curve_is_not_complete_while_the_balance_has_a_stable_branch_that_it_h
     assert paths and "a stable branch of the balance at 1.5794" in missed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "dof", "amplitude", "frequency"),
     [("closed_impact", "y", 6.9203, 1.772), ("equal_stops", "x1", 0.31653, 1.7695)],
@@ -310,6 +314,7 @@ def test_a_limit_of_time_is_said():
     assert not curve.complete and curve.reason.startswith("not finished in 1e-09 s of processor time, at ")
 
 
+@pytest.mark.slow
 def test_of_a_contact_too_stiff_to_follow_it_is_said_what_would_do(monkeypatch):
     """Without a limit of one's own, too; with what is said the curve is there, and nothing is said of it."""
     bundled = fcm.load_scene("den-hartog").each_curve()[0]
@@ -361,6 +366,7 @@ def test_peaks_and_folds_alone_are_those_of_the_curve(n_0):
             assert last.amplitude == pytest.approx(jump.after, rel=1e-2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", range(3))
 def test_of_peaks_alone_no_balance_is_followed_that_takes_longer_than_the_curve(monkeypatch, number):
     """Dry friction takes six harmonics and more to 1e-2; a solution with these costs more than a motion."""
@@ -380,6 +386,7 @@ def test_of_peaks_alone_no_balance_is_followed_that_takes_longer_than_the_curve(
         assert alone.peaks[dof][1] == pytest.approx(omega, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_jumps_that_the_balance_does_not_have_at_folds_are_found_with_peaks_alone():
     """Simulated beyond the one fold the motion comes to where it jumps; elsewhere its multipliers pass 1."""
     scene = fcm.load_scene(Path(__file__).parent / "scenes/lost_stability.toml")
@@ -464,6 +471,7 @@ def test_a_force_elsewhere_has_no_range_to_be_without():
     assert not curve.amplitude[np.isfinite(curve.frequency)].any()
 
 
+@pytest.mark.slow
 def test_peaks_of_a_curve_that_was_followed_are_located_once(monkeypatch):
     """Where its stability is lost is sought as often as for the whole curve."""
     scene, times = between(fcm.load_scene(SCENES / "two_periods.toml"), 2.01, 2.05), []

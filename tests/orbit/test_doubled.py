@@ -41,6 +41,7 @@ def cascade():
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("level", [1, 2])
 def test_marched_they_repeat_after_so_many_periods_and_not_before(cascade, level):
     problem, (points,) = cascade[level]
@@ -85,6 +86,7 @@ def test_the_derivative_by_the_frequency_is_that_of_all_periods(cascade):
     assert rate == pytest.approx((ends[0] - ends[1]) / (2.0 * step), rel=1e-4, abs=1e-5)
 
 
+@pytest.mark.slow
 def test_the_program_follows_them_where_it_is_asked_to(tmp_path):
     scene = tmp_path / "scene.toml"
     text = (SCENES / "two_periods.toml").read_text()

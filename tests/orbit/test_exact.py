@@ -187,6 +187,7 @@ def test_an_interrupted_sweep_goes_on(tmp_path):
         np.testing.assert_array_equal(one.amplitude, other.amplitude)
 
 
+@pytest.mark.slow
 def test_cores_give_the_same():
     curves = tuple(replace(one_mode(n_0=n), parameters={"n_0": n}) for n in (0.5, 2.0))
     scene = replace(curves[0], curves=curves)

@@ -60,6 +60,7 @@ def responses(scene):
     return trace_exact(scene), trace_exact(scene, tolerance=None)
 
 
+@pytest.mark.slow
 def test_contacts_that_keep_their_state_are_left_out_and_told(responses):
     light, whole = responses
     assert len(light.left_out) == 2
@@ -85,6 +86,7 @@ def test_the_curve_is_that_with_all_contacts(responses):
         assert light.cycle[end] == pytest.approx(whole.cycle[end], rel=1e-6, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_of_a_sweep_it_is_told_in_how_many_curves(scene):
     """The load of the second contact: it sticks in one of the two, and slips in the other."""
     weak = replace(
@@ -120,6 +122,7 @@ def test_what_a_contact_keeps_is_that_of_its_motion(scene, lightened):
     assert first.kept == pytest.approx(expected, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_beside_points_that_are_not_kept_no_other_motions_are_sought(scene, monkeypatch):
     """They are the waste of a curve that is followed again: here it is seen of its points alone."""
     w, sought = held.resting(scene), []

@@ -106,6 +106,7 @@ def test_of_a_run_that_goes_on_and_is_stopped_at_once_there_is_all_that_was(scen
     np.testing.assert_array_equal(again.amplitude, first.amplitude)
 
 
+@pytest.mark.slow
 def test_so_there_is_of_motions_of_two_periods(monkeypatch, tmp_path):
     scene = between(fcm.load_scene(SCENES / "irregular.toml"), 1.2, 1.25)
     begins, begun = Doubled.begins, []

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from fcm.continuation import FollowOptions, Mark, Segment, follow
 from fcm.orbit import periodic
@@ -20,6 +21,7 @@ def amplitudes(problem, z, direction):
     return np.array(problem.output)
 
 
+@pytest.mark.slow
 def test_the_greatest_amplitudes_are_found_and_few_others():
     """No place midway between two points exceeds them; most peaks exceed all points before them."""
     scene = replace(light(), frequency_range=(LOW, HIGH))

@@ -91,6 +91,7 @@ def test_an_irregular_motion_has_an_extent():
     assert (amplitude.min(axis=0) > 0.5 * found.least).all()
 
 
+@pytest.mark.slow
 def test_an_irregular_motion_that_lingers_has_an_extent():
     """Each start leads elsewhere; some of them to where hardly anything changes for hundreds of periods."""
     rest = State.rest(IRREGULAR)
@@ -114,6 +115,7 @@ def test_a_transient_is_no_steady_motion():
     assert isinstance(steady(System(scene, 1.0), State.rest(scene)), State)
 
 
+@pytest.mark.slow
 def test_curves_say_after_how_many_periods_a_point_repeats():
     (curve,) = trace_exact(TWO, [2.0, 2.031]).curves
     at = dict(zip(curve.frequency.round(6), curve.orbits.repeats, strict=True))

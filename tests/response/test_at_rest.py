@@ -72,6 +72,7 @@ ANALYSES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("options", ANALYSES.values(), ids=ANALYSES)
 @pytest.mark.parametrize("name", SCENES)
 def test_no_result_is_rounding(fcm, tmp_path, name, options):

@@ -9,6 +9,7 @@ from fcm.scene import load_scene
 from .random_scenes import AGREE, outcome
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("seed", "gap"), [(86, 1.2e-3), (182, 3e-5)])
 def test_a_pair_of_folds_shorter_than_the_longest_step(seed, gap):
     # the pairs begin where a contact stops or begins to slip: a step of 0.1 went past them
