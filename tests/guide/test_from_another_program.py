@@ -1,5 +1,6 @@
 """The how-tos of the guide, each from an empty folder: its scene, and the commands that are typed."""
 
+import csv
 import json
 import re
 import shutil
@@ -55,7 +56,7 @@ def files_of(title, folder):
             (folder / name).write_text(text)
 
 
-@pytest.mark.parametrize("title", re.findall(r"^## (.*)$", PAGE, re.M))
+@pytest.mark.parametrize("title", re.findall(r"^## (From .*)$", PAGE, re.M))
 def test_from_an_empty_folder_to_a_curve(tmp_path, title):
     scene, _, commands = parts(title)
     files_of(title, tmp_path)
@@ -71,6 +72,26 @@ def test_from_an_empty_folder_to_a_curve(tmp_path, title):
     with netCDF4.Dataset(tmp_path / "curve.nc") as data:
         assert data["complete"][0] == 1 and np.nanmax(data["dissipated_energy"][0]) > 0.0
     assert (tmp_path / "curve.png").stat().st_size > 10_000
+
+
+def test_back_to_the_mesh(tmp_path):
+    scene, _, _ = parts("From CalculiX")
+    files_of("From CalculiX", tmp_path)
+    (tmp_path / "model.toml").write_text(scene)
+    section = PAGE.split("## Back to the mesh\n")[1]
+    commands = re.findall(r"^    (fcm .*)$", section, re.M)
+    assert len(commands) == 3
+    for command in commands:
+        done = shell(command, tmp_path)
+        assert done.code == 0, f"{command}\n{done.out}{done.err}"
+    with (tmp_path / "forces.csv").open() as file:
+        rows = [row for row in csv.DictReader(file) if row["force"] == "friction" and row["harmonic"] == "1"]
+    shown = re.search(r"force of ([\d.]+) − ([\d.]+) i along", section)
+    assert float(shown[1]) == pytest.approx(float(rows[0]["real"]), abs=0.006)
+    assert -float(shown[2]) == pytest.approx(float(rows[0]["imag"]), abs=0.006)
+    loads = [float(word) for word in re.findall(r"^    16, 2, ([\d.]+)$", section, re.M)]
+    assert loads == [pytest.approx(40.0 - float(shown[1])), float(shown[2])]
+    assert all((tmp_path / f"peak.{ending}").is_file() for ending in ("vtu", "uff", "h5"))
 
 
 def test_the_step_of_calculix_is_that_of_the_input():

@@ -27,6 +27,7 @@ _EXIT_CODES = (
     ("fcm.table", "TableError", WRONG_INPUT),
     ("fcm.plot.errors", "PlotError", WRONG_INPUT),
     ("fcm.response", "ResponseError", WRONG_INPUT),
+    ("fcm.export.rows", "ExportError", WRONG_INPUT),
     ("fcm.run", "CheckpointError", WRONG_INPUT),
     ("fcm.run.cluster", "ClusterError", WRONG_INPUT),
     ("fcm.run", "Gone", NOT_COMPLETED),

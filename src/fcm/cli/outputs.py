@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,12 +23,18 @@ if TYPE_CHECKING:
 
 
 class Outputs:
-    """What one run writes: netCDF, CSV of the curves, CSV of the motion, a summary."""
+    """What one run writes: netCDF, CSV of the curves, CSV of the motion, what is exported, a summary."""
 
     def __init__(
-        self, messages: Messages, output: Path | None, csv: Path | None, history_csv: Path | None
+        self,
+        messages: Messages,
+        output: Path | None,
+        csv: Path | None,
+        history_csv: Path | None,
+        exported: Sequence[tuple[Path, Callable[[Response, Path], None]]] = (),
     ) -> None:
         self.messages, self.output, self.csv, self.history_csv = messages, output, csv, history_csv
+        self.exported = exported
         self.checkpoint: Checkpoint | None = None
         self.written = False  # whether there is a file of this run
 
@@ -36,6 +42,7 @@ class Outputs:
     def kept(self, resume: bool) -> Iterator[Checkpoint | None]:
         """What is finished is kept beside the first of the files as long as they are not written."""
         files = [path for path in (self.output, self.csv, self.history_csv) if path is not None]
+        files += [path for path, _ in self.exported]
         if not files:
             yield None
             return
@@ -88,7 +95,7 @@ class Outputs:
             (self.csv, table),
             (self.history_csv, schedule.write_csv),
         )
-        return [(path, write) for path, write in files if path is not None]
+        return [*((path, write) for path, write in files if path is not None), *self.exported]
 
     def _write(self, response: Response, path: Path, write: Callable[[Response, Path], None]) -> None:
         """Write a file; a part does not take the place of what an earlier run has finished, nor of more."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from fcm.cli import balance, cluster, exact, fit, nonlinear_mode, schedule, sensitivity, track
+from fcm.cli import balance, cluster, exact, export, fit, nonlinear_mode, schedule, sensitivity, track
 from fcm.cli.calculation import calculated
 from fcm.cli.files import alone, check_different, check_not_read
 from fcm.cli.messages import Messages, pass_messages
@@ -46,15 +46,18 @@ def respond(messages: Messages, /, scene: str, **options: Any) -> None:
     _check_options(asked)
     from fcm.response.visible import visible
 
-    loaded = _loaded(messages, scene, asked)
-    check_not_read(_files(asked), [*loaded.files, asked.table])
+    loaded, exporting = _loaded(messages, scene, asked)
+    check_not_read(_files(asked), [*loaded.files, asked.table, asked.mesh])
     _check_scene(loaded, asked)
     announce(messages, loaded, asked)
     check_room(messages, loaded, asked)
-    outputs = Outputs(messages, asked.output, asked.csv, asked.history_csv)
+    exported = [] if exporting is None else exporting.files
+    outputs = Outputs(messages, asked.output, asked.csv, asked.history_csv, exported)
     with outputs.kept(asked.resume) as keep, cluster.place_of(asked.cluster) as place:
         with TimeLimit(messages, asked.time_limit):
             response = calculated(messages, loaded, asked, place, keep)
+            if exporting is not None:
+                exporting.take(response, loaded)
         response = visible(response, loaded)
         result = outputs.write(response, asked.to_json)
     close(messages, result, response.defects, outputs.written)
@@ -64,7 +67,7 @@ def _compare(messages: Messages, scene: str, asked: Asked) -> None:
     from fcm.cli.compare import refuse_other_options, write_comparison
 
     refuse_other_options()
-    loaded = _loaded(messages, scene, asked)
+    loaded, _ = _loaded(messages, scene, asked)
     check_not_read({"-o": asked.output}, [*loaded.files, asked.table])
     with alone([asked.output]):
         write_comparison(messages, loaded, asked.table, asked.tolerance, asked.output, asked.to_json)
@@ -84,6 +87,7 @@ def _check_options(asked: Asked) -> None:
     if asked.table is not None and method != "table":
         raise click.UsageError("--table is of no use with --method closed-form.")
     sensitivity.check_options(asked.sensitivity, method, level, mode, asked.peaks_only)
+    export.check_options(asked)
     files = _files(asked)
     if asked.resume and not any(files.values()):
         raise click.UsageError("--resume needs the -o FILE of the sweep that was interrupted.")
@@ -92,7 +96,13 @@ def _check_options(asked: Asked) -> None:
 
 def _files(asked: Asked) -> dict[str, Path | None]:
     """The files to write, by their options."""
-    return {"-o": asked.output, "--csv": asked.csv, "--history-csv": asked.history_csv}
+    return {
+        "-o": asked.output,
+        "--csv": asked.csv,
+        "--history-csv": asked.history_csv,
+        "--export": asked.export,
+        "--contact-forces": asked.contact_forces,
+    }
 
 
 def _check_left_out(asked: Asked) -> None:
@@ -101,16 +111,19 @@ def _check_left_out(asked: Asked) -> None:
         raise click.UsageError("--leave-out-tolerance is of no use with --keep-all: nothing is left out.")
 
 
-def _loaded(messages: Messages, name: str, asked: Asked) -> Scene:
+def _loaded(messages: Messages, name: str, asked: Asked) -> tuple[Scene, export.Exporting | None]:
+    """The scene at the degrees of freedom in use, and what is to be exported of it."""
     from fcm.response.visible import check_solvable
     from fcm.scene import load_scene
 
-    scene = load_scene(name, largest_file=asked.largest_file).in_use()
+    whole = load_scene(name, largest_file=asked.largest_file, every_row=asked.export is not None)
+    exporting = export.exporting(messages, whole, asked)
+    scene = whole.in_use()
     check_solvable(scene)
     for note in scene.notes:
         messages.info(note)
     schedule.check_options(scene, asked.history_csv)
-    return scene if asked.max_step is None else _with_step(scene, asked.max_step)
+    return (scene if asked.max_step is None else _with_step(scene, asked.max_step)), exporting
 
 
 def _with_step(scene: Scene, max_step: float) -> Scene:

@@ -11,6 +11,7 @@ import click
 
 from fcm.cli import balance, exact
 from fcm.cli.about_scenes import about_scenes
+from fcm.cli.export import export_options
 from fcm.cli.files import largest_file_option, output_option
 from fcm.cli.options import FiniteRange
 from fcm.cli.time_limit import seconds
@@ -31,6 +32,7 @@ OPTIONS: list[Callable[[Any], Any]] = [  # in the order of the help
     output_option("-o", "--output", endings=(".nc",), help="Write the curves, and the motion, as netCDF."),
     output_option("--csv", endings=(".csv",), help="Write the curves as CSV; without any, the motion."),
     output_option("--history-csv", endings=(".csv",), help="Write the motion of the schedule as CSV."),
+    export_options,
     click.option("--json", "to_json", is_flag=True, help="Print the summary as JSON instead of a table."),
     click.option(
         "--method", type=click.Choice(["table", "closed-form", "exact"]), default="table", show_default=True,
@@ -133,6 +135,11 @@ class Asked:
     output: Path | None
     csv: Path | None
     history_csv: Path | None
+    export: Path | None
+    mesh: Path | None
+    contact_forces: Path | None
+    modal_amplitudes: bool
+    motion_at: tuple[float, ...]
     to_json: bool
     method: str
     harmonics: tuple[int, ...] | None

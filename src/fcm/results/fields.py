@@ -82,6 +82,10 @@ def fields_of(response: Response) -> dict[str, Field]:
         from fcm.results.fitted_fields import fitted_fields
 
         out |= fitted_fields(response, response.fitted)
+    if response.motions is not None:
+        from fcm.results.motions import motion_fields
+
+        out |= motion_fields(response.motions, response.frequency_unit)
     if response.histories is not None:
         from fcm.motion import output
 

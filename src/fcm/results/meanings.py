@@ -80,5 +80,6 @@ LENGTHS = (
 FORCES = (
     "spring_force", "greatest_normal_force", "greatest_friction_force", "peak_greatest_normal_force",
     "peak_greatest_friction_force", "friction_x", "friction_y", "contact_n_0",
+    "contact_force_mean", "contact_force_amplitude",
 )  # fmt: skip
 ENERGIES = ("dissipated_energy", "peak_dissipated_energy")

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from fcm.harmonic.sensitivity import Sensitivities
     from fcm.motion.histories import Histories
     from fcm.results.fitted import Fitted
+    from fcm.results.motions import Motions
     from fcm.results.nonlinear_mode import NonlinearMode
     from fcm.results.orbits import Orbits
     from fcm.results.tracked import Tracking
@@ -151,6 +152,7 @@ class Response:
     directions: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of contacts that slide in a plane
     tracking: Tracking | None = None  # special points followed in a number of the scene, and optima
     fitted: Fitted | None = None  # numbers fitted to measured data
+    motions: Motions | None = None  # at peaks or chosen frequencies, with contact forces and modes
 
     @staticmethod
     def of(scene: Scene, curves: list[Curve], method: str) -> Response:

@@ -76,10 +76,11 @@ def _bundled() -> Path:
     return Path(str(files("fcm") / "scenes"))
 
 
-def load_scene(path_or_name: str | Path, *, largest_file: int = LARGEST) -> Scene:
+def load_scene(path_or_name: str | Path, *, largest_file: int = LARGEST, every_row: bool = False) -> Scene:
     """The scene of a TOML file, or of a bundled name; SceneError names every mistake.
 
-    A file of modes or matrices beside it may have `largest_file` bytes when it is unpacked.
+    A file of modes or matrices beside it may have `largest_file` bytes when it is unpacked. Of matrices the
+    scene has the rows that something is attached to or that are reported, or `every_row`.
 
     >>> scene = load_scene("yang1998")
     >>> scene.modal.dofs, scene.contacts[0].mu, len(scene.curves)
@@ -90,7 +91,11 @@ def load_scene(path_or_name: str | Path, *, largest_file: int = LARGEST) -> Scen
     bundled = str(path_or_name) in bundled_scenes()
     path = _bundled() / f"{path_or_name}.toml" if bundled else _there(path_or_name)
     scene = scene_from_dict(
-        read_toml(path, str(path_or_name)), str(path_or_name), path.parent, largest_file=largest_file
+        read_toml(path, str(path_or_name)),
+        str(path_or_name),
+        path.parent,
+        largest_file=largest_file,
+        every_row=every_row,
     )
     return replace(scene, files=(path, *scene.files))
 
@@ -101,8 +106,11 @@ def scene_from_dict(
     folder: str | Path = ".",
     *,
     largest_file: int = LARGEST,
+    every_row: bool = False,
 ) -> Scene:
     """The scene of a dict with a file's keys; a file of modes is looked for in the folder.
+
+    Arguments are those of `load_scene`.
 
     >>> modal = {"dofs": ["u"], "frequency": [1.0], "damping": 0.01, "shapes": [[1.0]]}
     >>> force = [{"dof": "u", "amplitude": 1.0}]
@@ -117,21 +125,21 @@ def scene_from_dict(
         mistakes.raise_if_any()
     top.only(*names(""))
     beside = Files(Path(folder), largest_file)
-    fields = _read(top, beside)
+    fields = _read(top, beside, every_row)
     mistakes.raise_if_any()
     scene = replace(_made(name, fields), files=tuple(dict.fromkeys(beside.read)))
     _check_curves(scene, mistakes)
     return scene
 
 
-def _read(top: Section, files: Files) -> dict[str, Any]:
+def _read(top: Section, files: Files, every_row: bool) -> dict[str, Any]:
     """The fields of a scene that are read from its keys, the draft of the others among them."""
     unit = _unit(top)
     response = response_table(top)
     ends, step = read_response(top, response, unit)
     harmonics, accuracy = read_harmonics(response)
     schedule = read_schedule(top, unit)
-    parts, reported, notes = _parts(top, files, unit, response, with_schedule(ends, schedule))
+    parts, reported, notes = _parts(top, files, unit, response, with_schedule(ends, schedule), every_row)
     if schedule and any("second" in one for one in parts["contact"]):
         top.wrong("schedule", NOT_IN_PLANE)
     start = read_start(top, parts)
@@ -186,7 +194,12 @@ def _made(name: str, fields: dict[str, Any]) -> Scene:
 
 
 def _parts(
-    top: Section, files: Files, unit: str, response: Section | None, ends: tuple[float, float]
+    top: Section,
+    files: Files,
+    unit: str,
+    response: Section | None,
+    ends: tuple[float, float],
+    every_row: bool,
 ) -> tuple[Parts, tuple[str, ...], list[str]]:
     """The drafts of modes, contacts and forces; the degrees of freedom in results; and what is to be said."""
     cyclic = read_cyclic(top)
@@ -214,7 +227,8 @@ def _parts(
         return parts, (), []
     asked = response is not None and "output" in response.data
     reported = reported_of(parts, output, asked)
-    return parts if matrices is None else without_others(top, parts, reported), reported, notes
+    whole = matrices is None or every_row
+    return parts if whole else without_others(top, parts, reported), reported, notes
 
 
 def _check_curves(scene: Scene, mistakes: Mistakes) -> None:

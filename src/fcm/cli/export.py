@@ -1,0 +1,180 @@
+"""What goes back to other programs: motions on their mesh, contact forces, modal amplitudes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fcm.cli.files import output_option
+from fcm.cli.messages import Messages
+from fcm.cli.options import FiniteRange
+
+if TYPE_CHECKING:
+    from fcm.cli.respond_options import Asked
+    from fcm.mesh import Mesh
+    from fcm.results.motions import Motion
+    from fcm.results.result import Response
+    from fcm.scene.model import Scene
+
+UNIVERSAL, HDF5 = (".uff", ".unv"), (".h5", ".hdf5")
+_RING = "a ring's sector moves in modes that travel around it; its contact forces alone are exported"
+
+
+def export_options(command: Any) -> Any:
+    """The options."""
+    options: list[Callable[[Any], Any]] = [
+        output_option(
+            "--export", endings=(".vtu", *UNIVERSAL, *HDF5),
+            help="Write the displacements of all rows at the peaks, complex by harmonic: .vtu for ParaView "
+            "(needs --mesh), .uff with datasets 55 and 58, .h5.",
+        ),
+        click.option(
+            "--mesh", type=click.Path(exists=True, dir_okay=False, readable=True, path_type=Path),
+            metavar="FILE",
+            help="With --export: where the nodes are: .inp of CalculiX or Abaqus, .bdf, .msh, or .csv with "
+            "the columns node,x,y,z.",
+        ),
+        output_option(
+            "--contact-forces", endings=(".csv",),
+            help="Write the contact forces at the peaks, by harmonic, as CSV; -o FILE has them then, too.",
+        ),
+        click.option(
+            "--modal-amplitudes", is_flag=True,
+            help="Write the displacements of the modes at the peaks, by harmonic, to -o FILE.",
+        ),
+        click.option(
+            "--motion-at", type=FiniteRange(min=0.0, min_open=True), multiple=True, metavar="F",
+            help="Instead of at the peaks, export where the curves pass this frequency; again for more.",
+        ),
+    ]  # fmt: skip
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+def check_options(asked: Asked) -> None:
+    """A usage error where options exclude or need one another."""
+    given = {
+        "--export": asked.export is not None,
+        "--contact-forces": asked.contact_forces is not None,
+        "--modal-amplitudes": asked.modal_amplitudes,
+    }
+    wanted = next((name for name, one in given.items() if one), "")
+    if asked.mesh is not None and asked.export is None:
+        raise click.UsageError("--mesh is of no use without --export FILE.")
+    if asked.motion_at and not wanted:
+        raise click.UsageError(f"--motion-at needs one of {', '.join(given)}.")
+    if asked.modal_amplitudes and asked.output is None:
+        raise click.UsageError("--modal-amplitudes go to the netCDF file; give -o FILE.")
+    if asked.export is not None and asked.export.suffix.lower() == ".vtu" and asked.mesh is None:
+        raise click.UsageError("--export to .vtu needs --mesh FILE: .inp, .bdf, .msh, or .csv (node,x,y,z).")
+    others = {
+        "--method exact": (asked.method == "exact", "it is of the motions of the balance, by harmonics"),
+        "--level": (asked.level is not None, "it is of curves against the frequency"),
+        "--track": (asked.track is not None, "it is of curves against the frequency"),
+        "--peaks-only": (asked.peaks_only, "it is taken at points of the curves"),
+    }
+    for option, (one, why) in others.items():
+        if wanted and one:
+            raise click.UsageError(f"{wanted} is of no use with {option}: {why}.")
+
+
+@dataclass
+class Exporting:
+    """What is exported of a scene with every row, once its response is known."""
+
+    messages: Messages
+    scene: Scene
+    asked: Asked
+    mesh: Mesh | None
+    motions: Sequence[Motion] = ()
+
+    @property
+    def files(self) -> list[tuple[Path, Callable[[Response, Path], None]]]:
+        """What writes each file."""
+        found = [(self.asked.export, self._export), (self.asked.contact_forces, self._forces)]
+        return [(path, write) for path, write in found if path is not None]
+
+    def take(self, response: Response, scene: Scene) -> None:
+        """The motions of a response, of a scene at the degrees of freedom in use."""
+        from fcm.export import motions_of
+        from fcm.results.motions import Motions
+
+        self.motions = motions_of(response, scene, self.asked.motion_at)
+        forces = self.asked.contact_forces is not None
+        response.motions = Motions(tuple(self.motions), forces, self.asked.modal_amplitudes)
+
+    def _forces(self, response: Response, path: Path) -> None:
+        from fcm.export.forces_csv import write_forces
+        from fcm.files import replacing
+
+        with replacing(path) as temporary:
+            write_forces(self.motions, response, temporary)
+
+    def _export(self, response: Response, path: Path) -> None:
+        from fcm.files import replacing
+
+        ending = path.suffix.lower()
+        with replacing(path) as temporary:
+            if ending == ".vtu":
+                from fcm.export.vtu import write_vtu
+
+                assert self.mesh is not None  # see check_options
+                write_vtu(self.motions, self.scene, self.mesh, temporary)
+            elif ending in HDF5:
+                from fcm.export.hdf5 import write_hdf5
+
+                write_hdf5(self.motions, self.scene, self.mesh, temporary)
+            else:
+                from fcm.export.universal import write_universal
+
+                write_universal(self.motions, response, self.scene, self.mesh, temporary)
+
+
+def exporting(messages: Messages, scene: Scene, asked: Asked) -> Exporting | None:
+    """What is to be exported of a scene that has every row; None for nothing.
+
+    Whatever stands in the way of it is said before anything is calculated.
+    """
+    if asked.export is None and asked.contact_forces is None and not asked.modal_amplitudes:
+        return None
+    from fcm.export.rows import ExportError, Rows, check_library, check_mesh
+
+    for table, there in (("[fit]", scene.fit), ("[optimum]", scene.optimum)):
+        if there is not None:
+            raise ExportError(
+                f"{scene.name}: motions are exported of a scene as it is; write what {table} found into it"
+            )
+    if not scene.has_range:
+        raise ExportError(f"{scene.name}: motions are exported of curves, and it has no [response]")
+    from fcm.units import UNIT, in_unit
+
+    low, high = scene.frequency_range
+    for one in asked.motion_at:
+        if not low <= one * UNIT[scene.frequency_unit] <= high:
+            ends = " to ".join(f"{float(in_unit(end, scene.frequency_unit)):g}" for end in (low, high))
+            raise ExportError(f"--motion-at {one:g}: the range is {ends} {scene.frequency_unit}")
+    if scene.ring is not None and (asked.export is not None or asked.modal_amplitudes):
+        raise ExportError(f"{scene.name}: {_RING}")
+    mesh = None
+    if asked.mesh is not None:
+        mesh = _mesh(asked.mesh)
+        for note in check_mesh(Rows.of(scene), mesh, str(asked.mesh)):
+            messages.info(note)
+    if asked.export is not None:
+        check_library(asked.export.suffix.lower())
+    return Exporting(messages, scene, asked, mesh)
+
+
+def _mesh(path: Path) -> Mesh:
+    from fcm.export.rows import ExportError
+    from fcm.mesh import MeshError, read_mesh
+
+    try:
+        return read_mesh(path)
+    except MeshError as error:
+        raise ExportError("\n".join(f"{path}: {fault}" for fault in error.faults)) from None

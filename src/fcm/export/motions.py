@@ -1,0 +1,196 @@
+"""The motions of a response at its peaks or at chosen frequencies, with forces and modes by harmonics.
+
+Each is solved for once more with all contacts and modes, from the displacements of its curve: its contact
+forces then balance it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fcm.continuation.corrector import Newton
+from fcm.export.options import EXPORT, ExportOptions
+from fcm.harmonic.record import amplitudes_at
+from fcm.harmonic.system import System
+from fcm.reduction.put_back import unknowns
+from fcm.response.wanted import ResponseError
+from fcm.results.motions import ComplexArray, Motion
+from fcm.results.result import Curve, Response
+from fcm.rotation import greatest_first
+from fcm.scene.model import FloatArray, Modal, Scene
+from fcm.units import UNIT
+
+
+def motions_of(
+    response: Response, scene: Scene, at: Sequence[float] = (), options: ExportOptions = EXPORT
+) -> list[Motion]:
+    """Motions of every curve: at the peaks, or where it passes some frequencies in the scene's unit.
+
+    Parameters
+    ----------
+    response : Response
+        From `fcm.response.trace`, of curves against the frequency, at all degrees of freedom of the scene.
+    scene : Scene
+        That of the response.
+    at : sequence of float, optional
+        Frequencies; every solution that a curve has there counts, stable or not.
+    options : ExportOptions, optional
+        How many peaks.
+
+    Raises
+    ------
+    ResponseError
+        If no curve passes a frequency, or a point is no solution with all contacts and modes.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> from fcm.response import trace
+    >>> scene = fcm.load_scene("yang1998-n5")
+    >>> (one,) = [m for m in motions_of(trace(scene), scene) if "u" in m.of]
+    >>> one.force.shape, one.harmonics  # of a contact friction and normal force, the mean and a harmonic
+    ((1, 2, 2), (1,))
+    """
+    found: list[Motion] = []
+    for number, (curve, own) in enumerate(zip(response.curves, scene.each_curve(), strict=True)):
+        if not curve.points:
+            continue
+        solver = _Solver.of(own, curve)
+        if at:
+            omegas = (one * UNIT[scene.frequency_unit] for one in at)
+            found += [one for omega in omegas for one in solver.passing(number, omega)]
+        else:
+            found += list(solver.peaks(number, [own.reports(dof) for dof in own.modal.dofs], options))
+    met = {one.frequency for one in found}
+    for one in at:
+        if one * UNIT[scene.frequency_unit] not in met:
+            raise ResponseError(f"{scene.name}: no curve passes {one:g} {scene.frequency_unit}")
+    return found
+
+
+@dataclass(frozen=True)
+class _Solver:
+    """A curve, and the balance that it solves."""
+
+    scene: Scene
+    curve: Curve
+    newton: Newton
+    system: System
+    in_modes: System | None  # the same where modal displacements are what is reported
+
+    @staticmethod
+    def of(scene: Scene, curve: Curve) -> _Solver:
+        system = System(scene, curve.harmonics)
+        modal = None if scene.ring is not None else System(scene_in_modes(scene), curve.harmonics)
+        return _Solver(scene, curve, Newton(system.balance()), system, modal)
+
+    def peaks(self, number: int, reported: Sequence[bool], options: ExportOptions) -> Iterator[Motion]:
+        """The motion of each peak; one that several degrees of freedom share is there once."""
+        dofs, amplitude = self.scene.modal.dofs, self.curve.amplitude
+        shown = [d for d, one in enumerate(reported) if one and np.isfinite(amplitude[:, d]).any()]
+        heights = [float(np.nanmax(amplitude[:, d])) for d in shown]
+        first = greatest_first([dofs[d] for d in shown], heights)[: options.peaks]
+        of: dict[int, list[str]] = {}
+        for d in sorted(shown[i] for i in first):
+            of.setdefault(int(np.nanargmax(amplitude[:, d])), []).append(dofs[d])
+        for point, names in of.items():
+            z = self._unknowns(point)
+            solved = self._solved(z, along=True)
+            if solved is None or abs(solved[-1] - z[-1]) > options.drift * z[-1]:
+                raise ResponseError(
+                    f"{self.scene.name}: the peak of {names[0]} at {z[-1]:.6g} rad/s is no solution "
+                    "with all contacts and modes; try --keep-all"
+                )
+            yield self._motion(number, solved, float(self.curve.stable[point]), tuple(names))
+
+    def passing(self, number: int, omega: float) -> Iterator[Motion]:
+        """The motions where the curve passes a frequency [rad/s]."""
+        frequency = self.curve.frequency
+        low, high = frequency[:-1], frequency[1:]
+        inside = (np.minimum(low, high) <= omega) & (omega < np.maximum(low, high))
+        places = [(k, k + 1) for k in np.flatnonzero(inside).tolist()]
+        if (frequency == omega).any() and not places:  # the last point of a range
+            places = [(k, k) for k in np.flatnonzero(frequency == omega).tolist()[:1]]
+        for k, after in places:
+            one, other = self._unknowns(k), self._unknowns(after)
+            share = 0.0 if k == after else (omega - one[-1]) / (other[-1] - one[-1])
+            z = one + share * (other - one)
+            z[-1] = omega
+            solved = self._solved(z, along=False)
+            if solved is None:
+                raise ResponseError(
+                    f"{self.scene.name}: no solution was found at {omega:.6g} rad/s between two points of "
+                    f"curve {number}"
+                )
+            solved[-1] = omega
+            stable = {float(self.curve.stable[i]) for i in (k, after)}
+            yield self._motion(number, solved, stable.pop() if len(stable) == 1 else np.nan, ())
+
+    def _unknowns(self, point: int) -> FloatArray:
+        z: FloatArray = unknowns(self.curve, self.scene, np.array([point]), self.curve.harmonics)[0]
+        return z
+
+    def _solved(self, z: FloatArray, along: bool) -> FloatArray | None:
+        """The solution nearest to a point: across the curve, or at its frequency."""
+        newton = self.newton
+        newton.problem.measure(z)
+        newton.scale[:] = newton.problem.scale
+        newton.z[:] = z
+        newton.row[:] = np.eye(z.size)[-1]
+        if along and newton.look():
+            newton.row[:] = newton.tangent
+        newton.z[:] = z
+        return np.array(newton.z) if newton.correct(1.0) else None
+
+    def _motion(self, number: int, z: FloatArray, stable: float, of: tuple[str, ...]) -> Motion:
+        modal = None
+        if self.in_modes is not None:
+            X, mean = amplitudes_at(self.in_modes, z[None])
+            modal = np.concatenate((mean[0, :, None], 1j * X[0].T), axis=1)
+        force = contact_forces(self.system, z)
+        return Motion(
+            number, dict(self.curve.parameters), of, float(z[-1]), stable, self.system.harmonics, force, modal
+        )
+
+
+def contact_forces(system: System, z: FloatArray) -> ComplexArray:
+    """Forces of the contacts (contact, direction, 1 + harmonic) at a point z (unknown + 1,) of a balance.
+
+    As Im(F_h exp(i h omega t)), the mean first; the last direction is the normal, with the preload.
+    """
+    layout, z = system.layout, np.ascontiguousarray(z)
+    flat = np.zeros(layout.unknowns)
+    for i, law in enumerate(system.exact_laws(system.harmonics)):
+        law.probe(z, i * layout.width)
+        flat[i * layout.width : (i + 1) * layout.width] = np.asarray(law.force)[: layout.width]
+    force = layout.complex_ports(flat).reshape(layout.contacts, layout.directions, -1)
+    force[..., 1:] *= 1j
+    for i, contact in enumerate(system.scene.contacts):
+        force[i, -1, 0] += max(contact.n_0, 0.0)
+    return force
+
+
+def scene_in_modes(scene: Scene) -> Scene:
+    """A scene (of one curve) whose degrees of freedom are the displacements of its modes, of mass 1."""
+    modal = scene.modal
+    unit = np.sqrt(modal.mass)
+    onto = modal.shapes / unit[:, None]  # (mode, dof)
+    names = tuple(f"mode {i + 1}" for i in range(modal.mass.size))
+    own = Modal(names, modal.mass, modal.frequency, modal.damping, np.diag(unit), modal.added, modal.complete)
+    contacts = tuple(
+        replace(
+            one,
+            tangential=onto @ one.tangential,
+            normal=onto @ one.normal,
+            second=None if one.second is None else onto @ one.second,
+        )
+        for one in scene.contacts
+    )
+    forces = tuple(replace(one, direction=onto @ one.direction) for one in scene.forces)
+    loads = tuple(replace(one, direction=onto @ one.direction) for one in scene.loads)
+    return replace(
+        scene, modal=own, contacts=contacts, forces=forces, loads=loads, reported=(), curves=(), draft=None
+    )

@@ -1,0 +1,28 @@
+"""What is fixed about exported motions, each number with its reason."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fcm.rotation import MOST_DOFS
+
+
+@dataclass(frozen=True)
+class ExportOptions:
+    """Of the motions that are exported.
+
+    Attributes
+    ----------
+    peaks
+        Degrees of freedom of each curve whose peaks are exported: those that its line of the printed table
+        has, the greatest displacements before rotations.
+    drift
+        How far the frequency of a peak may move, relative, where its point is corrected with all digits; what
+        the balance has left is far below.
+    """
+
+    peaks: int = MOST_DOFS
+    drift: float = 1e-6
+
+
+EXPORT = ExportOptions()

@@ -1,0 +1,50 @@
+"""What a mesh is here: where its nodes are, what elements join them, and sets of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.intp]
+
+
+class MeshError(ValueError):
+    """What is wrong with a file of a mesh, in a sentence for each fault, without the file's name."""
+
+    def __init__(self, *faults: str) -> None:
+        self.faults = faults
+        super().__init__("; ".join(faults))
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Nodes by the numbers that their program gives them.
+
+    nodes (node,); xyz (node, 3), in the unit of the file; cells: the name of a kind of element, as meshio
+    has it, and the places of its nodes (element, node of an element); sets: the nodes of each, by its name in
+    capitals; lacking: kinds of elements that are not known here, and are left out.
+    """
+
+    nodes: tuple[int, ...]
+    xyz: FloatArray
+    cells: tuple[tuple[str, IntArray], ...] = ()
+    sets: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    lacking: tuple[str, ...] = ()
+
+    @cached_property
+    def place(self) -> dict[int, int]:
+        """The place of each node among the nodes."""
+        return {node: i for i, node in enumerate(self.nodes)}
+
+    def at(self, nodes: tuple[int, ...]) -> FloatArray:
+        """Coordinates (node, 3) of some nodes.
+
+        >>> Mesh((7, 3), np.eye(3)[:2]).at((3,)).tolist()
+        [[0.0, 1.0, 0.0]]
+        """
+        return self.xyz[[self.place[node] for node in nodes]]
