@@ -3,12 +3,13 @@
 A block after a paragraph that ends with "as `NAME`:" is a file. Commands stand in blocks of sh. A block of
 text after one shows what its last command prints first, with a line `...` for lines that are left out.
 
-usage: python -m tests.guide.pages, which prints the median and the longest sentence and paragraph of each
+usage: python -m tests.guide.pages [-v], which prints the median and the longest sentence and paragraph
 """
 
 from __future__ import annotations
 
 import re
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
@@ -82,12 +83,12 @@ def links(page: Path) -> list[tuple[str, str]]:
     return [(file, heading) for file, heading in found if not file.startswith("http")]
 
 
-def prose(page: Path) -> list[str]:
-    """The paragraphs and list items of a page, and the cells of its tables; no code, equations or headings.
+def prose(page: Path, cells: bool = False) -> list[str]:
+    """The paragraphs and list items of a page, or the cells of its tables; no code, equations or sources.
 
     A formula, a piece of code or a link counts as a word.
     """
-    text = FENCED.sub("\n\n", read(page))
+    text = re.split(r"^## Sources$", FENCED.sub("\n\n", read(page)), flags=re.M)[0]
     text = re.sub(r"^\$\$.*?\$\$$", "\n\n", text, flags=re.M | re.S)
     text = re.sub(r"^(?:    |\t).*$", "", text, flags=re.M)  # code by indentation
     text = re.sub(r"\$[^$\n]+\$|`[^`\n]+`", "X", text)
@@ -95,37 +96,41 @@ def prose(page: Path) -> list[str]:
     found = []
     for part in re.split(r"\n\s*\n|\n(?=\s*(?:[-*]|\d+\.) )|\n(?=\|)", text):
         line = part.strip()
-        if line.startswith("|"):
-            found += [cell.strip() for cell in line.strip("|").split("|")]
-        elif line and not line.startswith("#"):
-            found.append(re.sub(r"^(?:[-*]|\d+\.) ", "", line))
-    return [one for one in found if re.search(r"\w", one)]
+        if line.startswith("|") == cells and line and not line.startswith("#"):
+            found += line.strip("|").split("|") if cells else [re.sub(r"^(?:[-*]|\d+\.) ", "", line)]
+    return [one.strip() for one in found if re.search(r"\w", one)]
 
 
 def sentences(paragraph: str) -> list[str]:
-    """Its sentences; a source that is cited is none, as a title may be of any length."""
-    return [one for one in re.split(r"(?<=[.!?])\s+(?=[A-Z0-9*(])", paragraph) if re.search(r"\w", one)]
+    """Its sentences, without the signs of emphasis."""
+    text = paragraph.replace("**", "").replace("*", "")
+    return [one for one in re.split(r"(?<=[.!?])\s+(?=[A-Z0-9(])", text) if re.search(r"\w", one)]
 
 
 def words(text: str) -> int:
     return len(re.findall(r"[^\s–—·|]*\w[^\s–—·|]*", text))
 
 
-def measured(page: Path) -> tuple[list[int], list[int]]:
-    """Words of each sentence and of each paragraph of a page."""
-    cited = re.split(r"^## Sources$", read(page), maxsplit=1, flags=re.M)[1:]
-    of_sources = {re.sub(r"^- ", "", one) for part in cited for one in re.split(r"\n(?=- )", part)}
-    texts = [one for one in prose(page) if not any(one[:40] in source for source in of_sources)]
-    return [words(one) for text in texts for one in sentences(text)], [words(text) for text in texts]
+def too_long(page: Path) -> list[str]:
+    """Its sentences, cells and paragraphs that are longer than they may be."""
+    texts = prose(page)
+    found = [one for text in [*texts, *prose(page, True)] for one in sentences(text)]
+    return [one for one in found if words(one) > LONGEST_SENTENCE] + [
+        text for text in texts if words(text) > LONGEST_PARAGRAPH
+    ]
 
 
 def main() -> None:
     for page in PAGES:
-        of_sentences, of_paragraphs = measured(page)
+        texts = prose(page)
+        of_sentences = [words(one) for text in texts for one in sentences(text)]
+        of_paragraphs = [words(text) for text in texts]
         print(
             f"{name_of(page):55} sentences: median {median(of_sentences):4.1f}, longest {max(of_sentences):3}"
             f"   paragraphs: median {median(of_paragraphs):4.1f}, longest {max(of_paragraphs):3}"
         )
+        for text in too_long(page) if "-v" in sys.argv else []:
+            print(f"    {words(text)}: {text}")
 
 
 if __name__ == "__main__":
