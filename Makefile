@@ -38,7 +38,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help docs design fuzz kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence fold-curves multipliers kept-modes demo picture paper figures test test-all check tables \
+.PHONY: help docs reference guide-figures design fuzz kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence fold-curves multipliers kept-modes demo picture paper figures test test-all check tables \
 	clean bench study
 
 help:  ## this list
@@ -233,6 +233,12 @@ $(REPORT)/%.png: $(REPORT)/%.nc src/fcm/plot/accuracy.py src/fcm/plot/style.py
 $(REPORT)/%.nc: src/fcm/scenes/%.toml $(SIMULATION) $(wildcard src/fcm/compare/*.py) tables/fast.nc $(VENV)/installed
 	@mkdir -p $(@D)
 	$(BIN)/fcm respond $* --compare --json -o $@ > $(@:.nc=.json)
+
+reference: $(VENV)/installed-dev  ## the pages of reference, as the program itself says
+	$(BIN)/python -m tests.guide.reference
+
+guide-figures: $(VENV)/installed-dev  ## the figures of the theory pages
+	$(BIN)/python -m tests.guide.figures
 
 docs: $(VENV)/installed-dev  ## the guide as a site that can be searched, in build/docs: to be served, as by python3 -m http.server -d build/docs
 	$(BIN)/python -m mkdocs build --quiet --config-file .github/mkdocs.yml

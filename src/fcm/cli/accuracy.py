@@ -20,8 +20,8 @@ from fcm.cli.messages import Messages, pass_messages
 def accuracy(messages: Messages, file: Path, output: Path | None, quantity: str) -> None:
     """Draw error against run time from FILE, which `fcm respond SCENE --compare -o FILE` has written.
 
-    One line a method, its longest step from long to short; an arrow down where the error is less than
-    can be shown, for want of a better reference. The time is that of the processor, which other programs do
+    One line a method, its longest step from long to short. An arrow points down where the error is less
+    than the reference can show. The time is that of the processor, which other programs do
     not make longer.
     """
     from fcm.plot.accuracy import draw_accuracy, read_accuracy

@@ -31,8 +31,8 @@ MOST_HARMONICS = 10  # of which it is said what they meet
 def campbell(messages: Messages, scene: str, output: Path | None, to_json: bool, largest_file: int) -> None:
     """Draw the natural frequencies of SCENE, a sector of a ring, by nodal diameter (SAFE diagram).
 
-    With its contacts open and stuck, and the engine order over the range of frequencies: bars where its
-    harmonics are, and the lines of all engine orders at the lowest (dotted) and highest (dashed) speed.
+    Drawn are those with its contacts open and stuck. Bars show the range of frequencies at the engine order
+    and its harmonics. Lines show all engine orders at the lowest (dotted) and highest (dashed) speed.
     """
     from fcm.scene import SceneError, load_scene
 

@@ -112,8 +112,8 @@ def surface(
 ) -> None:
     """Draw the friction coefficients over preload and load variation, as figures 10 and 11.
 
-    The contours show where the contact is open, separates, slips or sticks, and name the sequence of
-    states in each region: E stick, P and N positive and negative slip, S separation.
+    The contours show where the contact is open, separates, slips or sticks. Each region names its sequence
+    of states: E stick, P and N positive and negative slip, S separation.
     """
     from fcm.contact.surface import STEPS, regions
     from fcm.contact.surface import surface as evaluate

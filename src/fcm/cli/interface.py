@@ -36,8 +36,8 @@ def contacts(
 ) -> None:
     """Draw what the contacts do of FILE, the netCDF file of `fcm respond -o FILE`.
 
-    At points of the curve: which contacts stick, slip and open, the energy and the slip path of each in a
-    cycle, and its greatest normal force. Those that take most energy are listed.
+    At points of the curve: which contacts stick, slip and open. Of each the energy and the slip path of a
+    cycle, and the greatest normal force. Those that take most energy are listed.
     """
     from fcm.plot.interface import (
         MOST,

@@ -149,8 +149,8 @@ def loop(
     """Draw hysteresis loops, as figures 5, 6 and 8: friction force over tangential displacement.
 
     The contact is given by ratios, or by its stiffness, friction, preload and motion; any of them may be
-    repeated, and every combination is drawn. Or it is a contact of FILE, the netCDF file of `fcm respond -o
-    FILE`, at a point of a curve; its displacement counts from its mean.
+    repeated, and every combination is drawn. Or it is a contact of FILE, at a point of a curve. FILE is what
+    `fcm respond -o FILE` wrote; the displacement counts from its mean.
 
     Below each loop are its force and the slip limits over a cycle. Transitions are marked with their angles.
     """

@@ -26,9 +26,11 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
 
     The participation is the share of a mode in the static flexibility along a contact or a force. Modes that
     stand for the flexibility of those left out are marked "flexibility". Of a ring of sectors they are listed
-    by nodal diameter, with the share among the modes of the same; `fcm plot campbell` draws those. This is a
-    list, and draws no picture. Below it stands what was read: matrices with their rows, entries and symmetry,
-    rigid bodies, frequencies in both units, and whether these look as if units were mixed.
+    by nodal diameter, with the share among the modes of the same; `fcm plot campbell` draws those.
+
+    This is a list, and draws no picture. Below it stands what was read: matrices, their rows, entries and
+    symmetry, rigid bodies, and frequencies in both units. Frequencies that look as if units were mixed are
+    named.
     """
     from fcm.scene import load_scene
     from fcm.scene.listing import listing

@@ -55,7 +55,7 @@ def plot() -> None:
 @click.option("--errors/--no-errors", default=True, show_default=True, help="A panel of the curves' errors.")
 @click.option(
     "--points", type=click.Path(exists=True, dir_okay=False, readable=True, path_type=Path), metavar="FILE",
-    help="To mark over the curves: exact motions, the file of `fcm respond --method exact -o FILE`, or "
+    help="To mark over the curves: exact motions, the file of `fcm respond --method exact -o FILE`. Or "
     "measured points with the columns frequency and amplitude (.csv, .mat, .npz, .uff).",
 )  # fmt: skip
 @click.option(
@@ -76,8 +76,8 @@ def response(
 ) -> None:
     """Draw the response curves of FILE, the netCDF file of `fcm respond -o FILE`.
 
-    Unstable parts are dashed, those of which that is not told dotted, and the errors of the curves drawn
-    below them, where the file knows them. A page (.html) has every degree of freedom, and the numbers of the
+    Unstable parts are dashed. Parts of unknown stability are dotted. The errors of the curves are drawn below
+    them, where the file has them. A page (.html) has every degree of freedom, and the numbers of the
     point under the mouse.
     """
     from fcm.plot import draw_response, read_points, read_response

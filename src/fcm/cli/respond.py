@@ -33,11 +33,11 @@ def respond(messages: Messages, /, scene: str, **options: Any) -> None:
     """Trace the response curves of SCENE, a TOML file or the name of a bundled scene.
 
     By harmonic balance, or with --method exact as periodic solutions of the exact motion. The peaks, folds
-    and errors of every curve are printed; the curves go to files. A [[schedule]] of the scene is then
-    simulated in time, without a time step; the amplitudes of its phases are printed, the motion goes to the
-    same file. With a [fit] its numbers are fitted to measured data, with an [optimum] they are chosen, and
-    the response is that with them; with --track, points of the response are followed in a number of the
-    scene.
+    and errors of every curve are printed. The curves go to files.
+
+    A [[schedule]] of the scene is then simulated in time, without a time step. A [fit] fits numbers to
+    measured data, an [optimum] chooses them. The response is that with these numbers. With --track, points of
+    the response are followed in a number of the scene.
     """
     asked = Asked(**options)
     if asked.compare:

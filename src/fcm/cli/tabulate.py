@@ -55,8 +55,8 @@ POINTS_OF_PART = 100_000  # at which the error of a part is measured, unless the
 @output_option(
     "--study",
     endings=(".csv",),
-    help="Build nothing: measure error against size and time for tables of several layouts, write them "
-    "to this .csv and draw them in a .png beside it.",
+    help="Build nothing: measure error against size and time for tables of several layouts. They are "
+    "written to this .csv, and drawn in a .png beside it.",
 )
 @click.option("--json", "to_json", is_flag=True, help="Print the error as JSON instead of a table.")
 @click.pass_context

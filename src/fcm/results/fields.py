@@ -177,8 +177,8 @@ def _add_motion(found: _Points) -> None:
 def _add_contacts(found: _Points) -> None:
     """What the contacts do."""
     states = (
-        "states of the contact over a cycle: E stick, P, N positive and negative slip, S separation; "
-        "P slip in whatever direction, of a contact in a plane"
+        "states over a cycle: E stick, P and N positive and negative slip (P any slip in a plane), "
+        "S separation"
     )
     found.add("regime", lambda c: c.regime, ("contact",), long_name=states)
     for i, (name, meaning, units) in enumerate(LOOP):

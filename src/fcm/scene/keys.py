@@ -64,8 +64,8 @@ TABLES: dict[str, dict[str, Key]] = {
         "participation": Key("phi^T M d, d the direction of [base]", RULES["participation"], "none"),
         "nodal_diameter": Key("of each mode, with [cyclic]; shapes may have pairs [re, im]",
                               RULES["nodal_diameter"], "none"),
-        "pairs": Key("whether modes are pairs c, s of the whole ring; of c the next sector does "
-                     "c cos a - s sin a, a = 2 pi nodal_diameter / sectors",
+        "pairs": Key("whether modes are pairs c, s of the whole ring. Where c is this sector's, the next "
+                     "has c cos a - s sin a, a = 2 pi nodal_diameter / sectors",
                      "true or false", "false, of different frequencies"),
     },
     "structure": {
