@@ -88,13 +88,15 @@ def test_harmonics_are_chosen_by_need():
 def test_folds_that_cannot_be_told_ask_for_no_more_harmonics(monkeypatch):
     """The same harmonics as where they can, and this is said."""
     system = System(scene("yang1998", 5))
-    known, real = accurate(system, 1e-2), refinement.errors_along
+    known, real = accurate(system, 1e-2), refinement.with_nearest
 
     def untold(*args):
-        errors = real(*args)
-        return replace(errors, fold=np.where(np.arange(errors.fold.size) == 0, np.nan, errors.fold))
+        return tuple(
+            replace(one, fold=np.where(np.arange(one.fold.size) == 0, np.nan, one.fold))
+            for one in real(*args)
+        )
 
-    monkeypatch.setattr(refinement, "errors_along", untold)
+    monkeypatch.setattr(refinement, "with_nearest", untold)
     found = accurate(system, 1e-2)
     assert known.reached and not found.reached
     assert found.system.harmonics == known.system.harmonics

@@ -17,7 +17,9 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.borne import of_borne, relative
+from fcm.accuracy.budget import Budget
 from fcm.accuracy.crossings import with_crossings
+from fcm.accuracy.elsewhere import elsewhere
 from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.partner import partner_of
 from fcm.accuracy.partner_curve import Followed, Indices, PartnerCurve
@@ -71,7 +73,11 @@ class Errors:
 
 
 def errors_along(
-    system: System, path: Path, shown: Reported | None = None, options: PairOptions = PAIR
+    system: System,
+    path: Path,
+    shown: Reported | None = None,
+    options: PairOptions = PAIR,
+    budget: Budget | None = None,
 ) -> Errors:
     """Errors of the points of a path of a system's balance; shown is what is reported along it, if known.
 
@@ -92,7 +98,7 @@ def errors_along(
         own = (_itself(system, path, shown),) if known.all() and len(path.z) > 1 else ()
         more = system.harmonics
         return Errors(none, none[:, 0], known, none[0], size, of_folds, share, more, borne, borne[0], own)
-    partner = PartnerCurve(system, path, shown, more, options)
+    partner = PartnerCurve(system, path, shown, more, options, budget or Budget(options.seconds))
     change = partner.everywhere(np.union1d(special, met))
     followed = partner.followed(change)
     compared, dofs = partner.compared(change), shown.amplitude.shape[1]
@@ -121,10 +127,8 @@ def errors_along(
     error[tops[told], d[told]] = np.maximum(at_tops, left)
     error *= unit / np.where(shown.amplitude > 0.0, shown.amplitude, unit)
     comes: Mask = ~np.any(np.isnan(error), axis=1)
-    pieces = partner.pieces(compared, followed)
-    pieces += partner.elsewhere(error, pieces)
     system.work.take(partner.seconds())
-    of_folds = _of_folds(partner, folds, change, followed, pieces)
+    of_folds = _of_folds(partner, folds, change, followed)
     partner.done()
     return Errors(
         amplitude=error,
@@ -137,7 +141,7 @@ def errors_along(
         partner=more,
         borne=borne,
         greatest=greatest,
-        pieces=pieces,
+        pieces=partner.pieces(compared, followed),
     )
 
 
@@ -151,15 +155,19 @@ def with_nearest(
 ) -> tuple[Errors, ...]:
     """Errors of the paths of a response, where the partner's own branch does not come to a frequency the
     distance to the nearest motion that it is known to have there: a motion that it has on another branch, or
-    that the branch has turned back to.
+    that the branch has turned back to. So is that of a fold to the nearest.
 
     That is another motion, and a degree of freedom in which it happens to be the same says nothing: each has
     at least the distance of the greatest. The paths before the first have theirs already.
     """
-    pieces = [piece for one in errors for piece in one.pieces]
     every = list(errors)
+    for k, further in enumerate(elsewhere(system, paths, shown, errors, first, options)):
+        every[k] = replace(every[k], pieces=(*every[k].pieces, *further)) if further else every[k]
+    pieces = [piece for one in every for piece in one.pieces]
     for k in range(first, len(every)):
         path, amplitude, dofs = paths[k], shown[k].amplitude, shown[k].amplitude.shape[1]
+        if np.isnan(every[k].fold).any():
+            every[k] = replace(every[k], fold=_with_nearest_folds(path, amplitude, every[k], pieces, options))
         rows = np.flatnonzero(~every[k].met)
         if not rows.size or not pieces:
             continue
@@ -232,21 +240,16 @@ def _of_peaks(error: FloatArray, options: PairOptions) -> FloatArray:
 
 
 def _of_folds(
-    partner: PartnerCurve,
-    folds: Indices,
-    change: FloatArray,
-    followed: list[Followed],
-    pieces: Sequence[CurvePiece],
+    partner: PartnerCurve, folds: Indices, change: FloatArray, followed: list[Followed]
 ) -> FloatArray:
-    """Errors (fold,) of the frequencies of folds: to the partner's own beside them, in their order where the
-    partner was followed and has as many, or to the nearest that it is known to have."""
+    """Errors (fold,) of the frequencies of folds: to the partner's own beside them, or in their order where
+    the partner was followed and has as many; NaN elsewhere."""
     error, parameter = np.full(len(folds), np.nan), partner.path.parameter
     theirs = parameter * (1.0 + change[:, 0])
     for k, fold in enumerate(folds.tolist()):
         around = theirs[max(fold - 2, 0) : fold + 3]
         if np.isfinite(around[[0, -1]]).all():  # at a corner that has moved the fold itself may be missed
-            beside = parameter[[max(fold - 1, 0), min(fold + 1, len(parameter) - 1)]].mean()
-            own = np.nanmax(around) if parameter[fold] >= beside else np.nanmin(around)
+            own = np.nanmax(around) if _side(parameter, fold) >= 0.0 else np.nanmin(around)
             error[k] = abs(own / parameter[fold] - 1.0)
         elif np.isfinite(theirs[fold]):
             error[k] = abs(change[fold, 0])
@@ -257,23 +260,32 @@ def _of_folds(
         )
         if len(one.pieces) == 1 and len(theirs) == mine.sum():
             error[mine] = np.abs(theirs / parameter[folds[mine]] - 1.0)
-    for k in np.flatnonzero(np.isnan(error)).tolist():
-        error[k] = _to_the_nearest(partner, int(folds[k]), pieces)
     return error
 
 
-def _to_the_nearest(partner: PartnerCurve, fold: int, pieces: Sequence[CurvePiece]) -> float:
-    """Relative distance in frequency of a fold to that of the partner's, in pieces of it, whose amplitudes
-    are nearest, of those where the frequency turns back to the same side; NaN where there is none near."""
-    now, parameter = partner.amplitude[fold], partner.path.parameter
+def _with_nearest_folds(
+    path: Path, amplitude: FloatArray, errors: Errors, pieces: Sequence[CurvePiece], options: PairOptions
+) -> FloatArray:
+    """Errors (fold,), where these are not told the relative distances in frequency to the folds of pieces
+    whose amplitudes are nearest, of those where the frequency turns back to the same side; NaN where there is
+    none near."""
+    error, folds = errors.fold.copy(), path.where(Mark.FOLD)
+    for k in np.flatnonzero(np.isnan(error)).tolist():
+        fold = int(folds[k])
+        now, omega, side = amplitude[fold], path.parameter[fold], _side(path.parameter, fold)
+        least = options.same * now.max()
+        for piece in pieces:
+            for i in piece.turns(float(np.sign(side))).tolist():
+                off = float(np.abs(piece.value[i, : len(now)] - now).max())
+                if off < least:
+                    least, error[k] = off, abs(float(piece.frequency[i] / omega) - 1.0)
+    return error
+
+
+def _side(parameter: FloatArray, fold: int) -> float:
+    """How far a fold lies above the points beside it, in the parameter."""
     beside = parameter[[max(fold - 1, 0), min(fold + 1, len(parameter) - 1)]].mean()
-    side, least, found = np.sign(parameter[fold] - beside), partner.options.same * now.max(), np.nan
-    for piece in pieces:
-        for i in piece.turns(side).tolist():
-            off = float(np.abs(piece.value[i, : len(now)] - now).max())
-            if off < least:
-                least, found = off, abs(float(piece.frequency[i] / parameter[fold]) - 1.0)
-    return found
+    return float(parameter[fold] - beside)
 
 
 def _medians(values: FloatArray) -> FloatArray:

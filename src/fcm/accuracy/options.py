@@ -33,7 +33,10 @@ class PairOptions:
         Relative change of an amplitude over that of the frequency, up to which both count.
     seconds : float
         Of calculated work, as of `fcm.harmonic.cost`, that following the partner may take where no
-        point of it lies normal to the curve; and as much again for points that are not found.
+        point of it lies normal to the curve; as much again for points that are not found, and as much again
+        for what it has elsewhere;
+    part, unnoticed : float
+        but no more than this part of the work that the response itself took, or so many seconds.
     step : float
         Longest along the partner.
     beyond : float
@@ -92,6 +95,8 @@ class PairOptions:
     nothing: float = 3e-5
     steep: float = 100.0
     seconds: float = 2.0
+    part: float = 0.3
+    unnoticed: float = 0.1
     step: float = 0.1
     beyond: float = 1.0
     tries: int = 8

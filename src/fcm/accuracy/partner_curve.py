@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from fcm.accuracy.budget import Budget
 from fcm.accuracy.displacement import Displacement
 from fcm.accuracy.interpolation import Filled, places, steepness
 from fcm.accuracy.options import PairOptions
@@ -28,6 +29,7 @@ from fcm.scene.model import FloatArray
 
 Indices = npt.NDArray[np.intp]
 Mask = npt.NDArray[np.bool_]
+AT_ONCE = 256  # places that are compared with all points of a curve
 
 
 @dataclass(frozen=True)
@@ -88,7 +90,13 @@ class PartnerCurve:
     """
 
     def __init__(
-        self, system: System, path: Path, shown: Reported, more: tuple[int, ...], options: PairOptions
+        self,
+        system: System,
+        path: Path,
+        shown: Reported,
+        more: tuple[int, ...],
+        options: PairOptions,
+        budget: Budget,
     ) -> None:
         self.path, self.shown, self.options, self.fewer = path, shown, options, system.harmonics
         self.borne = borne_along(system, path.z).reshape(len(path.z), -1)
@@ -97,11 +105,12 @@ class PartnerCurve:
         self.unit[self.unit == 0.0] = 1.0
         lifted, finer = lifted_of(system, more), system.with_harmonics(more)
         self.system, self.more = system, more
-        self.finding, self.stretches = Displacement(lifted), Stretches(system, finer, lifted, path, options)
+        self.finding = Displacement(lifted)
+        self.stretches = Stretches(system, finer, lifted, path, options, budget)
         self.each = seconds_of(finer, 1, len(more))  # evaluation
         self.second: Second | None = None  # its own partner, if that is not too dear
         self.dear = False
-        self.vain, self.before = options.seconds / self.each, lifted.newton.evaluations
+        self.vain, self.before = budget.left / self.each, lifted.newton.evaluations
         count, dofs = self.amplitude.shape
         self.place, self.weight = np.zeros((2, count))
         places(path.z, path.direction, np.ptp(path.parameter) or 1.0, self.place)
@@ -364,24 +373,6 @@ class PartnerCurve:
         along = [self._of_piece(piece) for one in followed for piece in one.pieces]
         return tuple(one for one in (*through, *along) if one is not None)
 
-    def elsewhere(self, shift: FloatArray, pieces: tuple[CurvePiece, ...]) -> tuple[CurvePiece, ...]:
-        """The partner at the frequencies at which neither a shift (point, dof) is known nor a piece of it, as
-        the work allows: from those of the smallest motions on, where it has fewest."""
-        found = list[CurvePiece]()
-        untold: Mask = np.any(np.isnan(shift), axis=1)
-        for piece in pieces:
-            untold &= ~piece.within(self.path.parameter)
-        size = self.amplitude.max(axis=1)
-        while untold.any() and self.stretches.left > 0.0:
-            i = int(np.where(untold, size, np.inf).argmin())
-            omega = self.path.parameter[untold]
-            new = self.stretches.through(i, (float(omega.min()), float(omega.max())))
-            untold[i] = False
-            for one in map(self._of_piece, new):
-                untold &= ~one.within(self.path.parameter)
-                found.append(one)
-        return tuple(found)
-
     def _displaced(self, compared: Compared, rows: slice) -> CurvePiece | None:
         """The partner at some points, all of them displaced to it."""
         change = compared.change[rows]
@@ -390,7 +381,7 @@ class PartnerCurve:
         return piece_through(self.place[rows], omega, self.path.orientation[rows], value)
 
     def _of_piece(self, piece: Piece) -> CurvePiece:
-        return piece_of(piece.path, piece.shown, self.borne_of(piece))
+        return curve_piece(self.stretches.finer, piece)
 
     def borne_of(self, piece: Piece) -> FloatArray:
         """What the contacts bear along a piece (point, 4 contact)."""
@@ -401,28 +392,36 @@ class PartnerCurve:
         their order where both have as many, the nearest (-1) where the partner has more, none (-2) where it
         has fewer."""
         own = self.path.parameter[max(rows[0] - 1, 0) : rows[-1] + 2]
-        theirs = [piece.path.parameter for piece in one.pieces]
-        number = np.full(len(rows), -1, dtype=np.intc)
-        offset = rows[0] - max(rows[0] - 1, 0)
-        for i, omega in enumerate(self.path.parameter[rows].tolist()):
+        number, offset = np.full(len(rows), -1, dtype=np.intc), rows[0] - max(rows[0] - 1, 0)
+        for first in range(0, len(rows), AT_ONCE):
+            some = np.arange(first, min(first + AT_ONCE, len(rows)))
+            omega = self.path.parameter[rows[some]]
             mine = _passed(own, omega)
-            count = sum(len(_passed(one, omega)) for one in theirs)
-            if count < len(mine):
-                number[i] = -2
-            elif count == len(mine) and len(theirs) == 1:
-                number[i] = int(np.count_nonzero(mine < offset + i - 1))
+            count = np.zeros(len(some), dtype=np.intp)
+            for piece in one.pieces:
+                count += _passed(piece.path.parameter, omega).sum(axis=1)
+            before = np.arange(mine.shape[1]) < (offset + some - 1)[:, None]
+            number[some[count < mine.sum(axis=1)]] = -2
+            if len(one.pieces) == 1:
+                same = count == mine.sum(axis=1)
+                number[some[same]] = (mine & before)[same].sum(axis=1)
         return number
 
 
-def _passed(parameter: FloatArray, omega: float) -> Indices:
-    """The pieces between points on which a curve passes a frequency."""
-    below = parameter < omega
-    passes = below[1:] != below[:-1]
-    if len(passes):  # an end on it counts, too
-        passes[0] |= bool(parameter[0] == omega < parameter[1])
-        passes[-1] |= bool(parameter[-1] == omega < parameter[-2])
-    passed: Indices = np.flatnonzero(passes)
-    return passed
+def curve_piece(finer: System, piece: Piece) -> CurvePiece:
+    """A piece of the partner that was followed, with what the contacts bear."""
+    borne = borne_along(finer, piece.path.z).reshape(len(piece.path.z), -1)
+    return piece_of(piece.path, piece.shown, borne)
+
+
+def _passed(parameter: FloatArray, omega: FloatArray) -> Mask:
+    """Whether a curve passes frequencies (place,) on the piece from a point to the next, (place, piece)."""
+    below = parameter < omega[:, None]
+    passes: Mask = below[:, 1:] != below[:, :-1]
+    if passes.shape[1]:  # an end on it counts, too
+        passes[:, 0] |= (parameter[0] == omega) & (omega < parameter[1])
+        passes[:, -1] |= (parameter[-1] == omega) & (omega < parameter[-2])
+    return passes
 
 
 def _with_ends(path: Path, linear: Mask) -> Mask:

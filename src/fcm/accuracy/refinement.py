@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fcm.accuracy.budget import Budget
 from fcm.accuracy.embedded_pair import Errors, errors_along, with_nearest
 from fcm.accuracy.foreseen import foreseen, needed
 from fcm.accuracy.options import PAIR, REFINEMENT, PairOptions, RefinementOptions
@@ -146,7 +147,8 @@ def judged(
     system, response, shown = outline.system, outline.traced, outline.shown
     paths = response.branches.paths
     rest = list(zip(paths, shown, strict=True))[len(known) :]
-    new = [errors_along(system, path, one, options) for path, one in rest]
+    shares = Budget.of(system.work, options).shares(len(rest))
+    new = [errors_along(system, *one, options, share) for one, share in zip(rest, shares, strict=True)]
     errors = with_nearest(system, paths, shown, (*known, *new), len(known), options)
     own = system, response, shown, outline.seconds, errors
     if not paths:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fcm.accuracy.budget import Budget
 from fcm.accuracy.options import PairOptions
 from fcm.continuation import Events, FollowOptions, Path, Status
 from fcm.continuation.follow import Follower
@@ -18,7 +19,7 @@ from fcm.continuation.stepper import Stepper
 from fcm.harmonic.cost import seconds_of
 from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.reported import Reported, reported
-from fcm.harmonic.start import solutions
+from fcm.harmonic.start import NEAR, solutions
 from fcm.harmonic.system import System
 from fcm.harmonic.work import TooLongError
 from fcm.scene.model import FloatArray
@@ -54,16 +55,21 @@ class End:
 
 
 class Stretches:
-    """`between` two points of a curve the partner is followed, as long as the work allows."""
+    """`between` two points of a curve the partner is followed, as long as the budget allows."""
 
     def __init__(
-        self, fewer: System, finer: System, lifted: Lifted, curve: Path, options: PairOptions
+        self,
+        fewer: System,
+        finer: System,
+        lifted: Lifted,
+        curve: Path,
+        options: PairOptions,
+        budget: Budget,
     ) -> None:
         self.fewer = fewer.harmonics
         self.finer, self.lifted, self.curve, self.options = finer, lifted, curve, options
         self.each = seconds_of(finer, 1, len(finer.harmonics))
-        self.left = options.seconds / self.each  # evaluations
-        self.evaluations = 0
+        self.budget, self.evaluations = budget, 0
         self._stepper: Stepper | None = None
 
     def between(self, first: int, last: int) -> list[Piece]:
@@ -81,7 +87,7 @@ class Stretches:
         for begin, end in ((before, behind), (behind, before)):
             if begin is None or not span[0] < span[1]:
                 continue
-            if self.left <= 0.0:
+            if self.budget.left <= 0.0:
                 break
             piece = self._followed(begin, end, span, begin.rises == (begin is before))
             if piece.arrived:
@@ -92,10 +98,10 @@ class Stretches:
     def through(self, i: int, span: tuple[float, float]) -> list[Piece]:
         """The partner both ways from the frequency of a point, as far as it stays in a span and the work
         allows; nothing where no motion of it is found there."""
-        begin = self._abreast(i) if self.left > 0.0 else None
+        begin = self._abreast(i) if self.budget.left > 0.0 else None
         if begin is None:
             return []
-        pieces = [self._followed(begin, None, span, way) for way in (True, False) if self.left > 0.0]
+        pieces = [self._followed(begin, None, span, way) for way in (True, False) if self.budget.left > 0.0]
         return [piece for piece in pieces if len(piece.path.z) > 1]
 
     def _end(self, places: Iterable[int]) -> End | None:
@@ -117,12 +123,12 @@ class Stretches:
         even = curve.orientation[i] * np.sign(curve.direction[i, -1])
         work, before = self.finer.work, self.finer.work.seconds
         try:
-            with work.up_to(before + max(self.left, 0.0) * self.each):
-                known = solutions(self.finer, float(z[-1])).solutions
+            with work.up_to(before + max(self.budget.left, 0.0)):
+                known = solutions(self.finer, float(z[-1]), NEAR).solutions
         except TooLongError:
             return None
         finally:
-            self.left -= (work.seconds - before) / self.each
+            self.budget.left -= work.seconds - before
         for one in sorted(known, key=lambda one: float(np.linalg.norm((one - guess) / lifted.newton.scale))):
             if (
                 lifted.abreast(one, False)
@@ -154,10 +160,10 @@ class Stretches:
 
         def pay(_: float) -> None:
             nonlocal known
-            self.evaluations += stepper.newton.evaluations - known
-            self.left -= stepper.newton.evaluations - known
-            known = stepper.newton.evaluations
-            if self.left < 0.0:
+            new, known = stepper.newton.evaluations - known, stepper.newton.evaluations
+            self.evaluations += new
+            self.budget.left -= new * self.each
+            if self.budget.left < 0.0:
                 raise SpentError
 
         wanted = Events((float(end.z[-1]),) if end else ())

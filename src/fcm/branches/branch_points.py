@@ -74,8 +74,7 @@ def _with_all(
 ) -> Path:
     """A path of fewer harmonics with the orientations that all give it; NaN where it is no solution with
     nothing of the others, as where these are driven."""
-    z = np.array([system.extended(one, fewer) for one in path.z])
-    direction = np.array([system.extended(one, fewer) for one in path.direction])
+    z, direction = system.extended(path.z, fewer), system.extended(path.direction, fewer)
     orientation = np.full(len(z), np.nan)
     for i, (one, way) in enumerate(zip(z, direction, strict=True)):
         newton.problem.measure(one)

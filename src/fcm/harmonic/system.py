@@ -104,7 +104,8 @@ class System:
         return Layout(len(self.scene.contacts), self.scene.directions_of_contact, len(harmonics))
 
     def extended(self, z: FloatArray, harmonics: tuple[int, ...]) -> FloatArray:
-        """Unknowns with other harmonics, and what follows them, as those of this: what these lack is zero."""
+        """Unknowns (..., unknown + any) with other harmonics, and what follows them, as those of this: what
+        these lack is zero."""
         return self.layout_of(harmonics).with_harmonics(z, harmonics, self.harmonics)
 
     @cached_property

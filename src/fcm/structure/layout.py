@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -105,10 +105,24 @@ class Layout:
         return x
 
     def with_harmonics(self, x: FloatArray, old: Sequence[int], new: Sequence[int]) -> FloatArray:
-        """Unknowns (unknown + any,) with other harmonics: those that they lack are zero; the rest follows."""
-        wide = Layout(self.contacts, self.directions, len(new))
-        blocks = np.zeros((self.contacts, wide.width))
-        to, of = wide.harmonic_of(new), self.harmonic_of(old)
-        both = [h for h in (0, *old) if h == 0 or h in new]
-        blocks[:, np.isin(to, both)] = self.blocks(x)[:, np.isin(of, both)]
-        return np.concatenate((blocks.ravel(), x[self.unknowns :]))
+        """Unknowns (..., unknown + any) with other harmonics: those that they lack are zero; the rest
+        follows."""
+        wide, to, of = _between(self, tuple(old), tuple(new))
+        made = np.zeros((*x.shape[:-1], wide + x.shape[-1] - self.unknowns))
+        made[..., to], made[..., wide:] = x[..., of], x[..., self.unknowns :]
+        return made
+
+
+@lru_cache(maxsize=256)
+def _between(layout: Layout, old: tuple[int, ...], new: tuple[int, ...]) -> tuple[int, IntArray, IntArray]:
+    """How many unknowns there are with new harmonics; where those of harmonics that both have are among
+    these, and among the old ones."""
+    wide = Layout(layout.contacts, layout.directions, len(new))
+    both = [h for h in (0, *old) if h == 0 or h in new]
+    to, of = (
+        (
+            np.arange(one.contacts)[:, None] * one.width + np.flatnonzero(np.isin(one.harmonic_of(has), both))
+        ).ravel()
+        for one, has in ((wide, new), (layout, old))
+    )
+    return wide.unknowns, to, of

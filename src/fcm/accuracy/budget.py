@@ -1,0 +1,36 @@
+"""How much following the partners of a response may take."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from fcm.accuracy.options import PAIR, PairOptions
+from fcm.harmonic.work import Work
+
+
+@dataclass
+class Budget:
+    """Seconds of calculated work, as of `fcm.harmonic.cost`, that are left: those who follow take from it."""
+
+    left: float = PAIR.seconds
+
+    @classmethod
+    def of(cls, work: Work, options: PairOptions) -> Budget:
+        """In proportion to the work that the response itself took, so that its error never takes much more.
+
+        >>> from fcm.harmonic.work import Work
+        >>> work = Work()
+        >>> work.take(1.0)
+        >>> Budget.of(work, PairOptions(part=0.3, unnoticed=0.1)).left
+        0.3
+        """
+        return cls(min(max(options.part * work.seconds, options.unnoticed), options.seconds))
+
+    def shares(self, count: int) -> Iterator[Budget]:
+        """One after the other for so many: what one leaves is for the others, too."""
+        for number in range(count):
+            share = self.left / (count - number)
+            one = Budget(share)
+            yield one
+            self.left -= share - one.left
