@@ -22,6 +22,8 @@ if TYPE_CHECKING:
         planar_gradients,
         planar_loop,
     )
+    from fcm.contact.contact_law import ContactLaw
+    from fcm.continuation import Problem, follow
     from fcm.response import respond
     from fcm.scene import load_scene
     from fcm.table import open_table
@@ -29,6 +31,9 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _HOME = {
+    "ContactLaw": "contact",
+    "Problem": "continuation",
+    "follow": "continuation",
     "fourier_coefficients": "contact",
     "fourier_gradients": "contact",
     "hysteresis_loop": "contact",
@@ -46,6 +51,9 @@ _HOME = {
 }
 
 __all__ = [
+    "ContactLaw",
+    "Problem",
+    "follow",
     "fourier_coefficients",
     "fourier_gradients",
     "hysteresis_loop",

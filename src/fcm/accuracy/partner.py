@@ -85,7 +85,7 @@ def give_back(lifted: Lifted, system: System, more: tuple[int, ...]) -> None:
 
 def _plain(system: System) -> bool:
     """Whether the next curve may have the same structure, seen by other contacts."""
-    return system.scene.ring is None and not system.scene.loads
+    return system.scene.ring is None and not system.scene.loads and not system.own_laws
 
 
 def _key(system: System, more: tuple[int, ...]) -> tuple[object, ...]:

@@ -53,7 +53,7 @@ def mirrors(
 
 def _of(system: System, z: FloatArray, later: bool, options: BranchingOptions) -> Mirror | None:
     contacts = system.scene.contacts
-    laws = [(c.mu, c.k_u, c.k_v, c.n_0) for c in contacts]
+    laws = [(c.mu, c.k_u, c.k_v, c.n_0, c.law) for c in contacts]
     blocks = z[:-1].reshape(len(contacts), -1)
     harmonics = system.layout.harmonic_of(system.harmonics)
     turned = (-1.0) ** harmonics if later else np.ones(harmonics.size)

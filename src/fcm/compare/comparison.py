@@ -11,7 +11,7 @@ from fcm.compare.errors import Errors, Reference, Shown, reference, worst
 from fcm.compare.methods import CLOSED_FORM, EXACT, Method, Run, run, solve, with_step
 from fcm.compare.startup import Startup, startup
 from fcm.reduction.leave_out import TOLERANCE
-from fcm.response.around import refuse_other_harmonics, refuse_plane, refuse_ring
+from fcm.response.around import refuse_other_harmonics, refuse_own_laws, refuse_plane, refuse_ring
 from fcm.response.sweep import trace
 from fcm.scene.errors import counted
 from fcm.scene.model import Scene
@@ -159,6 +159,7 @@ def compare(
     """
     refuse_ring(scene, "a comparison with the exact motion")
     refuse_plane(scene, "a comparison with the exact motion")
+    refuse_own_laws(scene, "a comparison with the exact motion")
     refuse_other_harmonics(scene, "a comparison with the exact motion")
     begin = time.perf_counter()
     out = Comparison(scene)

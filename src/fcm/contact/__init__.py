@@ -10,6 +10,7 @@ from fcm.contact import normal_load
 from fcm.on_demand import on_demand
 
 if TYPE_CHECKING:
+    from fcm.contact.contact_law import ContactLaw, ContactLawError
     from fcm.contact.fourier import fourier_coefficients, fourier_gradients
     from fcm.contact.loop import Loop, hysteresis_loop
     from fcm.contact.normal import normal_coefficients, normal_gradients
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from fcm.contact.plane.loop import PlanarLoop, planar_loop
 
 __all__ = [
+    "ContactLaw",
+    "ContactLawError",
     "Loop",
     "PeriodicGradients",
     "PeriodicLoop",
@@ -38,6 +41,8 @@ __all__ = [
 ]
 
 _HOME = {
+    "ContactLaw": "contact_law",
+    "ContactLawError": "contact_law",
     "Loop": "loop",
     "PeriodicGradients": "periodic.coefficients",
     "PeriodicLoop": "periodic.loop",

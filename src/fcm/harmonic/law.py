@@ -66,6 +66,10 @@ class Law:
         """Take other numbers."""
         self.mu, self.k_u, self.k_v, self.n_0 = mu, k_u, k_v, n_0
 
+    def without_margins(self) -> None:
+        """Say of none of the margins that it is one."""
+        self.kind[:] = NONE
+
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def evaluate(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:

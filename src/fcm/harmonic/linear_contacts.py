@@ -106,8 +106,9 @@ def highest(system: System, omega: float) -> float:
 
 
 def least(system: System, omega: float) -> float:
-    """The least level at which a contact is not as it is at rest; 0 where static loads have a say in that."""
-    if system.scene.loads:
+    """The least level at which a contact is not as it is at rest; 0 where static loads, or laws of one's own,
+    have a say in that."""
+    if system.scene.loads or system.own_laws:
         return 0.0
     levels = [GREATEST]
     for variation, slip, contact in _motions(system, _on_ports(system, omega)[0], sum):

@@ -85,6 +85,9 @@ def loops(system: System, z: FloatArray) -> FloatArray:
     first = layout.directions + layout.stride * j
     out = np.zeros((z.shape[0], len(system.scene.contacts), 5))
     for i, (contact, x) in enumerate(zip(system.scene.contacts, _blocks(system, z), strict=True)):
+        if contact.law is not None:  # nothing is known of a loop
+            out[:, i] = np.nan
+            continue
         V = x[:, first + 2 * normal] + 1j * x[:, first + 2 * normal + 1]
         if contact.second is not None:  # no loop; the greatest displacement of the ellipse
             out[:, i, :3] = np.nan
@@ -112,7 +115,9 @@ def cycles(system: System, z: FloatArray, loop: FloatArray) -> tuple[npt.NDArray
     words, harmonics = [], system.harmonics
     borne = np.zeros((len(system.scene.contacts), z.shape[0], 4))
     for i, (c, state) in enumerate(_solved(system, z, borne)):
-        if c.mu * c.k_u == 0.0:
+        if c.law is not None:
+            words.append(np.full(z.shape[0], "", dtype="<U1"))
+        elif c.mu * c.k_u == 0.0:
             words.append(_without_friction(state))
         elif harmonics != (1,) or system.scene.planar:
             words.append(_spelt(state))
@@ -144,7 +149,7 @@ def _solved(
     for i, c in enumerate(system.scene.contacts):
         state[:] = NONE
         cycles_of(laws[i], z, i * system.layout.width, state, borne[i])
-        if c.mu * c.k_u == 0.0:
+        if c.mu * c.k_u == 0.0 and c.law is None:
             borne[i, :, 2] = 0.0
         yield c, state
 

@@ -23,6 +23,7 @@ from fcm.harmonic.law import Law
 from fcm.harmonic.level import Level
 from fcm.harmonic.periodic import Periodic
 from fcm.harmonic.planar import Planar
+from fcm.harmonic.sampled import SampledLaw
 from fcm.harmonic.single import SingleHarmonic
 from fcm.harmonic.travelling import TravellingDisplacements
 from fcm.harmonic.work import Work
@@ -72,12 +73,17 @@ class System:
         driven = self.linear.driven
         return harmonics if set(driven) <= {*harmonics} else tuple(sorted({*harmonics, *driven}))
 
+    @property
+    def own_laws(self) -> bool:
+        """Whether a contact has a law of its own."""
+        return any(one.law is not None for one in self.scene.contacts)
+
     @cached_property
     def unit(self) -> float:
         """The greatest preload, where the other curves of a sweep may be the same but for that; else 0."""
         scene = self.scene
         swept = [key.startswith("contact.") and key.endswith(".n_0") for key in scene.parameters]
-        plain = type(self.linear) is Linear and self.corrected and not scene.loads
+        plain = type(self.linear) is Linear and self.corrected and not scene.loads and not self.own_laws
         preloads = [abs(one.n_0) for one in scene.contacts]
         return max(preloads, default=0.0) if plain and swept and all(swept) and all(preloads) else 0.0
 
@@ -170,7 +176,7 @@ class System:
             balance.rest[:] = linear.ports.T @ linear.flexibility @ linear.load
             shown.rest[:] = linear.dofs.T @ linear.flexibility @ linear.load
         balance.coarse = (
-            self.table is not None and self.corrected and self.harmonics == (1,) and not self.scene.planar
+            self.table is not None and self.corrected and self.harmonics == (1,) and self._of_one_harmonic
         )
         return balance
 
@@ -183,9 +189,14 @@ class System:
         springs = self.springs(stuck=True)
         return yielding(linear.natural, linear.ports, linear.flexibility, springs, highest)
 
+    @property
+    def _of_one_harmonic(self) -> bool:
+        """Whether all contacts have a law of one harmonic."""
+        return not self.scene.planar and not self.own_laws
+
     def laws(self) -> list[Law]:
         """The contacts; those on a line with one harmonic in closed form, or by the table."""
-        if self.harmonics != (1,) or self.scene.planar:
+        if self.harmonics != (1,) or not self._of_one_harmonic:
             return self.exact_laws(self.harmonics)
         exact = ClosedForm() if self.corrected else self.coarse
         contacts = self.scene.contacts
@@ -193,12 +204,22 @@ class System:
 
     def exact_laws(self, outputs: tuple[int, ...]) -> list[Law]:
         """The contacts with the exact forces of the motion, of which some harmonics are asked for."""
-        contacts = self.scene.contacts
+        return self.exact_laws_of(self.harmonics, outputs)
+
+    def exact_laws_of(self, harmonics: tuple[int, ...], outputs: tuple[int, ...]) -> list[Law]:
+        """The same of a motion with other harmonics."""
+        found: list[Law] = []
         if self.scene.planar:  # one on a line is one in whose second direction nothing moves
-            in_plane = planar_contact(self.harmonics, outputs)
-            return [Planar(in_plane, c.mu, c.k_u, c.k_v, c.n_0) for c in contacts]
-        kernel = periodic_contact(self.harmonics, outputs)
-        return [Periodic(kernel, c.mu, c.k_u, c.k_v, c.n_0) for c in contacts]
+            in_plane = planar_contact(harmonics, outputs)
+            found += [Planar(in_plane, c.mu, c.k_u, c.k_v, c.n_0) for c in self.scene.contacts]
+        else:
+            kernel = periodic_contact(harmonics, outputs)
+            found += [Periodic(kernel, c.mu, c.k_u, c.k_v, c.n_0) for c in self.scene.contacts]
+        directions = self.scene.directions_of_contact
+        for i, c in enumerate(self.scene.contacts):
+            if c.law is not None:
+                found[i] = SampledLaw(c, harmonics, outputs, directions, found[i].margins)
+        return found
 
     def springs(self, stuck: bool) -> FloatArray:
         """Stiffnesses of all contacts, (port,): all stuck, or all open."""
@@ -246,7 +267,8 @@ _KEPT = _Kept()
 def _workspace_of(system: System) -> _Workspace:
     """For a system: if it is small, that of one before it, as in a sweep."""
     scene, kept = system.scene, _KEPT.of
-    if scene.ring is not None or scene.loads or len(scene.contacts) * len(system.harmonics) > SMALL:
+    large = len(scene.contacts) * len(system.harmonics) > SMALL
+    if scene.ring is not None or scene.loads or system.own_laws or large:
         return _Workspace(system)
     approximate = system.table is not None, system.corrected
     key = (*system.linear.numbers, scene.frequency_range, system.harmonics, *approximate)

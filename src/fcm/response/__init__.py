@@ -80,7 +80,7 @@ def respond(
     >>> data.fold_frequency.values.round(4).tolist()
     [[1.2388, 1.1875]]
     """
-    from fcm.response.around import check_no_ring
+    from fcm.response.around import check_no_ring, refuse_own_laws
     from fcm.response.visible import check_solvable, visible
     from fcm.results.output import to_dataset
 
@@ -94,6 +94,9 @@ def respond(
         raise ResponseError("sensitivities are of the balance's peaks; the method is 'exact'")
     if sensitivity:
         check_no_ring(scene, "sensitivities")
+        refuse_own_laws(scene, "a sensitivity")
+    if scene.schedule:
+        refuse_own_laws(scene, "the motion of a schedule")
     place = None if executor is None else place_of(executor)
     response = _curves(scene, method, at, harmonics, accuracy, place)
     if sensitivity:

@@ -46,6 +46,16 @@ def refuse_plane(scene: Scene, what: str) -> None:
         raise ResponseError(f"{scene.name}: contact {names[0]}: {what} {PLANE}")
 
 
+def refuse_own_laws(scene: Scene, what: str) -> None:
+    """Raise ResponseError where more is asked of a contact's own law than its forces over a cycle."""
+    if scene.with_own_laws:
+        names = [quoted(one.name) for one in scene.contacts if one.law is not None]
+        raise ResponseError(
+            f"{scene.name}: contact {names[0]}: {what} needs more than the forces over a cycle that its own "
+            "law gives; response curves of the balance do not (method 'closed-form')"
+        )
+
+
 def check_modes(scene: Scene, wanted: Wanted) -> None:
     """Raise ResponseError where harmonics are asked for that meet a nodal diameter without modes."""
     for curve in scene.each_curve():

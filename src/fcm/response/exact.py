@@ -14,7 +14,7 @@ from fcm.reduction.held import on_contacts
 from fcm.reduction.leave_out import TOLERANCE, leave_out_modes
 from fcm.reduction.mode_effect import effect, foreseen
 from fcm.reduction.sentences import on_modes
-from fcm.response.around import refuse_other_harmonics, refuse_plane, refuse_ring
+from fcm.response.around import refuse_other_harmonics, refuse_own_laws, refuse_plane, refuse_ring
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.exact_work import ExactWork
 from fcm.response.legs import LEGS
@@ -91,6 +91,7 @@ def trace_exact(
     """
     refuse_ring(scene, "the exact motion")
     refuse_plane(scene, "the exact motion")
+    refuse_own_laws(scene, "the exact motion")
     refuse_other_harmonics(scene, "the exact motion")
     begin, frequencies = time.perf_counter(), _checked(scene, at)
     with checkpoint_of(keep, resume) as checkpoint:

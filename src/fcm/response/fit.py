@@ -17,7 +17,7 @@ from fcm.fit.options import FIT
 from fcm.fit.parameters import FitError, Parameters, parameters_of
 from fcm.fit.solve import Solved, solved
 from fcm.harmonic.mode import ModeError
-from fcm.response.around import check_no_ring
+from fcm.response.around import check_no_ring, refuse_own_laws
 from fcm.response.mode import check_free
 from fcm.response.sweep import trace
 from fcm.response.wanted import ResponseError, wanted_of
@@ -63,6 +63,7 @@ def fit(
     """
     assert scene.fit is not None
     check_no_ring(scene, "fits")
+    refuse_own_laws(scene, "a fit")
     if any(one.damping is not None for one in scene.fit.data):
         check_free(scene)
     begin, wanted = time.perf_counter(), wanted_of(scene, harmonics, accuracy)

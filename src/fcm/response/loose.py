@@ -25,7 +25,7 @@ def loose(scene: Scene, states: npt.NDArray[np.str_]) -> npt.NDArray[np.bool_]:
     >>> loose(scene, np.array([["E"], ["EPEN"]])).tolist()
     [False, False]
     """
-    if len(scene.contacts) < 2:
+    if len(scene.contacts) < 2 or scene.with_own_laws:
         return np.zeros(len(states), dtype=np.bool_)
     rough = np.array([contact.mu * contact.k_u > 0.0 for contact in scene.contacts], dtype=np.bool_)
     stuck, changing = (states == "E") & rough, np.char.str_len(states) > 1

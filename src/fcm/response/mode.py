@@ -18,7 +18,7 @@ from fcm.harmonic.mode import Mode, ModeError, half_peak_to_peak, nonlinear_mode
 from fcm.harmonic.mode_forced import flanks, modal_force, resonances, resonant_level
 from fcm.harmonic.record import cycles, loops
 from fcm.harmonic.system import System
-from fcm.response.around import check_no_ring, refuse_other_harmonics
+from fcm.response.around import check_no_ring, refuse_other_harmonics, refuse_own_laws
 from fcm.response.groups import anonymous, lost_curve
 from fcm.response.incomplete import because, no_steady_states
 from fcm.response.loose import loose
@@ -105,6 +105,7 @@ def check_free(scene: Scene) -> None:
     if any(curve.loads for curve in scene.each_curve()):
         raise ResponseError(f"{scene.name}: load: nonlinear modes under static loads are not computed")
     check_no_ring(scene, "nonlinear modes")
+    refuse_own_laws(scene, "nonlinear modes")
     refuse_other_harmonics(scene, "what a nonlinear mode predicts")
 
 

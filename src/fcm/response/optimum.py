@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.response.around import check_no_ring
+from fcm.response.around import check_no_ring, refuse_own_laws
 from fcm.response.curve_sweep import checkpoint_of
 from fcm.response.least import Found, Task, with_values
 from fcm.response.optima import optima
@@ -66,6 +66,7 @@ def optimise(
     """
     assert scene.optimum is not None
     check_no_ring(scene, "optima")
+    refuse_own_laws(scene, "an optimum")
     begin = time.perf_counter()
     numbers, free = _freed(scene, scene.optimum.vary)
     wanted = wanted_of(scene, harmonics, accuracy)

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from fcm.harmonic.peak import Kind
 from fcm.harmonic.sensitivity import Sensitivities, sensitivities
 from fcm.reduction.put_back import unknowns
-from fcm.response.around import check_no_ring
+from fcm.response.around import check_no_ring, refuse_own_laws
 from fcm.response.optimum import scenes_at
 from fcm.results.cause import Cause
 from fcm.results.result import INTERRUPTED, Curve, Response
@@ -31,6 +31,7 @@ def add_sensitivities(response: Response, scene: Scene, progress: Progress | Non
     Interrupted, the curves that have none say so.
     """
     check_no_ring(scene, "sensitivities")
+    refuse_own_laws(scene, "a sensitivity")
     scenes = tuple(scene.each_curve()) if response.curves else ()
     if response.curves and response.tracking is not None and response.tracking.optima:
         scenes = scenes_at(scene, response.tracking.optima)

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from fcm.harmonic.sampled import check_own_laws
 from fcm.reduction import sentences
 from fcm.reduction.leave_out import TOLERANCE, Lighter, keep_all, leave_out
 from fcm.reduction.put_back import EACH_CHECKED, checked, restored
@@ -27,6 +28,10 @@ from fcm.table import Table
 BATCH = 10  # curves, which are finished or interrupted together
 HIGHEST_EXPECTED = 9  # harmonic, where an accuracy decides
 FIRST = 0.9  # share of the bar at which the curves are traced; then they are checked
+HILL = (
+    "the sequence of states of contacts with laws of their own: stability is by Hill's method, with the "
+    "harmonics of the balance"
+)
 NO_TABLE_IN_PLANE = "the table: forces of contacts in a plane are exact, with one harmonic too (no effect)"
 
 
@@ -82,6 +87,8 @@ def trace(
     ------
     ResponseError
         If the method is unknown, or the scene has no range of frequencies.
+    ContactLawError
+        If a contact's own law gives no forces.
     CheckpointError
         If another run is at work on that file.
     Gone
@@ -93,6 +100,7 @@ def trace(
         raise ResponseError("the scene has no [response] with frequency = [from, to], so no curve to trace")
     begin = time.perf_counter()
     wanted = wanted_of(scene, harmonics, accuracy)
+    check_own_laws(scene)
     check_modes(scene, wanted)
     with checkpoint_of(keep, resume) as checkpoint:
         curves = CurveSweep(jobs or os.cpu_count() or 1, checkpoint, place)
@@ -110,7 +118,7 @@ def _traced(sweep: _Sweep, tolerance: float | None, progress: Progress | None) -
     """The curves without what they do not need; where that turns out to be needed, once more with it."""
     curves = sweep.scene.each_curve()
     highest = max((*(sweep.wanted.harmonics or (HIGHEST_EXPECTED,)), *driven_harmonics(sweep.scene)))
-    if tolerance is None or sweep.scene.ring is not None:
+    if tolerance is None or sweep.scene.ring is not None or sweep.scene.with_own_laws:
         lighter = keep_all(curves)
     else:
         lighter = leave_out(curves, tolerance, highest)
@@ -126,6 +134,8 @@ def _traced(sweep: _Sweep, tolerance: float | None, progress: Progress | None) -
     response.curves = [without_rounding(one) for one in response.curves]
     if sweep.table_idle:
         said.append(NO_TABLE_IN_PLANE if sweep.scene.planar else "the table: no contact needs it (no effect)")
+    if sweep.scene.with_own_laws:
+        said.append(HILL)
     response.left_out = [*said, *sentences.on_means(lighter), *unknown(sweep.scene, sweep.wanted)]
     return response
 

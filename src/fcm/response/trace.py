@@ -15,6 +15,7 @@ from fcm.accuracy.refinement import Accurate, accurate, enlarged, finer, given, 
 from fcm.accuracy.stability_limits import Lost, lost_along, moved
 from fcm.accuracy.trust import astray, disbelieved
 from fcm.branches.options import FOLDS
+from fcm.contact.contact_law import ContactLawError
 from fcm.continuation import Mark
 from fcm.harmonic.in_plane import in_plane
 from fcm.harmonic.record import Record, cycles, loops, recorded
@@ -58,9 +59,13 @@ def traced_curve(
     fcm.run.Interrupted
         With the best curve that there is, where an interruption comes after the first.
     """
+    from fcm.response.groups import lost_curve
+
     begin, so_far = time.perf_counter(), SoFar(tell)
     try:
         curve = _traced_curve(scene, wanted, look, so_far)
+    except ContactLawError as useless:  # of a motion that was not tried before
+        curve = lost_curve(scene, str(useless))
     except KeyboardInterrupt:
         if so_far.found is None:
             raise
@@ -189,7 +194,7 @@ def _curve(followed: _Followed) -> Curve:
         mean=pick(points.mean, rows),
         regime=pick(words, rows),
         loop=pick(loop, rows),
-        cycle=pick(borne, rows),
+        cycle=pick(_without_slip_of_own_laws(scene, borne), rows),
         cycle_error=pick(np.concatenate([one.borne for one in found.errors]), rows),
         stable=pick(stable, rows),
         table_error=pick(points.shift, rows),
@@ -217,6 +222,15 @@ def _curve(followed: _Followed) -> Curve:
     of_borne = _of_greatest(found, points.path, borne)
     curve.greatest = greatest_of(curve, np.full_like(of_borne, np.nan) if followed.exceeded else of_borne)
     return curve
+
+
+def _without_slip_of_own_laws(scene: Scene, borne: FloatArray) -> FloatArray:
+    """What contacts bear (point, contact, 4), with NaN for the way of the slip where the law is one's own."""
+    own = [i for i, one in enumerate(scene.contacts) if one.law is not None]
+    if own:
+        borne = borne.copy()
+        borne[:, own, 2] = np.nan
+    return borne
 
 
 def _of_greatest(found: Accurate, path: Rows, borne: FloatArray) -> FloatArray:

@@ -14,7 +14,7 @@ import numpy as np
 
 from fcm.accuracy.refinement import accurate
 from fcm.harmonic.system import System
-from fcm.response.around import check_no_ring
+from fcm.response.around import check_no_ring, refuse_own_laws
 from fcm.response.curve_sweep import checkpoint_of
 from fcm.response.leading import leading
 from fcm.response.tracked_work import KINDS, STATES, Followed, TrackedWork
@@ -189,6 +189,7 @@ def _short_of(tracking: Tracking, accuracy: float) -> str:
 def _check(scene: Scene, number: Number, span: tuple[float, float]) -> None:
     low, high = span
     check_no_ring(scene, "tracked points")
+    refuse_own_laws(scene, "a tracked point")
     if not scene.has_range:
         raise ResponseError("the scene has no range of frequencies; give [response] frequency = [from, to]")
     for which, end in enumerate(span):

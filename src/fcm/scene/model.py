@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.contact.contact_law import ContactLaw
 from fcm.scene.ring import Ring, with_own
 
 if TYPE_CHECKING:
@@ -53,6 +54,7 @@ class Contact:
     k_v: float
     n_0: float  # preload, negative for a gap
     second: FloatArray | None = None  # (dof,) at right angles to the other, of a contact in a plane
+    law: ContactLaw | None = None  # of its own; the numbers then are of what resembles it, to begin with
 
     @property
     def directions(self) -> tuple[FloatArray, ...]:
@@ -223,6 +225,48 @@ class Scene:
         places = {one.place for one in held}
         contacts = tuple(one for i, one in enumerate(self.contacts) if i not in places)
         return replace(self, contacts=contacts, held=tuple(held), draft=None)
+
+    @property
+    def with_own_laws(self) -> bool:
+        """Whether a contact of a curve has a law of its own."""
+        return any(one.law is not None for curve in self.each_curve() for one in curve.contacts)
+
+    def with_laws(self, laws: Mapping[str, ContactLaw]) -> Scene:
+        """The scene with laws of one's own, by the names of the contacts that have them.
+
+        A contact's mu, k_u, k_v and n_0 stay what the search for solutions begins with: the stiffness of what
+        resembles it, and the level of the forces beyond which it may slip or open.
+
+        Raises
+        ------
+        ValueError
+            If there is no contact of a name, or its numbers are swept, which its law has not; and of a ring.
+
+        Examples
+        --------
+        >>> import fcm
+        >>> class Spring(fcm.ContactLaw):
+        ...     def forces(self, x, dx):
+        ...         return 2.0 * x, 2.0 * dx
+        >>> fcm.load_scene("yang1998-n5").with_laws({"shroud": Spring()}).with_own_laws
+        True
+        """
+        names = [one.name for one in self.contacts]
+        for name, law in laws.items():
+            if name not in names:
+                raise ValueError(f"no contact is called {name!r}; there are {', '.join(map(repr, names))}")
+            if not isinstance(law, ContactLaw):
+                raise ValueError(f"the law of {name!r} is a {type(law).__name__}, and no fcm.ContactLaw")
+            swept = [key for curve in self.curves for key in curve.parameters]
+            if any(key.startswith((f"contact.{name}.", "contact.*.")) for key in swept):
+                raise ValueError(f"numbers of the contact {name!r} are swept, which its own law has not")
+        if self.ring is not None and laws:
+            raise ValueError("a contact of a ring of sectors cannot have a law of its own")
+        return replace(self._with_laws(laws), curves=tuple(one._with_laws(laws) for one in self.curves))
+
+    def _with_laws(self, laws: Mapping[str, ContactLaw]) -> Scene:
+        contacts = tuple(replace(one, law=laws.get(one.name, one.law)) for one in self.contacts)
+        return replace(self, contacts=contacts)
 
     def whole(self) -> Scene:
         """The scene with no contact held."""

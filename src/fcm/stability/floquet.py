@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
+from fcm.stability.hill import HillMultipliers
 from fcm.stability.multipliers import Multipliers
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -27,9 +28,11 @@ class _Last(threading.local):
 _LAST = _Last()
 
 
-def multipliers_of(system: System, highest: float) -> Multipliers:
+def multipliers_of(system: System, highest: float) -> Multipliers | HillMultipliers:
     """The workspace for a system, be it a structure or a sector of a ring; the last one if it is small, and
-    the contacts alone are others, as in a sweep."""
+    the contacts alone are others, as in a sweep. Hill's method where a contact has a law of its own."""
+    if system.own_laws:
+        return HillMultipliers(system)
     if system.scene.ring is not None:
         from fcm.stability.ring_multipliers import RingMultipliers
 

@@ -1,0 +1,122 @@
+r"""Stability by Hill's method: where the sequence of a contact's states is not known.
+
+A disturbance exp(s t) p(t) of a periodic motion is balanced with the harmonics of the motion itself. With
+modes of mass 1, shapes P on the ports, D the derivative by time of means, cosines and sines, and T the
+derivative of the contacts' forces by the motion,
+
+    ((s + D)^2 + 2 zeta_i w_i (s + D) + w_i^2) q_i + P_i T P^T q = 0,
+
+an eigenvalue problem for s, of twice as many exponents as modes times unknowns of each. Each exponent comes
+several times, moved by i k omega; the one whose p(t) lies most evenly about its mean has lost least by the
+harmonics left out (Lazarus and Thomas, Comptes Rendus Mecanique 338, 2010). Multipliers are
+exp(2 pi s / omega).
+
+T is that of motions that repeat themselves: of a law that remembers, such as friction, it is exact for
+disturbances that last, and errs for those that grow or decay within a period.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+import scipy.linalg
+
+from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
+from fcm.stability.verdict import UNKNOWN, Spectrum, Verdict
+from fcm.structure.layout import Layout
+
+ComplexArray = npt.NDArray[np.complex128]
+
+ASIDE = 0.25  # mean harmonic of a disturbance, from which on another one may be the same
+SAME = 1e-9  # relative difference of the multipliers of two that are
+
+
+class Same:
+    """The motion that is judged: that of the balance itself, with nothing added to it."""
+
+    shift = 0.0
+
+    def at(self, z: FloatArray) -> None:
+        """Of a point z (unknown + 1,): nothing is to be done."""
+
+
+class HillMultipliers:
+    """The multipliers of solutions of a system; a workspace, as `Multipliers` is."""
+
+    def __init__(self, system: System) -> None:
+        self.system, self.finer = system, Same()
+        linear, layout = system.linear, system.layout
+        self.harmonics = tuple(range(1, max(system.harmonics) + 1))
+        self.wide = Layout(layout.contacts, layout.directions, len(self.harmonics))
+        self.laws = system.exact_laws_of(self.harmonics, self.harmonics)
+        modes, each = linear.natural.size, 1 + 2 * len(self.harmonics)
+        self.turning = np.zeros((each, each))  # D / omega
+        for j, h in enumerate(self.harmonics):
+            a = 1 + 2 * j
+            self.turning[a, a + 1], self.turning[a + 1, a] = -h, h
+        # where the unknowns of a port are among those of the balance, means first
+        waves = np.stack((self.wide.waves_at, self.wide.waves_at + 1), axis=1).reshape(-1, self.wide.ports)
+        self.place = np.vstack((self.wide.mean_at, waves)).T  # (port, each)
+        self.modes, self.each = modes, each
+
+    def of(self, z: FloatArray) -> list[complex] | None:
+        """The multipliers at z (unknown + 1,), twice as many as modes; None where they are not finite."""
+        omega, stiffness = float(z[-1]), self._stiffness(z)
+        if not np.isfinite(stiffness).all():
+            return None
+        linear, one = self.system.linear, np.eye(self.each)
+        D = omega * self.turning
+        rate = 2.0 * linear.damping * linear.natural
+        first = np.kron(np.eye(self.modes), 2.0 * D) + np.kron(np.diag(rate), one)
+        none = np.kron(np.eye(self.modes), D @ D) + np.kron(np.diag(rate), D)
+        none += np.kron(np.diag(linear.natural**2), one) + stiffness
+        size = self.modes * self.each
+        matrix = np.block([[np.zeros((size, size)), np.eye(size)], [-none, -first]])
+        exponents, vectors = scipy.linalg.eig(matrix, check_finite=False)
+        off = self._off_centre(vectors[:size])
+        found, again = list[complex](), list[complex]()
+        for k in np.argsort(np.abs(off), kind="stable").tolist():
+            value = complex(np.exp(2.0 * np.pi / omega * exponents[k]))
+            # of a pair at -1 both signs of the imaginary part are the same multiplier
+            twice = abs(off[k]) > ASIDE and any(abs(value - one) < SAME * abs(one) for one in found)
+            (again if twice else found).append(value)
+        return [*found, *again][: 2 * self.modes]
+
+    def _off_centre(self, vectors: ComplexArray) -> FloatArray:
+        """The mean harmonic of disturbances (mode unknown, exponent), by their squares: (exponent,)."""
+        parts = vectors.reshape(self.modes, self.each, -1)
+        ahead, behind = parts[:, 1::2] + 1j * parts[:, 2::2], parts[:, 1::2] - 1j * parts[:, 2::2]
+        up, down = (np.sum(np.abs(0.5 * one) ** 2, axis=0) for one in (ahead, behind))
+        whole = np.sum(np.abs(parts[:, 0]) ** 2, axis=0) + np.sum(up + down, axis=0)
+        mean: FloatArray = np.array(self.harmonics) @ (up - down) / whole
+        return mean
+
+    def _stiffness(self, z: FloatArray) -> FloatArray:
+        """P T P^T of the motion, (mode unknown, mode unknown)."""
+        x = np.ascontiguousarray(self.system.layout.with_harmonics(z, self.system.harmonics, self.harmonics))
+        ports, d, width = self.system.linear.ports, self.wide.directions, self.wide.width
+        found = np.zeros((self.modes, self.each, self.modes, self.each))
+        for c, law in enumerate(self.laws):
+            law.evaluate(x, c * width)
+            at = self.place[c * d : (c + 1) * d] - c * width
+            tangent = np.asarray(law.tangent)[
+                at[:, :, None, None], at[None, None]
+            ]  # (port, each, port, each)
+            shapes = ports[:, c * d : (c + 1) * d]
+            found += np.einsum("mp,paqb,nq->manb", shapes, tangent, shapes, optimize=True)
+        return found.reshape(self.modes * self.each, -1)
+
+    def verdict(self, z: FloatArray, turning: bool = False, enough: Sequence[float] = ()) -> Verdict:
+        """Of a solution with an even number of real multipliers above 1, or of a fold (turning)."""
+        values = self.of(z)
+        if values is None:
+            return UNKNOWN
+        spectrum = Spectrum(values)
+        return spectrum.verdict(spectrum.odd or turning)
+
+    def refined(self, z: FloatArray, persistent: bool) -> Verdict | None:
+        """None: no further harmonics are balanced."""
+        return None
