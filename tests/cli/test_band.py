@@ -13,6 +13,7 @@ def result(fcm, scene, tmp_path):
     return tmp_path / "draws.nc"
 
 
+@pytest.mark.slow
 def test_bands_are_drawn(fcm, result, tmp_path):
     done = fcm("plot", "response", "--band", 5, 95, result, "--dof", "v", "--log")
     assert (done.code, done.err) == (0, f"wrote {tmp_path / 'draws.png'}\n")

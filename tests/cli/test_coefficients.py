@@ -12,6 +12,7 @@ SOME = ("--coefficient", "F_c", "--phi", "15deg")
 WHATS = (("surface", *SOME), ("surface", "--contour", *SOME), ("error", *SOME), ("normal",))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("what", "name", "begin"),
     [
@@ -33,6 +34,7 @@ def test_the_ending_is_the_format_and_the_bytes_are_the_same_again(fcm, tmp_path
     assert {path.name for path in tmp_path.iterdir()} == {name, "again" + name}
 
 
+@pytest.mark.slow
 def test_every_picture_has_a_name_of_its_own(fcm, tmp_path):
     for what in ("surface", "error", "normal"):
         assert fcm("plot", what).code == 0

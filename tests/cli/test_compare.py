@@ -30,6 +30,7 @@ def short(scene, monkeypatch):
     return scene
 
 
+@pytest.mark.slow
 def test_every_method_with_its_errors_and_costs(fcm, short):
     run = fcm("respond", short, "--compare", "--json", "-o", "c.nc")
     assert run.code == 0, run.err
@@ -118,6 +119,7 @@ def test_swept_values_are_coordinates_whatever_the_contact_is_called(fcm, quick)
         assert swept.attrs["key"] == "contact.left shroud.n_0" and swept.name in data["error"].coords
 
 
+@pytest.mark.slow
 def test_an_interruption_keeps_what_is_finished(fcm, quick, monkeypatch):
     done = []
 
@@ -158,6 +160,7 @@ def test_an_exact_curve_that_takes_too_long_is_given_up(fcm, quick, monkeypatch)
     assert run.code == 0 and "the curve: not finished in 0 s of processor time" in run.err
 
 
+@pytest.mark.slow
 def test_without_a_whole_curve_there_is_nothing_to_compare(fcm, scene):
     """An undamped resonance of the open contact."""
     scene.write_text(

@@ -16,6 +16,7 @@ from fcm.scene import load_scene
 SCENE = Path(__file__).parents[1] / "orbit/scenes/two_periods.toml"
 
 
+@pytest.mark.slow
 def test_where_nothing_that_was_found_is_stable_the_run_says_so(fcm, tmp_path):
     """Sweeps of the exact motion end there, and there alone, on one that repeats after two periods."""
     scene = tmp_path / "a.toml"

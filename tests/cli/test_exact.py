@@ -68,6 +68,7 @@ def test_python_gives_the_same(fcm, scene, tmp_path):
         np.testing.assert_array_equal(file["amplitude"][:], data.amplitude.values)
 
 
+@pytest.mark.slow
 def test_points_are_drawn_over_curves(fcm, scene, tmp_path):
     assert fcm("respond", scene, "-o", "curves.nc").code == 0
     assert fcm("respond", scene, *AT, "-o", "exact.nc").code == 0
@@ -123,6 +124,7 @@ def test_a_curve_without_points_is_a_header(fcm, scene, tmp_path):
 SCENES = Path(__file__).parents[1] / "orbit/scenes"
 
 
+@pytest.mark.slow
 def test_points_that_are_one_of_many_or_do_not_repeat_are_named(fcm, tmp_path):
     """In words, in the summary, in the file and in the CSV."""
     args = ("--method", "exact", "--json", "--csv", "points.csv", "-o", "points.nc")
@@ -153,6 +155,7 @@ def test_curves_say_at_how_many_points_the_motion_may_be_one_of_many(fcm, method
     assert f"{'' if method else '--method exact '}--at F tells how far they range" in run.err
 
 
+@pytest.mark.slow
 def test_a_time_limit_ends_a_run_as_ctrl_c_does(fcm, scene):
     """A curve of thousands of points is not finished in a second; what there is of it is kept and written."""
     args = ("respond", scene, "--method", "exact", "--max-step", "0.0001", "-o", "a.nc", "--json")

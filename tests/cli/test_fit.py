@@ -43,6 +43,7 @@ def measured(tmp_path):
     return write
 
 
+@pytest.mark.slow
 def test_the_numbers_are_told_with_their_errors_and_drawn(measured, tmp_path):
     path, out = measured(), tmp_path / "fitted.nc"
     done = called("respond", path, "-o", out, "--json")
@@ -72,6 +73,7 @@ def test_the_table_names_numbers_and_data(measured):
     assert "curve" in done.err
 
 
+@pytest.mark.slow
 def test_a_number_that_the_data_do_not_tell_is_said_with_what_would_tell_it(measured):
     """The contact sticks at this level; it slips at three or ten times the level."""
     path = measured(n_0=1000.0, vary=("contact.shroud.mu", "contact.shroud.k_u"), points=12)
@@ -83,6 +85,7 @@ def test_a_number_that_the_data_do_not_tell_is_said_with_what_would_tell_it(meas
     assert re.search(advice, done.err)
 
 
+@pytest.mark.slow
 def test_numbers_of_which_a_product_alone_matters_are_not_told_apart(measured):
     path = measured(vary=("contact.shroud.mu", "contact.shroud.n_0"), points=12, k_v=0.0)
     done = called("respond", path, "--json")
@@ -101,6 +104,7 @@ def test_what_means_nothing_with_a_fit_is_refused(measured, option):
     assert done.code == 2 and "is of no use with [fit]" in done.err
 
 
+@pytest.mark.slow
 def test_an_interrupted_fit_tells_the_best_so_far(measured, tmp_path):
     """By a limit of time: what is told then says that it is not the end."""
     path = measured(points=12)

@@ -37,6 +37,7 @@ def loops(done):
     return json.loads(done.out)["loops"]
 
 
+@pytest.mark.slow
 def test_every_combination_is_drawn_once(fcm, tmp_path):
     args = ("--n0-bar", 0.4, "--n0-bar", 2, "--b-bar", 0.3, "--phi", "20deg", "--phi", 1, "--phi", "20deg")
     found = loops(fcm("plot", "loop", *args, "-o", "a.svg", "--json"))
@@ -150,6 +151,7 @@ def test_one_of_them(fcm, folded, undrawn):
     assert one["solution"] == 2 and not one["stable"]
 
 
+@pytest.mark.slow
 def test_without_a_frequency_it_is_the_peak(fcm, folded, tmp_path):
     found = loops(fcm("plot", "loop", folded, "--curve", 0, "--curve", 1, "--json", "-o", "a.png"))
     assert [one["a"] for one in found] == pytest.approx([6.236, 15.83], rel=1e-3)

@@ -95,6 +95,7 @@ def test_another_file_is_no_mode(fcm, tmp_path):
     assert done.code == 2 and "no variable frequency, modal_amplitude" in done.err
 
 
+@pytest.mark.slow
 def test_an_interruption_keeps_the_modes_that_are_finished(fcm, scene, monkeypatch):
     """All of them were lost. Of one that had been followed with fewer harmonics, that is kept."""
     scene.write_text(scene.read_text() + '\n[sweep]\n"contact.shroud.mu" = [0.3, 0.4, 0.5]\n')

@@ -101,6 +101,7 @@ def test_the_same_percentiles_of_draws_as_with_all_points(fcm, scene):
     assert "percentiles of 6 curves" in fcm("respond", scene, "--peaks-only").out
 
 
+@pytest.mark.slow
 def test_the_same_optimum_though_an_end_of_the_range_is_higher(fcm, scene):
     """Its error and stability are those of the peak that is least, and not of the end of the range."""
     scene.write_text(HIGHER_AT_THE_END)
@@ -119,6 +120,7 @@ def test_the_same_optimum_though_an_end_of_the_range_is_higher(fcm, scene):
     assert 0.3 < found["error"] / abs(off) < 3.0
 
 
+@pytest.mark.slow
 def test_what_has_peaks_only_is_drawn_by_them(fcm, scene):
     scene.write_text(scene.read_text() + SWEEP)
     assert fcm("respond", scene, "-o", "only.nc", "--peaks-only").code == 0

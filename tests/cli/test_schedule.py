@@ -198,6 +198,7 @@ record.measure = measure"""
         assert ("frequency" in data.variables) == left
 
 
+@pytest.mark.slow
 def test_the_motion_is_drawn_from_its_file(fcm, alone, tmp_path):
     alone.write_text(alone.read_text() + SWEEP)
     assert fcm("respond", alone, "-o", "a.nc").code == 0

@@ -135,6 +135,7 @@ def test_beside_points_that_are_not_kept_no_other_motions_are_sought(scene, monk
     assert len(sought) == 1
 
 
+@pytest.mark.slow
 def test_a_curve_goes_on_where_a_contact_has_lost_its_state(scene, monkeypatch):
     """From a motion of the contacts that are computed then, as all before are; to the curve of them all."""
     weak = (scene.contacts[0], replace(scene.contacts[1], n_0=2.0), scene.contacts[2])

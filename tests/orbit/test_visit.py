@@ -141,6 +141,7 @@ def test_a_frequency_too_low_to_follow_says_so():
     assert curve.reason.startswith("a cycle at 1e-09 rad/s lasts")
 
 
+@pytest.mark.slow
 def test_a_frequency_at_which_the_motion_is_not_determined_does_not_take_the_others():
     """In a ten-thousandth of a mode's period next to nothing is lost that would say which motion is steady:
     rounding decides whether one is found, which is that of the masses alone."""

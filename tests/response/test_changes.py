@@ -18,11 +18,13 @@ def test_a_pair_of_folds_shorter_than_the_longest_step(seed, gap):
     assert np.abs(np.diff(result.curves[0].folds)).min() < gap
 
 
+@pytest.mark.slow
 def test_the_curve_does_not_step_back_at_a_sharp_corner():
     # between a stuck contact and a slipping one this curve turns by more than a right angle
     assert outcome(3).disagreement < AGREE
 
 
+@pytest.mark.slow
 def test_points_closer_than_the_error_of_the_table_stay_in_their_order():
     # at the step of 0.1 the correction moved a point past its neighbour, which made two folds
     assert outcome(139).disagreement < AGREE

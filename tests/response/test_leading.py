@@ -64,6 +64,7 @@ def test_peaks_among_many_are_those_of_the_linear_structure():
         assert peak.frequency == pytest.approx(top.x, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_of_many_outputs_those_that_lead_are_tracked_and_the_others_are_said_to_be_left_out():
     found = track(masses(["*"], 2, 50.0), "peaks", "contact.c.n_0", (49.0, 50.0), harmonics=1)
     assert found.tracking is not None and found.tracking.complete

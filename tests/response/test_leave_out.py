@@ -46,6 +46,7 @@ def bound(response):
     return float(sentence.partition("less than ")[2].partition(",")[0])
 
 
+@pytest.mark.slow
 def test_five_hundred_modes_within_the_bound():
     scene = structure(500, 4, 40, 300.0)
     light, full = trace(scene), trace(scene, tolerance=None)

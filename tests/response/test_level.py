@@ -62,6 +62,7 @@ def test_the_level_is_a_column_of_csv(tmp_path):
     assert float(first[head.index("level")]) == response.curves[0].level[0]
 
 
+@pytest.mark.slow
 def test_where_the_level_is_not_followed_to_its_end_branches_are_not_said_to_be_all():
     """Then a solution beyond may be missing: the curve says where."""
     scene = random_scene(112)

@@ -43,6 +43,7 @@ def swept_coordinates(data, dim="curve"):
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_swept_values_are_coordinates_whatever_the_contact_is_called(fcm, tmp_path, name):
     (tmp_path / "a.toml").write_text(text_of(name), encoding="utf-8")
@@ -88,6 +89,7 @@ def fcm_scene(tmp_path):
     return loaded
 
 
+@pytest.mark.slow
 def test_tracked_curves_and_histories_have_them_too(fcm, tmp_path):
     schedule = "[[schedule]]\nfrequency = 1.1\ncycles = 3\n"
     (tmp_path / "a.toml").write_text(text_of("left shroud", more=schedule))

@@ -16,6 +16,7 @@ from .random_scenes import AGREE, outcome, random_scene
 
 
 # 166: a contact so stiff that digits are counted, and a fold in a corner
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [*range(6), 166])
 def test_complete_and_the_same_for_every_step(seed):
     result = outcome(seed)
@@ -23,6 +24,7 @@ def test_complete_and_the_same_for_every_step(seed):
     assert result.disagreement < AGREE
 
 
+@pytest.mark.slow
 def test_where_nothing_damps_it_is_said_what_would_do():
     """In phase with the forces a contact slides without work, and the curve turns on the spot, to a resonance
     that has no limit; with a little damping it leads there, and past it to where the exact motion is.

@@ -55,6 +55,7 @@ def path(response, tmp_path_factory):
     return path
 
 
+@pytest.mark.slow
 def test_percentiles_are_over_the_draws_of_each_given_value(scene, response):
     assert scene.drawn == ("contact.c.n_0", "contact.c.k_u")
     found = summary(response)["scatter"]

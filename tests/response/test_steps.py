@@ -26,6 +26,7 @@ def by_step():
     return {(c.parameters["n_0"], c.parameters["step"]): c for c in response.curves}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n_0", PRELOADS)
 def test_folds_and_peaks_for_every_step(by_step, n_0):
     finest = by_step[n_0, STEPS[-1]]

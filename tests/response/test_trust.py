@@ -64,6 +64,7 @@ def test_the_truncation_error_predicts_the_size_of_the_papers_discrepancy(curves
     assert curves[50.0].peaks["u"].error < 0.1 * predicted
 
 
+@pytest.mark.slow
 def test_contacts_too_stiff_for_the_table_are_traced_without_it():
     """A gap closed by springs 1e6 times as stiff as the structure: the right answer, and the run says how."""
     scene = replace(random_scene(26), max_step=0.1)
@@ -92,6 +93,7 @@ def test_a_contact_without_friction_opens_and_closes_and_may_be_unstable():
     assert none.folds == pytest.approx(hardly.folds, rel=1e-7)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [2, 10])
 def test_stability_between_folds_ends_at_the_same_frequencies_whatever_the_step(seed):
     crossings = []

@@ -67,6 +67,7 @@ def curve(scene):
     return curve
 
 
+@pytest.mark.slow
 def test_the_motion_jumps_where_it_is_said_that_it_may(scene, curve):
     """The exact motion, swept upwards in steps, leaves its branch long before the balance's own jump."""
     loaded = package.load_scene(scene)
