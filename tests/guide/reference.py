@@ -131,7 +131,8 @@ def python() -> str:
     for name in fcm.__all__:
         one = getattr(fcm, name)
         told = inspect.getdoc(one) or ""
-        parts += [f"## fcm.{name}\n", f"    fcm.{name}{signature(one)}\n", f"```text\n{told}\n```\n"]
+        given = "" if inspect.isclass(one) else signature(one)
+        parts += [f"## fcm.{name}\n", f"    fcm.{name}{given}\n", f"```text\n{told}\n```\n"]
     return "\n".join(parts)
 
 
