@@ -1,6 +1,7 @@
 """The linear system of many contacts on few modes, condensed to the modes, beside the system itself."""
 
 import tracemalloc
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,11 +10,14 @@ from fcm.continuation import Events, follow
 from fcm.continuation.corrector import Newton
 from fcm.harmonic.condensed import CondensedOptions
 from fcm.harmonic.linear_contacts import foresee
+from fcm.harmonic.stiff import _moved
 from fcm.harmonic.system import System
+from fcm.harmonic.whole import jacobian_of
 from fcm.scene import scene_from_dict
 
 from .strips import strip
 
+EVERY_MODE = CondensedOptions(fewest=1, share=1.0, stiff=(0.0,))
 WHOLE, CONDENSED = CondensedOptions(fewest=10**9), CondensedOptions(fewest=1, share=1.0)
 
 
@@ -46,6 +50,22 @@ def many_contacts(contacts=36, modes=4):
     )
 
 
+def mostly(n_0, contacts=24, slipping=(0, 23)):
+    """A strip of which all contacts but some stay as they are at rest, stuck or open."""
+    scene = strip(contacts)
+    preloads = [0.02 / contacts if i in slipping else n_0 / contacts for i in range(contacts)]
+    held = tuple(replace(one, n_0=n) for one, n in zip(scene.contacts, preloads, strict=True))
+    return replace(scene, contacts=held)
+
+
+def mostly_stuck():
+    return mostly(40.0)
+
+
+def mostly_open():
+    return mostly(-40.0)
+
+
 def jacobian(system, z):
     """By central differences of the residual, (unknown, unknown + 1)."""
     columns = []
@@ -62,9 +82,17 @@ def jacobian(system, z):
 
 
 @pytest.mark.parametrize("harmonics", [(1,), (1, 3)])
-@pytest.mark.parametrize("scene", [many_contacts, strip])
-def test_direction_and_orientation_are_those_of_the_whole_system(scene, harmonics):
-    system = System(scene(), harmonics, condensing=CONDENSED)
+@pytest.mark.parametrize(
+    ("scene", "options"),
+    [
+        (many_contacts, CONDENSED),
+        (strip, CONDENSED),
+        (mostly_stuck, EVERY_MODE),
+        (mostly_open, EVERY_MODE),
+    ],
+)
+def test_direction_and_orientation_are_those_of_the_whole_system(scene, options, harmonics):
+    system = System(scene(), harmonics, condensing=options)
     problem = system.balance()
     assert 0 < problem.rank < problem.unknowns
     rng = np.random.default_rng(2)
@@ -80,6 +108,45 @@ def test_direction_and_orientation_are_those_of_the_whole_system(scene, harmonic
     tangent = np.linalg.solve(whole, np.append(np.zeros(z.size - 1), 1.0))
     np.testing.assert_allclose(newton.tangent, tangent / np.linalg.norm(tangent), atol=1e-6)
     assert newton.orientation == np.sign(np.linalg.det(whole))
+
+
+@pytest.mark.parametrize("harmonics", [(1,), (1, 3)])
+@pytest.mark.parametrize("scene", [mostly_stuck, mostly_open])
+def test_contacts_that_stay_stuck_or_open_are_condensed(scene, harmonics):
+    """The equations are no more than those of the forces that two contacts have beside them."""
+    at, solutions, parts = (1.0, 1.15, 1.3), [], 1 + 2 * len(harmonics)
+    for options in (EVERY_MODE, WHOLE):
+        problem = System(scene(), harmonics, condensing=options).balance()
+        path = follow(problem, np.append(np.zeros(problem.unknowns), 0.9), (0.9, 1.5), Events(at))
+        solutions.append(path.z[np.isin(path.parameter, at)])
+        problem.evaluate(path.z[np.flatnonzero(path.parameter == 1.15)[0]])
+        assert problem.differs()
+        if options is EVERY_MODE:
+            assert problem.condensed is not None and problem.condensed.holds
+            assert parts < problem.condensed.held.size <= 4 * parts + 1
+    found, expected = solutions
+    assert len(found) == 3
+    np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected[:, :-1]).max())
+
+
+def test_contacts_that_begin_to_slip_or_open_are_taken_back():
+    """By a level of the forces at which all stick, one at which all slip, and back."""
+    system = System(strip(24, n_0=3.0), (1, 3), condensing=EVERY_MODE)
+    problem, whole = system.balance(), System(system.scene, (1, 3), condensing=WHOLE).balance()
+    rng, holds = np.random.default_rng(3), []
+    for size in (1e-3, 1.0, 1e-3):
+        z = np.append(size * rng.normal(size=problem.unknowns), 1.05)
+        tangents = []
+        for one in (problem, whole):
+            one.measure(z)
+            newton = Newton(one)
+            newton.scale[:], newton.z[:] = one.scale, z
+            newton.row[:] = np.append(np.zeros(problem.unknowns), 1.0)
+            assert newton.look()
+            tangents.append((newton.orientation, *newton.tangent))
+        np.testing.assert_allclose(*tangents, atol=1e-7)
+        holds.append(problem.condensed.holds)
+    assert holds == [True, False, True]
 
 
 def test_points_of_the_curve_balance():
@@ -170,3 +237,21 @@ def test_linear_responses_at_many_frequencies_take_one_matrix_at_a_time():
         np.linalg.solve(np.eye(ports) + G * stuck, X)
     )
     assert most < 16 * ports**2 * 16
+
+
+def test_rounding_of_many_contacts_is_that_of_random_errors():
+    """Three times the root of the sum of squares of the inverse of the whole system times each error."""
+    system = System(mostly_stuck(), (1, 3), condensing=EVERY_MODE)
+    balance = system.balance()
+    path = follow(balance, np.append(np.zeros(balance.unknowns), 0.9), (0.9, 1.5), Events((1.15,)))
+    (i,) = np.flatnonzero(path.parameter == 1.15)
+    balance.evaluate(path.z[i])
+    errors = np.random.default_rng(4).uniform(0.5, 1.0, balance.unknowns)
+    found = _moved(balance, path.z[i], path.direction[i], errors)
+    scale = np.array(balance.scale)
+    row = path.direction[i] / scale
+    matrix = np.vstack((jacobian_of(balance) * scale, row / np.linalg.norm(row)))
+    inverse = np.linalg.inv(matrix)[:-1, :-1]
+    np.testing.assert_array_less(found, 3.0 * scale[:-1] * (np.abs(inverse) @ errors) * (1.0 + 1e-6))
+    typical = 3.0 * scale[:-1] * np.sqrt(np.square(inverse * errors).sum(axis=1))
+    assert 0.8 < np.sqrt(np.mean(np.square(found / typical))) < 1.25

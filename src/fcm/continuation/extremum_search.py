@@ -7,6 +7,7 @@ the slope jumps, and no polynomial tells; but both sides are nearly straight clo
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import sqrt
 from typing import NamedTuple
 
@@ -16,14 +17,44 @@ from fcm.continuation.path import FloatArray
 from fcm.continuation.point import Point
 from fcm.continuation.stepper import Stepper
 
-HIGH = 1e-11  # of an output, to which a peak is known
-TURNED = 1e-15  # of the parameter, to which a fold is known
-CORNER = 1e-13  # and to which one in a corner is
-BETTER = 0.25  # of a slope, to which the next look has to reduce it: otherwise there is no cubic
-SHARPER = 4.0  # times the bend of the step: from there on there is a corner
-ASIDE = 0.1  # of the square of an interval over the step: how far from a corner, which they are to enclose
-COARSE = 1e-5  # length below which values are too nearly the same to tell more than their slopes
-FLAT = 0.1  # cosine of a turn, below which a length is no measure of the way
+
+@dataclass(frozen=True)
+class ExtremumOptions:
+    """To what an extreme is known, and when a polynomial leads to it.
+
+    Attributes
+    ----------
+    high, high_of_many : float
+        Of an output, to which a peak is known; and where each of many outputs has its own, at a point each.
+    outputs : int
+        So many are many.
+    turned, corner : float
+        Of the parameter, to which a fold is known; and to which one in a corner is.
+    better : float
+        Part of a slope, to which the next look has to reduce it: otherwise there is no cubic.
+    sharper : float
+        Times the bend of the step: from there on there is a corner.
+    aside : float
+        Part of the square of an interval over the step: how far from a corner, which they are to enclose.
+    coarse : float
+        Length below which values are too nearly the same to tell more than their slopes.
+    flat : float
+        Cosine of a turn, below which a length is no measure of the way.
+    """
+
+    high: float = 1e-11
+    high_of_many: float = 1e-7
+    outputs: int = 24
+    turned: float = 1e-15
+    corner: float = 1e-13
+    better: float = 0.25
+    sharper: float = 4.0
+    aside: float = 0.1
+    coarse: float = 1e-5
+    flat: float = 0.1
+
+
+EXTREMUM = ExtremumOptions()  # where nothing else is said
 
 
 class Sample(NamedTuple):
@@ -41,7 +72,10 @@ class Sample(NamedTuple):
 class ExtremumSearch:
     """The points that are known of a step: every root is sought between the nearest of them."""
 
-    def __init__(self, stepper: Stepper) -> None:
+    def __init__(self, stepper: Stepper, options: ExtremumOptions = EXTREMUM) -> None:
+        self.options = options
+        many = stepper.problem.outputs >= options.outputs
+        self.high = options.high_of_many if many else options.high
         self.stepper, self.scale = stepper, np.array(stepper.newton.scale)
         self.known = [self._look(0.0, stepper.here), self._look(stepper.step, stepper.there)]
 
@@ -57,8 +91,8 @@ class ExtremumSearch:
             if high.at - low.at <= self.stepper.options.events.fine * self.stepper.step:
                 return high
             if better:
-                guess = _cubic(low, high, output)
-            elif self._bend(low, high, output) > SHARPER * steep:
+                guess = _cubic(low, high, output, self.options.coarse)
+            elif self._bend(low, high, output) > self.options.sharper * steep:
                 guess = self._corner(low, high, upper, again)
             else:
                 guess = _middle(low, high)
@@ -66,7 +100,9 @@ class ExtremumSearch:
             if look is None:
                 return high
             side = self._slope(look, output) * sense <= 0.0
-            better = abs(self._slope(look, output)) < BETTER * abs(self._slope(high if side else low, output))
+            better = abs(self._slope(look, output)) < self.options.better * abs(
+                self._slope(high if side else low, output)
+            )
             again = again + 1 if side == upper else 0
             upper, low, high = side, *((low, look) if side else (look, high))
         return high
@@ -85,9 +121,9 @@ class ExtremumSearch:
     def _is_root(self, look: Sample, low: Sample, high: Sample, output: int | None) -> bool:
         """Whether the extreme is higher than this by no more than rounding."""
         now, size = abs(self._slope(look, output)), abs(float(look.z[-1]))
-        smooth, corner = TURNED, CORNER
+        smooth, corner = self.options.turned, self.options.corner
         if output is not None:
-            size, smooth, corner = float(look.output[output]), HIGH, HIGH
+            size, smooth, corner = float(look.output[output]), self.high, self.high
         if now * (high.at - low.at) < corner * size:
             return True
         return now * now < 2.0 * smooth * self._bend(low, high, output) * size
@@ -104,7 +140,7 @@ class ExtremumSearch:
         width, bend = high.at - low.at, low.slope - high.slope
         meet = low.at + float((high.z - high.slope * width - low.z) @ bend) / max(float(bend @ bend), 1e-300)
         least = 0.25 * self.stepper.options.events.fine * self.stepper.step
-        aside = max(ASIDE * width * width / self.stepper.step, least) * 10.0**again
+        aside = max(self.options.aside * width * width / self.stepper.step, least) * 10.0**again
         at = meet - aside if upper else meet + aside
         if not low.at < at < high.at or aside > 0.5 * width:
             at = meet = 0.5 * (low.at + high.at)
@@ -122,7 +158,7 @@ class ExtremumSearch:
 
     def _look(self, at: float, point: Point) -> Sample:
         tangent = np.array(point.tangent)
-        along = max(float(tangent @ np.asarray(self.stepper.here.tangent)), FLAT)
+        along = max(float(tangent @ np.asarray(self.stepper.here.tangent)), self.options.flat)
         growth = np.array(point.growth) / along
         return Sample(
             at, np.array(point.z) / self.scale, tangent, tangent / along, np.array(point.output), growth,
@@ -130,8 +166,9 @@ class ExtremumSearch:
         )  # fmt: skip
 
 
-def _cubic(low: Sample, high: Sample, output: int | None) -> tuple[float, FloatArray]:
-    """Where the cubic of the value with the slopes at both ends turns, and the cubic of z there."""
+def _cubic(low: Sample, high: Sample, output: int | None, coarse: float) -> tuple[float, FloatArray]:
+    """Where the cubic of the value with the slopes at both ends turns, and the cubic of z there; of ends no
+    further apart than coarse the slopes alone tell."""
     width = high.at - low.at
     if output is None:
         rise, begin, end = float(high.z[-1] - low.z[-1]), float(low.slope[-1]), float(high.slope[-1])
@@ -139,7 +176,7 @@ def _cubic(low: Sample, high: Sample, output: int | None) -> tuple[float, FloatA
         rise = float(high.output[output] - low.output[output])
         begin, end = float(low.growth[output]), float(high.growth[output])
     part = begin / (begin - end)
-    if width > COARSE:
+    if width > coarse:
         part = _turn(begin, end, rise / width, part)
     rest = 1.0 - part
     z = low.z * (rest * rest * (1.0 + 2.0 * part)) + high.z * (part * part * (3.0 - 2.0 * part))

@@ -13,6 +13,9 @@ A mode far above the harmonics is stiff beside the contacts: with modal mass 1 a
 yields sum_p k_p p^2 / (w^2 - (H omega)^2) of what a contact's spring k does. Modes of which that is small are
 left out of the condensed system, which then is the preconditioner of the whole one, with all modes: of that
 the solution is, after few iterations, as what is left out changes little.
+
+Where most contacts stay stuck or open, the forces of the others may be fewer than these modes: then they are
+condensed to, see `fcm.harmonic.held_contacts`.
 """
 
 from __future__ import annotations
@@ -23,6 +26,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fcm.continuation.dense_solver import Solver
+from fcm.harmonic.held_contacts import HeldContacts
 from fcm.harmonic.modal_answer import ModalAnswer
 from fcm.scene.model import FloatArray
 from fcm.structure.receptance import Receptance
@@ -34,14 +38,18 @@ class CondensedOptions:
 
     fewest: unknowns from which on that is faster. share: of the unknowns, how large the condensed system
     may be. stiff: how much a mode that is left out may yield beside the contacts. accurate: of the last
-    correction of a solution, relative to it. corrections: after so many that do not come to that, twice as
-    many modes are taken.
+    correction of a solution, relative to it. inexact: the same of a step of Newton's method, over its length
+    in units of scale: what the step itself leaves is a part of its square. least: a step, to a shorter one of
+    which what is left is not relative. corrections: after so many that do
+    not come to that, twice as many modes are taken.
     """
 
     fewest: int = 200
     share: float = 0.5
     stiff: tuple[float, ...] = (0.03, 0.3, 1.0)
     accurate: float = 1e-9
+    inexact: float = 0.1
+    least: float = 1e-3
     corrections: int = 20
 
 
@@ -94,6 +102,8 @@ class Condensed:
         flexibility: FloatArray,
         tangent: FloatArray,
         yields: FloatArray,
+        springs: FloatArray,
+        counted: FloatArray,
         options: CondensedOptions = OPTIONS,
     ) -> None:
         self.answer, self.tangent, self.options = ModalAnswer(seen, flexibility), tangent, options
@@ -103,6 +113,8 @@ class Condensed:
         self.order = self.answer.place[:, : self.each].ravel()  # of a contact's unknowns: part by part
         self.ranking = np.argsort(-yields, kind="stable")
         self.take(modes_taken(yields, seen.ports, options))
+        self.held = HeldContacts(self.answer, flexibility, springs, counted)
+        self.holds = False  # whether the system is condensed to the forces of contacts
         self.by, self.row, self.scale = np.empty(0), np.empty(0), np.empty(0)
 
     def take(self, modes: int) -> None:
@@ -126,7 +138,8 @@ class Condensed:
         """
         self.by, self.row, self.scale = by.copy(), row / scale, scale.copy()
         self.ordered = self.tangent[:, self.order[:, None], self.order]
-        return self._factor()
+        self.holds = self.held.look(self.ordered, self.rank)
+        return self.held.factor(self.row, self.by) if self.holds else self._factor()
 
     def _factor(self) -> float:
         rank, matrix = self.rank, np.asarray(self.solver.matrix)
@@ -152,24 +165,33 @@ class Condensed:
         whole = right.copy()
         whole[:-1] *= self.scale[:-1]
         found = self._condensed(whole)
-        while self.modes < self.ranking.size and np.isfinite(found).all():
+        enough = self._enough(whole, found)
+        while (self.holds or self.modes < self.ranking.size) and np.isfinite(found).all():
             change = self._condensed(whole - self._image(found))
-            moved, small = self._corrected(change / self.scale)
+            moved, small = self._corrected(change / self.scale, enough)
             found += moved * self.scale
             if small:
                 break
-            self.take(2 * self.modes)
+            if not self.holds:
+                self.take(2 * self.modes)
+            self.holds = False
             self._factor()
         right[:] = found / self.scale
 
-    def _corrected(self, change: FloatArray) -> tuple[FloatArray, bool]:
+    def _enough(self, right: FloatArray, found: FloatArray) -> float:
+        """What a correction of a solution may leave, in units of scale; of a direction, which is no step,
+        little."""
+        size, options = float(np.linalg.norm(found / self.scale)), self.options
+        step = min(size, 1.0) if right[:-1].any() else 0.0
+        return max(options.accurate * max(size, options.least), options.inexact * step * step)
+
+    def _corrected(self, change: FloatArray, enough: float) -> tuple[FloatArray, bool]:
         """What a correction by the condensed system, in units of scale, comes to with all modes.
 
         By the generalised minimal residuals (Saad and Schultz 1986), and whether these are small enough.
         """
         most, size = self.options.corrections, float(np.linalg.norm(change))
-        enough = self.options.accurate * max(1.0, size)
-        if size <= self.options.accurate:
+        if size <= enough:
             return change, True
         basis, R = np.empty((most + 1, change.size)), np.zeros((most, most))
         basis[0] = change / size
@@ -199,7 +221,9 @@ class Condensed:
         return moved, not left > enough
 
     def _condensed(self, right: FloatArray) -> FloatArray:
-        """The solution with the modes that are condensed to alone."""
+        """The solution with the modes that are condensed to alone, or beside contacts that are held."""
+        if self.holds:
+            return self.held.solve(right)
         reduced, column = np.asarray(self.solver.right), np.empty((self.rank, 1))
         self._answered(self._pushed(right[:-1])[:, :, None], column)
         reduced[:-1], reduced[-1] = column[:, 0], right[-1] - self.row[:-1] @ right[:-1]

@@ -15,7 +15,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from fcm.continuation import Events, FollowOptions, Path, Status, follow
+from fcm.continuation import Events, FollowOptions, Mark, Path, Status, follow
 from fcm.continuation.corrector import Newton
 from fcm.harmonic.common_levels import in_common, passings
 from fcm.harmonic.cost import paid, seconds_of
@@ -63,10 +63,16 @@ class Found:
 @dataclass(frozen=True)
 class LevelOptions:
     """How far the level of the forces is followed with many contacts, of which there always is one that slips
-    or opens only far above 1: contacts, from so many on up to the level most."""
+    or opens only far above 1: contacts, from so many on up to the level most, or only up to straight where
+    the curve has not turned until then. turn, miss, close: of the steps of a curve of which the passings of
+    the level 1 alone matter, as of `fcm.continuation.options`, and to what its other points are known."""
 
     contacts: int = 12
     most: float = 12.0
+    straight: float = 3.0
+    turn: float = 0.35
+    miss: float = 0.1
+    close: float = 1e-6
 
 
 LEVELS = LevelOptions()  # where nothing else is said
@@ -108,7 +114,11 @@ def _followed(system: System, omega: float, linear: float, top: float, most: flo
 
 
 def _found(system: System, omega: float, linear: float, top: float) -> Found:
-    path = _hasty(system, omega, linear, top, (1.0,))
+    path, near = None, LEVELS.straight
+    if len(system.scene.contacts) >= LEVELS.contacts and linear < near < top:
+        path = _hasty(system, omega, linear, near, (1.0,))
+        path = None if path.where(Mark.FOLD).size or path.status is not Status.COMPLETE else path
+    path = path or _hasty(system, omega, linear, top, (1.0,))
     found = path.z[path.parameter == 1.0]
     found[:, -1] = omega
     complete = path.status in (Status.COMPLETE, Status.RETURNED)
@@ -214,6 +224,10 @@ def _raised(
     level, stepper = system.raised
     level.begin(omega, lightly)
     wanted, options = Events(stations), FollowOptions(step, hasty)
+    if lightly and len(system.scene.contacts) >= LEVELS.contacts:
+        steps = replace(options.step, turn=LEVELS.turn, miss=LEVELS.miss)
+        newton = replace(options.newton, preliminary=LEVELS.close)
+        options = replace(options, step=steps, newton=newton)
     along = partial(follow, level, start, span, wanted, options, stepper=stepper)
     return paid(system, stepper, None, lambda report: along(progress=report))
 

@@ -171,13 +171,14 @@ class System:
         balance = Balance(seen, self.layout, self.laws(), shown, linear.counted, high - low, rank)
         if rank:
             tangent, options = np.asarray(balance.tangent), self.condensing
-            balance.condensed = Condensed(seen, linear.flexibility, tangent, yields, options)
+            stuck, counted = self.springs(stuck=True), linear.counted
+            balance.condensed = Condensed(seen, linear.flexibility, tangent, yields, stuck, counted, options)
         if self.scene.loads:
             balance.rest[:] = linear.ports.T @ linear.flexibility @ linear.load
             shown.rest[:] = linear.dofs.T @ linear.flexibility @ linear.load
-        balance.coarse = (
-            self.table is not None and self.corrected and self.harmonics == (1,) and self._of_one_harmonic
-        )
+        # where solving takes the time the closed form costs no more than the table
+        tabled = self.table is not None and not rank
+        balance.coarse = tabled and self.corrected and self.harmonics == (1,) and self._of_one_harmonic
         return balance
 
     @cached_property
