@@ -31,6 +31,7 @@ PICTURES = {
     "accuracy": ("fcm.cli.accuracy:accuracy", "Error against run time, one line a method."),
     "loop": ("fcm.cli.loop:loop", "Hysteresis loops of a contact, given or of a response."),
     "contacts": ("fcm.cli.interface:contacts", "Which contacts stick, slip and open, and what they bear."),
+    "pairs": ("fcm.cli.pairs:pairs", "Which nodes of two sets are pairs, and how far apart they are."),
     "surface": ("fcm.cli.coefficients:surface", "Friction coefficients over preload and load variation."),
     "error": ("fcm.cli.coefficients:error", "Error of a table over the same plane."),
     "normal": ("fcm.cli.coefficients:normal", "Coefficients of the variable normal load."),

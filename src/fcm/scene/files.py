@@ -10,6 +10,7 @@ from pathlib import Path
 
 from fcm.files import no_file
 from fcm.scene.errors import quoted
+from fcm.scene.interface import Interface
 
 LONGEST_PATH = 400  # characters of a path shown in a message
 LARGEST = 1_000_000_000  # bytes of a file beside a scene, unpacked: what fits in any machine's memory twice
@@ -50,6 +51,8 @@ class Files:
     largest: int = LARGEST  # bytes, unpacked
     read: list[Path] = field(default_factory=list, compare=False)  # those that were opened
     said: list[str] = field(default_factory=list, compare=False)  # of the matrices that were read
+    noted: list[str] = field(default_factory=list, compare=False)  # of the pairs that were made
+    interfaces: list[Interface] = field(default_factory=list, compare=False)  # whose nodes have places
 
     @contextmanager
     def opened(self, name: str) -> Iterator[Path]:

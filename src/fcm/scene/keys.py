@@ -95,8 +95,8 @@ TABLES: dict[str, dict[str, Key]] = {
     "contact": {
         "name": Key("of the contact", "string"),
         "tangential": Key("the displacement u along which it slides; in a plane a list of two", _DIRECTION),
-        "nodes": Key("pairs [[a, b], ...], or a .csv file, instead of one contact; u and v are of a less b",
-                     "list or file", "none"),
+        "nodes": Key("pairs [[a, b], ...], a .csv file, or two sets; u and v are of a less b",
+                     "list, file or table", "none: one contact"),
         "areas": Key("of the pairs: k_u, k_v and n_0, also swept ones, are totals, shared by them",
                      POSITIVE, "the numbers are of each pair"),
         "normal": Key("the displacement v that loads it: n = max(n_0 + k_v v, 0)", _DIRECTION),
@@ -105,6 +105,12 @@ TABLES: dict[str, dict[str, Key]] = {
         "k_v": Key("normal contact stiffness", RULES["k_v"]),
         "n_0": Key("preload", RULES["n_0"], "gap"),
         "gap": Key("instead of a preload: n_0 = -k_v * gap", RULES["gap"], "n_0"),
+    },
+    "contact.nodes": {
+        "sets": Key("of two sides, or one that touches the ground: sets of the mesh, or files of nodes",
+                    'list such as ["LEFT", "RIGHT"]'),
+        "mesh": Key("where the nodes are", ".inp, .bdf, .msh, or .csv with node,x,y,z"),
+        "tolerance": Key("how far the nearest node of the other set may be", POSITIVE, "of one set none"),
     },
     "force": {
         "dof": Key("where it acts", _DIRECTION),

@@ -144,7 +144,7 @@ def _read(top: Section, files: Files, every_row: bool) -> dict[str, Any]:
         top.wrong("schedule", NOT_IN_PLANE)
     start = read_start(top, parts)
     draft = Draft(parts, tuple(read_sweep(top, parts)))
-    notes = [*notes, *questions(top, parts, draft.swept)]
+    notes = [*files.noted, *notes, *questions(top, parts, draft.swept)]
     return {
         "title": top.text("title", ""),
         "units": read_units(top),
@@ -159,6 +159,7 @@ def _read(top: Section, files: Files, every_row: bool) -> dict[str, Any]:
         "reported": reported,
         "notes": tuple(notes),
         "read": tuple(files.said),
+        "interfaces": tuple(files.interfaces),
         "optimum": read_optimum(top, draft, reported or tuple(parts["modal"]["dofs"] or ())),
         "fit": read_fit(top, files, draft, reported or tuple(parts["modal"]["dofs"] or ()), unit),
         "draft": draft,

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fcm.scene.draft import Draft
+    from fcm.scene.interface import Interface
 
 FloatArray = npt.NDArray[np.float64]
 NO_RANGE = (np.nan, np.nan)  # of a scene with a schedule and nothing to trace
@@ -203,6 +204,7 @@ class Scene:
     fit: Fit | None = None
     of_matrices: bool = False  # whether its modes are those of [structure]; if not, they are of [modal]
     files: tuple[Path, ...] = field(default=(), compare=False)  # that were read for it
+    interfaces: tuple[Interface, ...] = field(default=(), repr=False, compare=False)  # where pairs are
     held: tuple[Held, ...] = ()  # that are not among the contacts: springs, or nothing, in their places
     draft: Draft | None = field(default=None, repr=False, compare=False)  # what it was made of
 

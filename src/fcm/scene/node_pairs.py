@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from math import isnan, nan
 from typing import Any
 
@@ -10,8 +11,10 @@ import numpy as np
 
 from fcm.scene.errors import choices, counted, kind, quoted
 from fcm.scene.files import DataFileError, Files
+from fcm.scene.interface import Interface
 from fcm.scene.model import FloatArray
 from fcm.scene.names import DIRECTIONS, Names
+from fcm.scene.node_sets import FITTED, pairs_of_sets
 from fcm.scene.pair_file import (
     COORDINATES,
     NODES,
@@ -30,6 +33,8 @@ SHARED = ("k_u", "k_v", "n_0")  # by areas, in proportion to them
 def read_pairs(section: Section, files: Files) -> PairTable:
     """The pairs of nodes and the numbers that a file has of them; empty after a mistake."""
     value = section.data["nodes"]
+    if isinstance(value, Mapping):
+        return pairs_of_sets(section, files)
     if not isinstance(value, str):
         return PairTable(_listed(section, value))
     try:
@@ -53,13 +58,22 @@ def read_pairs(section: Section, files: Files) -> PairTable:
             f"{quoted(value)} has the columns {choices(table.unused)}, which mean nothing here; "
             f"its columns may be {', '.join((*NODES, *NUMBERS, *COORDINATES))}",
         )
-    return table
+    if table.places is None:
+        return table
+    if section.data.get("normal") == FITTED:
+        section.wrong(
+            "normal",
+            "cannot be fitted to a file of pairs, whose sides its places do not tell; give a direction",
+        )
+    interface = Interface(section.data.get("name", ""), table.places, table.places)
+    return replace(table, interface=interface)
 
 
 def _listed(section: Section, value: Any) -> list[Pair]:
     """The pairs of a list in the scene."""
     if not isinstance(value, list | tuple) or not value:
-        section.wrong("nodes", f"must be a list of pairs such as [[40, 41], [50, 51]], is {kind(value)}")
+        right = "a list of pairs such as [[40, 41], [50, 51]], a file, or { sets = , mesh = , tolerance = }"
+        section.wrong("nodes", f"must be {right}, is {kind(value)}")
         return []
     if len(value) == 2 and not any(isinstance(item, list | tuple) for item in value):
         one, other = (described(item).removeprefix("the string ") for item in value)

@@ -5,11 +5,14 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+
+import numpy as np
 
 from fcm.scene.errors import choices, quoted
 from fcm.scene.files import DataFileError
+from fcm.scene.interface import FloatArray, Interface
 from fcm.scene.number_text import fault_of_number, number_in
 
 _COMMA = re.compile(r"\d+,\d+", re.ASCII)
@@ -22,18 +25,22 @@ COORDINATES = ("x", "y", "z")
 class PairTable:
     """Pairs of nodes, and what a file says of each.
 
-    numbers: by column, (pair,); unused: names of columns that nothing is read from.
+    numbers: by column, (pair,); unused: names of columns that nothing is read from; places: coordinates
+    (pair, 3) that the file has; interface: where both nodes are; said: what is to be said of them.
     """
 
     pairs: list[tuple[str, ...]]
     numbers: dict[str, list[float]] = field(default_factory=dict)
     unused: tuple[str, ...] = ()
+    places: FloatArray | None = None
+    interface: Interface | None = None
+    said: tuple[str, ...] = ()
 
 
 def read_pair_table(path: Path) -> PairTable:
     """The pairs of a CSV file, whose first line names its columns.
 
-    The columns are node, other, and any of area, mu, k_u, k_v, n_0, gap; the columns x, y, z are passed over.
+    The columns are node, other, and any of area, mu, k_u, k_v, n_0, gap, x, y, z.
 
     Raises
     ------
@@ -53,6 +60,8 @@ def read_pair_table(path: Path) -> PairTable:
             "and names have commas between, as node,other,n_0"
         )
     faults: list[str] = []
+    where = list(COORDINATES) if set(COORDINATES) <= set(header) else []
+    places: list[list[float]] = []
     table = PairTable([], {name: [] for name in header if name in NUMBERS}, _unused(header))
     for number, words in lines[1:]:
         if len(words) != len(header):
@@ -69,11 +78,18 @@ def read_pair_table(path: Path) -> PairTable:
                 faults.append(f"line {number}: {name}: {fault_of_number(row[name])}")
             else:
                 values.append(value)
+        found = [number_in(row[name]) for name in where]
+        places.append([0.0 if value is None else value for value in found])
+        faults += [
+            f"line {number}: {name}: {fault_of_number(row[name])}"
+            for name, value in zip(where, found, strict=True)
+            if value is None
+        ]
     if not table.pairs and not faults:
         faults.append("holds no pair of nodes behind its first line")
     if faults:
         raise DataFileError(*(f"{quoted(path.name)}, {fault}" for fault in faults[:5]))
-    return table
+    return replace(table, places=np.array(places)) if where else table
 
 
 def _unused(header: Sequence[str]) -> tuple[str, ...]:

@@ -23,6 +23,7 @@ from fcm.scene.node_pairs import (
     read_pairs,
     shares,
 )
+from fcm.scene.node_sets import with_fitted
 from fcm.scene.pair_file import PairTable
 from fcm.scene.plane import check_axes, read_directions
 from fcm.scene.rules import (
@@ -74,10 +75,14 @@ def _contacts(section: Section, dofs: Dofs, files: Files) -> list[dict[str, Any]
         )
         return [draft | {"name": name} | found]
     table = read_pairs(section, files)
+    section = with_fitted(section, table)
     numbers, parts = read_numbers(section, table, files), shares(section, table)
     directions = read_directions(section, partial(read_direction, section), partial(direction_in, section))
     check_nodes(section, directions.values(), table.pairs, dofs)
     check_axes(section, directions)
+    files.noted.extend(table.said)
+    if table.interface is not None:
+        files.interfaces.append(table.interface)
     return [
         {key: values[i] for key, values in numbers.items()}
         | {"name": f"{name}_{i + 1}", "group": name, "share": parts[i]}

@@ -1,0 +1,99 @@
+"""The pairs of nodes of contacts, seen along the normal of their plane: how far apart, which are alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fcm.mesh import MeshError
+from fcm.mesh.pairing import fitted_plane
+from fcm.plot.errors import PlotError
+from fcm.plot.labels import with_unit
+from fcm.plot.read import FloatArray
+from fcm.plot.style import TWO_COLUMNS, WIDTH, house_style, new_figure
+from fcm.scene.interface import Interface
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_ALONE = ("#D55E00", "#0072B2")  # of the first set, of the second
+_SIZE = (4.0, 60.0)  # [point^2] of a mark, for many pairs and for few
+_HEIGHT = 3.4  # [inch] of a row of panels
+MOST = 6  # contacts in a picture
+
+
+def view_of(interface: Interface) -> tuple[FloatArray, FloatArray]:
+    """Two directions (2, 3) in the plane of an interface, and its centre; of a line, along and beside it."""
+    places = np.concatenate((interface.first, interface.second, interface.alone, interface.other_alone))
+    try:
+        plane = interface.plane or fitted_plane(places)
+    except MeshError:
+        _, _, axes = np.linalg.svd(places - places.mean(axis=0), full_matrices=True)
+        return axes[:2], places.mean(axis=0)
+    return np.stack((plane.first, plane.second)), plane.centre
+
+
+def draw_pairs(interfaces: Sequence[Interface], length: str = "") -> Figure:
+    """The figure: a panel for each contact, its pairs coloured by their distance, nodes alone as crosses.
+
+    Raises
+    ------
+    PlotError
+        If there is no contact whose pairs have places, or more than a picture has room for.
+    """
+    if not interfaces:
+        raise PlotError(
+            "no contact has pairs with places: give nodes = { sets = , mesh = , tolerance = }, or "
+            "x, y, z in a file of pairs"
+        )
+    if len(interfaces) > MOST:
+        raise PlotError(
+            f"{len(interfaces)} contacts have pairs; a picture has room for {MOST}: choose by --contact"
+        )
+    count, columns = len(interfaces), min(len(interfaces), 2)
+    rows = -(-count // columns)
+    with house_style():
+        figure = new_figure(TWO_COLUMNS if columns > 1 else WIDTH, _HEIGHT * rows)
+        grid = figure.subplots(rows, columns, squeeze=False)
+        for axes in grid.flat[count:]:
+            axes.set_axis_off()
+        for axes, one in zip(grid.flat, interfaces, strict=False):
+            _draw(figure, axes, one, length)
+    return figure
+
+
+def _draw(figure: Figure, axes: Any, one: Interface, length: str) -> None:
+    """One contact."""
+    along, centre = view_of(one)
+    seen = [(side - centre) @ along.T for side in (one.first, one.second)]
+    apart = np.linalg.norm(one.second - one.first, axis=1)
+    size = float(np.clip(1500.0 / max(len(apart), 1), *_SIZE))
+    for start, end in zip(*seen, strict=True):
+        axes.plot(*np.stack((start, end)).T, color="#808080", linewidth=0.6, zorder=1)
+    marks = axes.scatter(*seen[0].T, c=apart, s=size, cmap="viridis", edgecolors="black", linewidths=0.3)
+    for side, colour, name in zip((one.alone, one.other_alone), _ALONE, one.sets[:2], strict=False):
+        if len(side):
+            label = f"{name}, alone ({len(side)})".replace("$", r"\$")
+            axes.scatter(*((side - centre) @ along.T).T, c=colour, marker="x", s=size, label=label)
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend()
+    if len(one.sets) == 2:
+        figure.colorbar(marks, ax=axes, label=with_unit("Distance of partners", length))
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_title(f"{one.name}: {len(apart)} {'pairs' if len(one.sets) != 1 else 'nodes'}", parse_math=False)
+    for direction, name in zip(along, ("x", "y"), strict=True):
+        getattr(axes, f"set_{name}label")(with_unit(_named(direction), length))
+
+
+def _named(direction: FloatArray) -> str:
+    """As "x", or "0.6 x + 0.8 y".
+
+    >>> _named(np.array([1.0, 0.0, 0.0])), _named(np.array([0.6, 0.0, -0.8]))
+    ('x', '+0.6 x -0.8 z')
+    """
+    there = [(float(w), axis) for w, axis in zip(direction, "xyz", strict=True) if abs(w) > 1e-9]
+    if len(there) == 1 and there[0][0] > 0.0:
+        return there[0][1]
+    return " ".join(f"{weight:+.3g} {axis}" for weight, axis in there)

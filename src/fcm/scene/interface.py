@@ -1,0 +1,32 @@
+"""Where the pairs of nodes of a contact are, for pictures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.mesh.pairing import Plane
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def _none() -> FloatArray:
+    return np.zeros((0, 3))
+
+
+@dataclass(frozen=True)
+class Interface:
+    """The pairs of a contact: coordinates of both nodes (pair, 3), and of those without a partner.
+
+    sets: names of the two sides; one where they touch the ground, none of a file of pairs.
+    """
+
+    name: str
+    first: FloatArray
+    second: FloatArray
+    sets: tuple[str, ...] = ()
+    alone: FloatArray = field(default_factory=_none)
+    other_alone: FloatArray = field(default_factory=_none)
+    plane: Plane | None = None

@@ -1,0 +1,241 @@
+"""Pairs of nodes from two sets and a mesh: nodes = { sets = [..], mesh = .., tolerance = .. }."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from fcm.mesh import Mesh, MeshError, read_mesh
+from fcm.mesh.pairing import MOST_NAMED, Plane, across, fitted_plane, paired, side, turned
+from fcm.scene.errors import choices, counted, quoted
+from fcm.scene.files import DataFileError, Files
+from fcm.scene.interface import Interface
+from fcm.scene.keys import names
+from fcm.scene.pair_file import PairTable
+from fcm.scene.plane import SQUARE
+from fcm.scene.rules import POSITIVE, as_float
+from fcm.scene.section import Section, described
+
+FITTED = "fitted"  # the word for a direction that a plane gives
+AXES = ("x", "y", "z")
+_WORDS = re.compile(r"[\s,;]+")
+
+
+def pairs_of_sets(section: Section, files: Files) -> PairTable:
+    """The pairs of the nodes of two sets, or the nodes of one at the ground; none after a mistake."""
+    found = section.table("nodes", "")
+    if found is None:
+        return PairTable([])
+    found.only(*names("contact.nodes"))
+    before = section.mistakes.count
+    mesh = _mesh(found, files)
+    sets = _sets(found, files, mesh)
+    tolerance = found.number("tolerance", POSITIVE) if len(sets) != 1 else 0.0
+    if section.mistakes.count > before or mesh is None:
+        return PairTable([])
+    if len(sets) == 1:
+        ((name, nodes),) = sets
+        here = mesh.at(nodes)
+        interface = Interface(section.data.get("name", ""), here, here, (name,))
+        return PairTable([(str(node),) for node in nodes], interface=interface)
+    (one, first), (other, second) = sets
+    try:
+        pairing = paired(mesh, first, second, tolerance)
+    except MeshError as error:
+        for fault in error.faults:
+            found.wrong("sets", fault)
+        return PairTable([])
+    plane = _plane(section, mesh, pairing.pairs)
+    a, b = zip(*pairing.pairs, strict=True)
+    interface = Interface(
+        section.data.get("name", ""),
+        mesh.at(a),
+        mesh.at(b),
+        (one, other),
+        mesh.at(pairing.alone) if pairing.alone else np.zeros((0, 3)),
+        mesh.at(pairing.other_alone) if pairing.other_alone else np.zeros((0, 3)),
+        plane,
+    )
+    low, high = float(pairing.apart.min()), float(pairing.apart.max())
+    text = f"contact {quoted(interface.name)}: {counted(len(a), 'pair')}, {low:.3g} to {high:.3g} apart"
+    for name, alone in ((one, pairing.alone), (other, pairing.other_alone)):
+        if alone:
+            text += f"; {counted(len(alone), 'node')} of {name} without a partner ({_some(alone)})"
+    said = [text, *_said_of_plane(section, interface, plane)]
+    along = _vector(section.data.get("normal"))
+    if along is not None and side(mesh, pairing.pairs, along) < 0.0:
+        said.append(
+            f"contact {quoted(interface.name)}: its normal points from {other} to {one}, so that it presses "
+            "where they part: is it meant? The other way it would be the opposite"
+        )
+    return PairTable([tuple(map(str, pair)) for pair in pairing.pairs], interface=interface, said=tuple(said))
+
+
+def with_fitted(section: Section, table: PairTable) -> Section:
+    """The table of a contact with directions in the place of the words "fitted".
+
+    The normal is that of the plane of the pairs; the tangential directions are at right angles to the normal,
+    be it fitted or given.
+    """
+    normal, tangential = (section.data.get(key) for key in ("normal", "tangential"))
+    data = dict(section.data)
+    if normal == FITTED:
+        data["normal"] = AXES[2]  # a stand-in where there is none
+        plane = None if table.interface is None else table.interface.plane
+        if plane is not None:
+            data["normal"] = _weights(plane.normal)
+            _check_right_angle(section, tangential, plane)
+        elif table.pairs and table.interface is None:
+            section.wrong(
+                "normal",
+                "is fitted to the pairs of two sets of nodes, nodes = { sets = , mesh = , tolerance = }",
+            )
+    if tangential == FITTED:
+        along = _vector(data.get("normal"))
+        if along is None:
+            section.wrong(
+                "tangential", "is fitted where normal is, or has weights of x, y, z; give a direction"
+            )
+            along = np.array([0.0, 0.0, 1.0])
+        data["tangential"] = [_weights(one) for one in across(along)]
+    return Section(data, section.path, section.mistakes)
+
+
+def _check_right_angle(section: Section, tangential: Any, plane: Plane) -> None:
+    """Note a direction along which a contact slides that is not in its fitted plane."""
+    for one in tangential if isinstance(tangential, list | tuple) else [tangential]:
+        along = _vector(one)
+        if along is None:
+            continue
+        part = along - (along @ plane.normal) * plane.normal
+        if np.linalg.norm(part) < (1.0 - SQUARE) * np.linalg.norm(along):
+            angle = np.degrees(np.arccos(np.linalg.norm(part) / np.linalg.norm(along)))
+            terms = ", ".join(f"{axis} = {x:.6g}" for axis, x in zip(AXES, part, strict=True))
+            section.wrong(
+                "tangential",
+                f"is {angle:.3g} degrees out of the fitted plane; its part in it is {{ {terms} }}; "
+                'or write "fitted"',
+            )
+
+
+def _vector(value: Any) -> np.ndarray[Any, Any] | None:
+    """A direction such as "x" or weights of x, y, z, as (3,); None for what is none, or nothing."""
+    terms = {value: 1.0} if isinstance(value, str) else value
+    if not isinstance(terms, Mapping) or not terms or not set(terms) <= set(AXES):
+        return None
+    numbers = [as_float(terms.get(axis, 0.0)) for axis in AXES]
+    found = np.array([np.nan if one is None else one for one in numbers])
+    return found if np.isfinite(found).all() and found.any() else None
+
+
+def _plane(section: Section, mesh: Mesh, pairs: Sequence[tuple[int, int]]) -> Plane | None:
+    """The plane between the pairs, from the first side to the second; None where none is asked for."""
+    if section.data.get("normal") != FITTED:
+        return None
+    a, b = zip(*pairs, strict=True)
+    try:
+        return turned(fitted_plane(0.5 * (mesh.at(a) + mesh.at(b))), mesh, pairs)
+    except MeshError as error:
+        section.wrong("normal", f"cannot be fitted: {error}; give a direction")
+        return None
+
+
+def _said_of_plane(section: Section, interface: Interface, plane: Plane | None) -> list[str]:
+    """What the fitted normal is, and how flat the pairs lie."""
+    if plane is None or section.data.get("normal") != FITTED:
+        return []
+    near = int(np.abs(plane.normal).argmax())
+    angle = np.degrees(np.arccos(min(float(np.abs(plane.normal[near])), 1.0)))
+    terms = " ".join(
+        f"{weight:+.4g} {axis}" for axis, weight in zip(AXES, plane.normal, strict=True) if weight
+    )
+    text = f"contact {quoted(interface.name)}: normal {terms}, {angle:.3g} degrees from {AXES[near]}"
+    return [f"{text}; its pairs are within {plane.off:.3g} of their plane, {plane.size:.4g} wide"]
+
+
+def _weights(direction: np.ndarray[Any, Any]) -> dict[str, float]:
+    return {axis: float(x) for axis, x in zip(AXES, direction, strict=True) if x}
+
+
+def _mesh(found: Section, files: Files) -> Mesh | None:
+    name = found.text("mesh")
+    if not name:
+        return None
+    try:
+        with files.opened(name) as path:
+            try:
+                return read_mesh(path)
+            except MeshError as error:
+                raise DataFileError(*(f"{quoted(name)}: {fault}" for fault in error.faults)) from None
+    except DataFileError as error:
+        for fault in error.faults:
+            found.wrong("mesh", fault)
+    return None
+
+
+def _sets(found: Section, files: Files, mesh: Mesh | None) -> list[tuple[str, tuple[int, ...]]]:
+    """The names and nodes of one set or two."""
+    value = found.data.get("sets")
+    if isinstance(value, str):
+        value = [value]
+    right = (
+        isinstance(value, list | tuple) and 1 <= len(value) <= 2 and all(isinstance(x, str) for x in value)
+    )
+    if not right:
+        what = "missing" if value is None else f"is {described(value)}"
+        found.wrong("sets", f'{what}; give two sets, as ["LEFT", "RIGHT"], or one that touches the ground')
+        return []
+    assert value is not None
+    each = [(name, _set(found, name, files, mesh)) for name in value]
+    return [(name, nodes) for name, nodes in each if nodes] if all(nodes for _, nodes in each) else []
+
+
+def _set(found: Section, name: str, files: Files, mesh: Mesh | None) -> tuple[int, ...]:
+    """The nodes of a set of the mesh, or of a file of numbers of nodes."""
+    if mesh is None:
+        return ()
+    nodes = mesh.sets.get(name.upper())
+    if nodes is None and not (files.folder / name).is_file():
+        there = f"its sets are {choices(list(mesh.sets))}" if mesh.sets else "it has no sets"
+        found.wrong("sets", f"{quoted(name)} is no set of the mesh, and no file: {there}", name, mesh.sets)
+        return ()
+    if nodes is None:
+        nodes = _of_file(found, name, files)
+    elif not nodes:
+        found.wrong("sets", f"{quoted(name)} is empty")
+    lacking = [node for node in nodes if node not in mesh.place]
+    if lacking:
+        found.wrong("sets", f"{quoted(name)} has nodes that the mesh has not: {_some(lacking)}")
+        return ()
+    return tuple(dict.fromkeys(nodes))
+
+
+def _of_file(found: Section, name: str, files: Files) -> tuple[int, ...]:
+    """Numbers of nodes, however they are parted; lines of keywords and remarks are passed over."""
+    nodes: list[int] = []
+    try:
+        with files.opened(name) as path:
+            for number, line in enumerate(path.read_text("utf-8-sig").splitlines(), 1):
+                body = line.partition("#")[0].strip()
+                if body.startswith("*"):
+                    continue
+                for word in filter(None, _WORDS.split(body)):
+                    if not word.isdecimal():
+                        raise DataFileError(
+                            f"{quoted(name)}, line {number}: {quoted(word)} is no number of a node"
+                        )
+                    nodes.append(int(word))
+            if not nodes:
+                raise DataFileError(f"{quoted(name)} holds no node")
+    except DataFileError as error:
+        for fault in error.faults:
+            found.wrong("sets", fault)
+        return ()
+    return tuple(nodes)
+
+
+def _some(nodes: Sequence[int]) -> str:
+    return ", ".join(map(str, nodes[:MOST_NAMED])) + (", ..." if len(nodes) > MOST_NAMED else "")

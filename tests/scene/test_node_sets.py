@@ -1,0 +1,167 @@
+"""Contacts over the nodes of two sets: partners, sides, fitted normals; what is ambiguous is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fcm.scene import SceneError, scene_from_dict
+
+NORMAL, ACROSS = np.array([0.6, 0.8, 0.0]), np.array([0.8, -0.6, 0.0])
+GRID = [(i, j) for i in range(3) for j in range(4)]
+NUMBERS = {"mu": 0.3, "k_u": 1.0, "k_v": 2.0, "n_0": 6.0}
+SETS = {"sets": ["LEFT", "RIGHT"], "mesh": "two.inp", "tolerance": 0.1}
+
+
+def places(gap, shift=0.0):
+    """Two sides (node, 3) of a plane whose normal is NORMAL, the second beyond a gap, in another order."""
+    first = np.array([i * ACROSS + [0.0, 0.0, 1.2 * j] for i, j in GRID]) + 5.0
+    return first, (first + gap * NORMAL + shift * ACROSS)[::-1]
+
+
+def deck(first, second, more=""):
+    """An input file with the nodes 1.. of one set and 101.. of the other."""
+    lines = ["*NODE"]
+    for begin, side in ((1, first), (101, second)):
+        lines += [f"{begin + k}, {x:.12g}, {y:.12g}, {z:.12g}" for k, (x, y, z) in enumerate(side)]
+    last = len(first), 100 + len(second)
+    lines += ["*NSET, NSET=left, GENERATE", f"1, {last[0]}", "*NSET, NSET=right, GENERATE", f"101, {last[1]}"]
+    return "\n".join(lines) + f"\n{more}"
+
+
+def read(folder, contact=(), nodes=(), text=None, gap=0.05):
+    first, second = places(gap)
+    (folder / "two.inp").write_text(text or deck(first, second))
+    dofs = [f"{n}{d}" for begin in (1, 101) for n in range(begin, begin + 14) for d in "xyz"]
+    shapes = np.random.default_rng(1).normal(size=(3, len(dofs)))
+    modal = {"dofs": dofs, "frequency": [1.0, 2.0, 3.0], "damping": 0.05, "shapes": shapes}
+    one = {"name": "shroud", "nodes": SETS | dict(nodes), "normal": "fitted", "tangential": "fitted"}
+    data = {"modal": modal, "force": [{"dof": "1x", "amplitude": 1.0}], "response": {"frequency": [0.8, 1.2]}}
+    return scene_from_dict(data | {"contact": [one | NUMBERS | dict(contact)]}, "test.toml", folder)
+
+
+def refused(folder, *args, **options):
+    with pytest.raises(SceneError) as caught:
+        read(folder, *args, **options)
+    return str(caught.value)
+
+
+def weights(scene, direction):
+    return {dof: weight for dof, weight in zip(scene.modal.dofs, direction.tolist(), strict=True) if weight}
+
+
+def test_each_node_has_the_nearest_as_its_partner_along_the_fitted_normal(tmp_path):
+    scene = read(tmp_path)
+    assert [one.name for one in scene.contacts] == [f"shroud_{i}" for i in range(1, 13)]
+    for k, contact in enumerate(scene.contacts):
+        normal, one, other = (weights(scene, along) for along in (contact.normal, *contact.directions[:2]))
+        mine, its = 1 + k, 112 - k  # the other side is numbered the other way round
+        assert normal == pytest.approx({f"{mine}x": 0.6, f"{mine}y": 0.8, f"{its}x": -0.6, f"{its}y": -0.8})
+        assert one == pytest.approx({f"{mine}z": 1.0, f"{its}z": -1.0})
+        assert other == pytest.approx({f"{mine}x": 0.8, f"{mine}y": -0.6, f"{its}x": -0.8, f"{its}y": 0.6})
+    text = "\n".join(scene.notes)
+    assert 'contact "shroud": 12 pairs, 0.05 to 0.05 apart' in text
+    assert "normal +0.6 x +0.8 y, 36.9 degrees from y" in text
+
+
+def test_sides_that_coincide_are_told_by_the_elements(tmp_path):
+    first, second = places(0.0)
+    behind = first[0] - NORMAL
+    tip = f"*NODE\n200, {behind[0]}, {behind[1]}, {behind[2]}\n"
+    ahead = second[0] + NORMAL
+    tip += f"*NODE\n201, {ahead[0]}, {ahead[1]}, {ahead[2]}\n"
+    cells = "*ELEMENT, TYPE=C3D4\n1, 1, 2, 5, 200\n2, 101, 102, 105, 201\n"
+    scene = read(tmp_path, text=deck(first, second, tip + cells))
+    assert weights(scene, scene.contacts[0].normal)["1x"] == pytest.approx(0.6)
+    turned = cells.replace("200", "300").replace("201", "200").replace("300", "201")
+    scene = read(tmp_path, text=deck(first, second, tip + turned))
+    assert weights(scene, scene.contacts[0].normal)["1x"] == pytest.approx(-0.6)
+    assert "which side is which is not told" in refused(tmp_path, gap=0.0)
+
+
+def test_a_given_normal_is_taken_and_asked_about(tmp_path):
+    scene = read(tmp_path, {"normal": {"x": 0.6, "y": 0.8}, "tangential": "z"})
+    assert weights(scene, scene.contacts[0].tangential) == {"1z": 1.0, "112z": -1.0}
+    assert not any("is it meant?" in note for note in scene.notes)
+    scene = read(tmp_path, {"normal": {"x": -0.6, "y": -0.8}, "tangential": "z"})
+    assert any("normal points from RIGHT to LEFT" in note for note in scene.notes)
+
+
+def test_tangential_directions_are_fitted_to_a_given_normal(tmp_path):
+    contact = read(tmp_path, {"normal": "y"}).contacts[0]
+    scene = read(tmp_path, {"normal": "y"})
+    assert weights(scene, contact.tangential) == {"1x": 1.0, "112x": -1.0}
+    assert weights(scene, contact.second) == {"1z": -1.0, "112z": 1.0}
+
+
+def test_nodes_without_a_partner_are_said(tmp_path):
+    first, second = places(0.05)
+    second = np.concatenate((second, [[50.0, 0.0, 0.0]]))
+    first = np.concatenate((first, [[-50.0, 0.0, 0.0], [-60.0, 0.0, 0.0]]))
+    scene = read(tmp_path, text=deck(first, second))
+    assert len(scene.contacts) == 12
+    text = "\n".join(scene.notes)
+    assert "2 nodes of LEFT without a partner (13, 14)" in text
+    assert "1 node of RIGHT without a partner (113)" in text
+
+
+def test_sets_may_be_files_and_one_may_touch_the_ground(tmp_path):
+    (tmp_path / "left.nam").write_text("** of a mesher\n*NSET, NSET=left\n1, 2,\n3\n")
+    (tmp_path / "right.txt").write_text("112 111 110  # the others\n")
+    scene = read(tmp_path, {"normal": "y", "tangential": "z"}, {"sets": ["left.nam", "right.txt"]})
+    assert [weights(scene, one.tangential) for one in scene.contacts] == [
+        {f"{a}z": 1.0, f"{b}z": -1.0} for a, b in ((1, 112), (2, 111), (3, 110))
+    ]
+    data = {"sets": ["left.nam"], "mesh": "two.inp"}
+    scene = read(tmp_path, {"nodes": data, "normal": "y", "tangential": "z"})
+    assert [weights(scene, one.normal) for one in scene.contacts] == [{"1y": 1.0}, {"2y": 1.0}, {"3y": 1.0}]
+
+
+def test_totals_are_shared_by_areas_of_the_pairs(tmp_path):
+    scene = read(tmp_path, {"areas": [1.0] * 11 + [13.0]})
+    assert [one.n_0 for one in scene.contacts] == pytest.approx([0.25] * 11 + [3.25])
+
+
+AMISS = {
+    "tangential: is 36.9 degrees out of the fitted plane": {"contact": {"tangential": "x"}},
+    "no node of the first set is within 0.01 of the second; the nearest is 0.05 away": {
+        "nodes": {"tolerance": 0.01}
+    },
+    '"MIDDLE" is no set of the mesh, and no file: its sets are "LEFT", "RIGHT"': {
+        "nodes": {"sets": ["LEFT", "MIDDLE"]}
+    },
+    "nodes.sets: nodes 1, 2, 3, 4, 5, ... are in both sets": {"nodes": {"sets": ["LEFT", "LEFT"]}},
+    'there is none.inp" is not there': {"nodes": {"mesh": "there is none.inp"}},
+    "nodes.mesh: missing": {"contact": {"nodes": {"sets": ["LEFT", "RIGHT"], "tolerance": 0.1}}},
+    "nodes.tolerance: missing": {"contact": {"nodes": {"sets": ["LEFT", "RIGHT"], "mesh": "two.inp"}}},
+    "nodes.near: unknown key": {"nodes": {"near": 1.0}},
+    'give two sets, as ["LEFT", "RIGHT"]': {"nodes": {"sets": ["A", "B", "C"]}},
+}
+
+
+@pytest.mark.parametrize("said", AMISS)
+def test_what_is_amiss_is_said(tmp_path, said):
+    assert said in refused(tmp_path, **AMISS[said])
+
+
+def test_two_nodes_that_want_the_same_partner_are_refused(tmp_path):
+    first, second = places(0.05)
+    text = refused(tmp_path, text=deck(first, second[:-1] * 1.0), nodes={"tolerance": 1.5})
+    assert "nodes 1, 5 of the first set all have node 108 of the second as the nearest" in text
+
+
+def test_nodes_on_a_line_have_no_plane(tmp_path):
+    first = np.array([[float(k), 0.0, 0.0] for k in range(5)])
+    text = refused(tmp_path, text=deck(first, first + np.array([0.0, 0.0, 0.05])))
+    assert "normal: cannot be fitted: the points lie on a line" in text
+
+
+def test_a_file_of_pairs_does_not_tell_its_sides(tmp_path):
+    (tmp_path / "pairs.csv").write_text("node,other,x,y,z\n1,101,0,0,0\n2,102,1,0,0\n3,103,0,1,zero\n")
+    text = refused(tmp_path, {"nodes": "pairs.csv"})
+    assert "line 4: z:" in text
+    (tmp_path / "pairs.csv").write_text("node,other,x,y,z\n1,101,0,0,0\n2,102,1,0,0\n3,103,0,1,0\n")
+    assert "normal: cannot be fitted to a file of pairs" in refused(tmp_path, {"nodes": "pairs.csv"})
+    scene = read(tmp_path, {"nodes": "pairs.csv", "normal": "z"})
+    assert weights(scene, scene.contacts[0].tangential) == {"1x": 1.0, "101x": -1.0}
+    assert scene.interfaces[0].first.tolist()[2] == [0.0, 1.0, 0.0]
