@@ -163,3 +163,26 @@ def test_units_that_look_mixed_are_asked_about(listed, matrices, ends, more, sai
     found = json.loads(listed(more + MATRICES.format(*ends), "--json").out)["read"]
     asked = [text for text in found if "the range would hold" in text]
     assert [said in text for text in asked] == ([True] if said else [])
+
+
+@pytest.mark.parametrize("rows", [3, 60])  # from 51 on those alone are kept that something is attached to
+def test_a_structure_alone_is_enough(listed, rows):
+    """Without contacts, forces and a range: a chain between walls, w_i = 2 sin(i pi / (2 n + 2))."""
+    chain = 2.0 * np.eye(rows) - np.eye(rows, k=1) - np.eye(rows, k=-1)
+    text = (
+        f"[structure]\ndofs = {[f'u{i}' for i in range(rows)]}\nmass = {np.eye(rows).tolist()}\n"
+        f"stiffness = {chain.tolist()}\ndamping = 0.01"
+    )
+    found = json.loads(listed(text, "--json").out)
+    frequency = [mode["frequency"] for mode in found["modes"]]
+    exact = 2.0 * np.sin(np.arange(1, len(frequency) + 1) * np.pi / (2 * rows + 2))
+    assert frequency == pytest.approx(exact, rel=1e-9)
+    assert found["normalisation"].startswith("mass-normalised") and not found["warnings"]
+    assert listed(text).code == 0
+
+
+def test_modes_alone_are_enough_but_not_to_be_solved(listed, tmp_path):
+    text = SCENE[: SCENE.index("[[contact]]")]
+    assert listed(text).out.splitlines()[0].split() == ["mode", "at", "Hz", "damping", "mass"]
+    done = called("respond", tmp_path / "scene.toml")
+    assert done.code == 2 and "response: missing" in done.err and "force: missing" in done.err

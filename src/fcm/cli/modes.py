@@ -28,14 +28,14 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
     stand for the flexibility of those left out are marked "flexibility". Of a ring of sectors they are listed
     by nodal diameter, with the share among the modes of the same; `fcm plot campbell` draws those.
 
-    This is a list, and draws no picture. Below it stands what was read: matrices, their rows, entries and
-    symmetry, rigid bodies, and frequencies in both units. Frequencies that look as if units were mixed are
-    named.
+    This is a list, and draws no picture. SCENE may be without [response] and [[force]]. Below the list stands
+    what was read: matrices, their rows, entries and symmetry, rigid bodies, and frequencies in both units.
+    Frequencies that look as if units were mixed are named.
     """
     from fcm.scene import load_scene
     from fcm.scene.listing import listing
 
-    found = listing(load_scene(scene, largest_file=largest_file))
+    found = listing(load_scene(scene, largest_file=largest_file, solved=False))
     click.echo(json.dumps(found, indent=2, allow_nan=False) if to_json else as_table(found))
     if not to_json:
         if any(share is None for mode in found["modes"] for share in mode["participation"].values()):

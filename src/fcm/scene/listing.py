@@ -164,7 +164,7 @@ def _shares(frequency: FloatArray, along: FloatArray) -> list[float] | None:
 
 def _normalisation(scene: Scene) -> str:
     mass = scene.modal.mass
-    largest = np.abs(scene.modal.shapes).max(axis=1)
+    largest = np.abs(scene.modal.shapes).max(axis=1, initial=0.0)  # none is kept where none is needed
     of_one = largest.size > 1 and np.allclose(largest, 1.0, rtol=1e-6, atol=0.0)
     if (mass == 1.0).all():
         doubt = "taken as mass-normalised, but the largest value of each is 1"

@@ -76,11 +76,18 @@ def _bundled() -> Path:
     return Path(str(files("fcm") / "scenes"))
 
 
-def load_scene(path_or_name: str | Path, *, largest_file: int = LARGEST, every_row: bool = False) -> Scene:
+def load_scene(
+    path_or_name: str | Path,
+    *,
+    largest_file: int = LARGEST,
+    every_row: bool = False,
+    solved: bool = True,
+) -> Scene:
     """The scene of a TOML file, or of a bundled name; SceneError names every mistake.
 
     A file of modes or matrices beside it may have `largest_file` bytes when it is unpacked. Of matrices the
-    scene has the rows that something is attached to or that are reported, or `every_row`.
+    scene has the rows that something is attached to or that are reported, or `every_row`. Where it is not to
+    be solved, it may be without [response] and [[force]].
 
     >>> scene = load_scene("yang1998")
     >>> scene.modal.dofs, scene.contacts[0].mu, len(scene.curves)
@@ -96,6 +103,7 @@ def load_scene(path_or_name: str | Path, *, largest_file: int = LARGEST, every_r
         path.parent,
         largest_file=largest_file,
         every_row=every_row,
+        solved=solved,
     )
     return replace(scene, files=(path, *scene.files))
 
@@ -107,6 +115,7 @@ def scene_from_dict(
     *,
     largest_file: int = LARGEST,
     every_row: bool = False,
+    solved: bool = True,
 ) -> Scene:
     """The scene of a dict with a file's keys; a file of modes is looked for in the folder.
 
@@ -125,21 +134,22 @@ def scene_from_dict(
         mistakes.raise_if_any()
     top.only(*names(""))
     beside = Files(Path(folder), largest_file)
-    fields = _read(top, beside, every_row)
+    fields = _read(top, beside, every_row, solved)
     mistakes.raise_if_any()
     scene = replace(_made(name, fields), files=tuple(dict.fromkeys(beside.read)))
     _check_curves(scene, mistakes)
     return scene
 
 
-def _read(top: Section, files: Files, every_row: bool) -> dict[str, Any]:
+def _read(top: Section, files: Files, every_row: bool, solved: bool) -> dict[str, Any]:
     """The fields of a scene that are read from its keys, the draft of the others among them."""
     unit = _unit(top)
-    response = response_table(top)
+    response = response_table(top, solved)
     ends, step = read_response(top, response, unit)
     harmonics, accuracy = read_harmonics(response)
     schedule = read_schedule(top, unit)
-    parts, reported, notes = _parts(top, files, unit, response, with_schedule(ends, schedule), every_row)
+    ends_of_forces = with_schedule(ends, schedule)
+    parts, reported, notes = _parts(top, files, unit, response, ends_of_forces, every_row, solved)
     if schedule and any("second" in one for one in parts["contact"]):
         top.wrong("schedule", NOT_IN_PLANE)
     start = read_start(top, parts)
@@ -201,13 +211,14 @@ def _parts(
     response: Section | None,
     ends: tuple[float, float],
     every_row: bool,
+    solved: bool,
 ) -> tuple[Parts, tuple[str, ...], list[str]]:
     """The drafts of modes, contacts and forces; the degrees of freedom in results; and what is to be said."""
     cyclic = read_cyclic(top)
     modal, matrices = read_linear(top, files, unit, cyclic)
     parts: Parts = {"modal": modal, "cyclic": cyclic}
     parts["contact"] = read_contacts(top, modal["dofs"], files)
-    parts["force"] = read_forces(top, modal["dofs"])
+    parts["force"] = read_forces(top, modal["dofs"], solved)
     ends = (ends[0], ends[1] * max((one["harmonic"] for one in parts["force"]), default=1))
     parts["load"] = read_loads(top, files, modal["dofs"], "structure" in top.data)
     parts["base"] = read_base(top, own_names(modal["dofs"]), "structure" in top.data)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fcm.scene.interface import Interface
 
 FloatArray = npt.NDArray[np.float64]
-NO_RANGE = (np.nan, np.nan)  # of a scene with a schedule and nothing to trace
+NO_RANGE = (np.nan, np.nan)  # of a scene with nothing to trace
 
 
 @dataclass(frozen=True)
@@ -184,7 +184,7 @@ class Scene:
     modal: Modal
     contacts: tuple[Contact, ...]
     forces: tuple[Force, ...]
-    frequency_range: tuple[float, float]  # [rad/s], NO_RANGE if there is only a schedule
+    frequency_range: tuple[float, float]  # [rad/s], NO_RANGE if nothing is traced
     max_step: float  # longest step along a curve, relative to the curve's own extent
     harmonics: tuple[int, ...] | None = None  # of the balance, if the scene says so
     accuracy: float | None = None  # that is to choose them, if the scene says so

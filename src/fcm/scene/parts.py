@@ -104,9 +104,9 @@ def contact_of(draft: dict[str, Any]) -> Contact:
     return Contact(n_0=n_0 + 0.0, **numbers)  # + 0.0: a zero without its sign
 
 
-def read_forces(top: Section, dofs: Dofs) -> list[dict[str, Any]]:
+def read_forces(top: Section, dofs: Dofs, solved: bool) -> list[dict[str, Any]]:
     """The forces as read, in the words of the file; `name` is the dof of a force on one."""
-    if "base" in top.data and "force" not in top.data:
+    if "force" not in top.data and ("base" in top.data or not solved):
         return []
     if not top.data.get("force", ()) and isinstance(top.data.get("force", ()), list | tuple):
         top.wrong("force", "missing; without a [[force]] the response is zero")
@@ -183,9 +183,12 @@ def read_units(top: Section) -> tuple[str, str]:
     return found[0], found[1]
 
 
-def response_table(top: Section) -> Section | None:
-    """The [response] table; None where there is none, which only a scene with a schedule may do without."""
-    if "response" not in top.data and top.data.get("schedule"):
+def response_table(top: Section, solved: bool) -> Section | None:
+    """The [response] table; None where there is none.
+
+    A scene with a schedule may do without, and one that is not to be solved.
+    """
+    if "response" not in top.data and (top.data.get("schedule") or not solved):
         return None
     section = top.table("response", "a [response] table with frequency = [from, to]")
     if section is not None:

@@ -9,8 +9,8 @@ One factorisation serves for all of it, and for static displacements: those by K
 nothing of the shift is left in them.
 
 Of the elastic energy of a low mode little is left: a beam of n elements sums n^4 times as much. So it is
-summed with more digits than the matrices have, where the machine has a longer number; what remains is the
-rounding of the shapes, of second order.
+summed with more digits than the matrices have, where the machine has a longer number, and row by row; what
+remains is the rounding of the shapes, of second order.
 """
 
 from __future__ import annotations
@@ -286,13 +286,24 @@ def energy_of(matrix: Matrix, shapes: FloatArray) -> FloatArray:
     return energy
 
 
-def elastic_energy(K: Matrix, shapes: FloatArray) -> FloatArray:
-    """phi^H K phi of each shape, whose terms nearly cancel."""
-    upper = scipy.sparse.coo_array(scipy.sparse.triu(K, 1))
+def elastic_energy(K: Matrix, shapes: FloatArray, together: int = 4096) -> FloatArray:
+    """phi^H K phi of each shape, whose terms nearly cancel.
+
+    Row by row, where they cancel already: summed over all rows first, their rounding would be that of the
+    greatest sum. Some rows at a time, so that what is computed on the way stays within the cache.
+    """
+    K = scipy.sparse.csr_array(K.conj(copy=False).T)  # which is K, without a conversion of columns to rows
     long = np.result_type(K.dtype, np.longdouble)
-    diagonal, beside = K.diagonal().astype(long), upper.data.astype(long)
-    found = np.zeros(shapes.shape[1])
-    for mode, shape in enumerate(shapes.T.astype(long)):
-        crossed = (shape[upper.row].conj() * beside * shape[upper.col]).sum()
-        found[mode] = float(((diagonal * shape.conj() * shape).sum() + 2.0 * crossed).real)
-    return found
+    turned = shapes.T.astype(long)
+    found = np.zeros(len(turned), dtype=long)
+    for first in range(0, K.shape[0], together):
+        begin = K.indptr[first : first + together + 1]
+        filled = np.flatnonzero(np.diff(begin))
+        if not filled.size:
+            continue
+        some = slice(begin[0], begin[-1])
+        column, entries, starts = K.indices[some], K.data[some].astype(long), begin[filled] - begin[0]
+        for mode, shape in enumerate(turned):
+            forces = np.add.reduceat(entries * shape[column], starts)
+            found[mode] += (shape[first + filled].conj() * forces).sum()
+    return found.real.astype(float)

@@ -167,11 +167,13 @@ def _of_any_sign(full: Array, count: int, scale: float) -> _Front:
     return _Front(inverse, np.asfortranarray(full[count:, :count] @ inverse.conj().T), np.sign(value))
 
 
-def _add(full: Array, at: IntArray, left: Array) -> None:
-    """Add the lower triangle of what a front has left to another, at ascending places."""
-    edge = np.concatenate(([0], np.flatnonzero(np.diff(at) != 1) + 1, [at.size])).tolist()
-    blocks = [(int(at[i]), slice(i, j)) for i, j in pairwise(edge)]
-    for i, (column, columns) in enumerate(blocks):
-        wide = slice(column, column + columns.stop - columns.start)
-        for row, rows in blocks[i:]:
-            full[row : row + rows.stop - rows.start, wide] += left[rows, columns]
+def _add(full: Array, at: IntArray, left: Array, together: int = 64) -> None:
+    """Add the lower triangle of what a front has left to another, at ascending places.
+
+    Some columns at a time: those of one node alone would take as many calls as there are nodes, squared. What
+    is above the diagonal in them is added as well, where nothing is read.
+    """
+    flat, size = full.ravel(order="K"), full.shape[0]  # by columns
+    for first in range(0, at.size, together):
+        columns = at[first : first + together, None]
+        flat[columns * size + at[first:]] += left[first:, first : first + together].T

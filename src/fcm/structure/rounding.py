@@ -22,12 +22,15 @@ LONG = float(np.finfo(np.longdouble).eps)  # of the numbers in which elastic ene
 def of_frequencies(K: Matrix, modes: Modes) -> FloatArray:
     """How far the frequency of each mode may be off, relative; 0 for rigid-body modes.
 
-    Beside the sum's, that of entries that were written with few digits, of which two deviations are taken.
+    Each row of the sum is rounded by itself: two deviations of that are taken, and of entries that were
+    written with few digits.
     """
-    terms = np.einsum("ij,ij->j", np.abs(modes.shapes), abs(K) @ np.abs(modes.shapes))
-    lost = LONG * terms + 2.0 * energy_uncertain(K, modes.shapes)
+    rows = np.abs(modes.shapes) * (abs(K) @ np.abs(modes.shapes))
+    size = rows.max(axis=0)  # whose squares may overflow
+    together = size * np.linalg.norm(np.divide(rows, size, out=np.zeros_like(rows), where=size > 0.0), axis=0)
+    lost = 2.0 * (LONG * together + energy_uncertain(K, modes.shapes))
     elastic = modes.stiffness > 0.0
-    off: FloatArray = np.divide(0.5 * lost, modes.stiffness, out=np.zeros_like(terms), where=elastic)
+    off: FloatArray = np.divide(0.5 * lost, modes.stiffness, out=np.zeros_like(lost), where=elastic)
     return off
 
 
