@@ -113,3 +113,64 @@ def test_peaks_have_a_page(browser, file):
         peak = np.ma.filled(data["peak_amplitude"][:, 0])
     order = np.argsort(swept)
     assert np.array(json.loads(found)) == pytest.approx(np.stack((swept[order], peak[order]), axis=1))
+
+
+def test_the_branch_of_a_point_is_told_where_there_are_several(tmp_path):
+    """Points behind the gap between two branches are of the second."""
+    from fcm.plot.interactive import response_page
+    from fcm.plot.read import DrawnCurve, DrawnResponse
+
+    gap = np.array([1.0, 2.0, np.nan, 1.0, 2.0])
+    height = np.array([[1.0], [2.0], [np.nan], [3.0], [4.0]])
+    stable = np.array([True, True, True, False, False])
+    untold = np.zeros(5, dtype=bool)
+    curve = DrawnCurve({}, gap, height, stable, untold, frozenset(), None, np.full(5, 0.01))
+    response_page(DrawnResponse(("u",), "rad/s", (curve,)), None, None, tmp_path / "a.html")
+    text = (tmp_path / "a.html").read_text(encoding="utf-8")
+    assert '"stable, branch 1"' in text and '"unstable, branch 2"' in text and '"1.0e-02"' in text
+
+
+@pytest.fixture(scope="module")
+def joint(tmp_path_factory):
+    """A response with ten contacts, and their places."""
+    path = tmp_path_factory.mktemp("joint") / "blade.nc"
+    assert called("respond", "blade", "--harmonics", 1, "-o", path).code == 0
+    with netCDF4.Dataset(path) as data:
+        lines = [f"{name} {k} {k * k % 5}" for k, name in enumerate(data["contact"][:])]
+    path.with_suffix(".txt").write_text("\n".join(lines))
+    return path
+
+
+@pytest.mark.parametrize("with_places", [False, True])
+def test_contacts_have_a_page_with_all_that_one_bears_under_the_mouse(browser, joint, with_places):
+    at = 0.99 * greatest(joint)[0]
+    options = ("--at", greatest(joint)[0], "--at", at)
+    options += ("--places", joint.with_suffix(".txt")) if with_places else ()
+    run = shown(browser, page(joint, "contacts", *options))
+    hover = """const plot = document.querySelector('.plotly-graph-div');
+        Plotly.Fx.hover(plot, [{curveNumber: arguments[0], pointNumber: 4}]);
+        return document.querySelector('.hoverlayer').textContent;"""
+    _, k, names, borne = greatest(joint)
+    found = run(hover, 0)
+    assert found.startswith(f"{names[4]}: ")
+    for value in borne[:, k, 4]:
+        assert f": {value:.6g}" in found, (found, value)
+    last = run(
+        """const plot = document.querySelector('.plotly-graph-div');
+        const [shown, frequency] = plot.layout.updatemenus.map(menu => menu.buttons);
+        return Plotly.restyle(plot, frequency[1].args[0]).then(
+            () => Plotly.update(plot, shown[2].args[0], shown[2].args[1])).then(
+            () => JSON.stringify([plot.data.map(one => one.visible), plot.data[0].marker.color]));"""
+    )
+    visible, colours = json.loads(last)
+    assert visible == [False, True] and colours == pytest.approx(borne[2, k].tolist())
+
+
+def greatest(path):
+    """Frequency and place of the greatest amplitude, the contacts, and what they bear (3, point, contact)."""
+    with netCDF4.Dataset(path) as data:
+        amplitude = np.ma.filled(data["amplitude"][0], np.nan)
+        k = int(np.nanargmax(np.nanmax(amplitude, axis=1)))
+        kinds = ("dissipated_energy", "slip_path", "greatest_normal_force")
+        borne = np.array([np.ma.filled(data[name][0], np.nan) for name in kinds])
+        return float(data["frequency"][0, k]), k, list(data["contact"][:]), borne

@@ -6,16 +6,17 @@ from pathlib import Path
 
 import click
 
-from fcm.cli.drawing import draws_file, picture_of, save_picture_of
+from fcm.cli.drawing import drawing, draws_file, is_page, picture_of, save_picture_of
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.options import FiniteRange
+from fcm.files import replacing
 
 MOST_ROWS = 10  # of the table: contacts that take most
 HEAD = ("contact", "state", "energy", "of all", "slip path", "normal force")
 
 
 @click.command()
-@draws_file("-contacts.png")
+@draws_file("-contacts.png", page=True)
 @click.option(
     "--at", type=FiniteRange(min=0.0), multiple=True, metavar="F",
     help="The frequency, in the file's unit; several make a film strip.  [default: of the greatest peak]",
@@ -48,7 +49,7 @@ def contacts(
         read_places,
     )
 
-    output = picture_of(file, output, "-contacts.png", places)
+    output = picture_of(file, output, "-contacts.png", places, page=True)
     if len(at) > MOST:
         raise click.UsageError(f"--at is given {len(at)} times; a picture has room for {MOST}.")
     read = read_interface(file)
@@ -60,5 +61,11 @@ def contacts(
         for row in rows:
             messages.info("  ".join(word.rjust(width) for word, width in zip(row, widths, strict=True)))
         messages.info(f"at {point.frequency:.6g} {read.unit}; {len(read.contacts)} contacts")
-    save_picture_of(lambda: draw_interface(read, points, where), output)
+    if is_page(output):
+        from fcm.plot.interactive import contacts_page
+
+        with drawing(), replacing(output) as partial:
+            contacts_page(read, points, where, partial)
+    else:
+        save_picture_of(lambda: draw_interface(read, points, where), output)
     messages.info(f"wrote {output}")

@@ -1,4 +1,4 @@
-"""A page to look into a response: every curve, hover for its numbers, zoom, a menu of degrees of freedom.
+"""Pages to look into a response: every curve, hover for its numbers, zoom, a menu of degrees of freedom.
 
 The page is one HTML file that holds all it needs, by plotly; no network is used when it is opened.
 """
@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from fcm.plot.errors import PlotError
+from fcm.plot.interface import BORNE, STATES_OF_CONTACTS, InterfaceFile, InterfacePoint
 from fcm.plot.labels import short_names, with_unit
 from fcm.plot.peak import Peaks
 from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, FloatArray, wide
@@ -84,6 +85,78 @@ def peak_page(peaks: Peaks, dof: str | None, against: str | None, path: Path) ->
     _write(figure, path)
 
 
+def contacts_page(
+    file: InterfaceFile, points: Sequence[InterfacePoint], places: FloatArray | None, path: Path
+) -> None:
+    """Write the page of contacts at points of a curve.
+
+    A menu has the frequencies, another what is shown; under the mouse is all that a contact does and bears.
+
+    Parameters
+    ----------
+    places : ndarray, optional
+        Where each contact is (contact, 2): it is coloured by what is shown. Else its height is that.
+    """
+    go = _plotly()
+    figure, names = go.Figure(), np.array(file.contacts)
+    heads = [with_unit(f"{name[:1].upper()}{name[1:]}", file.units[k]) for k, (_, name) in enumerate(BORNE)]
+    number = np.arange(1, len(names) + 1)
+    tops = [float(np.nanmax([one.borne[k] for one in points], initial=0.0)) or 1.0 for k in range(len(BORNE))]
+    for i, one in enumerate(points):
+        states = np.array([STATES_OF_CONTACTS[k][0] for k in one.state])
+        symbols = [_SYMBOLS[k] for k in one.state]
+        x, y = (number, one.borne[0]) if places is None else places.T
+        figure.add_scatter(
+            x=x, y=y, mode="markers", name=f"{one.frequency:.6g} {file.unit}", visible=i == 0,
+            customdata=np.column_stack((names, states, *(one.borne[k].astype(str) for k in range(3)))),
+            marker={"symbol": symbols, "size": 10, "line": {"color": "black", "width": 0.5},
+                    "color": one.borne[0], "colorscale": "Viridis", "cmin": 0.0, "cmax": tops[0],
+                    "showscale": places is not None},
+            hovertemplate="<b>%{customdata[0]}</b>: %{customdata[1]}"
+            + "".join(f"<br>{head}: %{{customdata[{2 + k}]:.6g}}" for k, head in enumerate(heads))
+            + "<extra></extra>",
+        )  # fmt: skip
+    if places is None:
+        figure.update_xaxes(title="Contact")
+        figure.update_yaxes(title=heads[0])
+    else:
+        figure.update_yaxes(scaleanchor="x")
+    shown = [_of_contacts(points, k, head, tops[k], places is None) for k, head in enumerate(heads)]
+    frequencies = [
+        {
+            "label": f"{one.frequency:.6g} {file.unit}{_doubt(one.stable)}",
+            "method": "restyle",
+            "args": [{"visible": [j == i for j in range(len(points))]}],
+        }
+        for i, one in enumerate(points)
+    ]
+    place = {"xanchor": "left", "y": 1.12, "yanchor": "top", "direction": "down"}
+    menus = [{"buttons": shown, "x": 0.0, **place}, {"buttons": frequencies, "x": 0.4, **place}]
+    kinds = dict.fromkeys(int(k) for one in points for k in one.state)
+    marks = "; ".join(f"{_SYMBOLS[k]}: {STATES_OF_CONTACTS[k][0]}" for k in sorted(kinds))
+    title = {"text": marks, "font": {"size": 13}, "x": 0.7}
+    figure.update_layout(updatemenus=menus, title=title, showlegend=False, **_LAYOUT)
+    _write(figure, path)
+
+
+_SYMBOLS = ("circle", "triangle-up", "square", "circle-open")  # by state, as in `STATES_OF_CONTACTS`
+
+
+def _of_contacts(
+    points: Sequence[InterfacePoint], k: int, head: str, top: float, heights: bool
+) -> dict[str, Any]:
+    """The button that shows what contacts bear, by heights or colours."""
+    values = [one.borne[k] for one in points]
+    change: dict[str, Any] = {"marker.color": values, "marker.cmax": top}
+    change |= {"y": values} if heights else {}
+    layout = {"yaxis.title.text": head} if heights else {}
+    return {"label": head, "method": "update", "args": [change, layout]}
+
+
+def _doubt(stable: float) -> str:
+    return "" if stable == 1.0 else ", unstable" if stable == 0.0 else f", {STATES[2]}"
+
+
 _LAYOUT: dict[str, Any] = {"template": "simple_white", "hovermode": "closest", "margin": {"t": 60, "r": 20}}
 
 
@@ -129,11 +202,14 @@ def _mode(y: FloatArray) -> str:
 
 
 def _said(curve: DrawnCurve, state: str) -> Any:
-    """What is shown of each point beside its place: the error and the stability."""
+    """What is shown of each point beside its place: the error, the stability, and which branch it is on."""
     error = curve.truncation_error
     told = np.full(len(curve.frequency), np.nan) if error is None else error
     shown = ["not told" if np.isnan(one) else f"{one:.1e}" for one in told]
-    return np.stack((np.array(shown), np.full(len(shown), state)), axis=1)
+    branch = 1 + np.cumsum(np.isnan(curve.frequency))
+    several = branch.size and branch[-1] > 1
+    which = [f"{state}, branch {number}" if several else state for number in branch.tolist()]
+    return np.stack((np.array(shown), np.array(which)), axis=1)
 
 
 def _name(curve: DrawnCurve, response: DrawnResponse) -> str:

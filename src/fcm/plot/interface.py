@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _NEEDED = ("frequency", "amplitude", "contact", "regime", "dissipated_energy")
-_BORNE = (("dissipated_energy", "energy in a cycle"), ("slip_path", "slip path in a cycle"),
+BORNE = (("dissipated_energy", "energy in a cycle"), ("slip_path", "slip path in a cycle"),
           ("greatest_normal_force", "greatest normal force"))  # fmt: skip
-_STATES = (  # word, colour and mark: told apart without colours, too
+STATES_OF_CONTACTS = (  # word, colour and mark: told apart without colours, too
     ("sticks", "#0072B2", "o"),
     ("slips", "#E69F00", "^"),
     ("slips and opens", "#D55E00", "s"),
@@ -65,7 +65,7 @@ class InterfacePoint:
 @apart
 def read_interface(path: Path) -> InterfaceFile:
     """Read what ``fcm respond -o`` has written; PlotError if the file says nothing of its contacts."""
-    names = tuple(name for name, _ in _BORNE)
+    names = tuple(name for name, _ in BORNE)
     with opened(path, "a response with contacts", (*_NEEDED, *names[1:], "dof"), ("stable",)) as data:
         variables = data.variables
         contacts, dofs = (
@@ -136,7 +136,7 @@ def greatest_takers(file: InterfaceFile, point: InterfacePoint, most: int) -> li
     return [
         (
             file.contacts[i],
-            _STATES[point.state[i]][0],
+            STATES_OF_CONTACTS[point.state[i]][0],
             f"{energy[i]:.4g}",
             f"{100.0 * energy[i] / total:.1f} %",
             *(f"{value:.4g}" for value in point.borne[1:, i]),
@@ -195,12 +195,12 @@ def draw_interface(
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-    count, titles = len(points), [f"{name}" for _, name in _BORNE]
+    count, titles = len(points), [f"{name}" for _, name in BORNE]
     with house_style():
         width = TWO_COLUMNS if count > 1 else WIDTH
         figure = new_figure(width, 6.4 if places is None else _height(places, width, count))
         grid = figure.subplots(
-            1 + len(_BORNE), count, sharex=True, sharey="row" if places is None else True, squeeze=False
+            1 + len(BORNE), count, sharex=True, sharey="row" if places is None else True, squeeze=False
         )
         size = float(np.clip(1500.0 / (len(file.contacts) * count), *_SIZE))
         for column, point in enumerate(points):
@@ -245,13 +245,13 @@ def _height(places: FloatArray, width: float, count: int) -> float:
     low, high = _limits(places)
     across, up = (high - low).tolist()
     panel = (width - _BAR) / count * up / across
-    return float(np.clip((panel + _ABOVE) * (1 + len(_BORNE)) + _ABOVE, *_HEIGHTS))
+    return float(np.clip((panel + _ABOVE) * (1 + len(BORNE)) + _ABOVE, *_HEIGHTS))
 
 
 def _states(axes: Axes, point: InterfacePoint, places: FloatArray | None, size: float) -> None:
     """Marks by state; in a row one level for each."""
     number = np.arange(1, len(point.state) + 1)
-    for k, (_, colour, mark) in enumerate(_STATES):
+    for k, (_, colour, mark) in enumerate(STATES_OF_CONTACTS):
         here = point.state == k
         x, y = (number[here], np.full(here.sum(), k)) if places is None else places[here].T
         axes.scatter(x, y, c=colour, marker=mark, s=size, edgecolors="black", linewidths=0.4)
@@ -267,17 +267,17 @@ def _finish(figure: Figure, grid: Any, points: Sequence[InterfacePoint], places:
             axes.set_xlim(left, right)
             axes.set_ylim(lower, upper)
     if places is None:
-        grid[0, 0].set_yticks(range(len(_STATES)), [word for word, *_ in _STATES])
-        grid[0, 0].set_ylim(-0.6, len(_STATES) - 0.4)
+        grid[0, 0].set_yticks(range(len(STATES_OF_CONTACTS)), [word for word, *_ in STATES_OF_CONTACTS])
+        grid[0, 0].set_ylim(-0.6, len(STATES_OF_CONTACTS) - 0.4)
         for axes in grid[-1]:
             axes.set_xlabel("contact")
         return
     marks = [
         Line2D([], [], color=colour, marker=mark, linestyle="", markeredgecolor="black", markeredgewidth=0.4)
-        for _, colour, mark in _STATES
+        for _, colour, mark in STATES_OF_CONTACTS
     ]
     words = [
         f"{word} ({int(sum((point.state == k).sum() for point in points))})" if len(points) == 1 else word
-        for k, (word, *_) in enumerate(_STATES)
+        for k, (word, *_) in enumerate(STATES_OF_CONTACTS)
     ]
-    figure.legend(marks, words, loc="outside upper center", ncols=len(_STATES))
+    figure.legend(marks, words, loc="outside upper center", ncols=len(STATES_OF_CONTACTS))
