@@ -14,9 +14,9 @@ import time
 
 import numpy as np
 
+from fcm.model.scene import Scene
 from fcm.response import trace
 from fcm.scene import scene_from_dict
-from fcm.scene.model import Scene
 
 SIZES = ((500, 20), (20, 50))
 

@@ -14,8 +14,8 @@ import numpy as np
 
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
+from fcm.model.scene import Scene
 from fcm.scene import scene_from_dict
-from fcm.scene.model import Scene
 from fcm.stability.bifurcations import stability
 
 PARTS = "levels and curve", "stability"

@@ -11,9 +11,9 @@ import time
 import numpy as np
 from tests.ring import rings
 
+from fcm.model.scene import Scene
 from fcm.response import Response, trace
 from fcm.scene import scene_from_dict
-from fcm.scene.model import Scene
 
 PRELOAD = 20.0
 

@@ -20,8 +20,8 @@ import fcm
 from fcm.contact.cycle import __file__ as kernel
 from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.plane.forces import PlanarContact
+from fcm.model.scene import Scene
 from fcm.response import trace
-from fcm.scene.model import Scene
 from fcm.table import Table
 from fcm.table.locate import locate
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from fcm.harmonic.system import System
+from fcm.model.scene import Scene
 from fcm.reduction.put_back import unknowns
 from fcm.response import Curve
-from fcm.scene.model import Scene
 
 
 def condition_number(scene: Scene, curve: Curve) -> float:

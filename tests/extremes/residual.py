@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact import fourier_coefficients, normal_coefficients
+from fcm.model.scene import Contact, FloatArray, Modal, Scene
 from fcm.response import Curve
-from fcm.scene.model import Contact, FloatArray, Modal, Scene
 
 ComplexArray = npt.NDArray[np.complex128]
 BALANCED = 1e-9  # of the forces on a mode: less counts as balanced

@@ -11,8 +11,8 @@ from fcm.fit.estimate import estimated
 from fcm.fit.options import FIT
 from fcm.fit.parameters import parameters_of
 from fcm.fit.solve import solved
+from fcm.model.scene import Measured
 from fcm.scene.load import scene_from_dict
-from fcm.scene.model import Measured
 
 TRUE = {"contact.shroud.mu": 0.4, "contact.shroud.k_u": 1.0, "modal.damping.0": 0.01}
 NOISE = 0.01

@@ -9,8 +9,8 @@ from fcm.fit.parameters import parameters_of
 from fcm.fit.solve import Problem, solved
 from fcm.harmonic.mode import nonlinear_mode
 from fcm.harmonic.system import System
+from fcm.model.scene import Measured
 from fcm.scene.load import scene_from_dict
-from fcm.scene.model import Measured
 
 HARMONICS = (1, 2, 3)
 KEYS = ["contact.c.mu", "contact.c.k_u", "modal.damping.0"]

@@ -10,9 +10,9 @@ from fcm.fit.forced import errors_of, forced_rows
 from fcm.fit.options import FIT
 from fcm.fit.parameters import parameters_of
 from fcm.fit.solve import Problem, solved
+from fcm.model.scene import Measured
 from fcm.response import trace
 from fcm.scene.load import scene_from_dict
-from fcm.scene.model import Measured
 
 K_U, DAMPING = 0.7, 0.02
 

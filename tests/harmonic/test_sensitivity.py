@@ -9,11 +9,11 @@ from fcm.harmonic.peak import Kind
 from fcm.harmonic.sensitivity import numbers_of, settled
 from fcm.harmonic.system import System
 from fcm.harmonic.whole import Amplitude, jacobian_of
+from fcm.model.scene import Aim, Optimum
 from fcm.response.optimum import optimise
 from fcm.response.sensitivity import add_sensitivities, remarks
 from fcm.response.sweep import trace
 from fcm.scene import load_scene, scene_from_dict
-from fcm.scene.model import Aim, Optimum
 
 STEP = 1e-3  # of a number
 

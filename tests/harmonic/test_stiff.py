@@ -8,9 +8,9 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+from fcm.model.scene import Contact, Force, Modal
 from fcm.response import trace
 from fcm.scene import load_scene
-from fcm.scene.model import Contact, Force, Modal
 
 YANG = load_scene("yang1998-n5")
 

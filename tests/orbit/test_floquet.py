@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fcm.model.scene import Held
 from fcm.motion import simulate
 from fcm.orbit import Shooting, periodic
 from fcm.orbit.periodic import converged
-from fcm.scene.model import Held
 
 from ..harmonic.strips import strip
 from ..motion.cases import SCENES, yang

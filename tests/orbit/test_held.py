@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fcm.continuation import Events, FollowOptions
+from fcm.model.scene import Held, Load
 from fcm.motion import simulate
 from fcm.orbit.harmonic import balanced_states
 from fcm.orbit.problem import OrbitProblem
@@ -18,7 +19,6 @@ from fcm.response.exact import trace_exact
 from fcm.response.legs import Leg, Legs, TimeOver
 from fcm.run import Report
 from fcm.scene import Contact, Force, Modal, Scene
-from fcm.scene.model import Held, Load
 
 SAME = 1e-8  # of amplitudes, of curves that are known to a few 1e-10
 OMEGA = 1.2  # of the one point that is looked at

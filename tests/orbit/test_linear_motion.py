@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 import fcm
+from fcm.model.scene import Start
 from fcm.motion import State, simulate
 from fcm.orbit.family import Family
 from fcm.orbit.linear_motion import linear_motions
 from fcm.response import not_unique
 from fcm.response.exact import trace_exact
 from fcm.response.loose import loose
-from fcm.scene.model import Start
 
 from ..program import called
 from ..response.random_scenes import random_scene

@@ -5,9 +5,9 @@ import pytest
 from tests.program import called
 from tests.scene.test_node_sets import NORMAL, deck, places, read
 
+from fcm.model.interface import Interface
 from fcm.plot.errors import PlotError
 from fcm.plot.pairs import draw_pairs, view_of
-from fcm.scene.interface import Interface
 
 
 def alone(folder):

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import fcm
+from fcm.model.scene import Load
 from fcm.response import trace
-from fcm.scene.model import Load
 
 PEAKS = {25: 10.499584, 50: 17.202195, 80: 32.168471, 100: 45.539025, 200: 124.093857, 300: 206.469541}
 SAMPLED = 5e-6

@@ -14,13 +14,13 @@ import numpy as np
 
 from fcm.cli.messages import Messages, pass_messages
 from fcm.compare.exact import exact_lines
+from fcm.model.scene import Scene
 from fcm.plot.convergence import Balanced, Line, draw_convergence
 from fcm.response.sweep import trace
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
 from fcm.results.result import Curve
 from fcm.scene.load import load_scene
-from fcm.scene.model import Scene
 from fcm.table import Table, open_table
 
 from .measured import write_measured

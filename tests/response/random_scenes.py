@@ -14,8 +14,8 @@ from functools import partial
 
 import numpy as np
 
+from fcm.model.scene import Contact, Force, Modal, Scene
 from fcm.response import Curve, trace
-from fcm.scene.model import Contact, Force, Modal, Scene
 
 if __package__:
     from .in_time import in_time

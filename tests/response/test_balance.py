@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fcm.model.scene import Contact, Force, Modal, Scene
 from fcm.response import trace
-from fcm.scene.model import Contact, Force, Modal, Scene
 
 DOFS = ("a", "b", "c")
 

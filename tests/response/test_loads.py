@@ -10,6 +10,7 @@ import pytest
 import fcm
 from fcm.harmonic.rest import RestError, rest_of
 from fcm.harmonic.system import System
+from fcm.model.scene import Force, Load
 from fcm.motion import State, simulate
 from fcm.motion.energy import energy
 from fcm.orbit.shooting import Shooting
@@ -17,7 +18,6 @@ from fcm.reduction.linear import linear_response
 from fcm.response import ResponseError, trace
 from fcm.response.level import trace_levels
 from fcm.scene import load_scene, scene_from_dict
-from fcm.scene.model import Force, Load
 
 from ..motion.reference import Law, integrate
 from ..program import called

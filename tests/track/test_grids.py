@@ -12,12 +12,12 @@ from fcm.continuation.corrector import Newton
 from fcm.harmonic.record import recorded
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
+from fcm.model.scene import Aim, Optimum
 from fcm.response import least
 from fcm.response.optimum import optimise
 from fcm.response.tracked_work import conditions_of
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
-from fcm.scene.model import Aim, Optimum
 from fcm.track.curves import tracks
 from fcm.track.spot import Way
 from fcm.track.starts import moved

@@ -14,13 +14,13 @@ from fcm.continuation import Mark
 from fcm.harmonic.record import recorded
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
+from fcm.model.scene import Aim, Optimum
 from fcm.response.optimum import optimise
 from fcm.response.track import track
 from fcm.results.output import write_netcdf
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
 from fcm.scene.load import scene_from_dict
-from fcm.scene.model import Aim, Optimum
 from fcm.track import starts
 from fcm.track.curve import Track
 from fcm.track.curves import tracks

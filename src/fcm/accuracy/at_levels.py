@@ -17,7 +17,7 @@ from fcm.continuation import Path
 from fcm.harmonic.further import Further
 from fcm.harmonic.record import borne_along, recorded_at_levels
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.stability.floquet import multipliers_of
 
 FAR = 0.5  # a change of this part of the greatest displacement is not believed: another branch may be there

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from fcm.accuracy.options import PairOptions
 from fcm.accuracy.partner_curve import Compared, Followed, PartnerCurve
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 
 def of_borne(

@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from fcm.accuracy.options import PairOptions
 from fcm.accuracy.partner_curve import PartnerCurve
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 Mask = npt.NDArray[np.bool_]
 

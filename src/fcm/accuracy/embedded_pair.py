@@ -30,7 +30,7 @@ from fcm.harmonic.further import HIGHEST, Further
 from fcm.harmonic.record import borne_along
 from fcm.harmonic.reported import Reported, reported
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 Mask = npt.NDArray[np.bool_]
 

@@ -21,7 +21,7 @@ from fcm.accuracy.partner import give_back, lifted_of, partner_of
 from fcm.continuation import Mark, Path
 from fcm.harmonic.further import HIGHEST, Further
 from fcm.harmonic.lifted import Lifted
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 
 @dataclass(frozen=True)

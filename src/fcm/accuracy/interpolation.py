@@ -6,7 +6,7 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import fabs, isnan, sqrt
 
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 NEAR = cython.declare(cython.double, 1e-4)  # of the length of a curve: points nearer coincide
 LEAST = cython.declare(cython.double, 1e-300)  # unit of a curve that stays where it is

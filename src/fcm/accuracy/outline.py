@@ -20,7 +20,7 @@ from fcm.harmonic.start import Found
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import Traced, traced, traced_from, with_levels
 from fcm.harmonic.work import TooLongError
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 LOW = 3  # up to this no single harmonic is left out: stability between folds may hang on it
 DOUBTFUL = 3.0  # seconds that rounds may take of which nothing tells that they bring the accuracy nearer

@@ -11,7 +11,7 @@ import numpy as np
 from fcm.accuracy.options import PAIR, PairOptions
 from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.scene.rules import MOST_HARMONICS
 
 ENOUGH = 0.01  # of a displacement: when a Newton step was less than this, what is left is far less

@@ -25,7 +25,7 @@ from fcm.harmonic.record import borne_along
 from fcm.harmonic.reported import Reported
 from fcm.harmonic.runs import runs
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 Indices = npt.NDArray[np.intp]
 Mask = npt.NDArray[np.bool_]

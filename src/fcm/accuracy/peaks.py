@@ -7,7 +7,7 @@ import numpy as np
 from fcm.accuracy.partner_curve import Followed, Indices, PartnerCurve
 from fcm.accuracy.same_frequency import rises
 from fcm.continuation import Mark
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 NEAR = 8  # points to either side of the highest that may be higher where they are only interpolated
 

@@ -12,7 +12,7 @@ from fcm.accuracy.interpolation import places
 from fcm.accuracy.same_frequency import OtherCurve
 from fcm.continuation import Path
 from fcm.harmonic.reported import Reported
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from fcm.continuation.follow import Progress
 from fcm.harmonic.cost import AGAIN
 from fcm.harmonic.start import few_of, with_low_harmonics
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 # what has been traced, by how much its partner changes it (NaN: not told), and the harmonics that come next
 Keep = Callable[[Outline, float, tuple[int, ...]], None]

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from fcm.accuracy.options import PairOptions
 from fcm.harmonic.reported import reported_at
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 ComplexArray = npt.NDArray[np.complex128]
 

@@ -6,7 +6,7 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import fabs, isnan
 
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 HALVINGS = cython.declare(cython.int, 40)  # of a piece, to where the parameter is a value
 PARTS = cython.declare(cython.int, 8)  # of the way from a point to the next

@@ -22,7 +22,7 @@ from fcm.harmonic.reported import Reported, reported
 from fcm.harmonic.start import NEAR, solutions
 from fcm.harmonic.system import System
 from fcm.harmonic.work import TooLongError
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 
 class SpentError(Exception):

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.harmonic.runs import runs
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 Mask = npt.NDArray[np.bool_]
 

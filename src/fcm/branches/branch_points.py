@@ -29,7 +29,7 @@ from fcm.continuation.corrector import Newton
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.system import System
 from fcm.harmonic.whole import jacobian_of
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ import numpy as np
 from fcm.branches.fold_steps import Ending, FoldSteps, Point
 from fcm.branches.options import FOLDS, FoldOptions
 from fcm.branches.surface import Surface
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from cython.cimports.libc.math import atan2, cos, fabs, isfinite, sin, sqrt
 
 from fcm.branches.options import FoldOptions
 from fcm.branches.surface import Surface
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 PI = cython.declare(cython.double, np.pi)
 

@@ -24,7 +24,7 @@ from fcm.harmonic.start import Found, few_of
 from fcm.harmonic.system import System
 from fcm.harmonic.turned import Turn
 from fcm.harmonic.work import TooLongError
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from fcm.branches.options import BRANCHING, BranchingOptions
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from fcm.branches.options import PROLONGATION, ProlongationOptions
 from fcm.continuation import Mark, Path
 from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 
 def prolongated(

@@ -16,7 +16,7 @@ from fcm.continuation.all_branches import contains
 from fcm.harmonic.start import few_of
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import Traced, traced, with_further
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 
 def every_branch(system: System) -> Traced:

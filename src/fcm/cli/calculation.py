@@ -10,8 +10,8 @@ from fcm.cli.messages import Messages
 from fcm.cli.respond_options import Asked
 
 if TYPE_CHECKING:
+    from fcm.model.scene import Scene
     from fcm.response import Response
-    from fcm.scene.model import Scene
 
 
 def calculated(messages: Messages, scene: Scene, asked: Asked, place: Any, keep: Any) -> Response:

@@ -14,7 +14,7 @@ from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.scene_name import scene_argument
 
 if TYPE_CHECKING:
-    from fcm.scene.model import Scene
+    from fcm.model.scene import Scene
 
 MOST_HARMONICS = 10  # of which it is said what they meet
 

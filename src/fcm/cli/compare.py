@@ -13,7 +13,7 @@ from fcm.cli.guard import NOT_COMPLETED
 from fcm.cli.messages import Messages
 
 if TYPE_CHECKING:
-    from fcm.scene.model import Scene
+    from fcm.model.scene import Scene
 
 OF_NO_USE = {  # with --compare, and why
     "method": "it runs every method",

@@ -11,9 +11,9 @@ from fcm.cli.messages import Messages
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from fcm.model.scene import Scene
     from fcm.response import Response
     from fcm.results.orbits import Orbits
-    from fcm.scene.model import Scene
 
 MOST_PERIODS = 8  # that --periods can ask for
 MOST_FREQUENCIES = 100_000  # that can be asked for; each takes milliseconds at least

@@ -16,9 +16,9 @@ from fcm.cli.options import FiniteRange
 if TYPE_CHECKING:
     from fcm.cli.respond_options import Asked
     from fcm.mesh import Mesh
+    from fcm.model.scene import Scene
     from fcm.results.motions import Motion
     from fcm.results.result import Response
-    from fcm.scene.model import Scene
 
 UNIVERSAL, HDF5 = (".uff", ".unv"), (".h5", ".hdf5")
 _RING = "a ring's sector moves in modes that travel around it; its contact forces alone are exported"

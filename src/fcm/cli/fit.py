@@ -13,8 +13,8 @@ from fcm.cli.terminal import plain
 
 if TYPE_CHECKING:
     from fcm.cli.respond_options import Asked
+    from fcm.model.scene import Scene
     from fcm.response import Response
-    from fcm.scene.model import Scene
 
 
 def check_scene(scene: Scene, asked: Asked) -> None:

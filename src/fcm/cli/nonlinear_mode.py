@@ -10,8 +10,8 @@ import click
 from fcm.cli.columns import aligned, number, ranges, short, swept
 
 if TYPE_CHECKING:
+    from fcm.model.scene import Scene
     from fcm.response import Response
-    from fcm.scene.model import Scene
 
 OF_NO_USE = {  # with --mode, and why
     "method": "modes are followed by the balance",

@@ -24,7 +24,7 @@ from fcm.cli.messages import Messages
 from fcm.cli.respond_options import Asked
 
 if TYPE_CHECKING:
-    from fcm.scene.model import Scene
+    from fcm.model.scene import Scene
 
 MANY_POINTS = 30_000  # some seconds, and files of 10 MB and more
 

@@ -22,7 +22,7 @@ from fcm.cli.time_limit import TimeLimit
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from fcm.scene.model import Scene
+    from fcm.model.scene import Scene
 
 
 @click.command()

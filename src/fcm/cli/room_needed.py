@@ -11,7 +11,7 @@ from fcm.cli.respond_options import Asked
 from fcm.files import real
 
 if TYPE_CHECKING:
-    from fcm.scene.model import Scene
+    from fcm.model.scene import Scene
 
 TOLD = 500e6  # bytes of results
 CSV = 2.5  # times the bytes of netCDF that the digits of a number take

@@ -14,10 +14,10 @@ from fcm.cli.messages import Messages
 from fcm.rotation import MOST_DOFS
 
 if TYPE_CHECKING:
+    from fcm.model.scene import Scene
     from fcm.motion import Histories
     from fcm.response import Response
     from fcm.run import Checkpoint
-    from fcm.scene.model import Scene
 
 Summary = Mapping[str, Any]  # one of the summary's "histories"
 

@@ -8,8 +8,8 @@ import click
 
 if TYPE_CHECKING:
     from fcm.cli.messages import Messages
+    from fcm.model.scene import Scene
     from fcm.response import Response
-    from fcm.scene.model import Scene
 
 
 def check_options(wanted: bool, method: str, level: object, mode: int | None, peaks_only: bool) -> None:

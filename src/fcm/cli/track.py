@@ -12,8 +12,8 @@ from fcm.cli.messages import Messages
 from fcm.cli.terminal import plain
 
 if TYPE_CHECKING:
+    from fcm.model.scene import Scene
     from fcm.response import Response
-    from fcm.scene.model import Scene
 
 SHOWN = 3  # problems on a terminal; --json has all
 WHAT = ("folds", "peaks", "slip", "separation", "closing")

@@ -10,11 +10,11 @@ from pathlib import Path
 from fcm.compare.errors import Errors, Reference, Shown, reference, worst
 from fcm.compare.methods import CLOSED_FORM, EXACT, Method, Run, run, solve, with_step
 from fcm.compare.startup import Startup, startup
+from fcm.model.scene import Scene
 from fcm.reduction.leave_out import TOLERANCE
 from fcm.response.around import refuse_other_harmonics, refuse_own_laws, refuse_plane, refuse_ring
 from fcm.response.sweep import trace
 from fcm.scene.errors import counted
-from fcm.scene.model import Scene
 from fcm.table import open_table
 from fcm.table.seam import seam
 from fcm.table.shipped import DEFAULT

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from fcm.model.scene import Scene
 from fcm.results.result import Curve
-from fcm.scene.model import Scene
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 
 from fcm.compare.exact import exact_lines
 from fcm.compare.lines import Line, line_of
+from fcm.model.scene import Scene
 from fcm.reduction.leave_out import leave_out
 from fcm.response.sweep import trace
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
 from fcm.run import Progress
-from fcm.scene.model import Scene
 from fcm.table import Table
 
 CLOSED_FORM, EXACT = "closed form", "exact"

@@ -9,8 +9,8 @@ import numpy as np
 
 from fcm.export.rows import Rows
 from fcm.mesh import Mesh
+from fcm.model.scene import Scene
 from fcm.results.motions import Motion, harmonics_of
-from fcm.scene.model import Scene
 from fcm.units import in_unit
 
 

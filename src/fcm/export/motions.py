@@ -15,12 +15,12 @@ from fcm.continuation.corrector import Newton
 from fcm.export.options import EXPORT, ExportOptions
 from fcm.harmonic.record import amplitudes_at
 from fcm.harmonic.system import System
+from fcm.model.scene import FloatArray, Modal, Scene
 from fcm.reduction.put_back import unknowns
 from fcm.response.wanted import ResponseError
 from fcm.results.motions import ComplexArray, Motion
 from fcm.results.result import Curve, Response
 from fcm.rotation import greatest_first
-from fcm.scene.model import FloatArray, Modal, Scene
 from fcm.units import UNIT
 
 

@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.mesh import Mesh
+from fcm.model.scene import Scene
 from fcm.results.motions import ComplexArray, Motion
 from fcm.scene.errors import choices, counted
 from fcm.scene.linear import HIDDEN
-from fcm.scene.model import Scene
 from fcm.scene.names import DIRECTIONS, at_node, motion_of
 
 IntArray = npt.NDArray[np.intp]

@@ -10,9 +10,9 @@ import numpy as np
 from fcm.export.label import labels_of
 from fcm.export.rows import Rows
 from fcm.mesh import Mesh
+from fcm.model.scene import FloatArray, Scene
 from fcm.results.motions import ComplexArray, Motion
 from fcm.results.result import Curve, Response
-from fcm.scene.model import FloatArray, Scene
 from fcm.scene.names import DIRECTIONS, motion_of
 from fcm.units import in_unit
 

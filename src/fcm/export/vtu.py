@@ -11,8 +11,8 @@ import numpy as np
 from fcm.export.label import labels_of
 from fcm.export.rows import Rows
 from fcm.mesh import Mesh
+from fcm.model.scene import Scene
 from fcm.results.motions import Motion
-from fcm.scene.model import Scene
 
 
 def write_vtu(motions: Sequence[Motion], scene: Scene, mesh: Mesh, path: Path) -> None:

@@ -11,7 +11,7 @@ from fcm.fit.forced import NoMotionError, errors_of, forced_rows, sampled
 from fcm.fit.options import ADVICE, FIT, FitOptions
 from fcm.fit.parameters import Parameters
 from fcm.fit.rows import Rows
-from fcm.scene.model import FloatArray, Measured
+from fcm.model.scene import FloatArray, Measured
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,8 @@ from fcm.harmonic.autonomous import Autonomous
 from fcm.harmonic.mode import Mode, linear_modes, nonlinear_mode
 from fcm.harmonic.peak import STENCIL
 from fcm.harmonic.system import System
+from fcm.model.scene import FloatArray, Measured, Scene
 from fcm.scene.draft import Number
-from fcm.scene.model import FloatArray, Measured, Scene
 
 
 def backbone_rows(

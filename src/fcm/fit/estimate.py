@@ -20,7 +20,7 @@ from scipy.stats import t as student
 from fcm.fit.options import FIT, FitOptions
 from fcm.fit.parameters import Parameters
 from fcm.fit.rows import Rows
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 
 @dataclass(frozen=True)

@@ -29,8 +29,8 @@ from fcm.harmonic.record import recorded
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
 from fcm.harmonic.whole import jacobian_of
+from fcm.model.scene import FloatArray, Measured, Scene
 from fcm.scene.draft import LEVEL, number_of
-from fcm.scene.model import FloatArray, Measured, Scene
 from fcm.units import QUANTITIES
 
 ComplexArray = npt.NDArray[np.complex128]

@@ -9,9 +9,8 @@ import numpy as np
 from scipy.stats import qmc
 
 from fcm.fit.options import FIT, FitOptions
-from fcm.scene.address import Address
+from fcm.model.scene import Address, FloatArray, Scene
 from fcm.scene.draft import Number, number_of
-from fcm.scene.model import FloatArray, Scene
 
 
 class FitError(ValueError):

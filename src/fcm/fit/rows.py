@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 
 @dataclass(frozen=True)

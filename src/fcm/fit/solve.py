@@ -16,7 +16,7 @@ from fcm.fit.options import FIT, FitOptions
 from fcm.fit.parameters import FitError, Parameters
 from fcm.fit.rows import Rows, joined
 from fcm.fit.weights import reweighted
-from fcm.scene.model import FloatArray, Measured
+from fcm.model.scene import FloatArray, Measured
 
 Tell = Callable[[float, str], None]
 

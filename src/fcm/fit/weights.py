@@ -21,7 +21,7 @@ from fcm.fit.backbone import backbone_errors
 from fcm.fit.forced import errors_of
 from fcm.fit.options import FitOptions
 from fcm.fit.rows import Rows
-from fcm.scene.model import FloatArray, Measured
+from fcm.model.scene import FloatArray, Measured
 
 
 def reweighted(data: Sequence[Measured], parts: Sequence[Rows], options: FitOptions) -> list[Measured]:

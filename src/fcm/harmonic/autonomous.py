@@ -29,7 +29,7 @@ from fcm.continuation import Problem
 from fcm.harmonic.law import kind_of
 from fcm.harmonic.scaled_contacts import ScaledContacts
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 ComplexArray = npt.NDArray[np.complex128]
 

@@ -23,8 +23,8 @@ from fcm.harmonic.balance import Balance
 from fcm.harmonic.law import Law
 from fcm.harmonic.system import System
 from fcm.harmonic.whole import places
+from fcm.model.scene import FloatArray, Scene
 from fcm.scene.draft import Number, number_of
-from fcm.scene.model import FloatArray, Scene
 from fcm.structure.layout import Layout
 from fcm.structure.linear import Linear, linear_of
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from fcm.continuation import Path, Status
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 MOST = 32  # curves that are kept for each thread
 OUTSIDE = 1e-3  # of the way from a point to the next, by which a solution between them may lie beyond

@@ -28,7 +28,7 @@ import numpy as np
 from fcm.continuation.dense_solver import Solver
 from fcm.harmonic.held_contacts import HeldContacts
 from fcm.harmonic.modal_answer import ModalAnswer
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.structure.receptance import Receptance
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.structure.rigid import HELD
 
 BoolArray = npt.NDArray[np.bool_]

@@ -19,7 +19,7 @@ from cython.cimports.libc.math import fabs, floor
 
 from fcm.harmonic.law import Law
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.structure.forced_modes import ForcedModes
 
 HIGHEST = 50  # harmonic that is looked at, and that a balance may have

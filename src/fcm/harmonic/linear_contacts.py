@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.harmonic.system import System
-from fcm.scene.model import Contact, FloatArray
+from fcm.model.scene import Contact, FloatArray
 
 BEYOND = 3.0  # times the level at which the last contact changes what it does
 GREATEST = 1e4  # level

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.structure.receptance import Receptance
 
 

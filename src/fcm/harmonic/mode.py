@@ -14,7 +14,7 @@ from fcm.harmonic.autonomous import Autonomous, ComplexArray, Guess
 from fcm.harmonic.past_corners import follow_past_corners
 from fcm.harmonic.record import borne_along
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.scene.rules import MOST_HARMONICS
 
 RIGID = 1e-12  # of the greatest square of a frequency: rigid-body modes are below

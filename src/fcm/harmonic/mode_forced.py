@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 
 from fcm.continuation import Path, Segment
 from fcm.harmonic.mode import Mode, mode_at
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 NEARLY = 1e-9  # of a step along the mode, to which a resonance is found
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.structure.linear import Linear
 from fcm.structure.ring import RingLinear
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from fcm.continuation import FollowOptions, Path, Problem, Status, follow
 from fcm.continuation.corrector import Newton
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 RESTARTS = 12  # of a curve, on its way past corners
 ON = (1e-6, 1e-5, 1e-4, 1e-3, 3e-3)  # of the parameter's unit, by which the curve is taken up further on

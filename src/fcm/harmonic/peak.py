@@ -13,8 +13,8 @@ from fcm.harmonic.balance import Balance
 from fcm.harmonic.by_number import Rates, growth_of
 from fcm.harmonic.system import System
 from fcm.harmonic.whole import jacobian_of
+from fcm.model.scene import FloatArray, Scene
 from fcm.scene.draft import Number
-from fcm.scene.model import FloatArray, Scene
 
 STEP = 1e-4  # of a difference: of a number, and of a length along the curve in its own units
 NEAR = 1e-6  # length along the curve to both sides of a peak, where its slope has the one sign and the other

@@ -14,7 +14,7 @@ from fcm.continuation import Path
 from fcm.harmonic.points import Points, cycles_of
 from fcm.harmonic.reported import Reported, reported
 from fcm.harmonic.system import System
-from fcm.scene.model import Contact, FloatArray
+from fcm.model.scene import Contact, FloatArray
 
 SMALLEST = 1e-150  # amplitudes below this count as this in a division
 NONE = 3  # beside the states of a cycle: no state

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from fcm.continuation import Path
 from fcm.harmonic.points import Points
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 ComplexArray = npt.NDArray[np.complex128]
 

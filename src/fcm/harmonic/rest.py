@@ -16,7 +16,7 @@ from fcm.continuation.corrector import Newton
 from fcm.continuation.problem import Problem
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray, Scene
+from fcm.model.scene import FloatArray, Scene
 from fcm.structure.linear import Linear
 from fcm.structure.rigid import HELD
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 TOO_STIFF = 1e7  # k |G|, from which on curves were seen to stop
 ENOUGH = 1e6  # k |G|, at which a contact is nearly rigid: the root of its inverse is a thousandth

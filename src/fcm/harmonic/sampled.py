@@ -14,7 +14,7 @@ import numpy as np
 
 from fcm.contact.contact_law import ContactLawError
 from fcm.harmonic.law import Law
-from fcm.scene.model import Contact, FloatArray, Scene
+from fcm.model.scene import Contact, FloatArray, Scene
 from fcm.structure.layout import Layout
 
 PER_CYCLE = 8  # samples at least of the highest harmonic

@@ -21,9 +21,9 @@ import numpy as np
 from fcm.harmonic.by_number import rates_of
 from fcm.harmonic.peak import Kind, Peak, moved_by
 from fcm.harmonic.system import System
+from fcm.model.scene import FloatArray, Scene
 from fcm.scene.address import Addresses
 from fcm.scene.draft import Draft, Number, number_of
-from fcm.scene.model import FloatArray, Scene
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ from fcm.harmonic.linear_contacts import (
 )
 from fcm.harmonic.system import System
 from fcm.harmonic.turned import Turn, turns_of
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 WEAK = (1e-3, 1e-6, 1e-9)  # levels at which contacts are nearly linear
 BEFORE = 0.9  # times the least level at which a contact is nonlinear: up to there nothing is to be followed

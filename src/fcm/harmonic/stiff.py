@@ -23,7 +23,7 @@ from fcm.harmonic.balance import Balance
 from fcm.harmonic.record import Record
 from fcm.harmonic.system import System
 from fcm.harmonic.whole import jacobian_of
-from fcm.scene.model import FloatArray, Force
+from fcm.model.scene import FloatArray, Force
 from fcm.structure.linear import Linear, amplitudes, linear_of
 from fcm.structure.receptance import Receptance
 from fcm.structure.ring import RingLinear, Wave

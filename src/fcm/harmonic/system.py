@@ -27,7 +27,7 @@ from fcm.harmonic.sampled import SampledLaw
 from fcm.harmonic.single import SingleHarmonic
 from fcm.harmonic.travelling import TravellingDisplacements
 from fcm.harmonic.work import Work
-from fcm.scene.model import FloatArray, Scene
+from fcm.model.scene import FloatArray, Scene
 from fcm.structure.layout import Layout
 from fcm.structure.linear import ComplexArray, Linear, linear_of
 from fcm.structure.receptance import Receptance

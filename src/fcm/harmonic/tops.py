@@ -10,7 +10,7 @@ from fcm.continuation import Path
 from fcm.continuation.segment import Segment
 from fcm.harmonic.reported import Reported, reported_at
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 DEGREE = 8  # of the polynomials in the way from one point to another, through solutions of the balance
 CLOSE = 1e-9  # of an amplitude: where the last coefficients of its polynomial are more, the way is halved

@@ -18,7 +18,7 @@ from fcm.harmonic.narrow import narrow
 from fcm.harmonic.record import recorded
 from fcm.harmonic.start import Found, found_at, looked_at
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ import numpy as np
 
 from fcm.continuation import Mark, Path
 from fcm.continuation.corrector import Newton
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 if TYPE_CHECKING:
     from fcm.harmonic.system import System

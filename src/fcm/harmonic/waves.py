@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 SAMPLES = 12  # for each period of the highest harmonic
 TABLES = 64  # that are kept: many balances have the same harmonics

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.harmonic.balance import Balance
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 ComplexArray = npt.NDArray[np.complex128]
 

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from fcm.model.scene import FloatArray
 from fcm.motion.cycle import Cycle
 from fcm.motion.measure import Scanned, scanned
-from fcm.scene.model import FloatArray
 
 
 def borne(cycles: Sequence[Cycle], known: Scanned | None = None) -> FloatArray:

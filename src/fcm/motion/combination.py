@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from fcm.model.scene import FloatArray
 from fcm.motion.errors import SimulationError
 from fcm.motion.pool import BLOCK, FITS, NEGATIVE_SLIP, ORDER, POSITIVE_SLIP, SEPARATED, STICKING
-from fcm.scene.model import FloatArray
 
 if TYPE_CHECKING:
     from fcm.motion.system import System

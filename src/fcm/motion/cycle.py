@@ -7,10 +7,10 @@ from functools import lru_cache
 
 import numpy as np
 
+from fcm.model.scene import FloatArray
 from fcm.motion.samples import sample
 from fcm.motion.segments import Segments
 from fcm.motion.system import LETTERS, System
-from fcm.scene.model import FloatArray
 
 
 @dataclass(frozen=True)

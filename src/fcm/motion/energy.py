@@ -6,12 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fcm.model.scene import Contact, FloatArray
 from fcm.motion.cycle import Cycle
 from fcm.motion.motion import Motion
 from fcm.motion.powers import Powers
 from fcm.motion.state import entry
 from fcm.motion.system import System
-from fcm.scene.model import Contact, FloatArray
 
 
 class Energy(NamedTuple):

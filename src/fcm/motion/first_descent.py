@@ -13,7 +13,7 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import fabs, ldexp
 
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 N = 19  # degree, ORDER of fcm.motion.pool
 DEEPEST = 50  # halvings

@@ -10,11 +10,11 @@ from typing import Any, Protocol
 import numpy as np
 
 from fcm.at_rest import at_rest
+from fcm.model.scene import Scene
 from fcm.motion.errors import SimulationError
 from fcm.motion.plan import Plan
 from fcm.motion.record import Passed, Record, record, unfinished
 from fcm.motion.run import Progress
-from fcm.scene.model import Scene
 
 
 @dataclass(frozen=True)

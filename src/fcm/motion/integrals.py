@@ -13,7 +13,7 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import cos, sin
 
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 if cython.compiled:
     from cython.cimports.fcm.motion.flow import Flows

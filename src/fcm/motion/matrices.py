@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fcm.scene.model import Contact, FloatArray, Held, Scene
+from fcm.model.scene import Contact, FloatArray, Held, Scene
 
 if TYPE_CHECKING:
     from fcm.motion.system import System

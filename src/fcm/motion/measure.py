@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fcm.model.scene import FloatArray
 from fcm.motion.cycle import Cycle
 from fcm.motion.scan import Scan
 from fcm.motion.segments import Segments
 from fcm.motion.system import System
-from fcm.scene.model import FloatArray
 
 
 @dataclass(frozen=True)

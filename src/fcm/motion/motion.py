@@ -9,12 +9,12 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from fcm.model.scene import FloatArray, Scene
 from fcm.motion.cycle import Cycle
 from fcm.motion.errors import SimulationError
 from fcm.motion.measure import Measure, measure
 from fcm.motion.state import State
 from fcm.motion.system import System
-from fcm.scene.model import FloatArray, Scene
 
 
 class Transition(NamedTuple):

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from fcm.scene.model import FloatArray, Phase
+from fcm.model.scene import FloatArray, Phase
 
 MOST_SAMPLES, FEWEST_SAMPLES = 64, 8  # in a cycle
 MOST_NUMBERS = 4_000_000  # displacements that are sampled, of all curves: 32 MB before compression

@@ -8,8 +8,8 @@ from typing import Any
 import cython
 import numpy as np
 
+from fcm.model.scene import FloatArray
 from fcm.motion.matrices import Matrices
-from fcm.scene.model import FloatArray
 
 ORDER = 19  # of the series of exp(A h): 1 / 20! is below rounding
 POWERS = 8  # of exp(A h): 1, 2, 4 ... 128 steps

@@ -6,8 +6,8 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import fabs
 
+from fcm.model.scene import FloatArray
 from fcm.motion.pool import ORDER
-from fcm.scene.model import FloatArray
 
 if cython.compiled:
     from cython.cimports.fcm.motion.flow import Flows

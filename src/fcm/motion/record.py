@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from fcm.model.scene import FloatArray, Phase, Scene
 from fcm.motion.cycle import Cycle
 from fcm.motion.energy import Energy, energy
 from fcm.motion.errors import SimulationError
@@ -20,7 +21,6 @@ from fcm.motion.run import Progress, cycles_from
 from fcm.motion.settling import unsettled
 from fcm.motion.state import State
 from fcm.motion.system import LETTERS, System
-from fcm.scene.model import FloatArray, Phase, Scene
 
 NOT_REACHED = -1  # state of a contact at an instant that was not simulated
 SETTLED = 1e-3  # relative change of the amplitudes that is still to come

@@ -5,7 +5,7 @@ from __future__ import annotations
 import cython
 import numpy as np
 
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 
 @cython.cclass

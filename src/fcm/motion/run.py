@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from fcm.model.scene import FloatArray, Phase, Scene
 from fcm.motion.combination import Codes
 from fcm.motion.cycle import Cycle
 from fcm.motion.errors import CycleError, SimulationError
@@ -16,7 +17,6 @@ from fcm.motion.segments import Segments
 from fcm.motion.state import State, entered, entry, leave, set_angle
 from fcm.motion.stopped import Stopped
 from fcm.motion.system import LETTERS, System
-from fcm.scene.model import FloatArray, Phase, Scene
 from fcm.units import spoken
 
 Progress = Callable[[float, str], None]

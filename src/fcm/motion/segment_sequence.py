@@ -5,7 +5,7 @@ from __future__ import annotations
 import cython
 from cython.cimports.libc.math import fabs
 
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import TWO_PI

@@ -6,7 +6,7 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import fabs
 
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 if cython.compiled:
     from cython.cimports.fcm.motion.pool import Pool

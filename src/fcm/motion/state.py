@@ -8,12 +8,12 @@ from math import cos, isfinite, sin
 import numpy as np
 
 from fcm.harmonic.rest import RestError, rest_of
+from fcm.model.scene import FloatArray, Scene
 from fcm.motion.combination import Codes
 from fcm.motion.errors import SimulationError
 from fcm.motion.march import March
 from fcm.motion.system import System
 from fcm.scene.errors import counted
-from fcm.scene.model import FloatArray, Scene
 
 
 @dataclass(frozen=True)

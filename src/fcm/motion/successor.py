@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 from cython.cimports.libc.math import fabs
 
+from fcm.model.scene import FloatArray
 from fcm.motion.stopped import Stopped
-from fcm.scene.model import FloatArray
 
 if cython.compiled:
     from cython.cimports.fcm.motion.lookout import Lookout

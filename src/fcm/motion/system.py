@@ -12,6 +12,7 @@ from weakref import ref
 import numpy as np
 import numpy.typing as npt
 
+from fcm.model.scene import FloatArray, Scene
 from fcm.motion.combination import Codes, made
 from fcm.motion.derivative import Derivative
 from fcm.motion.directional import Directional
@@ -26,7 +27,6 @@ from fcm.motion.scan import Scan
 from fcm.motion.segments import Segments
 from fcm.motion.steps import Steps
 from fcm.motion.walk import Walk
-from fcm.scene.model import FloatArray, Scene
 from fcm.structure.loads import loads_of
 
 LETTERS = "SEPN"  # of the codes SEPARATED, STICKING, POSITIVE_SLIP, NEGATIVE_SLIP

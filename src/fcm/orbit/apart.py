@@ -12,12 +12,12 @@ import numpy.typing as npt
 from fcm.continuation import Path
 from fcm.continuation.all_branches import SAME
 from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray, Scene
 from fcm.motion.state import State
 from fcm.orbit.harmonic import MANY, computed_state
 from fcm.orbit.held import held
 from fcm.orbit.periodic import Look
 from fcm.orbit.problem import OrbitProblem
-from fcm.scene.model import FloatArray, Scene
 
 if TYPE_CHECKING:
     from fcm.accuracy.outline import Outline

@@ -10,6 +10,7 @@ import numpy as np
 
 from fcm.continuation import FollowOptions, Mark, Path, Status, all_branches, follow
 from fcm.continuation.all_branches import Branches, Follow
+from fcm.model.scene import FloatArray, Scene
 from fcm.motion.errors import SimulationError
 from fcm.orbit.apart import ACCURACY, converged_balance, passes
 from fcm.orbit.bounded import Bounded, Doubts
@@ -20,7 +21,6 @@ from fcm.orbit.restless import approached_there
 from fcm.orbit.sample import Sample, samples
 from fcm.orbit.start import AS_HIGH, along_balance, first_point, height_of, starts
 from fcm.scene.modal import UNITS
-from fcm.scene.model import FloatArray, Scene
 
 Progress = Callable[[float, str], None]
 SPREAD = 7  # motions of a branch that are looked for on the others

@@ -13,9 +13,9 @@ import numpy as np
 from fcm.continuation import Path, Segment
 from fcm.continuation.options import FOLLOW
 from fcm.continuation.root_finding import Secants
+from fcm.model.scene import FloatArray
 from fcm.orbit.periodic import STABLE
 from fcm.orbit.problem import OrbitProblem
-from fcm.scene.model import FloatArray
 
 LOOKS = 60  # at most
 SURE = 0.01 * STABLE  # by which a multiplier may differ from where stability ends, to be there

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray, Scene
 from fcm.orbit.held import held
 from fcm.orbit.problem import OrbitProblem
-from fcm.scene.model import FloatArray, Scene
 
 DAMPED = 0.03  # ratio of the least damped mode from which motions are found from afar
 SHORTEST = 0.999  # factor of the damping from step to step, nearer to which it leads no further

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fcm.model.scene import FloatArray
 from fcm.motion.segments import Segments
 from fcm.motion.system import System
-from fcm.scene.model import FloatArray
 
 
 class Along(NamedTuple):

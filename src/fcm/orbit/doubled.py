@@ -14,6 +14,7 @@ import numpy as np
 from fcm.continuation import Events, FollowOptions, Mark, Path
 from fcm.continuation.all_branches import Follow, contains, through
 from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray
 from fcm.motion.errors import SimulationError
 from fcm.motion.state import State
 from fcm.orbit.held import held
@@ -22,7 +23,6 @@ from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample
 from fcm.orbit.shooting import Shot
 from fcm.orbit.steady import Steady, steady
-from fcm.scene.model import FloatArray
 from fcm.stability.verdict import Bifurcation, bifurcation_of
 
 REACHES = (0.03, 0.1, 0.3)  # distances from a motion, relative to it, at which one of twice its periods is

@@ -15,6 +15,7 @@ from itertools import pairwise, product
 
 import numpy as np
 
+from fcm.model.scene import FloatArray, Scene
 from fcm.motion.errors import SimulationError
 from fcm.motion.state import State
 from fcm.motion.system import System
@@ -22,7 +23,6 @@ from fcm.orbit.periodic import Look, converged, within_unit_circle, without_end
 from fcm.orbit.residual_friction import resting_at
 from fcm.orbit.shooting import Shot
 from fcm.orbit.way import SHORTEST, Way, between, moved, residual_of, stuck_in
-from fcm.scene.model import FloatArray, Scene
 from fcm.units import spoken
 
 MOST_TOGETHER = 3  # contacts of which all combinations of directions are followed

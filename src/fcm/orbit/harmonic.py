@@ -11,11 +11,11 @@ import numpy.typing as npt
 from fcm.contact import hysteresis_loop, periodic_forces
 from fcm.contact.closed_form import ClosedForm
 from fcm.harmonic.single import SingleHarmonic
+from fcm.model.scene import Contact, FloatArray, Scene
 from fcm.motion.errors import SimulationError
 from fcm.motion.matrices import has_friction
 from fcm.motion.state import State
 from fcm.motion.system import System
-from fcm.scene.model import Contact, FloatArray, Scene
 
 FEW, MANY = (1, 2, 3), 5  # harmonics of a guess; contacts from which on it has one
 FURTHER = 3  # times the highest of them, to which the forces of a guess reach

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fcm.continuation.corrector import Newton
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 
 def held(newton: Newton, z: FloatArray, reach: float = 1.0) -> bool:

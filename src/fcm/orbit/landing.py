@@ -8,10 +8,10 @@ import numpy as np
 
 from fcm.continuation import Mark
 from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray
 from fcm.orbit.held import held
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, sampled
-from fcm.scene.model import FloatArray
 
 
 def with_landings(problem: OrbitProblem, branches: list[list[Sample]]) -> list[list[Sample]]:

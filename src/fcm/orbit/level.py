@@ -6,10 +6,10 @@ with it, also at those that no sweep of the frequency from an end of the range c
 
 from __future__ import annotations
 
+from fcm.model.scene import FloatArray, Scene
 from fcm.motion.errors import SimulationError
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.shooting import Shot
-from fcm.scene.model import FloatArray, Scene
 
 LEAST = 0.1  # levels are measured by themselves, and below this by this
 

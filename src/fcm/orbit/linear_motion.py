@@ -15,12 +15,12 @@ from itertools import product
 import numpy as np
 import numpy.typing as npt
 
+from fcm.model.scene import FloatArray, Scene
 from fcm.motion.matrices import has_friction
 from fcm.motion.state import State
 from fcm.motion.system import System
 from fcm.orbit.periodic import unloaded
 from fcm.orbit.residual_friction import resting
-from fcm.scene.model import FloatArray, Scene
 from fcm.signals import undisturbed
 
 MOST = 3  # contacts of which all combinations of closed and open are tried; of more, all closed

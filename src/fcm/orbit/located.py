@@ -9,11 +9,11 @@ import numpy.typing as npt
 
 from fcm.continuation import FollowOptions, Mark, Path, follow
 from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray
 from fcm.motion.state import State
 from fcm.orbit.held import held
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, sampled
-from fcm.scene.model import FloatArray
 
 WINDOWS = (0.005, 0.02, 0.08)  # of the frequency, to either side of a guess: the next where one has nothing
 ASTRAY = 0.5  # distance of the curve from a guess, in its own size, beyond which it is another

@@ -13,6 +13,7 @@ from itertools import combinations, product
 
 import numpy as np
 
+from fcm.model.scene import FloatArray, Held, Scene
 from fcm.motion.errors import SimulationError
 from fcm.motion.matrices import has_friction
 from fcm.motion.run import cycles_from
@@ -23,7 +24,6 @@ from fcm.orbit.linear_motion import MOST, linear_answer, sticking
 from fcm.orbit.periodic import Look, Orbit, closed, converged, shoot, within_unit_circle, without_end
 from fcm.orbit.residual_friction import always_stuck, resting, resting_at
 from fcm.orbit.shooting import Shot
-from fcm.scene.model import FloatArray, Held, Scene
 
 KEPT = (0.01, 1.0)  # of the forces, by which residual friction keeps away from two limits at a time
 APART = 0.2  # of the distance of the furthest two: residual friction nearer to another is not tried as well

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from fcm.model.scene import FloatArray, Scene
 from fcm.motion.cycle import Cycle
 from fcm.motion.errors import SimulationError
 from fcm.motion.measure import Measure, measure
@@ -18,7 +19,6 @@ from fcm.motion.state import State
 from fcm.motion.system import System
 from fcm.orbit.residual_friction import resting
 from fcm.orbit.shooting import Shot
-from fcm.scene.model import FloatArray, Scene
 from fcm.units import spoken
 
 TOLERANCE = 1e-11  # of the closure of the orbit, relative to its size

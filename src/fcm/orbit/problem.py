@@ -8,11 +8,11 @@ from zlib import crc32
 import numpy as np
 
 from fcm.continuation.problem import Problem
+from fcm.model.scene import FloatArray, Scene
 from fcm.motion.errors import SimulationError
 from fcm.motion.state import State
 from fcm.orbit.derivative import along
 from fcm.orbit.shooting import Shooting, Shot
-from fcm.scene.model import FloatArray, Scene
 
 if TYPE_CHECKING:
     from fcm.orbit.sample import Sample

@@ -19,13 +19,13 @@ import numpy as np
 from fcm.continuation import Checkpoint, Events, FollowOptions, Path, Status, all_branches, follow
 from fcm.continuation.all_branches import Follow
 from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray, Scene
 from fcm.orbit.bounded import Bounded
 from fcm.orbit.harmonic import FEW
 from fcm.orbit.held import held
 from fcm.orbit.level import AtLevel, LevelProblem
 from fcm.orbit.linear_motion import about_rest
 from fcm.orbit.periodic import Look, within_unit_circle
-from fcm.scene.model import FloatArray, Scene
 
 if TYPE_CHECKING:
     from fcm.harmonic.system import System

@@ -12,13 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fcm.model.scene import Contact, FloatArray, Scene
 from fcm.motion.measure import Extreme, extremes_by
 from fcm.motion.pool import NEGATIVE_SLIP, POSITIVE_SLIP, SEPARATED, STICKING
 from fcm.motion.segments import Segments
 from fcm.motion.state import State
 from fcm.motion.system import System
 from fcm.orbit.derivative import derivative_at
-from fcm.scene.model import Contact, FloatArray, Scene
 
 MARGIN = 1e-9  # distance from the slip limit, relative to the forces
 BOTH = 1 << POSITIVE_SLIP | 1 << NEGATIVE_SLIP  # of what has been seen of a contact: slip in both directions

@@ -11,13 +11,13 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from fcm.continuation import Path
+from fcm.model.scene import FloatArray
 from fcm.motion.errors import SimulationError
 from fcm.motion.system import System
 from fcm.orbit.periodic import Look, approached
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import recorded
 from fcm.orbit.start import first_point
-from fcm.scene.model import FloatArray
 from fcm.stability.unstable_ranges import unstable_stretches
 
 LOOKS = 3  # stretches of the frequency in whose middle the motion is simulated, the widest first

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Mark, Path
+from fcm.model.scene import FloatArray
 from fcm.motion.borne import borne
 from fcm.motion.errors import SimulationError
 from fcm.motion.measure import Measure, measure
@@ -19,7 +20,6 @@ from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.shooting import Shot
 from fcm.orbit.steady import Steady, several
 from fcm.orbit.windows import with_windows
-from fcm.scene.model import FloatArray
 from fcm.units import spoken
 
 

@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from fcm.model.scene import FloatArray, Scene
 from fcm.motion.cycle import Cycle
 from fcm.motion.matrices import has_friction
 from fcm.motion.measure import Displaced, Scanned, displaced, scanned
@@ -17,7 +18,6 @@ from fcm.motion.system import System
 from fcm.orbit.derivative import period_derivative
 from fcm.orbit.floquet import floquet_of
 from fcm.orbit.residual_friction import Choice, choices, overshoots, resting, stuck_of
-from fcm.scene.model import FloatArray, Scene
 
 
 class Shot:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray, Scene
 from fcm.motion.errors import SimulationError
 from fcm.motion.state import State
 from fcm.motion.system import System
@@ -23,7 +24,6 @@ from fcm.orbit.partly_stuck import partly_stuck_as_started
 from fcm.orbit.periodic import Look, Orbit, approached, shoot, without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.undetermined import not_determined, rests_elsewhere
-from fcm.scene.model import FloatArray, Scene
 
 if TYPE_CHECKING:
     from fcm.accuracy.outline import Outline

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from fcm.model.scene import FloatArray
 from fcm.motion.borne import borne
 from fcm.motion.cycle import Cycle
 from fcm.motion.errors import SimulationError
@@ -24,7 +25,6 @@ from fcm.motion.system import System
 from fcm.orbit.periodic import Look, converged, within_unit_circle, without_end
 from fcm.orbit.residual_friction import resting_at
 from fcm.orbit.shooting import Shot
-from fcm.scene.model import FloatArray
 
 FREE_CYCLES = (20, 40, 80, 160, 320, 640, 640, 640)  # simulated before each look whether it is steady
 MANY = 640  # from so many on they tell how far a motion ranges, all together: it may linger, and burst out

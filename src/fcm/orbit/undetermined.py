@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from fcm.model.scene import Scene
 from fcm.orbit.periodic import Orbit
 from fcm.orbit.shooting import Shot
-from fcm.scene.model import Scene
 from fcm.units import spoken
 
 BEYOND = 1e3  # times the frequency of the highest mode, where what a period does is near to rounding

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from fcm.model.scene import FloatArray
 from fcm.motion.errors import SimulationError
 from fcm.orbit.periodic import Look, converged, without_end
 from fcm.orbit.residual_friction import always_stuck, resting_at, rooms
 from fcm.orbit.shooting import Shot
-from fcm.scene.model import FloatArray
 
 STEPS = 8  # from one limit of slip to the other
 SHORTEST = 1e-3  # part of a step below which the family has an end of its own

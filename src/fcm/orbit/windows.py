@@ -17,9 +17,9 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Path, Segment
+from fcm.model.scene import FloatArray
 from fcm.orbit.periodic import within_unit_circle
 from fcm.orbit.problem import OrbitProblem
-from fcm.scene.model import FloatArray
 from fcm.stability.bifurcation_functions import LEAST, MANY, Seen, dip, foretold, products, seen
 from fcm.stability.verdict import Bifurcation, Verdict
 

@@ -9,11 +9,11 @@ import numpy as np
 
 from fcm.mesh import MeshError
 from fcm.mesh.pairing import fitted_plane
+from fcm.model.interface import Interface
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import with_unit
 from fcm.plot.read import FloatArray
 from fcm.plot.style import TWO_COLUMNS, WIDTH, house_style, new_figure
-from fcm.scene.interface import Interface
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.continuation import Status
 from fcm.harmonic.rest import RestError
+from fcm.model.scene import Contact, Held, Scene
 from fcm.motion.matrices import has_friction
 from fcm.motion.state import State
 from fcm.orbit.apart import every_balance
@@ -23,7 +24,6 @@ from fcm.orbit.residual_friction import resting
 from fcm.orbit.shooting import Shot
 from fcm.reduction.sentences import named
 from fcm.results.result import Curve
-from fcm.scene.model import Contact, Held, Scene
 
 IntArray = npt.NDArray[np.intp]
 ROOM = 0.3  # of its limit, or of its gap, that a contact is foreseen to keep

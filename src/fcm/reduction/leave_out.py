@@ -12,10 +12,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fcm.contact.limits import BoolArray, FloatArray
+from fcm.model.scene import Contact, Modal, Scene
 from fcm.reduction.sentences import has_friction, named
 from fcm.reduction.static_modes import with_static_modes
 from fcm.scene.errors import counted
-from fcm.scene.model import Contact, Modal, Scene
 
 TOLERANCE = 1e-5  # of the response, for modes that are replaced
 ROUNDING = 1e-14  # relative: a sum of products this small is zero

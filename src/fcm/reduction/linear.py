@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from fcm.scene.model import FloatArray, Scene
+from fcm.model.scene import FloatArray, Scene
 from fcm.structure.linear import Linear, linear_of
 from fcm.structure.loads import driven_harmonics
 

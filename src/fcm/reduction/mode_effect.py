@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from fcm.model.scene import Scene
 from fcm.motion.errors import SimulationError
 from fcm.orbit import harmonic_state, periodic
 from fcm.orbit.start import inner_resonances, near_balance
 from fcm.reduction.leave_out import Lighter
 from fcm.results.result import Curve, Response
-from fcm.scene.model import Scene
 
 MOST_CURVES = 8  # of a sweep, of which points are looked at
 MOST_POINTS = 4  # of a curve, those of its peaks first

@@ -9,10 +9,10 @@ from fcm.continuation.corrector import Newton
 from fcm.harmonic.in_plane import in_plane
 from fcm.harmonic.record import amplitudes_at, cycles, loops
 from fcm.harmonic.system import System
+from fcm.model.scene import FloatArray, Scene
 from fcm.reduction.leave_out import Lighter
 from fcm.results.greatest import greatest_of
 from fcm.results.result import Curve, Response
-from fcm.scene.model import FloatArray, Scene
 from fcm.structure.layout import Layout
 
 IntArray = npt.NDArray[np.intp]

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fcm.model.scene import Contact
 from fcm.scene.errors import counted
-from fcm.scene.model import Contact
 from fcm.units import UNIT
 
 if TYPE_CHECKING:

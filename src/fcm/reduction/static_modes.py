@@ -14,8 +14,8 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.contact.limits import BoolArray, FloatArray
+from fcm.model.scene import Modal, Scene
 from fcm.reduction.linear import all_springs, linear_response, telling_frequencies
-from fcm.scene.model import Modal, Scene
 
 ABOVE = (2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0)  # times the range's end: where modes begin to be far above
 PAYS = 0.6  # of the modes may remain; otherwise nothing is gained

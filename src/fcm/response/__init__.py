@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from fcm.model.scene import Scene
 from fcm.response.sweep import trace
 from fcm.response.trace import METHODS
 from fcm.response.wanted import ResponseError
 from fcm.results.result import Curve, Response
 from fcm.run import Factory, place_of
-from fcm.scene.model import Scene
 from fcm.scene.rules import step_fault
 
 if TYPE_CHECKING:

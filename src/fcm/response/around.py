@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from fcm.harmonic.further import HIGHEST
+from fcm.model.scene import Scene
 from fcm.response.wanted import ResponseError, Wanted
 from fcm.scene.cyclic import WHOLE_RING, lacks
 from fcm.scene.errors import quoted
-from fcm.scene.model import Scene
 from fcm.structure.loads import driven_harmonics
 
 MOST_NAMED = 6  # harmonics in a sentence

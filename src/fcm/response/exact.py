@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fcm.model.scene import Scene
 from fcm.reduction.held import on_contacts
 from fcm.reduction.leave_out import TOLERANCE, leave_out_modes
 from fcm.reduction.mode_effect import effect, foreseen
@@ -25,7 +26,6 @@ from fcm.response.wanted import ResponseError
 from fcm.results.at_rest import without_rounding
 from fcm.results.result import Response
 from fcm.run import Checkpoint, Factory, Progress, fingerprint
-from fcm.scene.model import Scene
 from fcm.units import UNIT
 
 METHOD = "exact"

@@ -9,6 +9,7 @@ from functools import partial
 
 from fcm.harmonic.rigid import too_stiff
 from fcm.harmonic.system import System
+from fcm.model.scene import FloatArray, Held, Scene
 from fcm.motion.errors import SimulationError
 from fcm.orbit.bounded import Doubts
 from fcm.orbit.branch import explore, incomplete, reached, shown
@@ -29,7 +30,6 @@ from fcm.results.cause import Cause
 from fcm.results.result import INTERRUPTED, Curve
 from fcm.run import Interrupted, Report
 from fcm.scene.errors import counted
-from fcm.scene.model import FloatArray, Held, Scene
 
 FEWEST = 2  # contacts of a scene of which some may be foreseen to keep their state
 ENOUGH = 10.0  # [s] of processor time for a curve that a stiff contact may keep from ever being finished

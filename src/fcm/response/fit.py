@@ -17,6 +17,7 @@ from fcm.fit.options import FIT
 from fcm.fit.parameters import FitError, Parameters, parameters_of
 from fcm.fit.solve import Solved, solved
 from fcm.harmonic.mode import ModeError
+from fcm.model.scene import FloatArray, Measured, Scene
 from fcm.response.around import check_no_ring, refuse_own_laws
 from fcm.response.mode import check_free
 from fcm.response.sweep import trace
@@ -27,7 +28,6 @@ from fcm.run import Progress
 from fcm.run.progress import part
 from fcm.scene.draft import LEVEL, number_of
 from fcm.scene.errors import quoted
-from fcm.scene.model import FloatArray, Measured, Scene
 from fcm.units import EXCITED
 
 ROUNDS = 3  # of more harmonics, until the response takes no more than the fit had

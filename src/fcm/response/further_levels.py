@@ -22,7 +22,7 @@ from fcm.harmonic.start import NEAR, Found, resonances, solutions
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import Traced, with_further
 from fcm.harmonic.work import TooLongError
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.stability.unstable_ranges import Stretch, stretches_of
 
 

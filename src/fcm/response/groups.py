@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from fcm.harmonic.common_levels import forget
+from fcm.model.scene import Scene
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
 from fcm.results.cause import Cause
@@ -22,7 +23,6 @@ from fcm.results.orbits import Orbits, Stuck
 from fcm.results.peak import Peak
 from fcm.results.result import DEFECT, Curve
 from fcm.run import Interrupted, Lost, Report
-from fcm.scene.model import Scene
 
 Group = Sequence[Scene]
 SLOW = 1.0  # [s] after which finished curves are saved before their group is, and no kill can lose them

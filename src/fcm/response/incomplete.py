@@ -12,7 +12,7 @@ from fcm.harmonic.points import Points
 from fcm.harmonic.record import Record
 from fcm.harmonic.rigid import too_stiff
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.units import in_unit
 
 FLOATING = "; rigid-body modes are at rest only while closed contacts hold them"

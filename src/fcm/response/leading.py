@@ -17,8 +17,8 @@ from fcm.accuracy.refinement import Accurate, judged
 from fcm.harmonic.reported import reported
 from fcm.harmonic.system import System
 from fcm.harmonic.tops import tops_between
+from fcm.model.scene import FloatArray, Scene
 from fcm.results.peak import Peak
-from fcm.scene.model import FloatArray, Scene
 from fcm.structure.linear import Linear, linear_of
 from fcm.structure.ring import RingLinear
 

@@ -10,13 +10,13 @@ import numpy as np
 from fcm.accuracy.refinement import enlarged, estimated
 from fcm.harmonic.cost import AGAIN
 from fcm.harmonic.system import System
+from fcm.model.scene import FloatArray, Scene
 from fcm.response.tracked_work import as_curve
 from fcm.response.wanted import ResponseError
 from fcm.results.tracked import Optimal, TrackedCurve
 from fcm.run import Progress
 from fcm.run.progress import part
 from fcm.scene.draft import Number
-from fcm.scene.model import FloatArray, Scene
 from fcm.track.descent import Valley, descend
 from fcm.track.envelope import UNFINISHED, Least, Target
 from fcm.track.lowest import Lowest, Search

@@ -12,12 +12,12 @@ import numpy as np
 from fcm.continuation import Checkpoint, Events, FollowOptions, Path, Status, follow
 from fcm.continuation.all_branches import SAME
 from fcm.continuation.point_store import Points, Stored
+from fcm.model.scene import FloatArray
 from fcm.orbit.doubled import Doubled
 from fcm.orbit.periodic import without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import recorded
 from fcm.run import Report
-from fcm.scene.model import FloatArray
 
 OFTEN = 0.5  # [s] between two savings of a curve that is being followed
 SHARE = 0.05  # of the time, that saving may take

@@ -27,6 +27,7 @@ from fcm.harmonic.record import cycles, loops, recorded_at_levels
 from fcm.harmonic.rest import RestError
 from fcm.harmonic.start import level_curve
 from fcm.harmonic.system import System
+from fcm.model.scene import FloatArray, Scene
 from fcm.response.around import check_modes
 from fcm.response.groups import anonymous, lost_curve
 from fcm.response.incomplete import because, no_steady_states
@@ -41,7 +42,6 @@ from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
 from fcm.run import Checkpoint, Progress, fingerprint
 from fcm.scene.errors import counted
-from fcm.scene.model import FloatArray, Scene
 from fcm.units import EXCITATION, UNIT, in_unit
 
 FAR = 1e6  # a level beyond this is a mistake of units

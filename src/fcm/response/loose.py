@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from fcm.scene.model import FloatArray, Scene
+from fcm.model.scene import FloatArray, Scene
 
 FELT = 1e-9  # change of a contact's load, relative to the residual friction of another: less is rounding
 

@@ -18,6 +18,7 @@ from fcm.harmonic.mode import Mode, ModeError, half_peak_to_peak, nonlinear_mode
 from fcm.harmonic.mode_forced import flanks, modal_force, resonances, resonant_level
 from fcm.harmonic.record import cycles, loops
 from fcm.harmonic.system import System
+from fcm.model.scene import FloatArray, Scene
 from fcm.response.around import check_no_ring, refuse_other_harmonics, refuse_own_laws
 from fcm.response.groups import anonymous, lost_curve
 from fcm.response.incomplete import because, no_steady_states
@@ -32,7 +33,6 @@ from fcm.results.nonlinear_mode import NonlinearMode, Resonance
 from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
 from fcm.run import Checkpoint, Progress, fingerprint
 from fcm.scene.errors import counted
-from fcm.scene.model import FloatArray, Scene
 from fcm.units import in_unit
 
 WIDEST = 1e15  # ratio of amplitudes beyond which a span is a mistake

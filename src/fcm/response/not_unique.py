@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fcm.at_rest import RestOptions
+from fcm.model.scene import FloatArray, Scene
 from fcm.motion.errors import SimulationError
 from fcm.motion.matrices import has_friction
 from fcm.orbit.family import Family, family
@@ -17,7 +18,6 @@ from fcm.orbit.sample import Sample
 from fcm.response.legs import TimeOver
 from fcm.response.search import Extents, Search
 from fcm.results.orbits import Stuck
-from fcm.scene.model import FloatArray, Scene
 
 REST = RestOptions()
 UNIQUE = 1e-6  # relative range of amplitudes below which they are the same

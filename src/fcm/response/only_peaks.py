@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fcm.continuation import Mark
+from fcm.model.scene import FloatArray, Scene
 from fcm.motion.errors import SimulationError
 from fcm.orbit.bounded import Doubts
 from fcm.orbit.harmonic import state_of
@@ -29,7 +30,6 @@ from fcm.response.wanted import ACCURACY, ONE_HARMONIC, Wanted
 from fcm.results.jumps import Jump, Swept
 from fcm.results.result import Curve
 from fcm.run import Report
-from fcm.scene.model import FloatArray, Scene
 
 HIGH = 0.9  # of the greatest amplitude of a degree of freedom: peaks of the balance that may be the highest
 NEARLY = 0.1  # error of peaks by one harmonic, beyond which one that is near enough has too many

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from fcm.model.scene import Optimum, Scene
 from fcm.response.around import check_no_ring, refuse_own_laws
 from fcm.response.curve_sweep import checkpoint_of
 from fcm.response.least import Found, Task, with_values
@@ -25,7 +26,6 @@ from fcm.run.progress import part
 from fcm.scene.address import replaced
 from fcm.scene.draft import Draft, Number, number_of
 from fcm.scene.errors import counted
-from fcm.scene.model import Optimum, Scene
 from fcm.track.envelope import UNFINISHED
 from fcm.track.lowest import HIGHER
 

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
 from fcm.continuation import Mark
+from fcm.model.scene import Scene
 from fcm.orbit.doubled import bifurcations, flip, flips
 from fcm.orbit.sample import Sample
 from fcm.reduction.held import NotKeptError, lost_by, whole_borne, whole_state, whole_states
@@ -25,7 +26,6 @@ from fcm.results.jumps import Swept
 from fcm.results.orbits import Orbits, Stuck
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve
-from fcm.scene.model import Scene
 
 LONGEST_REGIME = 60  # letters; a contact that chatters has more, and the rest is cut off
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from fcm.model.scene import Scene
 from fcm.motion import Energy, Histories, State, histories
 from fcm.motion.record import Passed, PhaseResult, Record
 from fcm.response.groups import anonymous
 from fcm.run import Checkpoint, Progress, fingerprint
-from fcm.scene.model import Scene
 
 _KINDS = (Record, PhaseResult, Passed, State, Energy)  # what is kept consists of these
 

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fcm.model.scene import FloatArray
 from fcm.orbit.periodic import Look, without_end
 from fcm.response.legs import TimeOver
 from fcm.results.orbits import Stuck
 from fcm.run import Report
-from fcm.scene.model import FloatArray
 
 
 @dataclass(frozen=True)

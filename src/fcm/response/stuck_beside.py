@@ -7,10 +7,10 @@ from collections.abc import Iterable
 import numpy as np
 import numpy.typing as npt
 
+from fcm.model.scene import FloatArray, Scene
 from fcm.orbit.linear_motion import linear_motions
 from fcm.response.not_unique import NotUnique
 from fcm.results.orbits import Stuck
-from fcm.scene.model import FloatArray, Scene
 
 SAME = 1e-3  # relative difference of amplitudes up to which a motion is within an extent
 

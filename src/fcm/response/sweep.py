@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from fcm.harmonic.sampled import check_own_laws
+from fcm.model.scene import Scene
 from fcm.reduction import sentences
 from fcm.reduction.leave_out import TOLERANCE, Lighter, keep_all, leave_out
 from fcm.reduction.put_back import EACH_CHECKED, checked, restored
@@ -21,7 +22,6 @@ from fcm.results.at_rest import without_rounding
 from fcm.results.result import Response
 from fcm.run import Checkpoint, Factory, Progress, fingerprint
 from fcm.run.progress import part
-from fcm.scene.model import Scene
 from fcm.structure.loads import driven_harmonics
 from fcm.table import Table
 

@@ -16,10 +16,10 @@ from fcm.continuation import Checkpoint, Path
 from fcm.continuation.checkpoint import state_of
 from fcm.continuation.point_store import Points, Stored
 from fcm.continuation.stepper import Stepper
+from fcm.model.scene import FloatArray
 from fcm.motion.matrices import has_friction
 from fcm.orbit.problem import OrbitProblem
 from fcm.response.legs import Leg, kind_of
-from fcm.scene.model import FloatArray
 
 CLOSE = 1e-8  # distance, in the problem's scale, that rounding may put between the same point of two problems
 

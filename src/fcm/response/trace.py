@@ -24,6 +24,7 @@ from fcm.harmonic.rest import RestError
 from fcm.harmonic.rigid import too_stiff
 from fcm.harmonic.stiff import with_digits
 from fcm.harmonic.system import System
+from fcm.model.scene import FloatArray, Scene
 from fcm.response.all_branches import with_all_branches
 from fcm.response.further_levels import with_levels_where_unstable
 from fcm.response.incomplete import FLOATING, incomplete
@@ -37,7 +38,6 @@ from fcm.results.greatest import greatest_of
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve
 from fcm.run import Interrupted
-from fcm.scene.model import FloatArray, Scene
 from fcm.stability.bifurcations import Inserted, stability, with_points
 
 METHODS = ("table", "closed-form")

@@ -14,6 +14,7 @@ import numpy as np
 
 from fcm.accuracy.refinement import accurate
 from fcm.harmonic.system import System
+from fcm.model.scene import Scene
 from fcm.response.around import check_no_ring, refuse_own_laws
 from fcm.response.curve_sweep import checkpoint_of
 from fcm.response.leading import leading
@@ -34,7 +35,6 @@ from fcm.run import (
 )
 from fcm.scene.draft import LEVEL, Number, number_of
 from fcm.scene.errors import counted
-from fcm.scene.model import Scene
 from fcm.structure.linear import linear_of
 from fcm.track.onset import KINDS as ONSETS
 

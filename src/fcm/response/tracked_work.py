@@ -19,13 +19,13 @@ import numpy.typing as npt
 from fcm.accuracy import trust
 from fcm.harmonic.record import cycles, loops
 from fcm.harmonic.system import System
+from fcm.model.scene import FloatArray, Scene
 from fcm.response.incomplete import because, no_steady_states
 from fcm.response.loose import loose
 from fcm.results.result import INTERRUPTED
 from fcm.results.tracked import TrackedCurve, TrackedError
 from fcm.run import Interrupted, Report
 from fcm.scene.draft import Number
-from fcm.scene.model import FloatArray, Scene
 from fcm.track.curve import Track
 from fcm.track.curves import tracks
 from fcm.track.error import change, places

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fcm.model.scene import FloatArray, Scene
 from fcm.motion.errors import SimulationError
 from fcm.motion.state import State
 from fcm.motion.system import System
@@ -27,7 +28,6 @@ from fcm.orbit.sample import Sample, sampled, settled
 from fcm.orbit.start import first_point
 from fcm.orbit.steady import NEAR, Steady, steady
 from fcm.run import Report
-from fcm.scene.model import FloatArray, Scene
 
 SAME = 1e-5  # difference of two periodic motions, relative to them, below which they are one
 

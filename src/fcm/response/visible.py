@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from fcm.harmonic.rest import ADRIFT, pushed_adrift
+from fcm.model.scene import Scene
 from fcm.response.wanted import ResponseError
 from fcm.results.result import Curve, Response
-from fcm.scene.model import Scene
 from fcm.structure.linear import linear_of
 
 POINTS = ("amplitude", "fundamental", "phase", "mean", "error")  # of curves, arrays over the dofs

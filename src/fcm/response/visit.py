@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray, Scene
 from fcm.motion.errors import CycleError, SimulationError
 from fcm.motion.measure import Measure
 from fcm.motion.run import cycles_from
@@ -30,7 +31,6 @@ from fcm.orbit.start import first_point, solution_at
 from fcm.orbit.steady import FREE_CYCLES, Steady, steady
 from fcm.results.jumps import Jump
 from fcm.run import Report
-from fcm.scene.model import FloatArray, Scene
 
 FAR = 0.5  # distance along the curve, in units of the motion, that is not continued at once
 ASTRAY = 0.6  # distance from what the direction foretells, relative to the way, beyond which a solution

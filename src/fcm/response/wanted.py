@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.scene.model import Scene
+from fcm.model.scene import Scene
 from fcm.scene.rules import harmonics_fault, harmonics_up_to
 from fcm.table import Table
 

@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 PLACES = 600  # frequencies at which percentiles are taken
 

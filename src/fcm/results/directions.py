@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fcm.scene.model import FloatArray, Scene
+from fcm.model.scene import FloatArray, Scene
 
 SHOWN = 6  # digits of a weight
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.scene.model import FloatArray, Measured
+from fcm.model.scene import FloatArray, Measured
 from fcm.units import in_unit
 
 

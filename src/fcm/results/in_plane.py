@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from fcm.model.scene import FloatArray
 from fcm.results.field import Field
 from fcm.results.padded import by_point
 from fcm.results.result import Curve
-from fcm.scene.model import FloatArray
 
 DIRECTIONS = ("x", "y", "normal")
 LAW = ("mu", "k_u", "k_v", "n_0")

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.untold import untold
 
 BoolArray = npt.NDArray[np.bool_]

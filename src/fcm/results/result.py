@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.model.scene import Scene
 from fcm.results.cause import Cause
 from fcm.results.curve_summary import curve_summary
 from fcm.results.directions import directions_of
@@ -18,7 +19,6 @@ from fcm.results.gist import Gist
 from fcm.results.greatest import Greatest
 from fcm.results.jumps import Jump, Swept, swept
 from fcm.results.peak import Peak
-from fcm.scene.model import Scene
 
 if TYPE_CHECKING:
     from fcm.harmonic.in_plane import InPlane

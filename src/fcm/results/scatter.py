@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from fcm.model.scene import FloatArray
 from fcm.results.gist import gist_of
 from fcm.results.peak import Peak
 from fcm.results.result import Curve, Response
-from fcm.scene.model import FloatArray
 from fcm.units import in_unit
 
 PERCENTS = (5.0, 25.0, 50.0, 75.0, 95.0)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil
 
-from fcm.scene.model import Scene
+from fcm.model.scene import Scene
 
 NUMBER = 8  # bytes
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.units import in_unit
 
 

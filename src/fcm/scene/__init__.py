@@ -1,8 +1,13 @@
 """A scene: the structure, its contacts and forces, what to trace; from TOML, and checked."""
 
+import sys
+
+from fcm.model import interface as model_interface
+from fcm.model import ring as model_ring
+from fcm.model import scene as model_scene
+from fcm.model.scene import Contact, Force, Modal, Phase, Scene, Start
 from fcm.scene.errors import SceneError
 from fcm.scene.load import bundled_scenes, load_scene, scene_from_dict
-from fcm.scene.model import Contact, Force, Modal, Phase, Scene, Start
 
 __all__ = [
     "Contact",
@@ -16,3 +21,8 @@ __all__ = [
     "load_scene",
     "scene_from_dict",
 ]
+
+# the names that these modules had
+sys.modules.update(
+    {"fcm.scene.model": model_scene, "fcm.scene.ring": model_ring, "fcm.scene.interface": model_interface}
+)

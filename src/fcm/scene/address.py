@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from fcm.model.scene import Address
 from fcm.scene.errors import Mistakes, quoted
 
-Address = tuple[str | int, ...]  # of a number, or of a vector whose numbers are all set
 VECTORS = ("mass", "frequency", "damping")  # of the modal table
 NUMBERS = {  # of each kind of table
     "contact": ("n_0", "gap", "mu", "k_u", "k_v"),

@@ -7,11 +7,11 @@ from functools import cached_property
 
 import numpy as np
 
+from fcm.model.ring import NEXT, Ring
+from fcm.model.scene import Modal, Scene
 from fcm.scene.errors import Mistakes, quoted
 from fcm.scene.keys import names
-from fcm.scene.model import Modal, Scene
 from fcm.scene.names import Names
-from fcm.scene.ring import NEXT, Ring
 from fcm.scene.rules import RULES
 from fcm.scene.section import Part, Section
 

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fcm.scene.address import Address, Addresses, overlap, replaced
+from fcm.model.ring import Ring
+from fcm.model.scene import Address, Force, Modal, Scene
+from fcm.scene.address import Addresses, overlap, replaced
 from fcm.scene.cyclic import ring_of
 from fcm.scene.errors import Mistakes, quoted
 from fcm.scene.excitation import DIRECTIONS, base_force, load_of
 from fcm.scene.modal import UNITS, modal_of
-from fcm.scene.model import Force, Modal, Scene
 from fcm.scene.parts import contact_of, force_of
-from fcm.scene.ring import Ring
 from fcm.scene.rules import RULES, Rule
 from fcm.scene.section import Parts
 from fcm.scene.sweep import Swept, combinations, field_of

@@ -16,9 +16,9 @@ from zlib import crc32
 
 import numpy as np
 
+from fcm.model.scene import FloatArray
 from fcm.scene.errors import counted, kind, quoted
 from fcm.scene.keys import names
-from fcm.scene.model import FloatArray
 from fcm.scene.rules import ANY, POSITIVE
 from fcm.scene.section import Section
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from fcm.model.scene import FloatArray, Force, Load
 from fcm.scene.errors import bare, kind, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
-from fcm.scene.model import FloatArray, Force, Load
 from fcm.scene.names import Names, motion_of
 from fcm.scene.rules import ANY, RULES
 from fcm.scene.section import Section

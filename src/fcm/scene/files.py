@@ -9,8 +9,8 @@ from errno import EACCES, EIO
 from pathlib import Path
 
 from fcm.files import no_file
+from fcm.model.interface import Interface
 from fcm.scene.errors import quoted
-from fcm.scene.interface import Interface
 
 LONGEST_PATH = 400  # characters of a path shown in a message
 LARGEST = 1_000_000_000  # bytes of a file beside a scene, unpacked: what fits in any machine's memory twice

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fcm.model.scene import Fit, FloatArray, Measured
 from fcm.scene.address import overlap
 from fcm.scene.draft import LEVEL, Draft, Number, number_in
 from fcm.scene.errors import choices, kind, quoted, shown
@@ -14,7 +15,6 @@ from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
 from fcm.scene.measured_file import read_measured
 from fcm.scene.modal import UNITS
-from fcm.scene.model import Fit, FloatArray, Measured
 from fcm.scene.names import Names
 from fcm.scene.optimum import pair_of_bounds, words_of
 from fcm.scene.rules import FRACTION, POSITIVE, Rule

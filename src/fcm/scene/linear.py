@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fcm.model.ring import NEXT
+from fcm.model.scene import FloatArray
 from fcm.scene.cyclic import own_name, ring_names
 from fcm.scene.errors import quoted
 from fcm.scene.excitation import BASE, DIRECTIONS, distributions, with_displacements
 from fcm.scene.files import Files
 from fcm.scene.modal import KEYS, UNITS, read_modal
-from fcm.scene.model import FloatArray
 from fcm.scene.names import Names, RowNames
-from fcm.scene.ring import NEXT
 from fcm.scene.section import Part, Parts, Section, described
 from fcm.structure.rigid_body import MOST, rigid_by_gap
 

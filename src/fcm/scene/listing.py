@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from fcm.scene.model import FloatArray, Force, Scene
-from fcm.scene.ring import Ring
+from fcm.model.ring import Ring
+from fcm.model.scene import FloatArray, Force, Scene
 
 ROUNDING = 1e-12  # relative: a displacement this small is none
 SPARSE_ABOVE = 2.0  # times the range's end: modes ought to reach there, or their flexibility be kept

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from fcm.files import NOT_THERE, no_file
+from fcm.model.scene import Scene
 from fcm.scene.cyclic import check_diameters, note_of_stability, only_own, own_names, read_cyclic
 from fcm.scene.doubtful import questions
 from fcm.scene.draft import Draft, forces_of, modes_of
@@ -31,7 +32,6 @@ from fcm.scene.linear import (
     without_rounding,
 )
 from fcm.scene.modal import UNITS
-from fcm.scene.model import Scene
 from fcm.scene.node_pairs import notes_of_shares
 from fcm.scene.optimum import read_optimum
 from fcm.scene.parts import (

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import scipy.sparse
 
+from fcm.model.scene import FloatArray
 from fcm.scene.apart import NAMES, read_apart
 from fcm.scene.archive import Arrays, read_npz
 from fcm.scene.errors import choices, quoted
@@ -23,7 +24,6 @@ from fcm.scene.formats.dmig import read_dmig
 from fcm.scene.formats.harwell_boeing import read_harwell_boeing
 from fcm.scene.formats.labelled import Labelled
 from fcm.scene.matrix_market import read_matrix_market
-from fcm.scene.model import FloatArray
 
 ENDINGS = (
     *(".npz", ".mat", ".h5", ".hdf5", ".mtx", ".sti", ".mas", ".pch", ".op4"),

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from fcm.model.scene import FloatArray, Modal
 from fcm.scene.errors import choices, counted, kind
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
-from fcm.scene.model import FloatArray, Modal
 from fcm.scene.names import Names, checked_names
 from fcm.scene.ring_modes import complex_row, read_diameters, travelling
 from fcm.scene.rules import RULES, as_float

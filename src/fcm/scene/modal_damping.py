@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.scene.structure_table import Matrices
 from fcm.structure.damping import check_dissipates, coupling_effect, drag, projected, proportional, ratios
 from fcm.structure.reduced import Reduced

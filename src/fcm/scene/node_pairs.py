@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from fcm.model.interface import Interface
+from fcm.model.scene import FloatArray
 from fcm.scene.errors import choices, counted, kind, quoted
 from fcm.scene.files import DataFileError, Files
-from fcm.scene.interface import Interface
-from fcm.scene.model import FloatArray
 from fcm.scene.names import DIRECTIONS, Names
 from fcm.scene.node_sets import FITTED, pairs_of_sets
 from fcm.scene.pair_file import (

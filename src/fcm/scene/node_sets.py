@@ -10,9 +10,9 @@ import numpy as np
 
 from fcm.mesh import Mesh, MeshError, read_mesh
 from fcm.mesh.pairing import MOST_NAMED, Plane, across, fitted_plane, paired, side, turned
+from fcm.model.interface import Interface
 from fcm.scene.errors import choices, counted, quoted
 from fcm.scene.files import DataFileError, Files
-from fcm.scene.interface import Interface
 from fcm.scene.keys import names
 from fcm.scene.pair_file import PairTable
 from fcm.scene.plane import SQUARE

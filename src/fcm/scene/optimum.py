@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from fcm.model.scene import Aim, Optimum
 from fcm.scene.address import overlap
 from fcm.scene.draft import Draft, Number, number_in
 from fcm.scene.errors import kind, quoted, shown
 from fcm.scene.keys import names
-from fcm.scene.model import Aim, Optimum
 from fcm.scene.names import Names
 from fcm.scene.rules import as_float
 from fcm.scene.section import Section

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
+from fcm.model.interface import FloatArray, Interface
 from fcm.scene.errors import choices, quoted
 from fcm.scene.files import DataFileError
-from fcm.scene.interface import FloatArray, Interface
 from fcm.scene.number_text import fault_of_number, number_in
 
 _COMMA = re.compile(r"\d+,\d+", re.ASCII)

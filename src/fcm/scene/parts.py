@@ -7,11 +7,11 @@ from functools import partial
 from math import nan
 from typing import Any
 
+from fcm.model.scene import NO_RANGE, Contact, Force
 from fcm.scene.errors import quoted, shown
 from fcm.scene.files import Files
 from fcm.scene.keys import names
 from fcm.scene.modal import UNITS
-from fcm.scene.model import NO_RANGE, Contact, Force
 from fcm.scene.names import Names, same_names, unfit_name
 from fcm.scene.node_pairs import (
     along,

@@ -7,8 +7,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from fcm.model.scene import Contact, FloatArray, Scene
 from fcm.scene.errors import Mistakes, quoted
-from fcm.scene.model import Contact, FloatArray, Scene
 from fcm.scene.section import Section
 
 SAME = 1e-9  # relative: directions that differ by no more are one

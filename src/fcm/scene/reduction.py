@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from fcm.model.scene import FloatArray
 from fcm.scene.errors import counted
 from fcm.scene.modal_damping import WORTH_SAYING, Damping, damping_of
-from fcm.scene.model import FloatArray
 from fcm.scene.rules import RULES
 from fcm.scene.section import Section
 from fcm.scene.structure_table import Matrices

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from fcm.model.ring import ComplexArray, FloatArray
 from fcm.scene.errors import kind, shown
-from fcm.scene.ring import ComplexArray, FloatArray
 from fcm.scene.rules import RULES, Rule, as_float
 from fcm.scene.section import Part, Section
 

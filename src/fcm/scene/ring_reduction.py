@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from fcm.model.ring import ComplexArray, FloatArray
 from fcm.scene.errors import counted
 from fcm.scene.modal_damping import Damping, damping_of
 from fcm.scene.reduction import at_many, how_far_off, of_rounding, split
-from fcm.scene.ring import ComplexArray, FloatArray
 from fcm.scene.section import Section
 from fcm.scene.structure_table import Matrices
 from fcm.structure.eigen import StructureError

@@ -11,8 +11,8 @@ from numbers import Real
 import numpy as np
 import numpy.typing as npt
 
+from fcm.model.scene import FloatArray, Scene
 from fcm.scene.errors import shown
-from fcm.scene.model import FloatArray, Scene
 
 IndexArray = npt.NDArray[np.intp]
 

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from fcm.model.scene import FloatArray, Phase, Start
 from fcm.scene.keys import names
 from fcm.scene.modal import UNITS
-from fcm.scene.model import FloatArray, Phase, Start
 from fcm.scene.rules import ANY, POSITIVE, RULES
 from fcm.scene.section import Section
 

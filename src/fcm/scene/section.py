@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fcm.model.scene import FloatArray
 from fcm.scene.errors import Mistakes, bare, choices, kind, quoted, shown
-from fcm.scene.model import FloatArray
 from fcm.scene.number_text import fault_of_number, number_in
 from fcm.scene.rules import ANY, Rule, as_float
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from fcm.model.scene import Contact, FloatArray, Scene
 from fcm.scene.errors import counted, quoted
-from fcm.scene.model import Contact, FloatArray, Scene
 
 SAME = 1e-9  # relative: directions that differ by no more are one
 MOST_NAMED = 3  # groups of contacts in the sentence

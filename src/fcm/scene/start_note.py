@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fcm.scene.model import Contact, Scene, Start
+from fcm.model.scene import Contact, Scene, Start
 
 ROUNDING = 1e-9  # of the limit
 

@@ -26,7 +26,8 @@ from typing import Any
 import numpy as np
 
 from fcm import room
-from fcm.scene.address import Address, Addresses, overlap
+from fcm.model.scene import Address
+from fcm.scene.address import Addresses, overlap
 from fcm.scene.draws import FORMS as DRAWN
 from fcm.scene.draws import Correlation, Draws, read_correlation, read_draws
 from fcm.scene.errors import kind, quoted, shown

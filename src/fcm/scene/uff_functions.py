@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from fcm.model.scene import FloatArray
 from fcm.scene.errors import counted, quoted
 from fcm.scene.files import DataFileError
-from fcm.scene.model import FloatArray
 from fcm.scene.number_text import fault_of_number, number_in
 from fcm.scene.uff_datasets import Dataset, read_datasets
 

@@ -15,7 +15,7 @@ import numpy as np
 from fcm.continuation import Mark, Path, Segment
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.stability.bifurcation_functions import MANY, Seen, seen
 from fcm.stability.floquet import multipliers_of
 from fcm.stability.inserted import Inserted

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.stability.verdict import Verdict
 
 DOUBT = 0.1  # of the differences between three values, by which what they foretell may be too high,

@@ -20,7 +20,7 @@ from fcm.continuation import Path
 from fcm.continuation.root_finding import Secants
 from fcm.harmonic.runs import runs
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.stability.along_branch import Verdicts
 from fcm.stability.bifurcation_functions import MANY, dip
 from fcm.stability.inserted import Crossing, Inserted, with_points

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 
 def eigenvalues(matrix: FloatArray) -> list[complex] | None:

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.stability.hill import HillMultipliers
 from fcm.stability.multipliers import Multipliers
 

@@ -24,7 +24,7 @@ import numpy.typing as npt
 import scipy.linalg
 
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.stability.verdict import UNKNOWN, Spectrum, Verdict
 from fcm.structure.layout import Layout
 

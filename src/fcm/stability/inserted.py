@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fcm.continuation import Mark, Path
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.stability.verdict import Bifurcation
 
 

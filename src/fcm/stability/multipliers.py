@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.stability.balanced_sequence import BalancedSequence
 from fcm.stability.eigenvalues import eigenvalues
 from fcm.stability.finer import PORTS, Finer, beyond

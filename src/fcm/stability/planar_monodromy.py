@@ -34,7 +34,7 @@ import numpy.typing as npt
 
 from fcm.contact.plane.forces import PlanarContact
 from fcm.contact.plane.loop import between, visible
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 IntArray = npt.NDArray[np.intp]
 TWO_PI = 2.0 * np.pi

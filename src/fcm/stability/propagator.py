@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 from cython.cimports.libc.math import cos, expm1, sin
 
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 MOST = cython.declare(cython.int, 256)  # states that are remembered
 WORST = 1e6  # condition of the eigenvectors, beyond which they are not used

@@ -9,7 +9,7 @@ import numpy as np
 from fcm.continuation.corrector import Newton, settle
 from fcm.harmonic.homotopy import Homotopy
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 FAR = 0.5  # of a solution's size: what lies further away is another one
 PARTS = (0.1, 0.25, 0.45, 0.7, 1.0)  # of the further harmonics' equations, where all at once are too much

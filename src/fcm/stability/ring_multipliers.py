@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
-from fcm.scene.ring import Ring
+from fcm.model.ring import Ring
+from fcm.model.scene import FloatArray
 from fcm.stability.balanced_sequence import BalancedSequence
 from fcm.stability.finer import Finer, beyond
 from fcm.stability.multipliers import Followed, Multipliers, far_above

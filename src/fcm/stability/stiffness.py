@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from cython.cimports.libc.math import fabs, sqrt
 
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.slider import NEGATIVE, POSITIVE, SEPARATION, STICK

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 
 from fcm.continuation import Path
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 
 Stretch = tuple[float, float]
 

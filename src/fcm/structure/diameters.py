@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fcm.scene.model import FloatArray, Scene
+from fcm.model.scene import FloatArray, Scene
 from fcm.structure.linear import with_springs
 
 

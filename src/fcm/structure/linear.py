@@ -9,7 +9,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from fcm.scene.model import FloatArray, Scene
+from fcm.model.scene import FloatArray, Scene
 from fcm.structure.loads import loads_of
 from fcm.structure.receptance import Receptance
 from fcm.structure.rigid import settled

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from fcm.scene.model import FloatArray, Modal, Scene
+from fcm.model.scene import FloatArray, Modal, Scene
 
 BoolArray = npt.NDArray[np.bool_]
 

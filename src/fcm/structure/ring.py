@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from fcm.scene.model import FloatArray
-from fcm.scene.ring import Ring
+from fcm.model.ring import Ring
+from fcm.model.scene import FloatArray
 from fcm.structure.linear import FROM_SINE, Linear, amplitudes, attached_to, with_springs
 from fcm.structure.loads import Loads
 from fcm.structure.receptance import Receptance

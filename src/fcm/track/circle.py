@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.track.tracked import Tracked
 
 CLOSEST, WIDEST = 1e-3, 0.2  # [rad] of angles from the way back, with which the way on may make a narrow one

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from fcm.continuation.corrector import Newton
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.track.onset import kinds_of, onset
 from fcm.track.tracked import Condition, Kind, Tracked
 from fcm.track.varied import Varied

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.track.nonsmooth_continuation import follow_special_point
 from fcm.track.spot import Ending, Spot, Way
 from fcm.track.top import is_top

@@ -11,7 +11,7 @@ import numpy as np
 
 from fcm.continuation.follow import Progress
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.track.curve import Track, whole
 from fcm.track.known import passed
 from fcm.track.nonsmooth_continuation import land

@@ -23,8 +23,8 @@ import numpy as np
 from scipy.optimize import minimize
 
 from fcm.harmonic.system import System
+from fcm.model.scene import FloatArray
 from fcm.scene.draft import Number
-from fcm.scene.model import FloatArray
 from fcm.track.envelope import EQUAL, UNFINISHED, Height, Least, Target
 from fcm.track.lowest import Search
 from fcm.track.nonsmooth_continuation import follow_special_point, land

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from fcm.continuation.corrector import Newton
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.track.curve import Track
 from fcm.track.spot import Way
 from fcm.track.tracked import Condition, Kind, Tracked

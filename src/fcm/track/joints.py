@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.continuation.corrector import Newton
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.track.circle import Circle
 from fcm.track.corner import Corner, nearest
 from fcm.track.onset import values

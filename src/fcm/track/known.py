@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation.corrector import Newton
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.track.curve import Track
 from fcm.track.spot import Spot, Way
 from fcm.track.tracked import Condition

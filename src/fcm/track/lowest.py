@@ -18,7 +18,7 @@ import numpy as np
 from fcm.at_rest import at_rest
 from fcm.continuation.follow import Progress
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.track.curve import Track, whole
 from fcm.track.envelope import FINE, UNFINISHED, Height, Least, Piece, Target, gaps, least, pieces_of
 from fcm.track.known import passed

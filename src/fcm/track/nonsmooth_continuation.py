@@ -14,7 +14,7 @@ import numpy as np
 
 from fcm.continuation import End, Events, FollowOptions, Mark, Path, Status, follow
 from fcm.continuation.options import StepOptions
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.track.joints import FIRST, NEAR, SHORTEST, Joints
 from fcm.track.spot import Ending, Spot, Way
 from fcm.track.top import is_top, overtaken

@@ -27,7 +27,7 @@ import numpy.typing as npt
 
 from fcm.harmonic.law import Law
 from fcm.harmonic.planar import Planar
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.structure.layout import Layout
 
 KINDS = ("separation", "closing", "slip")

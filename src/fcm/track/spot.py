@@ -8,7 +8,7 @@ from enum import Enum
 import numpy as np
 
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.track.tracked import Condition, Tracked
 from fcm.track.varied import Line, Varied
 

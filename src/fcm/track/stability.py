@@ -8,7 +8,7 @@ import numpy as np
 
 from fcm.continuation.corrector import Newton
 from fcm.harmonic.whole import jacobian_of
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.stability.floquet import multipliers_of
 from fcm.stability.multipliers import Multipliers
 from fcm.track.curve import Track, with_spots

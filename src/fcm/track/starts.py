@@ -14,7 +14,7 @@ from fcm.branches.search import every_branch
 from fcm.continuation import Mark, Path
 from fcm.harmonic.reported import reported
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray, Scene
+from fcm.model.scene import FloatArray, Scene
 from fcm.structure.linear import linear_of
 from fcm.track.onset import onset
 from fcm.track.tracked import Condition, Kind

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fcm.harmonic.whole import Amplitude
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.track.corner import Corner
 from fcm.track.spot import Spot
 from fcm.track.tracked import Tracked

@@ -19,7 +19,7 @@ import numpy as np
 
 from fcm.continuation.problem import Problem
 from fcm.harmonic.whole import Amplitude, jacobian_of
-from fcm.scene.model import FloatArray
+from fcm.model.scene import FloatArray
 from fcm.track.onset import onset, values
 from fcm.track.varied import Varied
 

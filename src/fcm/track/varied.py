@@ -12,8 +12,8 @@ import numpy.typing as npt
 from fcm.harmonic.by_number import Rates, law_rates, rates_of
 from fcm.harmonic.system import System
 from fcm.harmonic.whole import Amplitude, answer
+from fcm.model.scene import FloatArray, Scene
 from fcm.scene.draft import LEVEL, Number
-from fcm.scene.model import FloatArray, Scene
 from fcm.structure.linear import linear_of
 
 ComplexArray = npt.NDArray[np.complex128]

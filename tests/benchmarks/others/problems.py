@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 
 import fcm
+from fcm.model.scene import Scene
 from fcm.response import Curve, trace
-from fcm.scene.model import Scene
 
 sys.path.append(str(Path(__file__).parents[2] / "response"))
 from random_scenes import random_scene

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.contact_law import ContactLaw
-from fcm.scene.ring import Ring, with_own
+from fcm.model.ring import Ring, with_own
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from fcm.scene.draft import Draft
-    from fcm.scene.interface import Interface
+    from fcm.model.interface import Interface
 
 FloatArray = npt.NDArray[np.float64]
+Address = tuple[str | int, ...]  # of a number of a scene, or of a vector whose numbers are all set
 NO_RANGE = (np.nan, np.nan)  # of a scene with nothing to trace
 
 
@@ -176,6 +176,35 @@ class Fit:
     data: tuple[Measured, ...]
 
 
+class Swept(Protocol):
+    """A key of a sweep, and whether its values are random draws."""
+
+    @property
+    def key(self) -> str: ...
+
+    @property
+    def drawn(self) -> bool: ...
+
+
+class Source(Protocol):
+    """What a scene was made of, so that any number of it can be given another value; `fcm.scene.draft`."""
+
+    @property
+    def parts(self) -> dict[str, Any]: ...
+
+    @property
+    def swept(self) -> tuple[Swept, ...]: ...
+
+    def curve(self, scene: Scene, values: Mapping[str, float], more: Mapping[Address, float] = {}) -> Scene:
+        """The scene with swept values, and then numbers at addresses."""
+
+    def fixed(self, scene: Scene, more: Mapping[Address, float] = {}) -> Source:
+        """What a curve of the scene was made of, with its swept values, and then numbers at addresses."""
+
+    def at(self, used: npt.NDArray[np.bool_]) -> Source:
+        """The same at some of the degrees of freedom."""
+
+
 @dataclass(frozen=True)
 class Scene:
     """Everything that a calculation needs, in angular frequencies [rad/s]; immutable."""
@@ -206,7 +235,7 @@ class Scene:
     files: tuple[Path, ...] = field(default=(), compare=False)  # that were read for it
     interfaces: tuple[Interface, ...] = field(default=(), repr=False, compare=False)  # where pairs are
     held: tuple[Held, ...] = ()  # that are not among the contacts: springs, or nothing, in their places
-    draft: Draft | None = field(default=None, repr=False, compare=False)  # what it was made of
+    draft: Source | None = field(default=None, repr=False, compare=False)  # what it was made of
 
     @property
     def has_range(self) -> bool:
