@@ -1,4 +1,4 @@
-"""The design of README.md: its six commands are those of `make design`, run on less; its numbers are true."""
+"""The design of a blade in the guide: its commands are those of `make design`, its numbers are true."""
 
 import re
 from dataclasses import replace
@@ -17,9 +17,8 @@ from .program import shell
 
 ROOT = Path(__file__).parents[1]
 SCENES = ROOT / "src/fcm/scenes"
-SECTION = re.search(r"^## Design\n(.*?)^## ", (ROOT / "README.md").read_text(encoding="utf-8"), re.M | re.S)[
-    1
-]
+PAGE = (ROOT / ".github/guide/tutorials/best-preload.md").read_text(encoding="utf-8")
+SECTION = re.search(r"^## Design\n(.*?)^## ", PAGE, re.M | re.S)[1]
 COMMANDS = re.findall(r"^    (fcm .*)$", SECTION, re.M)
 LESS = {  # of what takes minutes
     "[220.0, 470.0]": "[400.0, 430.0]",

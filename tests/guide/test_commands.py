@@ -35,8 +35,11 @@ def test_every_command_runs_and_prints_what_is_shown(page, tmp_path):
         if shown is not None:
             assert_shown(done.out + done.err, shown)
     written = {path.name for path in tmp_path.iterdir()}
-    named = {name for line, _ in commands(page) for name in re.findall(r"(?:-o|--csv|>) (\S+)", line)}
-    assert written == {*given, *named}
+    lines = [line for line, _ in commands(page)]
+    named = {name for line in lines for name in re.findall(r"(?:-o|--csv|>) (\S+)", line)}
+    scripts = [name for name in files(page) if f"python {name}" in lines]
+    made = {name for script in scripts for name in re.findall(r'"(\w+\.(?:npz|txt|csv))"', given[script])}
+    assert written == {*given, *named, *made}
 
 
 def assert_shown(printed, shown):

@@ -14,7 +14,7 @@ from .pages import README, read
 
 
 def test_it_is_read_in_minutes():
-    assert len(read(README).splitlines()) <= 240
+    assert len(read(README).splitlines()) <= 150
 
 
 def test_the_table_of_methods_has_the_errors_of_the_methods():

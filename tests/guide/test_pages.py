@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from .pages import GUIDE, PAGES, README, ROOT, anchors, links, name_of, read
+from .pages import GUIDE, PAGES, README, ROOT, anchors, links, name_of, read, sentences, too_long, words
 
 OTHERS = [ROOT / ".github/CHANGELOG.md", ROOT / ".github/CONTRIBUTING.md"]
 KINDS = ("tutorials", "howto", "theory", "reference", "validation")
@@ -25,6 +25,17 @@ def test_every_page_is_of_a_kind_and_in_the_index():
     assert {page.parent.name for page in others} <= {*KINDS, "guide"}
     assert not [name_of(page) for page in others if page.resolve() not in listed]
     assert (".github/guide/README.md", "") in links(README)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_sentences_and_paragraphs_are_short(page):
+    """25 and 100 words at most; `python -m tests.guide.pages -v` shows them."""
+    assert too_long(page) == []
+
+
+def test_words_and_sentences_are_counted():
+    text = "A load of 3.5 N, say. It is *small* (see X). 9 of 10 are."
+    assert [words(one) for one in sentences(text)] == [6, 5, 4]
 
 
 def test_every_picture_is_shown():

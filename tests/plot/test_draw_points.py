@@ -81,3 +81,12 @@ def test_a_traced_curve_is_marked_by_circles():
 def test_points_of_something_else_are_refused(points, said):
     with pytest.raises(PlotError, match=said):
         draw_response(DrawnResponse(("u", "v"), "rad/s", (curve(1.0), curve(2.0))), points=points)
+
+
+def test_curves_without_room_for_their_names_are_named_in_a_legend_beside_points():
+    """That legend names the curves alone: it once took the points for curves, too."""
+    curves = tuple(curve(1.0 + 1e-9 * i) for i in range(12))
+    figure = draw_response(DrawnResponse(("u", "v"), "rad/s", curves), points=swept(*curves))
+    assert not figure.axes[0].texts
+    named = [[text.get_text() for text in legend.get_texts()] for legend in figure.legends]
+    assert len(named[-1]) == 12 and named[0] == ["harmonic balance", "exact motion, swept up", "swept down"]

@@ -65,8 +65,7 @@ def draw_response(
         colours = sequence_colours(len(curves))
         width = _WIDTH if len(curves) <= MOST_NAMES else _THIN
         axes.set_prop_cycle(color=colours)
-        for curve in curves:
-            _draw_curve(axes, curve, column, width)
+        lines = [_draw_curve(axes, curve, column, width) for curve in curves]
         if points is not None:
             draw_points(axes, points, response.dofs[column], response.frequency_unit, curves, colours)
             name_points(figure, axes)
@@ -85,7 +84,7 @@ def draw_response(
         elif notes:
             figure.legend(notes.values(), notes.keys(), loc="outside lower center")
         # last: whether there is room at the peaks hangs on how high the axes have become
-        _name_curves(figure, axes, curves, column, response.units)
+        _name_curves(figure, axes, curves, lines, column, response.units)
     return figure
 
 
@@ -114,7 +113,7 @@ def _logarithmic(curves: list[DrawnCurve], column: int) -> bool:
     return has_decades([float(np.nanmax(curve.amplitude[:, column])) for curve in curves])
 
 
-def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, width: float) -> None:
+def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, width: float) -> Line2D:
     """A solid line where the curve is stable or the file knows of no stability, a dashed one where it is
     unstable, a dotted one where that is not told.
 
@@ -144,6 +143,7 @@ def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, width: float) -> Non
                 curve.frequency[which], amplitude[which], ".", color=line.get_color(), markerfacecolor=face,
                 label=_UNNAMED, clip_on=False,
             )  # fmt: skip
+    return line
 
 
 def _alone(curve: DrawnCurve, column: int) -> BoolArray:
@@ -221,7 +221,12 @@ def _finish_axes(axes: Axes, response: DrawnResponse, column: int, log: bool) ->
 
 
 def _name_curves(
-    figure: Figure, axes: Axes, curves: list[DrawnCurve], column: int, units: Mapping[str, str]
+    figure: Figure,
+    axes: Axes,
+    curves: list[DrawnCurve],
+    drawn: list[Line2D],
+    column: int,
+    units: Mapping[str, str],
 ) -> None:
     """At the peaks if there is room for every name, otherwise in a legend beside the axes."""
     names = [_named(curve, units, names=i == 0) for i, curve in enumerate(curves)]
@@ -229,12 +234,11 @@ def _name_curves(
     if len(curves) <= MOST_NAMES and label_at_peaks(figure, axes, lines, names):
         return
     if any(names):
-        _legend(figure, axes, curves, units)
+        _legend(figure, curves, drawn, units)
 
 
-def _legend(figure: Figure, axes: Axes, curves: list[DrawnCurve], units: Mapping[str, str]) -> None:
+def _legend(figure: Figure, curves: list[DrawnCurve], lines: list[Line2D], units: Mapping[str, str]) -> None:
     """Beside the axes; several swept quantities are named once, above their values."""
-    lines = [line for line in axes.get_lines() if line.get_label() != _UNNAMED]
     several = len(curves[0].parameters) > 1
     if len(lines) > MOST_NAMES:
         names = [_named(curve, units, names=False) for curve in curves]
