@@ -1,4 +1,4 @@
-"""Room for what a run is to make, in memory and on disk, told before it is made."""
+"""Room for what a run is to make, in memory and on disk, and its time, told before it is made."""
 
 from __future__ import annotations
 
@@ -17,6 +17,17 @@ def size(bytes_taken: float) -> str:
     scale, unit = next((one for one in _UNITS if bytes_taken >= one[0]), _UNITS[-1])
     number = max(bytes_taken / scale, 1.0)
     return f"{number:.2g} {unit}" if number < 10.0 else f"{number:.0f} {unit}"
+
+
+def duration(seconds: float) -> str:
+    """A time in the largest unit of which it has two.
+
+    >>> duration(9.2), duration(900.0), duration(3e5)
+    ('9 s', '15 minutes', '83 hours')
+    """
+    if seconds < 120.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} minutes" if seconds < 7200.0 else f"{seconds / 3600:.0f} hours"
 
 
 def memory() -> float:

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 from fcm import load_scene, room
+from fcm.cli.messages import Messages
 from fcm.response import trace
 from fcm.results.size import SizeOptions, bytes_of_matrices, bytes_of_results, least_points
+from fcm.scene.draft import Draft
 
 SCENE = "yang1998-n5"
 DRAWN = """
@@ -73,7 +75,7 @@ def test_results_that_the_disk_does_not_hold_are_refused(fcm, monkeypatch, optio
 def test_what_takes_much_is_told(fcm, monkeypatch):
     monkeypatch.setattr("fcm.cli.room_needed.TOLD", 1_000.0)
     done = fcm("respond", SCENE, "--harmonics", "1", "--max-step", "0.5")
-    assert done.code == 0 and "1 curve of 1 contacts take at least" in done.err
+    assert done.code == 0 and "1 curve of 1 contact take at least" in done.err
 
 
 def test_a_million_draws_without_room_for_them_are_refused_when_read(fcm, monkeypatch):
@@ -90,3 +92,49 @@ def test_a_limit_on_addresses_is_one_on_memory(program):
     done = program.python("-c", f"import resource as r; r.setrlimit(r.RLIMIT_AS, (2 << 30,) * 2); {code}")
     out, _ = done.communicate()
     assert 0.0 < float(out) < 2 << 30
+
+
+@pytest.mark.parametrize("options", [(), ("--peaks-only",)])
+def test_a_million_draws_are_counted_before_their_curves_are_made(fcm, monkeypatch, options):
+    """Which alone takes half a minute."""
+    monkeypatch.setattr(room, "disk", lambda _folder: 1e6)
+    monkeypatch.setattr(Draft, "curve", lambda *_: pytest.fail("a curve was made"))
+    Path("a.toml").write_text(DRAWN)
+    done = fcm("respond", "a.toml", *options, "-o", "a.nc")
+    assert done.code == 2 and "1000000 curves of 0 contacts take at least" in done.err
+    assert "1 MB are free on its disk" in done.err
+
+
+def test_draws_that_take_long_are_told_before_they_are_drawn(fcm, monkeypatch):
+    slow = DRAWN.replace(
+        "normal = [1.0, 0.01], count = 1000000", 'distribution = "lognorm", s = 0.1, count = 9'
+    )
+    Path("a.toml").write_text(slow)
+    assert "take about" not in fcm("respond", "a.toml").err
+    monkeypatch.setattr("fcm.scene.draws.TOLD_SECONDS", 0.0)
+    monkeypatch.setattr("fcm.scene.draws.Draws.values", lambda _self: (_ for _ in ()).throw(MemoryError))
+    done = fcm("respond", "a.toml")
+    said = done.err.splitlines()[0]
+    assert said == 'sweep."force.u.amplitude": 9 draws of this distribution take about 0 s'
+
+
+def test_how_long_all_curves_take_is_said_once_by_the_first(monkeypatch, capsys):
+    now = iter([0.0, 1.0, 30.0, 40.0, 50.0])
+    monkeypatch.setattr("fcm.cli.messages.time.monotonic", lambda: next(now))
+    messages = Messages()
+    messages.expect(100)
+    for share in (0.001, 0.02, 0.03, 0.04):
+        messages.progress(share)
+    said = "100 curves take about 25 minutes: the first 2 of them took 30 s"
+    assert capsys.readouterr().err.splitlines() == [said]
+
+
+def test_the_time_of_few_or_fast_curves_is_not_said(monkeypatch, capsys):
+    for curves, last in ((1, 1e4), (100, 0.1)):
+        now = iter([0.0, 0.0, last])
+        monkeypatch.setattr("fcm.cli.messages.time.monotonic", lambda now=now: next(now))
+        messages = Messages()
+        messages.expect(curves)
+        messages.progress(0.0)
+        messages.progress(0.02)
+    assert not capsys.readouterr().err

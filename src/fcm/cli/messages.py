@@ -9,8 +9,11 @@ from dataclasses import dataclass, field
 
 import click
 
+from fcm.room import duration
+
 _REDRAW = 0.1  # [s] shortest time between two drawings of the progress line
 _BAR = 24  # characters of the progress bar
+_LONG = 60.0  # [s] a run from which on its time is said
 
 
 @dataclass
@@ -21,6 +24,8 @@ class Messages:
     _drawn: float = field(default=0.0, repr=False)
     _width: int = field(default=0, repr=False)
     _share: float = field(default=0.0, repr=False)
+    _curves: int = field(default=0, repr=False)  # that are to come, until their time is said
+    _begun: float = field(default=0.0, repr=False)
 
     def error(self, text: str) -> None:
         self._say(f"fcm: {text}")
@@ -37,16 +42,30 @@ class Messages:
         if self.verbosity >= 1:
             self._say(text)
 
+    def expect(self, curves: int) -> None:
+        """So many curves begin: by the first of them it is said, once, how long all take."""
+        self._curves, self._begun = curves if curves > 1 else 0, time.monotonic()
+
     def progress(self, fraction: float, text: str = "") -> None:
         """Redraw the progress line, on a terminal only and not too often; it never goes back."""
         now = time.monotonic()
         self._share = min(max(fraction, self._share), 1.0)
+        if self._share * self._curves >= 1.0:
+            self._say_time(now - self._begun)
         if self.verbosity < 0 or now - self._drawn < _REDRAW or not sys.stderr.isatty():
             return
         full = int(_BAR * self._share)
         line = f"[{'#' * full}{'.' * (_BAR - full)}] {int(100 * self._share):3d} %  {text}"
         self._draw(line.ljust(self._width))
         self._drawn, self._width = now, len(line)
+
+    def _say_time(self, taken: float) -> None:
+        """How long all curves take, where that is long."""
+        curves, self._curves = self._curves, 0
+        first = int(self._share * curves)
+        if (every := taken / self._share) > _LONG and first < curves:
+            those = "first of them" if first == 1 else f"first {first} of them"
+            self.info(f"{curves} curves take about {duration(every)}: the {those} took {duration(taken)}")
 
     def _say(self, text: str) -> None:
         self.clear()

@@ -50,7 +50,8 @@ def respond(messages: Messages, /, scene: str, **options: Any) -> None:
     check_not_read(_files(asked), [*loaded.files, asked.table, asked.mesh])
     _check_scene(loaded, asked)
     announce(messages, loaded, asked)
-    check_room(messages, loaded, asked)
+    if not asked.resume:
+        messages.expect(len(loaded.each_curve()))
     exported = [] if exporting is None else exporting.files
     outputs = Outputs(messages, asked.output, asked.csv, asked.history_csv, exported)
     with outputs.kept(asked.resume) as keep, cluster.place_of(asked.cluster) as place:
@@ -115,18 +116,28 @@ def _loaded(messages: Messages, name: str, asked: Asked) -> tuple[Scene, export.
     """The scene at the degrees of freedom in use, and what is to be exported of it."""
     from fcm.response.visible import check_solvable
     from fcm.scene import load_scene
+    from fcm.scene.told import Told
 
-    whole = load_scene(name, largest_file=asked.largest_file, every_row=asked.export is not None)
+    def before(scene: Scene, count: int) -> None:
+        if not asked.compare:
+            check_room(messages, _with_step(scene.in_use(), asked), count, asked)
+
+    told = Told(messages.info, before)
+    every_row = asked.export is not None
+    whole = load_scene(name, largest_file=asked.largest_file, every_row=every_row, told=told)
     exporting = export.exporting(messages, whole, asked)
     scene = whole.in_use()
     check_solvable(scene)
     for note in scene.notes:
         messages.info(note)
     schedule.check_options(scene, asked.history_csv)
-    return (scene if asked.max_step is None else _with_step(scene, asked.max_step)), exporting
+    return _with_step(scene, asked), exporting
 
 
-def _with_step(scene: Scene, max_step: float) -> Scene:
+def _with_step(scene: Scene, asked: Asked) -> Scene:
+    """The scene with the longest step that is asked for."""
+    if (max_step := asked.max_step) is None:
+        return scene
     curves = tuple(replace(curve, max_step=max_step) for curve in scene.curves)
     return replace(scene, max_step=max_step, curves=curves)
 

@@ -17,8 +17,8 @@ TOLD = 500e6  # bytes of results
 CSV = 2.5  # times the bytes of netCDF that the digits of a number take
 
 
-def check_room(messages: Messages, scene: Scene, asked: Asked) -> None:
-    """Refuse what memory or disk cannot hold, before anything is made.
+def check_room(messages: Messages, scene: Scene, count: int, asked: Asked) -> None:
+    """Refuse what memory or disk cannot hold of so many curves, before any of them is made.
 
     Raises
     ------
@@ -29,10 +29,10 @@ def check_room(messages: Messages, scene: Scene, asked: Asked) -> None:
     from fcm.results.size import bytes_of_matrices, bytes_of_results
 
     harmonics = asked.harmonics or scene.harmonics or (1,)
-    results = bytes_of_results(scene, harmonics, asked.peaks_only)
+    results = bytes_of_results(scene, harmonics, asked.peaks_only, curves=count)
     matrices = bytes_of_matrices(scene, harmonics) if scene.has_range else 0.0
-    count = len(scene.each_curve())
-    said = f"{count} curve{'s' * (count > 1)} of {len(scene.contacts)} contacts"
+    contacts = len(scene.contacts)
+    said = f"{count} curve{'s' * (count > 1)} of {contacts} contact{'s' * (contacts != 1)}"
     if results + matrices > TOLD:
         messages.info(f"{said} take at least {room.size(results + matrices)} of memory")
     if results + matrices > (free := room.memory()):

@@ -25,24 +25,32 @@ class SizeOptions:
     few_modes: float = 0.5  # of the ports: with fewer modes the matrices are condensed to these
 
 
-def least_points(scene: Scene, peaks_only: bool, options: SizeOptions | None = None) -> int:
-    """Points of all curves that are kept, at the least.
+def least_points(
+    scene: Scene, peaks_only: bool, options: SizeOptions | None = None, curves: int | None = None
+) -> int:
+    """Points of all curves that are kept, at the least; of as many curves where they are not made yet.
 
     >>> from fcm import load_scene
     >>> least_points(load_scene("yang1998"), peaks_only=False)
     200
     """
     options = options or SizeOptions()
-    curves = scene.each_curve()
     if not scene.has_range:
         return 0
-    return sum(options.kept_of_peaks if peaks_only else ceil(1.0 / curve.max_step) for curve in curves)
+    curves = len(scene.each_curve()) if curves is None else curves
+    return curves * (options.kept_of_peaks if peaks_only else ceil(1.0 / scene.max_step))
 
 
 def bytes_of_results(
-    scene: Scene, harmonics: Sequence[int], peaks_only: bool, options: SizeOptions | None = None
+    scene: Scene,
+    harmonics: Sequence[int],
+    peaks_only: bool,
+    options: SizeOptions | None = None,
+    curves: int | None = None,
 ) -> float:
     """What curves and motions take, in memory and as much again in a file, at the least.
+
+    The curves are those of the scene, or as many where they are not made yet.
 
     >>> from fcm import load_scene
     >>> scene = load_scene("yang1998")
@@ -50,13 +58,15 @@ def bytes_of_results(
     71600.0
     """
     options = options or SizeOptions()
-    dofs, contacts, curves = len(scene.modal.dofs), len(scene.contacts), len(scene.each_curve())
+    dofs, contacts = len(scene.modal.dofs), len(scene.contacts)
+    curves = len(scene.each_curve()) if curves is None else curves
     many = 2 * len(harmonics) if len(harmonics) > 1 else 0  # amplitude and phase of each
     point = options.of_point + dofs * (options.of_dof + many) + contacts * options.of_contact
     cycles = sum(phase.cycles for phase in scene.schedule)
     moved = curves * cycles * options.of_cycle * (1 + dofs)
     return float(
-        curves * options.of_curve + NUMBER * (least_points(scene, peaks_only, options) * point + moved)
+        curves * options.of_curve
+        + NUMBER * (least_points(scene, peaks_only, options, curves) * point + moved)
     )
 
 

@@ -16,6 +16,7 @@ from zlib import crc32
 
 import numpy as np
 
+from fcm import room
 from fcm.model.scene import FloatArray
 from fcm.scene.errors import counted, kind, quoted
 from fcm.scene.keys import names
@@ -26,6 +27,7 @@ FORMS = ("normal", "uniform", "distribution")
 ROUNDING = 1e-12  # of a correlation matrix: an eigenvalue that is less below zero is one of zero
 
 SAMPLE, MOST_SECONDS = 8, 600.0  # draws that are timed; longest time of all draws of a number
+TOLD_SECONDS = 5.0  # from which on it is told before they are drawn
 
 Quantile = Callable[[FloatArray], FloatArray]  # of probabilities
 
@@ -83,15 +85,6 @@ class Draws:
         return found
 
 
-def _duration(seconds: float) -> str:
-    """In the largest unit that it has one of.
-
-    >>> _duration(900.0), _duration(3e5)
-    ('15 minutes', '83 hours')
-    """
-    return f"{seconds / 60:.0f} minutes" if seconds < 7200.0 else f"{seconds / 3600:.0f} hours"
-
-
 def read_draws(table: Section, form: str, key: str, integer: Callable[..., int | None]) -> Draws | None:
     """{ normal = [..], count, seed }, or uniform, or distribution = "name"; None after a mistake."""
     before = table.mistakes.count
@@ -105,13 +98,17 @@ def read_draws(table: Section, form: str, key: str, integer: Callable[..., int |
     if table.mistakes.count > before or count is None or seed is None:
         return None
     found = Draws(key, form, pair, quantile, count, seed)
-    if (seconds := found.seconds()) > MOST_SECONDS:
+    seconds = found.seconds()
+    long = f"{count} draws of this distribution take about {room.duration(seconds)}"
+    if seconds > MOST_SECONDS:
         table.wrong(
             "count",
-            f"{count} draws of this distribution take about {_duration(seconds)}, {seconds / count:.2g} s "
-            f"each: give {int(count * MOST_SECONDS / seconds)} at most, or another distribution",
+            f"{long}, {seconds / count:.2g} s each: give {int(count * MOST_SECONDS / seconds)} at most, or "
+            "another distribution",
         )
         return None
+    if seconds > TOLD_SECONDS:
+        table.mistakes.say(f"{table.path}: {long}")
     return found
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 MOST_SHOWN = 30  # mistakes listed one by one; the rest are counted
 LONGEST_SHOWN = 60  # characters of a value shown in a message
@@ -41,8 +41,10 @@ class Mistakes:
     fcm.scene.errors.SceneError: fan.toml: contact[0].ku: unknown key; did you mean "k_u"?
     """
 
-    def __init__(self, source: str) -> None:
+    def __init__(self, source: str, say: Callable[[str], None] | None = None) -> None:
+        """Of a file; what takes long to read is said at once, where there is someone to say it to."""
         self.source = source
+        self.say = say or (lambda _text: None)
         self.count = 0
         self._lines: list[str] = []
 

@@ -49,7 +49,8 @@ from fcm.scene.schedule import read_schedule, read_start, with_schedule
 from fcm.scene.section import Parts, Section
 from fcm.scene.shared_normal import note_of_shared_normals
 from fcm.scene.start_note import note_of_start
-from fcm.scene.sweep import combinations, read_sweep
+from fcm.scene.sweep import combinations, curves_of, read_sweep
+from fcm.scene.told import Told
 from fcm.scene.toml import read_toml
 
 CANCELLED = 1e-14  # of the sizes of forces: where no more is left of their sum, it is rounding
@@ -82,12 +83,14 @@ def load_scene(
     largest_file: int = LARGEST,
     every_row: bool = False,
     solved: bool = True,
+    told: Told | None = None,
 ) -> Scene:
     """The scene of a TOML file, or of a bundled name; SceneError names every mistake.
 
     A file of modes or matrices beside it may have `largest_file` bytes when it is unpacked. Of matrices the
     scene has the rows that something is attached to or that are reported, or `every_row`. Where it is not to
-    be solved, it may be without [response] and [[force]].
+    be solved, it may be without [response] and [[force]]. Of draws and curves that take long or much room is
+    told before they are made.
 
     >>> scene = load_scene("yang1998")
     >>> scene.modal.dofs, scene.contacts[0].mu, len(scene.curves)
@@ -104,6 +107,7 @@ def load_scene(
         largest_file=largest_file,
         every_row=every_row,
         solved=solved,
+        told=told,
     )
     return replace(scene, files=(path, *scene.files))
 
@@ -116,6 +120,7 @@ def scene_from_dict(
     largest_file: int = LARGEST,
     every_row: bool = False,
     solved: bool = True,
+    told: Told | None = None,
 ) -> Scene:
     """The scene of a dict with a file's keys; a file of modes is looked for in the folder.
 
@@ -127,7 +132,7 @@ def scene_from_dict(
     >>> scene_from_dict(data).frequency_range
     (0.5, 1.5)
     """
-    mistakes = Mistakes(name)
+    mistakes = Mistakes(name, None if told is None else told.say)
     top = Section(data, "", mistakes)
     if not data:
         mistakes.add("", "is empty; a scene has [modal], [[contact]], [[force]] and [response]")
@@ -136,7 +141,7 @@ def scene_from_dict(
     beside = Files(Path(folder), largest_file)
     fields = _read(top, beside, every_row, solved)
     mistakes.raise_if_any()
-    scene = replace(_made(name, fields), files=tuple(dict.fromkeys(beside.read)))
+    scene = replace(_made(name, fields, told), files=tuple(dict.fromkeys(beside.read)))
     _check_curves(scene, mistakes)
     return scene
 
@@ -176,7 +181,7 @@ def _read(top: Section, files: Files, every_row: bool, solved: bool) -> dict[str
     }
 
 
-def _made(name: str, fields: dict[str, Any]) -> Scene:
+def _made(name: str, fields: dict[str, Any], told: Told | None) -> Scene:
     """The scene of what was read without a mistake, with its curves and all that is to be said of it."""
     draft: Draft = fields["draft"]
     modal, ring = modes_of(draft.parts, fields["frequency_unit"])
@@ -189,6 +194,8 @@ def _made(name: str, fields: dict[str, Any]) -> Scene:
         loads=tuple(map(load_of, draft.parts["load"])),
         **fields,
     )
+    if told is not None:
+        told.curves(scene, curves_of(draft.swept))
     curves = tuple(draft.curve(scene, values) for values in combinations(draft.swept))
     scene = replace(scene, curves=curves)
     return replace(

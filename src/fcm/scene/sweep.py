@@ -78,7 +78,7 @@ def read_sweep(top: Section, parts: Mapping[str, Any]) -> list[Swept]:
     if correlation is not None:
         swept = _correlated(section, swept, correlation)
     _note_overlaps(section, swept)
-    count = prod(len(group[0].values) for group in _groups(swept))
+    count = curves_of(swept)
     if count > MOST_CURVES:
         section.wrong("", f"asks for {count} curves; there can be {MOST_CURVES}")
     elif count * OF_CURVE > (free := room.memory()):
@@ -88,6 +88,11 @@ def read_sweep(top: Section, parts: Mapping[str, Any]) -> list[Swept]:
             f"traced, and {room.size(free)} are free: sweep or draw fewer values at a time",
         )
     return swept
+
+
+def curves_of(swept: Sequence[Swept]) -> int:
+    """How many curves swept keys ask for: 1 where nothing is swept."""
+    return prod(len(group[0].values) for group in _groups(swept))
 
 
 def combinations(swept: Sequence[Swept]) -> Iterator[dict[str, float]]:
