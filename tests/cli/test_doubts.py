@@ -9,7 +9,7 @@ import pytest
 
 from fcm.branches import search
 from fcm.branches.isolas import Crossings
-from fcm.cli.doubts import nothing_stable, short_of_accuracy
+from fcm.cli.doubts import maybe_not_unique, nothing_stable, short_of_accuracy
 from fcm.response.exact import trace_exact
 from fcm.scene import load_scene
 
@@ -31,6 +31,16 @@ def test_where_nothing_that_was_found_is_stable_the_run_says_so(fcm, tmp_path):
     assert "no_stable_motion" not in visited.summary()
     with netCDF4.Dataset(tmp_path / "a.nc") as data:
         assert json.loads(data.summary)["curves"][0]["no_stable_motion"] == [[low, high]]
+
+
+def test_the_exact_motion_is_not_offered_for_contacts_in_a_plane():
+    curves = [{"parameters": {}, "may_not_be_unique": 3}]
+    on_line = {"curves": curves, "method": "table", "notes": []}
+    assert maybe_not_unique(on_line).endswith("--method exact --at F tells how far they range")
+    in_plane = on_line | {"directions": {"joint": {"x": "1x", "y": "1y", "normal": "1z"}}}
+    assert maybe_not_unique(in_plane).endswith(
+        "its residual friction may decide which of many motions that is"
+    )
 
 
 def test_of_many_stretches_without_a_stable_motion_the_widest_are_named():

@@ -129,7 +129,9 @@ def maybe_not_unique(summary: Mapping[str, Any]) -> str:
 
 def _how(summary: Mapping[str, Any]) -> str:
     """By which option the exact motion is visited at a frequency F; empty where it is not computed, as of a
-    ring, a mode or forces at other harmonics."""
+    ring, a mode, contacts in a plane or forces at other harmonics."""
+    if summary.get("directions"):
+        return ""
     no_forces = any("mode" in curve for curve in summary["curves"])
     not_exact = ("cyclic:", "force: at harmonic")
     if no_forces or any(note.startswith(not_exact) for note in summary.get("notes", ())):

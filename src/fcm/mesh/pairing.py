@@ -167,6 +167,20 @@ def side(mesh: Mesh, pairs: Sequence[tuple[int, int]], direction: FloatArray) ->
     return float((end - begin) @ direction)
 
 
+def outward(plane: Plane, mesh: Mesh, nodes: Sequence[int], options: PairingOptions = PAIRING) -> Plane:
+    """The plane with the normal out of the elements at some nodes.
+
+    Raises
+    ------
+    MeshError
+        If the mesh has no elements there, or they lie in the plane.
+    """
+    places = np.array([mesh.place[node] for node in nodes])
+    inner = _middle(mesh, places)
+    out = 0.0 if inner is None else float((mesh.xyz[places].mean(axis=0) - inner) @ plane.normal)
+    return _with_side(plane, out, "the elements of the mesh", "out of the structure", options)
+
+
 def turned(
     plane: Plane, mesh: Mesh, pairs: Sequence[tuple[int, int]], options: PairingOptions = PAIRING
 ) -> Plane:
@@ -178,11 +192,17 @@ def turned(
         If nothing tells the sides.
     """
     told = side(mesh, pairs, plane.normal)
+    what = "gaps nor by elements of the mesh"
+    return _with_side(plane, told, what, "from the first set to the second", options)
+
+
+def _with_side(plane: Plane, told: float, what: str, way: str, options: PairingOptions) -> Plane:
+    """The plane whose normal points where something is told to lie along it; MeshError if nothing is."""
     if abs(told) <= options.side * plane.size:
         raise MeshError(
-            "which side is which is not told, by gaps nor by elements of the mesh; give the normal, as "
+            f"which side is which is not told by {what}; give the normal, as "
             f"{{ x = {plane.normal[0]:.6g}, y = {plane.normal[1]:.6g}, z = {plane.normal[2]:.6g} }} "
-            "or its opposite: it points from the first set to the second"
+            f"or its opposite: it points {way}"
         )
     if told > 0.0:
         return plane

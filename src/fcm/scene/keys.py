@@ -98,7 +98,7 @@ TABLES: dict[str, dict[str, Key]] = {
         "nodes": Key("pairs [[a, b], ...], a .csv file, or two sets; u and v are of a less b",
                      "list, file or table", "none: one contact"),
         "areas": Key("of the pairs: k_u, k_v and n_0, also swept ones, are totals, shared by them",
-                     POSITIVE, "the numbers are of each pair"),
+                     'list of numbers > 0, or "equal"', "the numbers are of each pair"),
         "normal": Key("the displacement v that loads it: n = max(n_0 + k_v v, 0)", _DIRECTION),
         "mu": Key("friction coefficient", RULES["mu"]),
         "k_u": Key("tangential contact stiffness", RULES["k_u"]),

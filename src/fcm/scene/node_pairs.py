@@ -27,6 +27,7 @@ from fcm.scene.rules import ANY, POSITIVE, RULES
 from fcm.scene.section import Section, described
 
 Pair = tuple[str, ...]  # two nodes, or one that touches the ground
+EQUAL = "equal"  # in the place of areas that are all the same
 SHARED = ("k_u", "k_v", "n_0")  # by areas, in proportion to them
 
 
@@ -218,7 +219,9 @@ def shares(section: Section, table: PairTable) -> list[dict[str, float]]:
         if "nodes" not in section.data:
             section.wrong("areas", "is of no use without nodes, whose areas they are")
             return [{}] * count
-        given = section.vector("areas", POSITIVE)
+        if section.data["areas"] == EQUAL:
+            return _shared(section, table, [1.0] * count)
+        given = section.vector("areas", POSITIVE, 'a list of numbers, or "equal"')
         pairs = section.data["nodes"]
         known = count or (len(pairs) if _is_list(pairs) else 0)
         if given is not None and known and len(given) != known:
@@ -229,8 +232,11 @@ def shares(section: Section, table: PairTable) -> list[dict[str, float]]:
     elif areas is not None and any(not area > 0.0 for area in areas):
         section.wrong("nodes", "its areas must be greater than 0")
         areas = None
-    if areas is None:
-        return [{}] * count
+    return [{}] * count if areas is None else _shared(section, table, areas)
+
+
+def _shared(section: Section, table: PairTable, areas: list[float]) -> list[dict[str, float]]:
+    """The same of areas that are known."""
     own = {key for key in SHARED if key in table.numbers or not _is_one(section.data.get(key))}
     parts = np.asarray(areas) / np.sum(areas)
     return [{key: float(part) for key in SHARED if key not in own} for part in parts]

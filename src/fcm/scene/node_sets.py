@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from fcm.mesh import Mesh, MeshError, read_mesh
-from fcm.mesh.pairing import MOST_NAMED, Plane, across, fitted_plane, paired, side, turned
+from fcm.mesh.pairing import MOST_NAMED, Plane, across, fitted_plane, outward, paired, side, turned
 from fcm.model.interface import Interface
 from fcm.scene.errors import choices, counted, quoted
 from fcm.scene.files import DataFileError, Files
@@ -39,8 +39,10 @@ def pairs_of_sets(section: Section, files: Files) -> PairTable:
     if len(sets) == 1:
         ((name, nodes),) = sets
         here = mesh.at(nodes)
-        interface = Interface(section.data.get("name", ""), here, here, (name,))
-        return PairTable([(str(node),) for node in nodes], interface=interface)
+        plane = _plane(section, mesh, nodes)
+        interface = Interface(section.data.get("name", ""), here, here, (name,), plane=plane)
+        said = _said_of_plane(section, interface, plane)
+        return PairTable([(str(node),) for node in nodes], interface=interface, said=tuple(said))
     (one, first), (other, second) = sets
     try:
         pairing = paired(mesh, first, second, tolerance)
@@ -131,13 +133,18 @@ def _vector(value: Any) -> np.ndarray[Any, Any] | None:
     return found if np.isfinite(found).all() and found.any() else None
 
 
-def _plane(section: Section, mesh: Mesh, pairs: Sequence[tuple[int, int]]) -> Plane | None:
-    """The plane between the pairs, from the first side to the second; None where none is asked for."""
+def _plane(section: Section, mesh: Mesh, pairs: Sequence[tuple[int, int]] | tuple[int, ...]) -> Plane | None:
+    """The plane between pairs, from the first side to the second, or that of nodes that touch the ground, out
+    of their structure; None where none is asked for."""
     if section.data.get("normal") != FITTED:
         return None
-    a, b = zip(*pairs, strict=True)
+    nodes = [one for one in pairs if isinstance(one, int)]
+    couples = [one for one in pairs if not isinstance(one, int)]
     try:
-        return turned(fitted_plane(0.5 * (mesh.at(a) + mesh.at(b))), mesh, pairs)
+        if nodes:
+            return outward(fitted_plane(mesh.at(tuple(nodes))), mesh, nodes)
+        a, b = zip(*couples, strict=True)
+        return turned(fitted_plane(0.5 * (mesh.at(a) + mesh.at(b))), mesh, couples)
     except MeshError as error:
         section.wrong("normal", f"cannot be fitted: {error}; give a direction")
         return None
