@@ -68,7 +68,7 @@ def commands() -> str:
 
 def each_command(command, name, above):
     """A command and those within it, with their names and contexts."""
-    context = click.Context(command, info_name=name, parent=above)
+    context = click.Context(command, info_name=name, parent=above, **command.context_settings)
     yield name, command, context
     if isinstance(command, click.Group):
         for one in command.list_commands(context):
@@ -87,6 +87,7 @@ RUNS = {  # what writes the files whose variables are listed
     "tracked points": ("yang1998-n5", "--track", "folds", "--over", "contact.shroud.n_0", "--from", "4",
                        "--to", "6"),
     "peaks only": ("yang1998-n5", "--peaks-only"),
+    "single motions": ("yang1998-n5", "--contact-forces", "FORCES", "--modal-amplitudes"),
 }  # fmt: skip
 
 
@@ -96,7 +97,8 @@ def files() -> str:
     with tempfile.TemporaryDirectory() as folder:
         for kind, arguments in RUNS.items():
             path = Path(folder, "out.nc")
-            done = called("respond", *arguments, "-o", path)
+            words = [str(Path(folder, "forces.csv")) if word == "FORCES" else word for word in arguments]
+            done = called("respond", *words, "-o", path)
             assert done.code == 0, done.err
             with netCDF4.Dataset(path) as data:
                 for name, one in data.variables.items():
