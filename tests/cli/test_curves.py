@@ -50,10 +50,12 @@ def test_a_peak_where_the_range_ends_is_marked():
 
 def test_where_the_error_of_a_balanced_peak_is_not_told_it_says_why():
     one = curve({"u": 1.0}) | {"harmonics": [1, 2, 3]}
-    assert as_table({"curves": [one]}, "Hz").splitlines()[-1].startswith("- not told: with more harmonics")
+    assert (
+        as_table({"curves": [one]}, "Hz").splitlines()[-1].startswith("- unknown error: with more harmonics")
+    )
     one["peak"]["u"]["error"] = 0.01
-    assert "not told" not in as_table({"curves": [one]}, "Hz")
-    assert "not told" not in as_table({"curves": [curve({"u": 1.0})]}, "Hz")  # of the exact motion
+    assert "unknown" not in as_table({"curves": [one]}, "Hz")
+    assert "unknown" not in as_table({"curves": [curve({"u": 1.0})]}, "Hz")  # of the exact motion
 
 
 def test_a_jump_to_no_stable_part_is_explained():
@@ -72,7 +74,7 @@ def test_a_peak_at_which_no_motion_stays_is_marked():
     assert row.split()[:9:3] == ["1.00000", "2.00000!", "3.00000?"]
     assert said == [
         "! unstable: the motion is not stable there: none stays at this peak",
-        "? whether the motion is stable there is not told",
+        "? stability is unknown there",
     ]
     assert as_table({"curves": [curve({"u": 1.0})]}, "Hz").count("\n") == 1
 
@@ -95,7 +97,7 @@ def test_where_stability_is_not_told_is_a_table_of_its_own():
         ["1.50000", "1.00000", "0.500000", "down"],
     ]
     said, header, *rows = other.splitlines()
-    assert said.startswith("between these it is not told whether the motion is stable")
+    assert said.startswith("between these stability is unknown")
     assert "jump" not in header and [row.split() for row in rows] == [
         ["1.20000", "1.30000", "0.700000", "up"],
         ["1.50000", "1.45000", "0.900000", "down"],

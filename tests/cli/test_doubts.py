@@ -24,7 +24,7 @@ def test_where_nothing_that_was_found_is_stable_the_run_says_so(fcm, tmp_path):
     run = fcm("respond", scene, "--harmonics", "3", "--json", "-o", "a.nc")
     (curve,) = json.loads(run.out)["curves"]
     ((low, high),) = curve["no_stable_motion"]
-    assert f"no stable motion was found between {low:.6g} and {high:.6g} rad/s: what is approached" in run.err
+    assert f"no stable motion was found between {low:.6g} and {high:.6g} rad/s: the motion" in run.err
     at = [0.5 * (low + high), high + 0.02]
     visited = trace_exact(load_scene(scene), at).curves[0]
     assert visited.orbits.repeats.tolist() == [2, 1, 1, 2] and visited.complete
@@ -75,7 +75,7 @@ def test_nothing_is_said_where_something_is_stable_throughout(curves):
     assert nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table"}) == ""
 
 
-@pytest.mark.parametrize(("short", "said"), [(1, "1 of 3 curves has not"), (2, "2 of 3 curves have not")])
+@pytest.mark.parametrize(("short", "said"), [(1, "1 of 3 curves misses"), (2, "2 of 3 curves miss")])
 def test_one_curve_has_and_two_have_not_the_accuracy(short, said):
     curves = [{"short_of_accuracy": "why"}] * short + [{}] * (3 - short)
     assert short_of_accuracy({"curves": curves}).startswith(said)

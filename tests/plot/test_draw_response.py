@@ -151,7 +151,7 @@ def test_parts_of_which_stability_is_not_told_are_dotted_and_the_legend_says_so(
     assert np.flatnonzero(np.isfinite(dotted.get_ydata())).tolist() == list(range(119, 141))
     assert [text.get_text() for text in figure.legends[0].get_texts()] == [
         "unstable",
-        "whether it is stable is not told",
+        "stability unknown",
     ]
 
 
@@ -299,7 +299,7 @@ def test_a_wide_stretch_whose_error_is_not_known_is_faded_and_the_legend_says_so
     faint = [line.get_xydata() for line in figure.axes[0].lines if line.get_alpha() is not None]
     faint = [line[np.isfinite(line[:, 1]), 0] for line in faint if line[np.isfinite(line[:, 1])].size]
     said = [text.get_text() for legend in _legends(figure) for text in legend.get_texts()]
-    assert any("not told how far" in one for one in said) == faded
+    assert any("unknown amount" in one for one in said) == faded
     if faded:
         assert any(abs(x[0] - 1.0) < 0.01 and abs(x[-1] - last) < 0.01 for x in faint)
 

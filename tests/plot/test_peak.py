@@ -120,7 +120,7 @@ def test_peaks_at_which_no_motion_stays_are_crossed():
 
 
 @pytest.mark.parametrize(
-    ("stable", "said"), [(1.0, ""), (0.0, ", unstable"), (np.nan, ", stability not told")]
+    ("stable", "said"), [(1.0, ""), (0.0, ", unstable"), (np.nan, ", stability unknown")]
 )
 def test_the_least_peak_is_not_told_without_its_stability(stable, said):
     some = replace(peaks(n_0=[0, 10, 20]), stable=np.array([[1, 1], [stable, 1], [1, 1]]))

@@ -87,7 +87,7 @@ def test_curves_of_which_stability_is_nowhere_told_are_dotted(path):
     solid, dotted = figure.axes[0].lines[::2], figure.axes[0].lines[1::2]
     assert not any(np.isfinite(line.get_ydata()).any() for line in solid)
     assert [line.get_xdata().tolist() for line in dotted] == [[1.0, 2.0, 1.5], [1.0, 3.0]]
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["whether it is stable is not told"]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["stability unknown"]
 
 
 def test_points_alone_are_seen(path):
@@ -97,7 +97,9 @@ def test_points_alone_are_seen(path):
         data["stable"][0] = [1.0, NAN, 0.0]
     figure = draw_response(read_response(path))
     (axes,) = figure.axes
-    assert "a point, not stable or not told" in [text.get_text() for text in figure.legends[0].get_texts()]
+    assert "a point, unstable or of unknown stability" in [
+        text.get_text() for text in figure.legends[0].get_texts()
+    ]
     dots = {
         (x, y): line.get_markerfacecolor() == line.get_color()
         for line in axes.lines

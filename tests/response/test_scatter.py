@@ -159,7 +159,7 @@ def test_peaks_that_no_motion_stays_at_are_said_to_be_unstable(scatter_of, respo
     (line,) = [row for row in as_table(printed, "rad/s").splitlines() if row.split()[:2] == ["peak", "u"]][
         -1:
     ]
-    assert line.endswith("25% unstable, 25% of stability not told")
+    assert line.endswith("25% unstable, 25% of unknown stability")
     numbers = [{"contact.c.n_0": float(i)} for i, _ in enumerate(curves)]
     own = [replace(curve, parameters=by) for curve, by in zip(curves, numbers, strict=True)]
     fields = scatter_fields(scatter(replace(response, curves=own, dofs=("u",))), "rad/s")
@@ -175,7 +175,7 @@ def test_what_is_not_known_is_printed_and_written(scatter_of, response):
     curves = [curve_with(stable) for stable in told]
     one = scatter_of(curves)
     printed = summary(response) | {"scatter": [one | {"peak": dict.fromkeys("uv", one["peak"]["u"])}]}
-    assert "of 0% of the curves; 50% may jump, as stability is not told" in as_table(printed, "rad/s")
+    assert "of 0% of the curves; 50% may jump, as stability is unknown" in as_table(printed, "rad/s")
     own = [replace(c, parameters={"contact.c.n_0": float(i)}) for i, c in enumerate(curves)]
     fields = scatter_fields(scatter(replace(response, curves=own, dofs=("u",))), "rad/s")
     assert fields["jump_untold_share"].values.tolist() == [[0.5, 0.5]]

@@ -148,7 +148,7 @@ def test_what_misses_the_accuracy_says_so(fcm, tmp_path, monkeypatch, analysis):
     for module in (level, mode):
         monkeypatch.setattr(module, "with_twice_as_many", lambda *_: None)
     done, found = run(fcm, tmp_path, PAIR, analysis, "--accuracy", 1e-7)
-    assert "not the accuracy that was asked for" in done.err, done.err
+    assert "the accuracy that was asked for" in done.err, done.err
     if analysis == "peaks tracked":
         assert "remains at contact.shroud.n_0" in found["tracked"]["short_of_accuracy"]
     else:
@@ -163,10 +163,10 @@ def test_where_stability_is_not_told_no_peak_is_without_that_word(fcm, tmp_path,
     (tmp_path / "s.toml").write_text(PAIR + extra)
     said = fcm("respond", "s.toml", *FEW, *options).out
     found = json.loads(fcm("respond", "s.toml", "--json", *FEW, *options).out)
-    assert "not told" in said
+    assert "unknown" in said
     if analysis == "peaks tracked":
         assert all(one["stability_untold"] for one in found["tracked"]["curves"])
         return
     assert all(curve["peak"]["u"]["stable"] is None for curve in found["curves"])
     if analysis == "optimum":
-        assert found["optimum"][0]["at"][0]["stable"] is None and ", stability not told" in said
+        assert found["optimum"][0]["at"][0]["stable"] is None and ", stability unknown" in said

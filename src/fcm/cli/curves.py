@@ -13,8 +13,8 @@ Curve = Mapping[str, Any]  # one of the summary's "curves"
 
 _AT_REST = "0 the degree of freedom does not move, beside rounding"
 _EDGE = "*"  # beside the frequency of a peak where the range ends
-_UNTOLD = "- not told: with more harmonics none was found near this peak, or a higher one elsewhere"
-_OF_LEVELS = "- not told: what more harmonics would change could not be estimated at this peak"
+_UNTOLD = "- unknown error: with more harmonics no peak is near this one, or a higher one is elsewhere"
+_OF_LEVELS = "- unknown error: what more harmonics would change could not be estimated at this peak"
 _MOST_FOLDS = 12  # of which a line has all
 
 
@@ -62,13 +62,13 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
 
 def _of_stable(peak: Mapping[str, Any]) -> str:
     """How many of the peaks are unstable, or may be."""
-    shares = ((peak["unstable"], "unstable"), (peak["untold"], "of stability not told"))
+    shares = ((peak["unstable"], "unstable"), (peak["untold"], "of unknown stability"))
     return ", ".join(f"{share:.0%} {what}" for share, what in shares if share)
 
 
 def _of_how_many(jump: Mapping[str, Any]) -> str:
     """Of how many curves the percentiles of a jump are, and of how many it is not known."""
-    untold = f"; {jump['untold']:.0%} may jump, as stability is not told" if jump["untold"] else ""
+    untold = f"; {jump['untold']:.0%} may jump, as stability is unknown" if jump["untold"] else ""
     return f"of {jump['share']:.0%} of the curves{untold}"
 
 
@@ -106,7 +106,7 @@ def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: st
     if UNSTABLE in marks:
         lines.append(f"{UNSTABLE} unstable: the motion is not stable there: none stays at this peak")
     if UNKNOWN in marks:
-        lines.append(f"{UNKNOWN} whether the motion is stable there is not told")
+        lines.append(f"{UNKNOWN} stability is unknown there")
     if any(_untold(curve, dof) for curve in curves for dof in dofs):
         lines.append(_OF_LEVELS if "level_folds" in curves[0] else _UNTOLD)
     return "\n".join(lines)
@@ -180,7 +180,7 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
         errors.append(f"{table:.1e} by the table, corrected at every point")
     if harmonic is not None:
         untold = any(_untold(curve, dof) for curve in curves for dof in curve["peak"])
-        but = ", and of some peaks not told" if untold else ""
+        but = ", and of some peaks unknown" if untold else ""
         told = [
             one["error"] for curve in curves for one in curve["peak"].values() if one and one.get("error")
         ]

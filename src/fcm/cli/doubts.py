@@ -12,12 +12,12 @@ def short_of_accuracy(summary: Mapping[str, Any]) -> str:
     """How many curves have not the accuracy that was asked for, and why the first has not; empty if all."""
     short = [curve["short_of_accuracy"] for curve in summary["curves"] if curve.get("short_of_accuracy")]
     if tracked := summary.get("tracked", {}).get("short_of_accuracy"):
-        return f"what is tracked has not the accuracy that was asked for: {tracked}"
+        return f"what is tracked misses the accuracy that was asked for: {tracked}"
     if not short:
         return ""
-    count, verb = len(summary["curves"]), "has" if len(short) == 1 else "have"
+    count, verb = len(summary["curves"]), "misses" if len(short) == 1 else "miss"
     which = "the curve" if count == 1 else f"{len(short)} of {count} curves"
-    return f"{which} {verb} not the accuracy that was asked for: {short[0]}"
+    return f"{which} {verb} the accuracy that was asked for: {short[0]}"
 
 
 def branches_unsure(summary: Mapping[str, Any]) -> str:
@@ -93,8 +93,8 @@ def nothing_stable(summary: Mapping[str, Any]) -> str:
     other = _not_looked_at(found[0])
     other += ", or has another residual friction" if found[0].get("may_not_be_unique") else ""
     return (
-        f"no stable motion was found between {ways} {unit}{more}{which}: what is approached there repeats "
-        f"after several periods or never, or is on a branch that was not found{other}{shows}"
+        f"no stable motion was found between {ways} {unit}{more}{which}: the motion there may have "
+        f"several periods or none, or be on a branch that was not found{other}{shows}"
     )
 
 
@@ -120,10 +120,12 @@ def maybe_not_unique(summary: Mapping[str, Any]) -> str:
     if not count:
         return ""
     how, of_levels = _how(summary), any("level_folds" in curve for curve in summary["curves"])
-    tells = f": {how}{', at the level 1,' if of_levels else ''} tells how far they range" if how else ""
+    tells = (
+        f"; {how}{', at the level 1,' if of_levels else ''} tells how far the motions range" if how else ""
+    )
     return (
-        f"points at which a contact never slips while another changes its state, or feels it: {count}; its "
-        f"residual friction may decide which of many motions that is{tells}"
+        f"at {count} point{'s' * (count > 1)} the motion may be one of many: a contact that never slips "
+        f"keeps a friction force that its past decides{tells}"
     )
 
 

@@ -51,7 +51,7 @@ def untold_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: li
     if not cells:
         return ""
     header = [*names, f"from {unit}", "to", *(f"{dof} there" for dof in dofs), "sweep"]
-    said = "between these it is not told whether the motion is stable; if it is not, a sweep jumps there:"
+    said = "between these stability is unknown, and a sweep may jump; more harmonics may tell:"
     return f"{said}\n{aligned([header, *cells], left=1)}"
 
 

@@ -19,7 +19,7 @@ SHOWN = 3  # problems on a terminal; --json has all
 WHAT = ("folds", "peaks", "slip", "separation", "closing")
 _SAID = {
     UNSTABLE: f"\n{UNSTABLE} unstable: the motion is not stable there: none stays at this peak",
-    UNKNOWN: f"\n{UNKNOWN} whether the motion is stable there is not told",
+    UNKNOWN: f"\n{UNKNOWN} stability is unknown there",
 }
 OF_NO_USE = {  # beside --track, and why
     "level": "give --over level instead",
@@ -163,7 +163,7 @@ def _optimum(one: Mapping[str, Any], unit: str) -> str:
 def _stays(one: Mapping[str, Any]) -> str:
     """What is said beside the least peak where no motion stays at it, or that is not told."""
     found = [place["stable"] for place in one["at"]]
-    return ", unstable" if False in found else ", stability not told" if None in found else ""
+    return ", unstable" if False in found else ", stability unknown" if None in found else ""
 
 
 def _mark(place: Mapping[str, Any]) -> str:
@@ -206,13 +206,13 @@ def _unstable(tracked: Mapping[str, Any], unit: str) -> str:
     over = plain(tracked["over"])
     rows = [[*_swept(tracked), "what", f"{over} from", "to", f"{unit} from", "to", "motion"]]
     for curve in tracked["curves"]:
-        for key, said in (("not_stable", "not stable"), ("stability_untold", "stability not told")):
+        for key, said in (("not_stable", "not stable"), ("stability_untold", "stability unknown")):
             for one in curve.get(key, ()):
                 ends = [f"{value:.6g}" for key in ("number", "frequency") for value in one[key]]
                 if ends[0] == ends[1] and ends[2] == ends[3]:  # at a place: no stretch that can be seen
                     ends[1] = ends[3] = ""
                 rows.append([*swept(curve), plain(curve["what"]), *ends, said])
-    title = "where no motion stays, or it is not told whether one does:"
+    title = "where no motion is stable, or stability is unknown:"
     return f"{title}\n{aligned(rows, left=1)}" if len(rows) > 1 else ""
 
 

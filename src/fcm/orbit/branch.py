@@ -131,7 +131,7 @@ def explore(
     if not bounded.given_up:  # else that is said
         lost = [omega for omega, height in lacking if not _reaches(problem, paths, omega, height)]
     told = [
-        f"a stable branch of the balance at {shown(scene, one)} led to no exact motion"
+        f"no exact motion was found from the stable branch of the balance at {shown(scene, one)}"
         for one in dict.fromkeys(lost)
     ]
     return list(paths), "; ".join([*(missed[end] for end in ends), *told, *bounded.given_up])

@@ -18,7 +18,7 @@ from fcm.plot.peak import Peaks
 from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, FloatArray, wide
 from fcm.plot.style import has_decades, sequence_colours
 
-STATES = ("stable", "unstable", "not told whether stable")
+STATES = ("stable", "unstable", "stability unknown")
 DASHES = dict(zip(STATES, ("solid", "dash", "dot"), strict=True))
 
 
@@ -205,7 +205,7 @@ def _said(curve: DrawnCurve, state: str) -> Any:
     """What is shown of each point beside its place: the error, the stability, and which branch it is on."""
     error = curve.truncation_error
     told = np.full(len(curve.frequency), np.nan) if error is None else error
-    shown = ["not told" if np.isnan(one) else f"{one:.1e}" for one in told]
+    shown = ["unknown" if np.isnan(one) else f"{one:.1e}" for one in told]
     branch = 1 + np.cumsum(np.isnan(curve.frequency))
     several = branch.size and branch[-1] > 1
     which = [f"{state}, branch {number}" if several else state for number in branch.tolist()]

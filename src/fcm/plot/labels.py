@@ -68,10 +68,10 @@ def staying(stable: float) -> str:
     """What is said beside a peak of which it is not known that a motion stays there.
 
     >>> staying(1.0), staying(0.0), staying(float("nan"))
-    ('', ', unstable', ', stability not told')
+    ('', ', unstable', ', stability unknown')
     """
     if stable != stable:
-        return ", stability not told"
+        return ", stability unknown"
     return "" if stable else ", unstable"
 
 

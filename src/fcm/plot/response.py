@@ -37,11 +37,11 @@ _DASHES: LineStyle = (0, (3.0, 1.6))
 _DOTS: LineStyle = (0, (1.0, 1.0))
 _DOUBTFUL = 0.2  # estimated error beyond which a curve is faded,
 _WIDE = 1e-2  # of its frequency: a stretch whose error is not known, as far as a fold may be moved
-_FADED = f"may err by more than {100 * _DOUBTFUL:g} %, or it is not told how far"  # what is said of both,
+_FADED = f"may err by more than {100 * _DOUBTFUL:g} %, or by an unknown amount"  # what is said of both,
 _ALPHA = 0.3  # and how much of it is left
 _NOT_STABLE = "unstable"  # what is dashed
-_UNTOLD = "whether it is stable is not told"  # what is dotted
-_HOLLOW = "a point, not stable or not told"  # what is a hollow dot
+_UNTOLD = "stability unknown"  # what is dotted
+_HOLLOW = "a point, unstable or of unknown stability"  # what is a hollow dot
 _UNNAMED = "_unnamed"  # label of all parts but the first; the underscore keeps it out of legends
 
 

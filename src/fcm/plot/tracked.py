@@ -182,7 +182,7 @@ def _say_unstable(axes: Axes, tracks: Sequence[DrawnTrack]) -> None:
     """What dashed and dotted lines mean, where there are some."""
     stable = np.concatenate([track.stable[track.trough != 1.0] for track in tracks])
     said = ["dashed: no motion stays there"] if (stable == 0.0).any() else []
-    said += ["dotted: not told whether a motion stays"] if np.isnan(stable).any() else []
+    said += ["dotted: stability unknown"] if np.isnan(stable).any() else []
     if said:
         axes.set_title("; ".join(said), loc="left", fontsize=8)
 

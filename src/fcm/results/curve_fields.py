@@ -43,7 +43,7 @@ def _doubts(response: Response, gists: Sequence[Gist]) -> dict[str, Field]:
     curves, unit, out = response.curves, response.frequency_unit, dict[str, Field]()
     in_file = {"units": CF_UNIT[unit]}
     if any(curve.loose for curve in curves):
-        meaning = "points at which residual friction may decide which of many motions that is"
+        meaning = "points at which the motion is one of many, by the residual friction of stuck contacts"
         loose = np.array([curve.loose for curve in curves], dtype=np.float64)
         out["points_maybe_not_unique"] = Field(("curve",), loose, {"long_name": meaning, "units": "1"})
     if any(curve.unsure for curve in curves):
@@ -157,7 +157,7 @@ def scatter_fields(found: Sequence[Scatter], unit: str) -> dict[str, Field]:
         "jump_untold_share": Field(
             ("scatter", "sweep_direction"),
             np.stack([one.untold for one in found]),
-            {"long_name": "share of curves that may jump, as stability is not told", "units": "1"},
+            {"long_name": "share of curves that may jump, as stability is unknown", "units": "1"},
         ),
         "peak_unstable_share": Field(
             ("scatter", "dof"),
