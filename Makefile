@@ -237,8 +237,9 @@ $(REPORT)/%.nc: src/fcm/scenes/%.toml $(SIMULATION) $(wildcard src/fcm/compare/*
 reference: $(VENV)/installed-dev  ## the pages of reference, as the program itself says
 	$(BIN)/python -m tests.guide.reference
 
-guide-figures: $(VENV)/installed-dev  ## the figures of the theory pages
+guide-figures: $(VENV)/installed-dev  ## the figures of the theory pages, and the pictures of the gallery
 	$(BIN)/python -m tests.guide.figures
+	$(BIN)/python -m tests.guide.gallery
 
 docs: $(VENV)/installed-dev  ## the guide as a site that can be searched, in build/docs: to be served, as by python3 -m http.server -d build/docs
 	$(BIN)/python -m mkdocs build --quiet --config-file .github/mkdocs.yml

@@ -69,7 +69,7 @@ def cells(line, heading):
     columns = re.split(r"  +", heading.strip())
     if "points" in columns and line.split() != heading.split():
         at = columns.index("points")
-        del found[at : at + 2]
+        del found[at : at + 1 + ("time [s]" in columns[at + 1 : at + 2])]
     jump = "jump" in heading
     text = re.sub(r"\b[\d.]+ (?:ms|s)\b", "TIME", " ".join(found)).split()
     return [cell(word, jump) for word in text]

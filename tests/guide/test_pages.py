@@ -40,7 +40,12 @@ def test_words_and_sentences_are_counted():
 
 def test_every_picture_is_shown():
     shown = {(page.parent / file).resolve() for page in PAGES for file, _ in links(page)}
-    assert not [path.name for path in (GUIDE / "figures").iterdir() if path.resolve() not in shown]
+    assert not [path.name for path in (GUIDE / "figures").rglob("*.*") if path.resolve() not in shown]
+
+
+def test_pictures_are_small():
+    """A page of them comes over any network."""
+    assert sum(path.stat().st_size for path in (GUIDE / "figures/gallery").iterdir()) < 400_000
 
 
 def test_modules_and_programs_that_a_page_names_exist():
