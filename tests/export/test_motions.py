@@ -261,6 +261,11 @@ REFUSED = {
 }
 
 
+def test_a_universal_file_needs_rows_of_nodes(tmp_path):
+    done = called("respond", "yang1998-n5", "--export", tmp_path / "a.uff")
+    assert done.code == 2 and "no row of the structure names a node" in done.err
+
+
 @pytest.mark.parametrize("said", REFUSED)
 def test_what_cannot_be_exported_is_said(said, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -269,10 +274,11 @@ def test_what_cannot_be_exported_is_said(said, tmp_path, monkeypatch):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_ring_and_an_optimum_are_refused(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    done = called("respond", "bladed-disk", "--export", "a.h5")
+def test_a_ring_and_an_optimum_are_refused(tmp_path):
+    done = called("respond", "bladed-disk", "--export", tmp_path / "a.h5")
     assert done.code == 2 and "a ring's sector moves in modes that travel" in done.err
+    done = called("respond", "blade", "--export", tmp_path / "a.h5")
+    assert done.code == 2 and "write what [optimum] found into it" in done.err
 
 
 def test_the_mesh_of_another_structure_is_refused(tmp_path):

@@ -226,3 +226,19 @@ def test_what_is_driven_is_said_and_no_exact_motion_is_offered():
     summary = {"curves": [{"may_not_be_unique": 3}], "method": "closed-form"}
     assert "--method exact" in maybe_not_unique(summary | {"notes": []})
     assert "--method exact" not in maybe_not_unique(summary | {"notes": [note]})
+
+
+def test_the_least_peak_under_both_forces_is_that_of_a_scan():
+    """Curves at preloads beside it are no lower, and that at the optimum has the peak that is told."""
+    from fcm.response.optimum import optimise
+
+    aim, span = {"vary": ["contact.c.n_0"], "bounds": [[1.0, 9.0]], "minimise": "peak.u"}, (0.7, 1.4)
+    response = optimise(scene(BOTH, span=span, optimum=aim), harmonics=3)
+    (found,) = response.tracking.optima
+    (best,) = found.values.values()
+    (there,) = trace(scene(BOTH, best, span), harmonics=3).curves
+    assert there.harmonics == (1, 2, 3) and 1.1 < best < 8.5
+    assert there.peaks["u"].amplitude == pytest.approx(found.value, rel=1e-6)
+    for preload in (0.95 * best, 1.05 * best, 1.0, 9.0):
+        (other,) = trace(scene(BOTH, preload, span), harmonics=3).curves
+        assert other.peaks["u"].amplitude > (1.0 + 1e-5) * found.value

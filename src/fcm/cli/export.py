@@ -142,7 +142,7 @@ def exporting(messages: Messages, scene: Scene, asked: Asked) -> Exporting | Non
     """
     if asked.export is None and asked.contact_forces is None and not asked.modal_amplitudes:
         return None
-    from fcm.export.rows import ExportError, Rows, check_library, check_mesh
+    from fcm.export.rows import ExportError, Rows, check_library, check_mesh, check_nodes
 
     for table, there in (("[fit]", scene.fit), ("[optimum]", scene.optimum)):
         if there is not None:
@@ -166,6 +166,8 @@ def exporting(messages: Messages, scene: Scene, asked: Asked) -> Exporting | Non
         for note in check_mesh(Rows.of(scene), mesh, str(asked.mesh)):
             messages.info(note)
     if asked.export is not None:
+        if asked.export.suffix.lower() in UNIVERSAL:
+            check_nodes(Rows.of(scene))
         check_library(asked.export.suffix.lower())
     return Exporting(messages, scene, asked, mesh)
 

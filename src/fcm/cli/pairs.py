@@ -33,7 +33,7 @@ def pairs(
     from fcm.plot.pairs import draw_pairs
     from fcm.scene import load_scene
 
-    loaded = load_scene(scene, largest_file=largest_file)
+    loaded = load_scene(scene, largest_file=largest_file, solved=False)
     known = [one.name for one in loaded.interfaces]
     for name in contact:
         if name not in known:

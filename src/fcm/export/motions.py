@@ -170,7 +170,7 @@ def contact_forces(system: System, z: FloatArray) -> ComplexArray:
     force[..., 1:] *= 1j
     for i, contact in enumerate(system.scene.contacts):
         force[i, -1, 0] += max(contact.n_0, 0.0)
-    return force
+    return force + 0.0  # a zero without its sign
 
 
 def scene_in_modes(scene: Scene) -> Scene:

@@ -92,6 +92,15 @@ class Rows:
         return bool((self.direction > 2).any())
 
 
+def check_nodes(rows: Rows) -> None:
+    """Raise ExportError where no row is of a node."""
+    if not rows.nodes.size:
+        raise ExportError(
+            f"no row of the structure names a node and a direction, as 40x does; its first are "
+            f"{choices(rows.names[:3])}: give their names as dofs"
+        )
+
+
 def check_mesh(rows: Rows, mesh: Mesh, name: str) -> list[str]:
     """What is to be said of rows on a mesh.
 
@@ -100,11 +109,7 @@ def check_mesh(rows: Rows, mesh: Mesh, name: str) -> list[str]:
     ExportError
         If the structure has nodes that the mesh has not, or none at all.
     """
-    if not rows.nodes.size:
-        raise ExportError(
-            f"no row of the structure names a node and a direction, as 40x does; its first are "
-            f"{choices(rows.names[:3])}: give their names as dofs"
-        )
+    check_nodes(rows)
     lacking = rows.nodes[~np.isin(rows.nodes, mesh.nodes)]
     if lacking.size:
         which = ", ".join(str(node) for node in lacking[:3].tolist())
