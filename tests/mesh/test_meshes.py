@@ -95,6 +95,11 @@ def test_nodes_keep_their_numbers(tmp_path, name, text):
         assert mesh.lacking == ("SPRINGA",)
 
 
+def test_a_remark_may_be_in_any_coding(tmp_path):
+    (tmp_path / "a.inp").write_bytes("** Fu\xdf der Schaufel\n*NODE\n1, 0, 0, 0.5\n".encode("latin-1"))
+    assert read_mesh(tmp_path / "a.inp").xyz.tolist() == [[0.0, 0.0, 0.5]]
+
+
 def test_elements_of_two_orders_are_those_of_meshio(tmp_path):
     """The order of the nodes of an element is that of VTK, as meshio has it of the same file."""
     lines = [f"{n}, {n}.0, {n * n % 7}.0, {n % 5}.0" for n in range(1, 21)]

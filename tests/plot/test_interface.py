@@ -1,5 +1,6 @@
 """Pictures of the contacts of a response, and what is read for them."""
 
+import netCDF4
 import numpy as np
 import pytest
 
@@ -7,6 +8,7 @@ from fcm.plot import PlotError
 from fcm.plot.interface import draw_interface, greatest_takers, points_of, read_interface, read_places
 
 from ..harmonic.strips import strip
+from ..program import called
 
 
 @pytest.fixture(scope="module")
@@ -111,3 +113,34 @@ def test_the_command_writes_a_picture_and_lists_contacts(file, fcm):
     assert "contact" in done.err and "wrote" in done.err and path.with_suffix(".svg").stat().st_size > 5000
     many = [word for _ in range(7) for word in ("--at", "1.2")]
     assert fcm("plot", "contacts", path, *many).code == 2
+
+
+def test_contacts_of_node_pairs_are_drawn_where_they_are(tmp_path):
+    """Coordinates of the scene's file of pairs, seen in the plane of the contacts: distances are kept."""
+    corners = np.array([[0.0, 0.0, 2.0], [3.0, 0.0, 2.0], [3.0, 4.0, 2.0], [0.0, 1.0, 2.0]])
+    rows = [f"{k + 1},,{x},{y},{z}" for k, (x, y, z) in enumerate(corners)]
+    (tmp_path / "pairs.csv").write_text("\n".join(["node,other,x,y,z", *rows]))
+    dofs = [f"{node}{axis}" for node in range(1, 5) for axis in "xz"]
+    shapes = [1.0 + 0.1 * k for k in range(len(dofs))]
+    scene = f"""modal = {{ dofs = {dofs}, frequency = [1.0], damping = [0.05], shapes = [{shapes}] }}
+response = {{ frequency = [1.0, 3.0], harmonics = 1 }}
+force = [{{ dof = "1x", amplitude = 0.01 }}]
+[[contact]]
+name = "joint"
+nodes = "pairs.csv"
+tangential = "x"
+normal = "z"
+mu = 0.3
+k_u = 0.1
+k_v = 0.1
+n_0 = 5.0
+"""
+    (tmp_path / "model.toml").write_text(scene)
+    output = tmp_path / "a.nc"
+    assert called("respond", tmp_path / "model.toml", "-o", output).code == 0
+    read = read_interface(output)
+    assert read.contacts == tuple(f"joint_{k}" for k in range(1, 5))
+    between = np.linalg.norm(read.places[:, None] - read.places, axis=2)
+    assert between == pytest.approx(np.linalg.norm(corners[:, None] - corners, axis=2))
+    with netCDF4.Dataset(output) as data:
+        assert np.array_equal(data["contact_position"][:], corners)

@@ -24,7 +24,7 @@ HEAD = ("contact", "state", "energy", "of all", "slip path", "normal force")
 @click.option("--curve", type=click.IntRange(min=0), default=0, show_default=True, help="Of a sweep.")
 @click.option(
     "--places", type=click.Path(exists=True, dir_okay=False, readable=True, path_type=Path), metavar="PLACES",
-    help="A text file with a line NAME X Y for each contact.  [default: the contacts in a row]",
+    help="A text file with a line NAME X Y for each contact.  [default: places of node sets, or a row]",
 )  # fmt: skip
 @pass_messages
 def contacts(
@@ -54,7 +54,7 @@ def contacts(
         raise click.UsageError(f"--at is given {len(at)} times; a picture has room for {MOST}.")
     read = read_interface(file)
     points = points_of(read, at, curve)
-    where = None if places is None else read_places(places, read.contacts)
+    where = read.places if places is None else read_places(places, read.contacts)
     for point in points:
         rows = [HEAD, *greatest_takers(read, point, MOST_ROWS)]
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]

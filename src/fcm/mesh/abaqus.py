@@ -66,11 +66,14 @@ def read_abaqus(path: Path) -> Mesh:
 
 
 def _blocks(path: Path, depth: int) -> Iterator[tuple[str, dict[str, str], str, list[list[str]]]]:
-    """Each keyword with its options, where it stands, and the words of the lines behind it."""
+    """Each keyword with its options, where it stands, and the words of the lines behind it.
+
+    Remarks may be in any coding; a number is not.
+    """
     if depth > _TOO_DEEP:
         raise MeshError("its files include one another")
     keyword, options, where, rows = "", dict[str, str](), "", list[list[str]]()
-    for number, line in enumerate(path.read_text("utf-8", errors="strict").splitlines(), 1):
+    for number, line in enumerate(path.read_text("utf-8", errors="replace").splitlines(), 1):
         if line.startswith("**") or not line.strip():
             continue
         if not line.startswith("*"):

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from fcm.plot.apart import apart
 from fcm.plot.errors import PlotError
+from fcm.plot.pairs import plane_view
 from fcm.plot.read import FloatArray, floats, opened
 from fcm.plot.style import TWO_COLUMNS, WIDTH, house_style, new_figure
 
@@ -49,6 +50,7 @@ class InterfaceFile:
     states: npt.NDArray[np.str_]  # (curve, point, contact)
     borne: FloatArray  # (3, curve, point, contact): energy, slip path, greatest normal force
     units: tuple[str, str, str]  # of these, where the file says them
+    places: FloatArray | None = None  # (contact, 2) in the plane of the contacts, where the file says them
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,9 @@ class InterfacePoint:
 def read_interface(path: Path) -> InterfaceFile:
     """Read what ``fcm respond -o`` has written; PlotError if the file says nothing of its contacts."""
     names = tuple(name for name, _ in BORNE)
-    with opened(path, "a response with contacts", (*_NEEDED, *names[1:], "dof"), ("stable",)) as data:
+    with opened(
+        path, "a response with contacts", (*_NEEDED, *names[1:], "dof"), ("stable", "contact_position")
+    ) as data:
         variables = data.variables
         contacts, dofs = (
             tuple(str(one) for one in np.atleast_1d(variables[name][:])) for name in ("contact", "dof")
@@ -76,11 +80,25 @@ def read_interface(path: Path) -> InterfaceFile:
         borne = np.stack([floats(variables[name]) for name in names])
         stable = floats(variables["stable"]) if "stable" in variables else np.full(frequency.shape, np.nan)
         unit = str(getattr(data, "frequency_unit", "rad/s"))
+        places = _places(variables)
         energy, slip, normal = (str(getattr(variables[name], "units", "")) for name in names)
     if not contacts:
         raise PlotError(f"{path}: its scene has no contacts")
     units = energy, slip, normal
-    return InterfaceFile(path, unit, contacts, dofs, frequency, amplitude, stable, states, borne, units)
+    of_contacts = contacts, dofs, frequency, amplitude, stable, states, borne, units, places
+    return InterfaceFile(path, unit, *of_contacts)
+
+
+def _places(variables: Any) -> FloatArray | None:
+    """Where the contacts are in their plane; None where the file does not say that of all."""
+    if "contact_position" not in variables:
+        return None
+    found = floats(variables["contact_position"])
+    if not np.isfinite(found).all() or not len(found):
+        return None
+    along, centre = plane_view(found)
+    places: FloatArray = (found - centre) @ along.T
+    return places
 
 
 def points_of(file: InterfaceFile, at: Sequence[float], curve: int = 0) -> list[InterfacePoint]:

@@ -18,6 +18,7 @@ _LAYOUT = {
     "amplitude": _DOF,
     **dict.fromkeys(("regime", "n0_bar", "b_bar", "phi", "tangential_amplitude", "spring_force"), _CONTACT),
     **dict.fromkeys(("dissipated_energy", "slip_path", "greatest_normal_force"), _CONTACT),
+    "contact_position": ("contact", "axis"),
     "contact_harmonic": ("contact_harmonic",),
     "contact_mean": (*_CONTACT, "direction"),
     **dict.fromkeys(("contact_amplitude", "contact_phase"), (*_CONTACT, "direction", "contact_harmonic")),

@@ -25,10 +25,23 @@ MOST = 6  # contacts in a picture
 
 
 def view_of(interface: Interface) -> tuple[FloatArray, FloatArray]:
-    """Two directions (2, 3) in the plane of an interface, and its centre; of a line, along and beside it."""
-    places = np.concatenate((interface.first, interface.second, interface.alone, interface.other_alone))
+    """Two directions (2, 3) in the plane of an interface, and its centre; see `plane_view`."""
+    if interface.plane is not None:
+        return np.stack((interface.plane.first, interface.plane.second)), interface.plane.centre
+    places = (interface.first, interface.second, interface.alone, interface.other_alone)
+    return plane_view(np.concatenate(places))
+
+
+def plane_view(places: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Two directions (2, 3) in the plane of some places (place, 3), and their centre; of a line, along and
+    beside it.
+
+    >>> along, centre = plane_view(np.array([[0.0, 0, 1], [0, 2, 1]]))
+    >>> np.abs(along[0]).tolist(), centre.tolist()
+    ([0.0, 1.0, 0.0], [0.0, 1.0, 1.0])
+    """
     try:
-        plane = interface.plane or fitted_plane(places)
+        plane = fitted_plane(places)
     except MeshError:
         _, _, axes = np.linalg.svd(places - places.mean(axis=0), full_matrices=True)
         return axes[:2], places.mean(axis=0)

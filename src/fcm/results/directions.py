@@ -1,4 +1,4 @@
-"""How a scene names the directions of contacts that slide in a plane."""
+"""How a scene names the directions of contacts that slide in a plane, and where it has its contacts."""
 
 from __future__ import annotations
 
@@ -23,6 +23,20 @@ def directions_of(scene: Scene) -> dict[str, tuple[str, ...]]:
         one.name: tuple(_combination(along, names) for along in one.directions)
         for one in scene.contacts
         if one.second is not None
+    }
+
+
+def positions_of(scene: Scene) -> dict[str, FloatArray]:
+    """Coordinates (3,) midway between the nodes of each contact whose pair of nodes has places.
+
+    >>> import fcm
+    >>> positions_of(fcm.load_scene("yang1998"))
+    {}
+    """
+    return {
+        f"{one.name}_{i + 1}": 0.5 * (first + second)
+        for one in scene.interfaces
+        for i, (first, second) in enumerate(zip(one.first, one.second, strict=True))
     }
 
 

@@ -59,6 +59,12 @@ def fields_of(response: Response) -> dict[str, Field]:
         "dof": Field(("dof",), np.array(response.dofs), {"long_name": "degree of freedom"}),
         "contact": Field(("contact",), np.array(response.contacts, dtype=str), {"long_name": "contact"}),
     }
+    if set(response.contacts) & set(response.positions):
+        unknown = np.full(3, np.nan)
+        where = np.array([response.positions.get(name, unknown) for name in response.contacts])
+        about = "where the contact is, midway between its nodes; missing where that is not known"
+        out["axis"] = Field(("axis",), np.array(["x", "y", "z"]), {"long_name": "axis of the mesh"})
+        out["contact_position"] = Field(("contact", "axis"), where, {"long_name": about})
     for key, name in swept_names(response).items():
         values = np.array([parameters[key] for parameters in swept])
         drawn = {"drawn": "true"} if key in response.drawn else {}

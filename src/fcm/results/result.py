@@ -14,7 +14,7 @@ from fcm.contact.limits import FloatArray
 from fcm.model.scene import Scene
 from fcm.results.cause import Cause
 from fcm.results.curve_summary import curve_summary
-from fcm.results.directions import directions_of
+from fcm.results.directions import directions_of, positions_of
 from fcm.results.gist import Gist
 from fcm.results.greatest import Greatest
 from fcm.results.jumps import Jump, Swept, swept
@@ -152,6 +152,7 @@ class Response:
     directions: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of contacts that slide in a plane
     tracking: Tracking | None = None  # special points followed in a number of the scene, and optima
     fitted: Fitted | None = None  # numbers fitted to measured data
+    positions: dict[str, FloatArray] = field(default_factory=dict)  # (3,) of contacts of which that is known
     motions: Motions | None = None  # at peaks or chosen frequencies, with contact forces and modes
 
     @staticmethod
@@ -160,7 +161,7 @@ class Response:
         contacts = tuple(contact.name for contact in scene.contacts)
         response = Response(scene.title, scene.modal.dofs, contacts, curves, method, scene.frequency_unit)
         response.notes, response.units, response.drawn = list(scene.notes), scene.units, scene.drawn
-        response.directions = directions_of(scene)
+        response.directions, response.positions = directions_of(scene), positions_of(scene)
         return response
 
     @staticmethod
