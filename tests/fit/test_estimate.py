@@ -74,3 +74,14 @@ def test_numbers_with_the_same_effect_are_not_told_apart():
     ((i, j, power),) = told.alike
     assert (i, j) == (0, 1) and power == pytest.approx(3.0)
     assert np.isinf(told.error).all() or (told.error > 1e3).all()
+
+
+def test_numbers_with_small_errors_are_told_apart_however_correlated():
+    """They were said to be known by their product alone, with standard errors of a few thousandths."""
+    x = np.linspace(0.5, 1.0, POINTS)
+    columns = [1e3 * x, 1e3 * (3.0 * x + 0.1 * x**2)]
+    told = estimated(parameters(2), np.array([1.0, 1.0]), rows_with(columns))
+    assert abs(told.correlation[0, 1]) > 0.98 and (told.error < 0.01).all()
+    assert told.alike == ()
+    vague = estimated(parameters(2), np.array([1.0, 1.0]), rows_with([one / 1e3 for one in columns]))
+    assert len(vague.alike) == 1 and (vague.error > 0.05).any()

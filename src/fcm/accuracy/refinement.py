@@ -119,7 +119,7 @@ def given(system: System, progress: Progress | None = None, keep: Keep | None = 
 
     Traced with one of them first, then with those that tell how far the level of all is to be followed, then
     with half: what is beside its stable peaks with more is a start, too, as the level of the forces may not
-    lead to it. A branch that is isolated with three harmonics may hang together with the others with one.
+    lead to it. A branch that is isolated with three harmonics may be connected with the others with one.
     """
     counts = sorted({1, few_of(system), max(len(system.harmonics) // 2, few_of(system))})
     if not system.scene.contacts:

@@ -1,6 +1,6 @@
 r"""Isolated branches: they begin and end where a curve of folds crosses the level 1.
 
-Where the level of the forces turns short of 1 at a frequency, two solutions meet that the response at the
+Where the level of the forces turns back before 1 at a frequency, two solutions meet that the response at the
 level 1 does not have there. Along the curve of these folds in (frequency, level) the level may come to 1;
 from there on the response has the two solutions, and the crossing is a fold of their branch. What turns
 beyond 1 lies between two solutions of the response at that frequency, whose branches are followed anyhow.

@@ -18,7 +18,7 @@ FloatArray = npt.NDArray[np.float64]
 class Line:
     """One response curve: half the peak-to-peak displacement against frequency.
 
-    Branches that do not hang together follow one another, with a point of NaN between them.
+    Separate branches follow one another, with a point of NaN between them.
     """
 
     frequency: FloatArray  # (point,) [rad/s]

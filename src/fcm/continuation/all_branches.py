@@ -22,7 +22,7 @@ CHORDS = 4  # nearest ones that are looked at
 
 @dataclass(frozen=True)
 class Branches:
-    """Paths that do not hang together; each solution that was given lies on one of them, or is in lost."""
+    """Separate paths; each solution that was given lies on one of them, or is in lost."""
 
     paths: tuple[Path, ...]
     lost: tuple[FloatArray, ...] = ()  # solutions from which nothing could be followed

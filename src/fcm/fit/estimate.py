@@ -67,7 +67,11 @@ def estimated(parameters: Parameters, values: FloatArray, rows: Rows, options: F
     )
     close = [np.isclose(values, end, rtol=1e-4, atol=0.0) for end in (parameters.low, parameters.high)]
     pairs = _alike(J[:, :, told].reshape(J.shape[0] * J.shape[1], told.size), options)
-    alike = tuple((int(told[i]), int(told[j]), power) for i, j, power in pairs)
+    alike = tuple(
+        (int(told[i]), int(told[j]), power)
+        for i, j, power in pairs
+        if max(relative[told[i]], relative[told[j]]) > options.apart
+    )
     return Estimate(
         values=values,
         error=spread * rates,

@@ -26,7 +26,8 @@ class FitOptions:
     levels : of the forces that are traced where every point has its own.
     effect : rate in units of the errors, by a factor e of a number, below which it has none.
     untold : standard error of a number, relative, from which it is not told.
-    alike : correlation from which two numbers are not told apart.
+    alike : correlation from which two numbers may not be told apart.
+    apart : standard error of a number, relative, up to which it is told whatever it is correlated with.
     confidence : of the intervals.
     reweighted : times that errors which are not stated are estimated, and the fit is made again.
     least_error : of a measured value, relative to the greatest: what is below is rounding.
@@ -53,6 +54,7 @@ class FitOptions:
     effect: float = 1e-3
     untold: float = 0.5
     alike: float = 0.98
+    apart: float = 0.05
     confidence: float = 0.95
     reweighted: int = 2
     least_error: float = 1e-8

@@ -79,7 +79,7 @@ LEVELS = LevelOptions()  # where nothing else is said
 
 
 def solutions(system: System, omega: float, reach: float | None = None) -> Found:
-    """All solutions at omega that hang together with rest.
+    """All solutions at omega on the curve of the force level that begins at rest.
 
     Far above 1 the curve of the level of many harmonics has many folds and corners, none of which matters if
     it does not come back. That of fewer tells: it comes back about as far. reach is what was found with them;
@@ -264,7 +264,7 @@ def looked_at(system: System) -> tuple[float, ...]:
 
 
 def with_low_harmonics(system: System, found: Sequence[Found]) -> tuple[int, ...]:
-    """Harmonics of a system, and the lowest where with these other solutions hang together with rest.
+    """Harmonics of a system, and the lowest where with these other solutions are reached from rest.
 
     found: where solutions were looked for with those of the system, and what was found. With one harmonic the
     level of the forces may turn back just above 1, or go on, and with three turn just below 1: its curve then

@@ -1,4 +1,4 @@
-"""Where the level of the forces turns short of 1, and the solutions that come of that at other frequencies.
+"""Where the level of the forces turns back before 1, and what solutions come of that at other frequencies.
 
 The level of the forces at which its curve turns is another at each frequency. Where it comes to be 1 a window
 of several solutions begins or ends: a fold of the response, and maybe of a closed branch that lies between

@@ -4,7 +4,7 @@ At the frequencies at which a balance follows it (`fcm.harmonic.start`), the lev
 nothing, where the motion is linear, until it is well beyond where that of a few harmonics comes back to 1.
 Every passing of the level 1 is a motion, and an exact one straight away. From motions that are known there
 and that this curve does not pass, or where it stalls does not come to, it is followed as well, both ways.
-Where it turns short of 1 the window of several motions may be at other frequencies (`fcm.harmonic.turned`).
+Where it turns back below 1 the window of several motions may be at other frequencies (`fcm.harmonic.turned`).
 """
 
 from __future__ import annotations
@@ -158,7 +158,7 @@ def _from_rest(
 
 
 def _beside(scene: Scene, turns: Sequence[Turn], look: Look) -> Iterator[FloatArray]:
-    """Stable motions (unknown + 1,) beside turns short of the level 1, at frequencies within the range."""
+    """Stable motions (unknown + 1,) beside turns below the level 1, at frequencies within the range."""
     from fcm.harmonic.turned import beside, came
 
     problem, (low, high) = AtLevel(scene), scene.frequency_range

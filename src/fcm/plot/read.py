@@ -41,7 +41,7 @@ LARGEST = 1e100  # no result is as large, in whatever units: such a number was n
 class DrawnCurve:
     """One curve without its padding; ``stable`` is None where the file does not know.
 
-    Branches that do not hang together follow one another, with a point of NaN between them.
+    Separate branches follow one another, with a point of NaN between them.
     """
 
     parameters: dict[str, float]

@@ -39,7 +39,7 @@ NOT_BEGUN = f"{INTERRUPTED} before it was traced"
 class Curve:
     """One response curve; frequencies in rad/s.
 
-    Branches that do not hang together follow one another, with a point of NaN between them.
+    Separate branches follow one another, with a point of NaN between them.
     """
 
     parameters: dict[str, float]
