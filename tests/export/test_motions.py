@@ -1,6 +1,7 @@
 """What goes back to other programs: displacements of all rows, contact forces, against independent sums."""
 
 import csv
+import shutil
 
 import h5py
 import meshio
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 import pyuff
 import scipy.linalg
-from tests.program import called
+from tests.program import called, ended
 from tests.scene.test_matrix_formats import BEAM
 
 import fcm
@@ -288,3 +289,45 @@ def test_the_mesh_of_another_structure_is_refused(tmp_path):
         "respond", tmp_path / "model.toml", "--export", tmp_path / "a.vtu", "--mesh", tmp_path / "xyz.csv"
     )
     assert done.code == 2 and "has no node 3, 4, 6, which the structure has (11 nodes in all)" in done.err
+
+
+STEADY = """*STEP
+*FREQUENCY, STORAGE=YES
+7
+*END STEP
+*STEP
+*STEADY STATE DYNAMICS
+{hertz:.15g}, {above:.15g}, 2, 1.
+*MODAL DAMPING
+1, 7, {zeta}
+*CLOAD
+16, 2, {real[0]:.15g}
+16, 3, {real[1]:.15g}
+*CLOAD, LOAD CASE=2
+16, 2, {imag[0]:.15g}
+16, 3, {imag[1]:.15g}
+*NODE PRINT, NSET=NALL
+U
+*END STEP
+"""
+
+
+@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed")
+def test_calculix_has_the_displacements_under_the_exported_forces(made, tmp_path):
+    """Its own steady state, with seven modes: what the others yield is below 1e-4 beside this resonance."""
+    folder, _ = made
+    rows, waves, _, frequency = waves_of(folder)
+    m, forces = 1, forces_of(folder)[1, 0, :, 1]
+    load = np.array([40.0 - forces[0], -forces[1]])
+    hertz = frequency[m] / (2.0 * np.pi)
+    step = STEADY.format(hertz=hertz, above=hertz * (1 + 1e-9), zeta=ZETA, real=load.real, imag=load.imag)
+    text = (BEAM / "beam.inp").read_text().split("*STEP")[0]
+    (tmp_path / "steady.inp").write_text(text + step)
+    assert ended("ccx", "steady", cwd=tmp_path).code == 0
+    blocks = (tmp_path / "steady.dat").read_text().split("displacements (vx,vy,vz)")[1:3]
+    real, imag = (np.array([line.split() for line in one.splitlines()[2:18]], dtype=float) for one in blocks)
+    names = [f"{node}{axis}" for node in range(1, 17) for axis in "xyz"]
+    found = np.array([waves[m, 0, rows.index(name)] if name in rows else 0.0 for name in names])
+    expected = (real[:, 1:] + 1j * imag[:, 1:]).ravel()
+    assert real[:, 0].tolist() == list(range(1, 17))
+    assert np.abs(found - expected).max() < 2e-4 * np.abs(expected).max()
