@@ -160,7 +160,7 @@ def _said_of_plane(section: Section, interface: Interface, plane: Plane | None) 
         f"{weight:+.4g} {axis}" for axis, weight in zip(AXES, plane.normal, strict=True) if weight
     )
     text = f"contact {quoted(interface.name)}: normal {terms}, {angle:.3g} degrees from {AXES[near]}"
-    return [f"{text}; its pairs are within {plane.off:.3g} of their plane, {plane.size:.4g} wide"]
+    return [f"{text}; its nodes are within {plane.off:.3g} of their plane, {plane.size:.4g} wide"]
 
 
 def _weights(direction: np.ndarray[Any, Any]) -> dict[str, float]:
