@@ -138,3 +138,38 @@ def test_the_time_of_few_or_fast_curves_is_not_said(monkeypatch, capsys):
         messages.progress(0.0)
         messages.progress(0.02)
     assert not capsys.readouterr().err
+
+
+CHAIN = """
+[structure]
+dofs = ["a", "b", "c"]
+mass = [1.0, 1.0, 1.0]
+stiffness = [[2.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 1.0]]
+damping = 0.01
+[[contact]]
+name = "one"
+tangential = "b"
+normal = "c"
+mu = 0.3
+k_u = 1.0
+k_v = 1.0
+n_0 = 1.0
+[[force]]
+dof = "a"
+amplitude = 1.0
+[response]
+frequency = [0.1, 0.5]
+"""
+
+
+def test_flexibility_along_directions_that_memory_does_not_hold_is_refused(fcm, monkeypatch):
+    Path("a.toml").write_text(CHAIN)
+    monkeypatch.setattr("fcm.scene.linear.ROOM_TOLD", 1_000.0)
+    done = fcm("plot", "modes", "a.toml")
+    assert done.code == 0 and "takes" not in done.err  # there is no one to tell
+    done = fcm("respond", "a.toml")
+    said = "structure: its flexibility along 3 directions of contacts and forces, at 3 rows, takes about 1 kB"
+    assert done.code == 0 and done.err.splitlines()[0] == f"{said} of memory"
+    monkeypatch.setattr(room, "memory", lambda: 1_000.0)
+    done = fcm("respond", "a.toml")
+    assert done.code == 2 and "takes 1 kB of memory, and 1 kB are free: reduce it to the rows" in done.err

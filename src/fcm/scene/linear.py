@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fcm import room
 from fcm.model.ring import NEXT
 from fcm.model.scene import FloatArray
 from fcm.scene.cyclic import own_name, ring_names
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 
 HIDDEN = "\0"  # how the name of a displacement begins that a load over many rows works on
 ALL_REPORTED = 50  # degrees of freedom of which all are in the results, where no others are asked for
+OF_DIRECTION = 8 * 14  # bytes at each row of matrices that the flexibility along a direction takes, measured
+ROOM_TOLD = 2e9  # bytes of it from which on they are told
 OF_NO_INTEREST = 0.01  # of the range's lower end: a frequency far below everything that is traced
 
 
@@ -59,6 +62,8 @@ def with_modes(
     dofs = parts["modal"]["dofs"]
     swept = [dofs.place[name] for name in sorted(_swept(top, dofs))]
     only = [dofs.place[name] for name in output]
+    if not _room_for(top, len(_directions(parts)) + len(swept), len(dofs)):
+        return parts, []
     over_rows = distributions(parts, matrices.M)
     pushed = _columns([*_directions(parts), *over_rows.values()], len(dofs))
     loads = np.concatenate((pushed, unit_columns(len(dofs), swept)), axis=1)
@@ -70,6 +75,22 @@ def with_modes(
     draft |= {"dofs": dofs, "frequency": draft["frequency"] / UNITS[unit], "shapes": shapes.T}
     columns = {name: shapes.T @ load for name, load in over_rows.items()}
     return with_displacements(parts | {"modal": draft}, columns), notes
+
+
+def _room_for(top: Section, directions: int, rows: int) -> bool:
+    """Whether memory holds what the flexibility along directions takes; else it is noted."""
+    taken = float(OF_DIRECTION * directions * rows)
+    said = f"its flexibility along {directions} directions of contacts and forces, at {rows} rows, takes"
+    if taken > (free := room.memory()):
+        top.wrong(
+            "structure",
+            f"{said} {room.size(taken)} of memory, and {room.size(free)} are free: reduce it to the rows of "
+            "the contacts and forces first, as by Craig and Bampton, or give fewer contacts",
+        )
+        return False
+    if taken > ROOM_TOLD:
+        top.mistakes.say(f"structure: {said} about {room.size(taken)} of memory")
+    return True
 
 
 def check_matrices(top: Section, matrices: Matrices, cyclic: list[Part], ends: tuple[float, float]) -> None:
@@ -97,6 +118,8 @@ def _of_ring(
 
     dofs, own = parts["modal"]["dofs"], parts["modal"]["dofs"].own
     swept = [dofs.place[name] for name in sorted(_swept(top, dofs))]
+    if not _room_for(top, len(_directions(parts)) + len(swept), len(dofs)):
+        return parts, []
     over_rows = distributions(parts, mass_of_all_alike(matrices))
     pushed = np.concatenate((_columns(_directions(parts), len(dofs)), unit_columns(len(dofs), swept)), axis=1)
     distributed = _columns([*over_rows.values()], len(own))

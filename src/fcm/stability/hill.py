@@ -21,7 +21,6 @@ from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
-import scipy.linalg
 
 from fcm.harmonic.system import System
 from fcm.model.scene import FloatArray
@@ -64,6 +63,8 @@ class HillMultipliers:
 
     def of(self, z: FloatArray) -> list[complex] | None:
         """The multipliers at z (unknown + 1,), twice as many as modes; None where they are not finite."""
+        from scipy.linalg import eig  # its import takes longer than most curves
+
         omega, stiffness = float(z[-1]), self._stiffness(z)
         if not np.isfinite(stiffness).all():
             return None
@@ -75,7 +76,7 @@ class HillMultipliers:
         none += np.kron(np.diag(linear.natural**2), one) + stiffness
         size = self.modes * self.each
         matrix = np.block([[np.zeros((size, size)), np.eye(size)], [-none, -first]])
-        exponents, vectors = scipy.linalg.eig(matrix, check_finite=False)
+        exponents, vectors = eig(matrix, check_finite=False)
         off = self._off_centre(vectors[:size])
         found, again = list[complex](), list[complex]()
         for k in np.argsort(np.abs(off), kind="stable").tolist():
