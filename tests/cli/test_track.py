@@ -26,6 +26,7 @@ def optimum(scene):
     return scene
 
 
+@pytest.mark.slow
 def test_an_optimum_is_written_drawn_and_told(fcm, optimum):
     done = fcm("respond", optimum, "--harmonics", "1", "-o", "best.nc")
     assert done.code == 0 and done.out.startswith("least peak.u: ")
@@ -48,6 +49,7 @@ def test_as_json_an_optimum_has_its_error_and_harmonics(fcm, optimum):
     assert 0.0 < found["error"] < 0.01
 
 
+@pytest.mark.slow
 def test_optima_of_a_sweep_have_the_harmonics_that_any_of_them_takes(fcm, tmp_path):
     """One of them takes the second, with which alone the other is less accurate than with none."""
     text = (SCENES / "yang1998-n5.toml").read_text("utf-8").replace("harmonics = 1", "accuracy = 1e-3")
@@ -61,6 +63,7 @@ def test_optima_of_a_sweep_have_the_harmonics_that_any_of_them_takes(fcm, tmp_pa
         assert one["value"] == pytest.approx(curve["peak"]["u"]["amplitude"], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_tracked_folds_are_written_drawn_and_told(fcm, tmp_path):
     done = fcm("respond", "yang1998", *FOLDS, "4", "--to", "10", "-o", "folds.nc", "--csv", "folds.csv")
     assert done.code == 0 and "cusp" in done.out
@@ -96,6 +99,7 @@ def test_peaks_of_very_different_heights_are_all_to_be_seen_and_no_name_lies_on_
     assert [text.get_text() for text in legend.get_texts()] == ["peak of u", "peak of v"]
 
 
+@pytest.mark.slow
 def test_the_error_of_tracked_curves_is_told_or_said_to_be_unknown(fcm):
     """Two of three cusps that lie close together move too far by more harmonics to be found again."""
     done = fcm("respond", "yang1998", *FOLDS, "4", "--to", "10", "-o", "folds.nc", "--json")
@@ -112,6 +116,7 @@ def test_the_error_of_tracked_curves_is_told_or_said_to_be_unknown(fcm):
     assert "cannot tell" in fcm("respond", "yang1998", *FOLDS, "4", "--to", "10").out
 
 
+@pytest.mark.slow
 def test_curves_of_a_sweep_say_of_which_values_they_are(fcm, scene):
     sweep = '\n[sweep]\n"contact.shroud.n_0" = [-5.0, -20.0]\n'
     scene.write_text(scene.read_text() + sweep)

@@ -22,6 +22,7 @@ def same(some, others):
         np.testing.assert_array_equal(one, other)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("harmonics", [(1,), up_to(3), None])
 def test_another_curve_of_the_structure_while_one_is_followed(harmonics):
     """By what looks how far it is, on the same balance if that could be had."""

@@ -81,6 +81,7 @@ def jacobian(system, z):
     return np.array(columns).T
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("harmonics", [(1,), (1, 3)])
 @pytest.mark.parametrize(
     ("scene", "options"),

@@ -62,18 +62,21 @@ def run(path, values, kind="modal"):
     return [int(count) for count in done.out.split()]
 
 
+@pytest.mark.slow
 def test_every_byte_of_an_archive(tmp_path):
     np.savez(tmp_path / "m.npz", **MODES)
     read, refused = run(tmp_path / "m.npz", (0, 255))
     assert read > 100 and refused > 500
 
 
+@pytest.mark.slow
 def test_every_byte_of_a_sparse_matrix(tmp_path):
     scipy.sparse.save_npz(tmp_path / "K.npz", scipy.sparse.csr_array(np.array([[3.0, -1.0], [-1.0, 2.0]])))
     read, refused = run(tmp_path / "K.npz", (255,), "structure")
     assert read > 100 and refused > 300
 
 
+@pytest.mark.slow
 def test_every_byte_of_a_universal_file(tmp_path):
     path = tmp_path / "m.uff"
     path.write_bytes((HERE / "two_modes.uff").read_bytes())
@@ -121,6 +124,7 @@ def ends_of_reader(path, values, how):
     return ast.literal_eval(done.out)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
 @pytest.mark.parametrize("compressed", [False, True])
 def test_every_byte_of_a_matlab_file(tmp_path, compressed):

@@ -276,6 +276,7 @@ def read_apart(folder, ending, content, seed, change=damaged):
                 yield one, {key: archive[key] for key in archive.files}
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
 def test_packed_matlab_files(tmp_path):
     """What is packed has a checksum: it is what was written, or nothing."""
@@ -284,6 +285,7 @@ def test_packed_matlab_files(tmp_path):
         assert all((found[name] == K).all() for name in found if name == "K"), changed
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
 @pytest.mark.parametrize("kind", ["K.mat", "K.h5", "matlab 7.3"])
 def test_binary_files_without_checksums(tmp_path, kind):
@@ -310,6 +312,7 @@ def test_binary_files_without_checksums(tmp_path, kind):
     assert count
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
 @pytest.mark.parametrize("form", ["dense", "nonbigmat"])
 def test_nastran_output4_as_text(tmp_path, form):
@@ -323,6 +326,7 @@ def test_nastran_output4_as_text(tmp_path, form):
                 assert set(parts.tolist()) <= known, (name, array, changed)
 
 
+@pytest.mark.slow
 def test_nastran_output4_with_a_format_narrower_than_its_numbers(tmp_path):
     """The rest of each line would be left out."""
     op4 = pytest.importorskip("pyyeti.nastran.op4")

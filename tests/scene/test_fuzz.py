@@ -6,6 +6,7 @@ import contextlib
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -86,6 +87,7 @@ def test_any_bytes(content):
     load_bytes(content)
 
 
+@pytest.mark.slow
 @settings(max_examples=int(400 * SCALE), deadline=None)
 @given(
     st.lists(st.tuples(st.integers(0, len(SWEPT)), st.integers(0, 12), st.sampled_from(WORDS)), max_size=4)
@@ -97,6 +99,7 @@ def test_a_valid_file_with_pieces_replaced(changes):
     load_bytes(text.encode())
 
 
+@pytest.mark.slow
 @settings(max_examples=int(300 * SCALE), deadline=None)
 @given(st.data())
 def test_a_valid_file_with_lines_dropped_and_repeated(data):
@@ -120,6 +123,7 @@ TREES = st.recursive(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=int(150 * SCALE), deadline=None)
 @given(st.dictionaries(st.sampled_from(KEYS[:8]), TREES, max_size=8))
 def test_any_tree_of_known_keys(data):
@@ -143,6 +147,7 @@ PATHS += [
 ]
 
 
+@pytest.mark.slow
 @settings(max_examples=int(400 * SCALE), deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(PATHS), TREES), max_size=4))
 def test_a_valid_scene_with_values_replaced(changes):
@@ -196,6 +201,7 @@ OF_MATRICES += [
 LISTED = ("contact", "force", "load")
 
 
+@pytest.mark.slow
 @settings(max_examples=int(400 * SCALE), deadline=None)
 @example([(("structure", "mass"), [0, 0, 0, 2.9e-270])])
 @given(st.lists(st.tuples(st.sampled_from(OF_MATRICES), TREES), max_size=4))

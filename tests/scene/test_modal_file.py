@@ -94,6 +94,7 @@ def test_numbers_from_a_file_can_be_swept(tmp_path):
     assert [curve.modal.shapes[1, 2] for curve in curves] == [3, 4]
 
 
+@pytest.mark.slow
 def test_arrays_under_names_that_are_no_keys_are_named_where_one_lacks(tmp_path):
     other = {"f_n": MODES["frequency"], **{key: MODES[key] for key in ("dofs", "damping", "shapes")}}
     for save, name in WRITERS:
@@ -234,6 +235,7 @@ def test_a_modal_mass_under_another_name_is_used_and_said(tmp_path, save, name):
         scene_of(tmp_path, name)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("other", ["mass_of_mode", "m"])
 @pytest.mark.parametrize("save, name", WRITERS)
 def test_what_may_be_a_modal_mass_is_refused(tmp_path, save, name, other):

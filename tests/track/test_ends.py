@@ -42,6 +42,7 @@ def found(scene):
     return followed(scene, Condition(Kind.PEAK, 0), SPAN)
 
 
+@pytest.mark.slow
 def test_no_point_is_out_of_the_ranges(found):
     for one in found:
         assert SPAN[0] <= one.s.min() and one.s.max() <= SPAN[1]
@@ -74,6 +75,7 @@ def test_no_point_stands_twice_and_no_value_asked_for_is_passed_over(found):
         assert not ((one.s[:-1] - asked) * (one.s[1:] - asked) < 0.0).any()
 
 
+@pytest.mark.slow
 def test_a_curve_goes_on_where_the_response_is_an_isolated_point(scene, monkeypatch):
     """Its peak and its trough meet there, and its folds, too: the response has no one direction."""
     span, isolated = (0.6, 0.68), 0

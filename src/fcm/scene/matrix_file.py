@@ -1,7 +1,8 @@
 """A matrix from a file, and the names of its rows where the file has them.
 
 .npz (of scipy or numpy), .mat (MATLAB, 7.3 too), .h5 (HDF5), .mtx (MatrixMarket or Abaqus), .sti and .mas
-(CalculiX), .pch (Nastran DMIG), .op4 (Nastran, by pyyeti), .hb (Harwell-Boeing; of Ansys .matrix).
+(CalculiX), .pch (Nastran DMIG), .op4 (Nastran, by pyyeti), .hb (Harwell-Boeing; of Ansys .matrix); and those
+that readers of one's own know, see `fcm.scene.readers`.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from fcm.scene.formats.dmig import read_dmig
 from fcm.scene.formats.harwell_boeing import read_harwell_boeing
 from fcm.scene.formats.labelled import Labelled
 from fcm.scene.matrix_market import read_matrix_market
+from fcm.scene.readers import matrix_and_rows, own_endings, own_reader, read_own
 
 ENDINGS = (
     *(".npz", ".mat", ".h5", ".hdf5", ".mtx", ".sti", ".mas", ".pch", ".op4"),
@@ -35,14 +37,15 @@ def read_matrix(name: str, files: Files) -> Labelled:
     """The matrix of a file as a scipy sparse array; "model.mat:K" is the one of that name in the file."""
     path, chosen = split_name(name)
     ending = Path(path).suffix.lower()
-    if ending not in ENDINGS:
-        raise DataFileError(f"{quoted(path)} cannot be read: such a file is {', '.join(ENDINGS)}")
+    if ending not in ENDINGS and own_reader(ending) is None:
+        endings = ", ".join((*ENDINGS, *own_endings()))
+        raise DataFileError(f"{quoted(path)} cannot be read: such a file is {endings}")
     if ending == ".op4":  # pyyeti gives the names in lower case
         chosen = chosen.lower()
     if ending == ".pch":  # Nastran's names are upper case
         chosen = chosen.upper()
     with files.opened(path) as where:
-        found = _READERS[ending](where, chosen, files)
+        found = _READERS.get(ending, _from_own)(where, chosen, files)
         which = _chosen({name: one.matrix for name, one in found.items()}, chosen, path)
         return Labelled(_matrix(found[which].matrix, path, files), found[which].rows)
 
@@ -61,7 +64,8 @@ def is_matrix_file(name: str) -> bool:
     >>> is_matrix_file("C.mtx"), is_matrix_file("model.mat:C"), is_matrix_file("high")
     (True, True, False)
     """
-    return Path(split_name(name)[0]).suffix.lower() in ENDINGS
+    ending = Path(split_name(name)[0]).suffix.lower()
+    return ending in ENDINGS or own_reader(ending) is not None
 
 
 def split_name(name: str) -> tuple[str, str]:
@@ -130,6 +134,12 @@ def _from_others(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
         held = choices(map(str, arrays[NAMES])) if arrays[NAMES].size else "nothing"
         raise DataFileError(f"{quoted(path.name)} holds {what}; it holds {held}")
     return {name: Labelled(one) for name, one in found.items()}
+
+
+def _from_own(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
+    """By a reader of one's own."""
+    every = read_own(path)
+    return {name: Labelled(*matrix_and_rows(name, one)) for name, one in every.items()}
 
 
 def _chosen(found: dict[str, Any], chosen: str, path: str) -> str:

@@ -11,6 +11,7 @@ from fcm.scene.apart import NAMES, read_apart
 from fcm.scene.archive import names_in_npz, read_npz
 from fcm.scene.errors import counted, kind, quoted
 from fcm.scene.files import DataFileError, Files
+from fcm.scene.readers import own_endings, own_reader, read_own
 from fcm.scene.uff import read_uff
 
 KEYS = {  # of a file, and names that other programs give the same
@@ -23,6 +24,7 @@ KEYS = {  # of a file, and names that other programs give the same
     "participation": (),
     "nodal_diameter": ("nodal_diameters", "harmonic_index"),
 }
+ENDINGS = (".npz", ".mat", ".uff", ".unv")
 WANTED = tuple(name for key, others in KEYS.items() for name in (key, *others))
 LARGEST_VALUE = 1e-6  # relative: how near to 1 the largest value of a shape is that was scaled to it
 
@@ -37,8 +39,9 @@ def read_modal_file(name: str, files: Files, waves: bool = False) -> dict[str, A
     A universal file is always in Hz: it has angular_frequency [rad/s] in place of frequency.
     """
     ending = (files.folder / name).suffix.lower()
-    if ending not in (".npz", ".mat", ".uff", ".unv"):
-        raise DataFileError(f"{quoted(name)} cannot be read: a file of modes is .npz, .mat, .uff, .unv")
+    if ending not in ENDINGS and own_reader(ending) is None:
+        endings = ", ".join((*ENDINGS, *own_endings()))
+        raise DataFileError(f"{quoted(name)} cannot be read: a file of modes is {endings}")
     with files.opened(name) as path:
         if ending == ".npz":
             found: dict[str, Any] = dict(read_npz(path, WANTED, files))
@@ -46,8 +49,12 @@ def read_modal_file(name: str, files: Files, waves: bool = False) -> dict[str, A
         elif ending == ".mat":
             found = dict(read_apart(path, WANTED, files))
             others = found.pop(NAMES, np.array([])).tolist()
-        else:
+        elif ending in (".uff", ".unv"):
             found, others = read_uff(path), []
+        else:
+            found = {name: np.asarray(one) for name, one in read_own(path).items()}
+            others = list(found)
+            found = {name: one for name, one in found.items() if name in WANTED}
         notes = found.pop("notes", [])
         faults: list[str] = []
         found = _by_keys(found, others, name, notes, faults)

@@ -1,0 +1,73 @@
+"""Readers of one's own for files of matrices and modes: entry points of the group ``fcm.readers``.
+
+The name of an entry point is the ending of the files, without the dot; what it stands for is a function that
+takes the path of one and returns what is in it, by names. A matrix is an array, a scipy sparse array, or one
+of these with the names of its rows; the arrays of modes have the names of [modal]: dofs, frequency, shapes.
+Of a file that it cannot read it raises ValueError, saying what is wrong there.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy.sparse
+
+from fcm.scene.errors import kind, quoted
+from fcm.scene.files import UnreadableError
+
+GROUP = "fcm.readers"
+
+
+def own_reader(ending: str) -> EntryPoint | None:
+    """That of files with an ending, such as ".blade"; None if there is none."""
+    return _installed().get(ending.lower().removeprefix(".")) if ending else None
+
+
+def own_endings() -> tuple[str, ...]:
+    """The endings for which there is one, in order."""
+    return tuple(f".{name}" for name in sorted(_installed()))
+
+
+@cache
+def _installed() -> dict[str, EntryPoint]:
+    return {one.name.lower(): one for one in entry_points(group=GROUP)}
+
+
+def read_own(path: Path) -> dict[str, Any]:
+    """What the reader of its ending finds in a file.
+
+    Raises
+    ------
+    UnreadableError
+        If the reader cannot be loaded, or cannot read the file, or returns something else.
+    """
+    entry = own_reader(path.suffix)
+    assert entry is not None
+    said = f"the reader {entry.value} of {path.suffix} files"
+    try:
+        read = entry.load()
+    except (ImportError, AttributeError) as error:
+        raise UnreadableError(f"{said} cannot be loaded: {error}") from None
+    try:
+        found = read(path)
+    except ValueError as error:
+        raise UnreadableError(str(error)) from None
+    except Exception as error:  # whatever another's program does
+        raise UnreadableError(f"{said} failed: {type(error).__name__}: {error}") from None
+    if not isinstance(found, dict) or not all(isinstance(name, str) for name in found):
+        raise UnreadableError(f"{said} returned {kind(found)}; a dict of arrays by their names is needed")
+    return found
+
+
+def matrix_and_rows(name: str, found: Any) -> tuple[Any, tuple[str, ...]]:
+    """A matrix that a reader has returned, and the names of its rows if it gave some."""
+    matrix, rows = found if isinstance(found, tuple) and len(found) == 2 else (found, ())
+    rows = tuple(map(str, rows))
+    matrix = matrix if scipy.sparse.issparse(matrix) else np.asarray(matrix)
+    if rows and len(rows) != matrix.shape[0]:
+        raise UnreadableError(f"{quoted(name)} has {matrix.shape[0]} rows and {len(rows)} names of rows")
+    return matrix, rows
