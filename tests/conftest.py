@@ -4,6 +4,7 @@ import tomllib
 from importlib import import_module
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import settings
 
@@ -40,6 +41,13 @@ def compiled() -> bool:
 def _older(file: Path, kernel: str) -> bool:
     sources = [file.with_name(f"{kernel}{suffix}") for suffix in (".py", ".pxd")]
     return file.stat().st_mtime < max(source.stat().st_mtime for source in sources if source.exists())
+
+
+@pytest.fixture(autouse=True)
+def print_options():
+    """Those of numpy stay as they were: pyyeti sets others when it is imported."""
+    with np.printoptions():
+        yield
 
 
 @pytest.fixture

@@ -40,6 +40,7 @@ def run(report, x: float) -> float:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("value", "expected"), [("", ["kernel.called"]), ("-1, ", [])])
 def test_a_function_that_calls_python_hands_an_exception_on(tmp_path, value, expected):
     source = tmp_path / "kernel.py"

@@ -30,6 +30,7 @@ def test_every_kernel_is_listed_to_be_compiled():
     assert all(kernel["sources"] == [f"src/{kernel['name'].replace('.', '/')}.py"] for kernel in LISTED)
 
 
+@pytest.mark.slow
 def test_a_run_says_once_that_kernels_are_not_compiled(tmp_path):
     compiled = not import_module("fcm.contact.coefficient_law").__file__.endswith(".py")
     expected = 0 if compiled else 1

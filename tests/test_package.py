@@ -48,6 +48,7 @@ def held(wheel):
         return {info.filename: info.file_size for info in archive.infolist()}
 
 
+@pytest.mark.slow
 def test_the_tables_and_scenes_are_in_it(held):
     data = {"tables": ROOT / "tables", "scenes": ROOT / "src/fcm/scenes"}
     files = [(name, path) for name, folder in data.items() for path in folder.rglob("*") if path.is_file()]
@@ -64,6 +65,7 @@ def test_every_module_is_in_it(held):
     assert not [name for name in held if name.startswith("tests")]
 
 
+@pytest.mark.slow
 def test_it_is_tagged_for_every_machine_and_says_once_that_it_is_slow(wheel, tmp_path):
     assert wheel.name.endswith("-py3-none-any.whl")
     with zipfile.ZipFile(wheel) as archive:
@@ -76,6 +78,7 @@ def test_it_is_tagged_for_every_machine_and_says_once_that_it_is_slow(wheel, tmp
         assert done.code == 0 and done.err.count("kernels of fcm run as Python, slowly") == 1, done.err
 
 
+@pytest.mark.slow
 def test_a_source_distribution_holds_what_the_tests_read(clean):
     with tarfile.open(clean("sdist")) as archive:
         names = {one.name.partition("/")[2]: one for one in archive.getmembers()}

@@ -66,6 +66,7 @@ def _run(args, output):
         Path(output).write_text(done.out)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("figure", FIGURES, ids=lambda figure: str(figure.number))
 def test_every_number_agrees_with_the_paper(folder, figure):
     rows = figure.rows(folder)
@@ -150,6 +151,7 @@ def test_names_are_not_read_as_html():
     assert "<x>" not in text and "<s>" not in text and "<i>" not in text and '""' not in text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["figure5.png", "figure12.png", "figure14.nc", "figure14.png", "figure15.png"]
 )

@@ -149,6 +149,7 @@ def test_an_unstable_closed_branch_has_the_error_of_the_exact_motion():
         assert found.peak[d] == pytest.approx(true, rel=0.15)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("seed", "harmonics", "span", "dofs"),
     [(100, (*up_to(8), 12, 17), (1.5, 1.6), (3,)), (181, up_to(6), (2.0, 2.2), (2, 3, 4))],
@@ -175,6 +176,7 @@ def test_what_hardly_moves_says_nothing_of_what_moves():
     assert np.nanmax(truncation) < 0.1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("seed", "harmonics"), [(12, (1,)), (14, (1, 2, 3))])
 def test_beside_what_is_astray_many_harmonics_have_no_motion(seed, harmonics):
     """Nor is it called stable in a response. A stretch is astray by how many points it has."""
@@ -234,6 +236,7 @@ def test_a_harmonic_that_moves_a_peak_by_nothing_does_not_speak_for_the_others()
         assert true > 1e-4 and true / 2.0 < peak.error < 2.0 * true
 
 
+@pytest.mark.slow
 def test_what_is_lost_beside_what_is_not_believed_is_not_called_stable():
     """One harmonic has a branch of three times the amplitude down to 1.643 rad/s; that of the exact motion
     ends before, so that at 1.6487 there is nothing but the low motion."""
@@ -264,6 +267,7 @@ def test_what_is_lost_beside_what_is_not_believed_is_not_called_stable():
     assert found == pytest.approx(true, rel=0.05) and true < 0.3
 
 
+@pytest.mark.slow
 def test_a_row_of_contacts_in_partial_slip_is_told_of_everywhere():
     """Of one harmonic, by more than a tenth; the peaks beside those of six harmonics."""
     few, many = (estimated(System(strip(), tuple(up_to(count))), 0.0) for count in (1, 6))

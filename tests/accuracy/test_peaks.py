@@ -122,6 +122,7 @@ def test_errors_of_peaks_are_those_of_the_exact_motion_at_ends_and_between_point
         assert true > 1e-4 and 0.5 * true < found.peak[d] < 2.0 * true
 
 
+@pytest.mark.slow
 def test_no_error_of_a_peak_is_low_where_modes_are_met_by_harmonics_beyond_all_that_are_looked_at():
     """By more than three; what those do without feedback is more than they do."""
     one, harmonics = lowest(), (1, 2, 3, 4, 5, 6, 7, 8, 9, 11, 13, 14)

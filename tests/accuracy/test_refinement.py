@@ -42,6 +42,7 @@ def test_a_linear_response_takes_one_harmonic_and_one_pass(monkeypatch):
     assert len(passes) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preload", EXACT)
 def test_a_blade_to_one_percent(preload):
     one = scene("shroud", preload)
@@ -68,6 +69,7 @@ def test_a_blade_to_a_tenth_of_a_percent(preload):
     assert height == pytest.approx(EXACT[preload], rel=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-3, 1e-4])
 @pytest.mark.parametrize("case", [("yang1998", 5), ("yang1998", -5), ("gap5", None), ("stuck_mean", None)])
 def test_peaks_are_as_accurate_as_was_asked_for(case, accuracy):

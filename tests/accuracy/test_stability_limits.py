@@ -83,6 +83,7 @@ def bouncing():
     return scene_from_dict(found)
 
 
+@pytest.mark.slow
 def test_the_accuracy_holds_for_where_stability_is_lost(bouncing):
     """Swept upwards, the exact motion repeats after one period at 0.742 rad/s, and at 0.757 no more."""
     curve = traced_curve(bouncing, Wanted(None, 1e-2))
@@ -94,6 +95,7 @@ def test_the_accuracy_holds_for_where_stability_is_lost(bouncing):
     assert not curve.short_of and not any(one.sweep == "up" for one in curve.swept().untold)
 
 
+@pytest.mark.slow
 def test_stability_is_not_said_to_be_lost_where_that_cannot_be_told(bouncing):
     """With few harmonics, as 0.1 takes, multipliers are above 1 before those of the exact motion."""
     curve = traced_curve(bouncing, Wanted(None, 0.1))
@@ -105,6 +107,7 @@ def test_stability_is_not_said_to_be_lost_where_that_cannot_be_told(bouncing):
     assert any(one.start < 0.742 and one.end > 0.757 for one in untold) or 0.9 * 0.742 < lost[0] < 1.1 * 0.757
 
 
+@pytest.mark.slow
 def test_where_it_cannot_be_told_how_far_the_loss_of_stability_is_off_more_harmonics_are_taken():
     """Three harmonics, enough for peaks and folds, do not tell it; the exact motion is unstable between."""
     tangential = ({"x": 1.0}, {"y": -1.06, "x": 0.188}, {"x": 1.0})

@@ -30,6 +30,7 @@ LOST = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("mechanism", "scene", "harmonics", "lost"), LOST, ids=[one[0] for one in LOST])
 def test_without_a_mechanism_an_answer_is_lost(mechanism, scene, harmonics, lost):
     whole = answer(scene, harmonics)

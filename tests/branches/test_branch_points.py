@@ -18,6 +18,7 @@ from fcm.scene import load_scene
 SCENE = load_scene(Path(__file__).parent / "scenes/equal_stops.toml").each_curve()[0]
 
 
+@pytest.mark.slow
 def test_the_highest_peak_of_equal_stops_is_of_a_motion_that_is_not_symmetric():
     """Marched independently: 0.31653 at 1.7695 rad/s, stable, on two mirrored motions. Those of the symmetric
     motion are lower by 4 %."""
@@ -29,6 +30,7 @@ def test_the_highest_peak_of_equal_stops_is_of_a_motion_that_is_not_symmetric():
     assert peak.stable and curve.mirrored >= 2 and curve.summary()["mirrored_branches"] == curve.mirrored
 
 
+@pytest.mark.slow
 def test_even_harmonics_are_taken_where_a_symmetric_motion_loses_its_symmetry():
     """With odd harmonics alone the symmetric motion is within the accuracy, and its branch points hidden."""
     curve = traced_curve(SCENE, Wanted(None, 1e-2))
@@ -53,6 +55,7 @@ def test_both_sides_of_a_branch_point_are_mirror_images_of_which_one_is_traced()
         assert sorted(on) == [0, 1]
 
 
+@pytest.mark.slow
 def test_where_odd_harmonics_alone_are_given_it_is_said_where_symmetry_is_lost(fcm, tmp_path):
     """The branch points are those of all harmonics; the unsymmetric motions have even ones."""
     odd = traced_curve(SCENE, Wanted((1, 3, 5)))

@@ -36,6 +36,7 @@ def test_stretches_where_nothing_stays_are_told_the_widest_first():
     )
 
 
+@pytest.mark.slow
 def test_a_stable_branch_that_was_missed_is_looked_for_where_nothing_is_stable():
     """At 1.567 rad/s a march of the contact law, with 3000 and 12000 steps of a cycle, settles at the same
     motion from all of 12 random states. The other branches there are 14 % lower and more, and unstable."""
@@ -103,6 +104,7 @@ def test_a_level_that_is_not_followed_to_its_end_leaves_branches_unsure(monkeypa
     assert low < at < high
 
 
+@pytest.mark.slow
 def test_ranges_are_looked_at_the_widest_first_as_long_as_it_may_take_and_the_others_are_told(monkeypatch):
     scene = replace(load_scene(KNOWN / "chaos.toml"), frequency_range=(1.15, 1.45))
     every = traced_curve(scene, Wanted(tuple(range(1, 6)), 1e-2)).summary()
@@ -159,6 +161,7 @@ def test_of_peaks_that_a_branch_of_more_harmonics_exceeds_no_error_is_told():
     assert all(np.isnan(peak.error) for peak in peaks)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("span", [(1.1, 1.6), (1.23, 1.6)])  # it is in the middle of no stretch of the second
 def test_a_higher_branch_of_more_harmonics_is_led_to_those_given(span):
     found = curve(7, span)

@@ -33,6 +33,7 @@ def amplitudes_at(found, omega):
     return there
 
 
+@pytest.mark.slow
 def test_a_closed_branch_is_not_lost_with_more_harmonics():
     """Whose highest peak is stable, and which no level of the forces leads to: that of few harmonics hangs
     together with the others, and leads to that of ten only where it is about to leave it."""
@@ -73,6 +74,7 @@ def test_a_branch_that_hangs_together_with_the_others_with_one_harmonic_alone_is
     assert min(np.abs(one[:4] / (6.022, 29.47, 1.393, 4.921) - 1.0).max() for one in there) < 2e-2
 
 
+@pytest.mark.slow
 def test_a_high_branch_is_found_beside_what_some_of_the_harmonics_make_of_few():
     """Beside its peak with one harmonic there is no solution with eight, but there is one with three, and
     beside that one with eight. A march settles there; by what the contact that never slips remembers its
@@ -128,6 +130,7 @@ def passed_at(system, path, omega):
         yield at_its_frequency(system, guess)
 
 
+@pytest.mark.slow
 def test_two_motions_of_which_the_level_of_many_harmonics_leads_to_one():
     """What seven lead to, and the level of eleven does not: both are motions of the exact contact law."""
     scene, omega = random_scene(5), 1.4389632784841668
@@ -142,6 +145,7 @@ def test_two_motions_of_which_the_level_of_many_harmonics_leads_to_one():
     assert exact(found.system, other)[0] < 0.95 * exact(found.system, z)[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("highest", [17, 19])
 def test_a_solution_that_only_the_level_of_some_harmonics_leads_to_is_found_with_others(highest):
     """At 0.8018 rad/s a march of the contact law, by the method of Runge and Kutta, settles at this from all

@@ -110,6 +110,7 @@ def quick(short, monkeypatch):
     return short
 
 
+@pytest.mark.slow
 def test_swept_values_are_coordinates_whatever_the_contact_is_called(fcm, quick):
     named = quick.read_text().replace("shroud", "left shroud")
     quick.write_text(f'{named}[sweep]\n"contact.left shroud.n_0" = [20.0]\n')

@@ -308,6 +308,7 @@ harmonics = 1
 """
 
 
+@pytest.mark.slow
 def test_a_contact_in_a_plane_of_a_file(fcm, tmp_path):
     (tmp_path / "plane.toml").write_text(IN_PLANE, encoding="utf-8")
     told = fcm("respond", "plane.toml", "-o", "plane.nc", "--csv", "plane.csv", "--json")

@@ -38,6 +38,7 @@ def test_help_imports_no_numerics(args):
     assert not imported_by(*args) & HEAVY
 
 
+@pytest.mark.slow
 def test_what_only_few_commands_need_is_imported_by_them():
     """Of scipy, the optimisers and sparse matrices alone take as long as ten curves."""
     code = "import sys, fcm.cli.respond, fcm.results.output, fcm.response.sweep; print(*sys.modules)"
@@ -46,6 +47,7 @@ def test_what_only_few_commands_need_is_imported_by_them():
     assert "fcm.response.sweep" in imported and not set(imported) & heavy
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(
     dense_solver.__file__.endswith(".py"), reason="interpreted, LAPACK is faster from few unknowns on"
 )
@@ -56,6 +58,7 @@ def test_the_curves_of_the_paper_are_traced_without_lapack():
     assert "fcm.accuracy.embedded_pair" in done.out.split() and "scipy.linalg" not in done.out.split()
 
 
+@pytest.mark.slow
 def test_drawing_and_xarray_are_not_imported_by_respond(scene):
     assert not imported_by("respond", str(scene), "-o", str(scene.with_suffix(".nc"))) & {
         "matplotlib",
@@ -157,12 +160,14 @@ def test_names_that_the_terminal_cannot_show_are_escaped(scene):
     assert "peak ü\\u4f4d" in python(*AS_A_MODULE, "respond", scene, **latin).out
 
 
+@pytest.mark.slow
 def test_a_reader_that_leaves_is_no_error():
     done = shell("fcm respond yang1998-n5 | true; echo ${PIPESTATUS[0]}")
     assert done.out == "0\n"
     assert "Traceback" not in done.err and "Exception" not in done.err
 
 
+@pytest.mark.slow
 def test_a_full_disk_under_standard_output_is_not_completed():
     done = shell("fcm respond yang1998-n5 > /dev/full || echo $?")
     assert done.out == "3\n"

@@ -168,6 +168,7 @@ def test_without_force_there_is_no_motion(fcm, alone):
     assert history["phases"][0]["amplitude"] == {"u": 0.0, "v": 0.0} and history["phases"][0]["settled"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "left"), [("both", True), ("alone", False)])
 @pytest.mark.parametrize("finished", [0, 7])
 def test_an_interruption_keeps_what_is_finished(request, program, tmp_path, kind, left, finished):

@@ -49,6 +49,7 @@ def yang():
     return scene, curve_of("yang1998-n5")
 
 
+@pytest.mark.slow
 def test_the_sample_passes(rows):
     assert not [(name, faults(row)) for name, row in rows.items() if faults(row)]
 

@@ -71,6 +71,7 @@ def dask(program):
     return Cluster(program)
 
 
+@pytest.mark.slow
 def test_a_worker_dies_another_is_refused_and_at_last_the_scheduler_is_lost(program, dask):
     """The whole story of a run that others take turns in, each time to the same bits as in one process."""
     other, doomed, last = dask.worker(OLDER), dask.worker(), dask.worker()
@@ -111,6 +112,7 @@ def test_a_worker_dies_another_is_refused_and_at_last_the_scheduler_is_lost(prog
     assert variables(program.folder / "a.nc") == variables(program.folder / "whole.nc")
 
 
+@pytest.mark.slow
 def test_what_stands_in_the_way_of_a_cluster_is_said_in_one_line(program, monkeypatch):
     address = "tcp://127.0.0.1:9"  # where nobody listens
     at_once = FEW + "import fcm.run.cluster as cluster\ncluster.ANSWER = 0.3\n"
@@ -164,6 +166,7 @@ def test_a_port_that_is_silent_is_left_in_the_time_that_is_said(silent, monkeypa
         pass
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("which", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_the_wait_for_a_port_that_is_silent(program, silent, which):
     """Long before the ten minutes for which it would be waited for here."""
@@ -176,6 +179,7 @@ def test_a_signal_ends_the_wait_for_a_port_that_is_silent(program, silent, which
     assert run.returncode not in (0, 1) and "Traceback" not in run.err and not session(run.pid)
 
 
+@pytest.mark.slow
 def test_a_scheduler_without_a_worker_of_this_fcm(dask, monkeypatch):
     monkeypatch.setattr(cluster, "FIRST", 0.1)
     with (
@@ -207,6 +211,7 @@ def alone(swept):
     return fcm.respond(swept)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [ThreadPoolExecutor, ProcessPoolExecutor])
 def test_any_executor_gives_the_same(swept, alone, kind):
     with kind(2) as executor:

@@ -65,6 +65,7 @@ def made(tmp_path_factory):
     program.close()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "args",
     [
@@ -105,6 +106,7 @@ def test_a_file_that_is_read_is_not_written(made, args):
 SLOW = "import fcm.cli.respond as module\nimport time\nmodule.calculated = lambda *_: time.sleep(60)\n"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("first", "second"),
     [

@@ -59,6 +59,7 @@ def before(kind, ends=0, number=0):
     return BEGUN.format(begins=KINDS[kind][2], ends=ends, number=number)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "ends", "number"),
     [

@@ -47,6 +47,7 @@ def whole(tmp_path_factory):
     return first, time.monotonic() - begin
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", range(KILLS))
 def test_a_killed_sweep_loses_nothing(program, whole, number):
     reference, seconds = whole
@@ -77,6 +78,7 @@ def test_a_killed_sweep_loses_nothing(program, whole, number):
         assert taken or begun
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", SIGNALS)
 def test_a_sweep_killed_just_after_its_file_is_there_leaves_it_whole(program, whole, kind):
     program.folder.joinpath("a.nc").write_bytes(FORMER)

@@ -46,6 +46,7 @@ def test_a_narrow_range_that_can_be_followed_is_not(program):
     assert program("respond", "scene.toml").returncode == 0
 
 
+@pytest.mark.slow
 def test_many_points_are_announced(program):
     stopped = "import fcm.response as response\nresponse.trace = None\n"
     done = program("respond", "one.toml", "--max-step", "2e-5", before=stopped)
@@ -95,6 +96,7 @@ max_step = 0.2
 """
 
 
+@pytest.mark.slow
 def test_what_creeps_away_is_not_stable(program):
     program.write("scene.toml", ADRIFT)
     done = program("respond", "scene.toml", "-o", "a.nc", "--json")
@@ -105,6 +107,7 @@ def test_what_creeps_away_is_not_stable(program):
         assert not np.ma.compressed(data["stable"][:]).any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("at", ["52", "33.3"])
 def test_a_frequency_in_hertz_is_the_one_that_was_given(program, at):
     scene = oscillator("[response]\nfrequency = [1, 2]\n", n_0=1e9)
@@ -154,6 +157,7 @@ def test_the_backend_of_the_environment_is_of_no_interest(program, backend):
     assert done.returncode == 0 and (program.folder / "a.png").stat().st_size > 1000, done.err
 
 
+@pytest.mark.slow
 def test_a_file_without_degrees_of_freedom_is_refused(program):
     with netCDF4.Dataset(program.folder / "a.nc", "w") as data:
         for name, size in (("curve", 1), ("point", 3), ("dof", 0)):
@@ -172,6 +176,7 @@ UNSHARED = ("unshare", "-rm")
 SMALL = shutil.which("unshare") and ended(*UNSHARED, "mount", "-t", "tmpfs", "none", "/mnt").code == 0
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not SMALL, reason="no disk can be made here")
 def test_a_full_disk_is_named(program):
     """A disk of 500 kB: too small for the table; and one that something fills while curves are traced."""
@@ -286,6 +291,7 @@ def test_ctrl_c_at_random_instants_is_never_a_traceback(program):
 WAITS = "import threading\nthreading.Thread(target=threading.main_thread().join).start()"  # for the end
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("thread", ["", WAITS])
 def test_a_signal_after_the_end_changes_nothing(program, number, thread):
@@ -338,6 +344,7 @@ NAUGHTY = "\x1b]0;owned\x07\x1b[31m\u202e"
 # Names that command a terminal, or are no text
 
 
+@pytest.mark.slow
 def test_names_do_not_command_the_terminal(program):
     program.write("scene.toml", ONE.replace('"a sweep"', json.dumps(NAUGHTY + "title")))
     program.write("names.toml", ONE.replace('"u"', json.dumps(NAUGHTY + "u")))

@@ -48,6 +48,7 @@ def interrupted(program, *args, before=SLOW):
 # Whose it is: of what scene, options and program
 
 
+@pytest.mark.slow
 def test_another_scene_takes_nothing_and_loses_nothing(program):
     assert interrupted(program).returncode == 3
     kept = (program.folder / "a.nc.unfinished").read_bytes()
@@ -61,6 +62,7 @@ def test_another_scene_takes_nothing_and_loses_nothing(program):
     assert (program.folder / "a.nc.unfinished.1").read_bytes()[64:] == kept[64:]
 
 
+@pytest.mark.slow
 def test_a_second_run_on_the_same_output_is_refused_and_the_first_named(program):
     first = program.start(
         "respond", "sweep.toml", "-o", "a.nc", "--jobs", "1", before=SLOW.replace("0.2", "1.0")
@@ -144,6 +146,7 @@ def test_a_fingerprint_is_of_what_decides_the_curves():
 # An end while the result is written, or none
 
 
+@pytest.mark.slow
 def test_killed_while_it_writes_nothing_is_computed_again(program):
     deadly = (
         FEW
@@ -161,6 +164,7 @@ output.write_netcdf = lambda *_: os.kill(os.getpid(), 9)
     assert variables(program.folder / "a.nc") == variables(program.folder / "b.nc")
 
 
+@pytest.mark.slow
 def test_ctrl_c_while_it_writes_keeps_all_and_says_so(program):
     stopped = (
         FEW
@@ -190,6 +194,7 @@ def test_a_name_too_long_is_refused_before_anything_is_computed(program, length)
 # It stays until there is something better
 
 
+@pytest.mark.slow
 def test_killed_just_after_the_start_what_was_kept_is_still_there(program):
     assert interrupted(program).returncode == 3
     path = program.folder / "a.nc.unfinished"
@@ -208,6 +213,7 @@ module.sweep = lambda *_: os.kill(os.getpid(), 9)
     assert program.files == ["a.nc", "a.nc.unfinished", "one.toml", "sweep.toml"]
 
 
+@pytest.mark.slow
 def test_a_plain_rerun_moves_aside_what_was_kept_and_says_so(program):
     assert interrupted(program).returncode == 3
     kept = (program.folder / "a.nc.unfinished").read_bytes()
@@ -245,6 +251,7 @@ def test_records_are_appended_and_damage_is_passed_over(tmp_path):
 # Files that are not its own, forged, or cannot be written
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["link", "dangling", "folder", "fifo"])
 def test_what_is_no_file_of_its_own_is_not_written_to(program, kind):
     kept, victim = program.folder / "a.nc.unfinished", program.folder / "victim"
@@ -297,6 +304,7 @@ def test_a_forged_record_does_not_count(tmp_path, monkeypatch, forged):
     assert not (tmp_path / "owned").exists()
 
 
+@pytest.mark.slow
 def test_what_cannot_be_kept_does_not_stop_the_sweep(program):
     full = (
         FEW
@@ -317,6 +325,7 @@ checkpoint._write = full
 # Workers that are left alone; for kills see `test_kill`
 
 
+@pytest.mark.slow
 def test_workers_end_with_their_parent_in_the_middle_of_a_batch(program):
     program.write("endless.py", "def forever(batch, progress):\n    while True:\n        pass\n")
     program.write(
@@ -333,6 +342,7 @@ def test_workers_end_with_their_parent_in_the_middle_of_a_batch(program):
         program.until(lambda run=run: not session(run.pid), 2.0)
 
 
+@pytest.mark.slow
 def test_ctrl_c_while_workers_start_shows_no_traceback(program):
     """To all of the terminal's processes at once, as a terminal does."""
     for delay in (0.0, 0.1):
@@ -370,6 +380,7 @@ def test_a_table_that_is_killed_while_it_is_written_leaves_nothing_for_ever(prog
 # the paragraph after 6
 
 
+@pytest.mark.slow
 def test_of_120_curves_84_percent_are_kept(tmp_path):
     one = replace(fcm.load_scene("yang1998-n5"), max_step=0.5, frequency_range=(1.3, 1.5))
     scene = replace(one, curves=tuple(replace(one, parameters={"n": float(n)}) for n in range(120)))
@@ -390,6 +401,7 @@ def test_there_is_one_bar_and_it_never_goes_back():
     assert len(set(shown)) > 5
 
 
+@pytest.mark.slow
 def test_verbose_shows_where_a_curve_was_lost(program):
     lost = "import fcm.response.groups as groups\n" + (
         "def broken(*_, **more):\n    raise ZeroDivisionError('of zero')\ngroups.traced_curve = broken\n"
@@ -400,6 +412,7 @@ def test_verbose_shows_where_a_curve_was_lost(program):
     assert "Traceback" not in quiet.err and "in broken" in loud.err and "Traceback" in loud.err
 
 
+@pytest.mark.slow
 def test_a_schedule_that_is_interrupted_keeps_the_curves(program):
     """And leaves a former file of both as it was."""
     program.write("one.toml", ONE + "[[schedule]]\nfrequency = 1.2\ncycles = 50\n")
@@ -435,6 +448,7 @@ visit.Visitor._go = go
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
 def test_of_exact_runs_every_finished_point_is_kept(program, number):
     """Of two curves at twelve frequencies, interrupted twice; a former result stays what it was."""
@@ -459,6 +473,7 @@ def test_of_exact_runs_every_finished_point_is_kept(program, number):
     assert variables(program.folder / "a.nc") == variables(program.folder / "whole.nc")
 
 
+@pytest.mark.slow
 def test_points_of_workers_are_kept_as_well(program):
     program.write("sweep.toml", SWEEP.replace("count = 12", "count = 2"))
     assert program(*AT[:-1], "whole.nc", "--jobs", "1").returncode == 0

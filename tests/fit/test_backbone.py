@@ -43,6 +43,7 @@ def backbone(dof):
     return Measured("made", dof, mode.omega[chosen], size[chosen], ones, ones, damping=mode.damping[chosen])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dof", ["", "u"])
 def test_rates_are_those_of_frequency_and_damping(dof):
     parameters = parameters_of(scene(), KEYS, [None] * 3)
@@ -53,6 +54,7 @@ def test_rates_are_those_of_frequency_and_damping(dof):
     assert np.abs(np.column_stack(found) - rates).max() < 1e-3 * np.abs(rates).max()
 
 
+@pytest.mark.slow
 def test_a_backbone_gives_back_the_numbers_of_its_contact():
     parameters = parameters_of(scene(0.3, 0.8, 0.02), KEYS, [None] * 3)
     found = solved(parameters, [backbone("")], HARMONICS, begin=parameters.start)

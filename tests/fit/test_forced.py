@@ -47,6 +47,7 @@ def measured(quantity="displacement", phased=False, level=1.0):
     return Measured("made", "u", omega, np.abs(value), ones, level * ones, phase, quantity=quantity)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("quantity", ["displacement", "velocity", "acceleration"])
 @pytest.mark.parametrize("phased", [False, True])
 def test_a_linear_response_gives_back_its_stiffness_and_damping(quantity, phased):
@@ -102,6 +103,7 @@ def test_a_point_is_compared_with_the_nearest_point_of_all_branches():
         assert nearest - 0.01 < distance <= nearest * (1.0 + 1e-9)
 
 
+@pytest.mark.slow
 def test_a_response_with_folds_gives_back_its_numbers():
     scene, truth = jump(), np.array([0.4, 5.0])
     away = parameters_of(scene, KEYS, [None, None]).at(np.array([0.3, 6.5]))

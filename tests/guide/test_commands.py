@@ -23,6 +23,7 @@ def run(command, folder):
     return shell(command, folder)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", TAUGHT, ids=name_of)
 def test_every_command_runs_and_prints_what_is_shown(page, tmp_path):
     """In a new folder, as a reader has it who has saved the files of the page and the scene of the first."""
@@ -84,6 +85,7 @@ def cell(word, jump):
     return pytest.approx(float(number[1].rstrip(".")), rel=within), number[2]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "page", [page for page in PAGES if any(b.kind == "pycon" for b in blocks(page))], ids=name_of
 )

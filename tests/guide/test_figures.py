@@ -35,6 +35,7 @@ def furthest(points, line):
     return np.max(np.min(np.linalg.norm(points[:, None] - begin - part[..., None] * along, axis=-1), axis=1))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FIGURES)
 def test_a_figure_is_what_its_program_draws(name, tmp_path):
     ours, theirs = lines(write(name, tmp_path)), lines(FOLDER / f"{name}.svg")

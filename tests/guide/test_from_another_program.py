@@ -56,6 +56,7 @@ def files_of(title, folder):
             (folder / name).write_text(text)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("title", re.findall(r"^## (From .*)$", PAGE, re.M))
 def test_from_an_empty_folder_to_a_curve(tmp_path, title):
     scene, _, commands = parts(title)
@@ -74,6 +75,7 @@ def test_from_an_empty_folder_to_a_curve(tmp_path, title):
     assert (tmp_path / "curve.png").stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_back_to_the_mesh(tmp_path):
     scene, _, _ = parts("From CalculiX")
     files_of("From CalculiX", tmp_path)

@@ -26,6 +26,7 @@ def pages_of(site):
             yield page, read(there.with_name("index.html") if page.name == "README.md" else there)
 
 
+@pytest.mark.slow
 def test_every_page_is_in_the_site_and_in_its_navigation(site):
     index = read(site / "index.html")
     for page, html in pages_of(site):

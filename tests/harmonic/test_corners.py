@@ -42,6 +42,7 @@ def test_all_solutions_of_a_blade_are_found(preload):
 
 
 # of each seed a step used to pass what another found
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [4, 14, 37])
 def test_the_same_for_every_step(seed):
     coarse, fine = (Curves(random_scene(seed), up_to(3), max_step=step) for step in (0.2, 0.02))
@@ -79,6 +80,7 @@ def test_two_limits_that_are_met_at_one_frequency():
         assert other == pytest.approx(folds[0], rel=LAST)
 
 
+@pytest.mark.slow
 def test_a_curve_does_not_come_back_on_itself():
     """A stiff contact that closes once more: within 1e-7 of that the curve turns by 40 degrees."""
     (path,) = Curves(random_scene(19), up_to(3), max_step=0.2).paths

@@ -106,6 +106,7 @@ def marched(forces, n_0, omega, cycles=30, steps=1000):
     return 0.5 * (greatest - least).T
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n_0", [0.5, -0.3])
 def test_a_superharmonic_response_is_that_of_a_march(n_0):
     """The contact slips and opens; the second harmonic of the force is near the second mode."""
@@ -162,6 +163,7 @@ def test_derivatives_of_the_peak_by_the_forces_are_those_of_differences():
         assert found.height[0, found.numbers.index(key)] == pytest.approx(expected, rel=2e-3, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_a_tracked_peak_is_that_of_curves():
     from fcm.response.track import track
 

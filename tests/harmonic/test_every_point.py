@@ -5,11 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import pytest
+
 import fcm
 
 SCENE = Path(__file__).parent / "scenes" / "one_point.toml"
 
 
+@pytest.mark.slow
 def test_a_point_is_unstable_where_the_exact_motion_is():
     scene = fcm.load_scene(SCENE)
     exact = fcm.respond(replace(scene, frequency_range=(0.905, 0.925)), method="exact")

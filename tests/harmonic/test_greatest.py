@@ -70,6 +70,7 @@ def test_an_extreme_is_followed_where_it_is_no_more_the_greatest(balance):
     assert min(counts.values()) > 0
 
 
+@pytest.mark.slow
 def test_no_extreme_of_a_nonlinear_mode_is_greater_than_its_amplitude():
     parts = np.random.default_rng(5).normal(size=(2, 2000, len(HARMONICS), 1))
     X = parts[0] + 1j * parts[1]

@@ -88,6 +88,7 @@ def test_where_a_contact_pushes_another_aside(count, frequency, digit):
     assert curves.peak(1)[1] == pytest.approx(frequency, abs=LAST * digit)
 
 
+@pytest.mark.slow
 def test_its_peak_is_that_of_the_marched_motion():
     """Two modes on springs and a stop, integrated by scipy: both peaks by parabolas through three motions."""
     frequency = MARCHED[0] + np.array([-1e-4, 0.0, 1e-4])

@@ -61,6 +61,7 @@ def amplitudes(scene, omega, harmonics):
     return system, z, reported_at(system, z[None], np.zeros((1, z.size))).amplitude[0]
 
 
+@pytest.mark.slow
 def test_a_mass_driven_in_a_circle():
     """One harmonic is exact: the radial part of the force is k r^2 / a, the other k r sqrt(1 - (r / a)^2)."""
     scene = CIRCLE.scene((0.6, 1.8))
@@ -90,6 +91,7 @@ def _circle(w, r):
     return low
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("oscillators", "omega", "sequence"),
     [
@@ -111,6 +113,7 @@ def test_motions_against_a_march(oscillators, omega, sequence):
     assert response.curves[0].regime[point, 0] == sequence
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("oscillators", "omega"), [(CIRCLE, 0.9), (OBLIQUE, 0.9), (ELLIPSE, 0.9), (ELLIPSE, 1.25), (OPENS, 1.25)]
 )
@@ -151,6 +154,7 @@ def test_multipliers_do_not_depend_on_the_steps():
     assert found[0] == pytest.approx(found[1], abs=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("harmonics", [1, 3])
 @pytest.mark.parametrize("name", ["yang1998-n5", "two-contacts"])
 def test_a_second_direction_that_never_moves_is_a_line(name, harmonics):
@@ -214,6 +218,7 @@ def test_the_exact_motion_is_refused_with_the_reason():
         trace_exact(ELLIPSE.scene((0.9, 1.1)))
 
 
+@pytest.mark.slow
 def test_what_the_file_says_of_a_contact_in_a_plane():
     response = fcm.respond(ELLIPSE.scene((0.95, 1.05)), "closed-form", harmonics=3)
     assert response.direction.values.tolist() == ["x", "y", "normal"]
@@ -240,6 +245,7 @@ def test_what_the_file_says_of_a_contact_in_a_plane():
     assert response.friction_y.isel(**point).item() == pytest.approx(abs(f_y[1]), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_the_bundled_damper_and_what_one_direction_misses():
     """Each direction alone leaves the other without friction; its own peak is too high as well."""
     scene = fcm.load_scene("platform-damper")
@@ -257,6 +263,7 @@ def test_the_bundled_damper_and_what_one_direction_misses():
     assert 1.05 < (y / plane)[1] < 1.2
 
 
+@pytest.mark.slow
 def test_levels_modes_sensitivities_and_tracks_of_a_still_direction_are_those_of_a_line():
     data = single("yang1998-n5", response={"frequency": [1.1, 1.4], "max_step": 0.1})
     line, plane = (scene_from_dict(one) for one in (data, with_still(data)))

@@ -14,6 +14,7 @@ FINEST = 0.005
 SCENES = {"n_0 = 5": yang(5.0), "n_0 = -5": yang(-5.0), "gap5": gap5()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [1, 2, 3, 5])
 @pytest.mark.parametrize("name", SCENES)
 def test_the_same_for_every_step(name, count):

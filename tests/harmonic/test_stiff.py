@@ -59,6 +59,7 @@ def test_a_displacement_far_below_the_other_keeps_its_digits(K, harmonics):
     assert curve.peaks["v"].amplitude == pytest.approx(4.400046 * 10 / K**2 * 1.0, rel=1e-4, abs=0.0)
 
 
+@pytest.mark.slow
 def test_what_no_digits_are_left_of_says_so():
     """A force that no contact's direction has, but with another from the side: v is known to its rounding."""
     modal = Modal(("u", "v", "w"), np.array([0.7, 1.3, 2.0]), np.array([1.0, 10.0, 3.0]), np.full(3, 0.01),

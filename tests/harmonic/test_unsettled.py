@@ -1,6 +1,7 @@
 """Peaks on stretches where harmonics lead on that others do not: what these make of them is no error."""
 
 import numpy as np
+import pytest
 
 from fcm.accuracy.refinement import given
 from fcm.harmonic.system import System
@@ -10,6 +11,7 @@ from fcm.scene import scene_from_dict
 from ..response.random_peaks import height
 
 
+@pytest.mark.slow
 def test_a_peak_that_further_harmonics_lead_to_and_more_do_not_has_no_error_that_is_far_too_small():
     """Two impacts: the exact peak is lower by 3 %; a tenth of that was told."""
     one = scene_from_dict(

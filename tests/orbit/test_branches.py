@@ -84,6 +84,7 @@ def test_a_search_for_further_branches_that_is_given_up_is_told(monkeypatch):
     assert curve.frequency[0] == pytest.approx(scene.frequency_range[0])
 
 
+@pytest.mark.slow
 def test_no_branches_are_looked_for_without_end_where_those_that_are_followed_break_off():
     """Contacts that rattle have countless unstable motions; here every branch ends where it begins."""
 
@@ -113,6 +114,7 @@ def test_a_motion_between_points_of_a_path_is_on_it_and_on_no_other():
         assert not passes(path, np.append(1.01 * z[:-1], z[-1]), problem)
 
 
+@pytest.mark.slow
 def test_a_closed_branch_is_found_that_the_balance_has_at_the_end_of_the_range():
     """From 1.0035 to 1.0845 rad/s. At 1.05324 a march of the contact law, by the method of Runge and Kutta,
     comes to (0.4170, 0.1473) from 6 of 14 random states; the balance has the branch at 0.977, too.
@@ -273,6 +275,7 @@ def test_a_motion_is_reached_from_one_with_more_damping():
     assert more_damped(easier) is None  # it has enough
 
 
+@pytest.mark.slow
 def test_of_an_end_without_a_start_it_is_said_what_the_motion_does_there():
     """Simulated for thousands of periods it ranges as it did; the other rests on a friction of its own."""
     scene = lightly_damped(13)

@@ -146,6 +146,7 @@ def marched(n_0, omega, cycles, steps=600):
     return np.array(found)
 
 
+@pytest.mark.slow
 def test_they_are_found_where_they_are_far_from_the_motions_that_they_leave():
     """A contact without preload: beside the flip at which they begin they are twice as great already."""
     scene = fcm.load_scene("yang1998-n5")

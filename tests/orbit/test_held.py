@@ -166,6 +166,7 @@ def spied(function, calls):
     return spy
 
 
+@pytest.mark.slow
 def test_a_contact_that_does_not_keep_its_state_is_computed_after_all(scene, responses, monkeypatch):
     """Foreseen wrongly: the first contact, which slips, and the last, which is open, as sticking."""
     w = held.resting(scene)

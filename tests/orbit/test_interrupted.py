@@ -171,6 +171,7 @@ def test_a_curve_with_motions_beside_it_is_kept():
     assert kept.orbits.stuck[0].states == ("E",)
 
 
+@pytest.mark.slow
 def test_what_lies_between_points_is_not_sought_when_there_is_no_time(monkeypatch):
     """To find where stability is lost takes longer than the points themselves."""
     scene = between(fcm.load_scene(SCENES / "two_periods.toml"), 2.01, 2.05)

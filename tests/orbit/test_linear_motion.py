@@ -87,6 +87,7 @@ def _wedged(scene, residual):
     return State(q, np.zeros(2), np.array([wedge.k_u * (along @ q) - residual, 0.0]))
 
 
+@pytest.mark.slow
 def test_a_motion_with_one_contact_wedged_and_another_that_slips_is_told_with_its_extent():
     """Marched from much of that friction the first sticks and the other slips; from little it comes loose."""
     scene = fcm.load_scene(WEDGE.parent / "wedge_beside_slip.toml")

@@ -53,6 +53,7 @@ def test_what_a_process_that_died_had_to_read_is_damaged():
         dies("a.nc")
 
 
+@pytest.mark.slow
 def test_a_file_that_is_read_without_end_is_damaged(monkeypatch):
     """As the library does that follows a damaged file from place to place for ever."""
     monkeypatch.setattr("fcm.plot.apart.ALLOWED", 1.0)

@@ -43,6 +43,7 @@ def test_a_number_that_is_no_result_is_said(fcm, whole, kind, name, value):
     refused(fcm("plot", kind, "a.nc"), f"{name} holds {abs(value):.3g}")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_file_that_was_cut_off_is_refused(fcm, whole, kind):
     rng = random.Random(kind)
@@ -51,6 +52,7 @@ def test_a_file_that_was_cut_off_is_refused(fcm, whole, kind):
         refused(fcm("plot", kind, "a.nc"), "a.nc: ")
 
 
+@pytest.mark.slow
 def test_a_pipe_is_said_to_be_one(fcm):
     os.mkfifo("pipe.nc")
     for kind in KINDS:
@@ -81,6 +83,7 @@ def test_a_defect_in_drawing_is_not_taken_for_damage(fcm, whole, monkeypatch):
     assert done.code == 1 and "defect: ValueError: of ours" in done.err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("value", [9e99, -9e99, 1e-300, 5e-324, 0.0, np.nan])
 @pytest.mark.parametrize("kind", ["response", "peak"])
 def test_numbers_far_apart_are_drawn(fcm, whole, kind, value):

@@ -117,6 +117,7 @@ def test_a_plane_without_anything_to_see_is_drawn():
         assert low < high and low - 1e-9 <= 1.0 <= high + 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_nothing_overlaps(count):
     planes = [Plane(phi) for phi in (0.0, 0.5, math.pi)][:count]

@@ -55,6 +55,7 @@ def test_every_state_is_a_line_of_its_own_and_every_transition_marked():
         assert below.get_xlim() == (0.0, 360.0)
 
 
+@pytest.mark.slow
 def test_angles_of_hundreds_of_transitions_are_left_out():
     """There is no room for them, and to look for it would take minutes."""
     figure = drawn([fcm.periodic_loop([0, 1, *[0] * 48, 1], [0, 1], mu=0.4, k_u=1, k_v=1, n_0=1)])
@@ -88,6 +89,7 @@ def test_the_looks_are_told_apart_without_colour():
     assert grey[0] < 0.05
 
 
+@pytest.mark.slow
 def test_axes_without_dimension_and_with_units():
     (above, below), *_ = panels(drawn(FIGURE_8))
     assert (above.get_xlabel(), above.get_ylabel()) == (
@@ -110,6 +112,7 @@ def test_angles_from_the_greatest_displacement():
     assert shown == pytest.approx(sorted((np.degrees(FIGURE_8[1].angles) - 90.0) % 360.0), abs=0.051)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "parameters",
     [
@@ -133,6 +136,7 @@ def test_texts_touch_neither_each_other_nor_leave_the_picture(parameters):
     assert all(box.x0 >= 0.0 and box.x1 <= figure.bbox.x1 for _, box in boxes)
 
 
+@pytest.mark.slow
 def test_angles_do_not_touch_the_ticks_of_the_frame():
     figure = drawn([fcm.hysteresis_loop(0.48, 0.4, np.radians(80.5)), *FIGURE_8])
     figure.draw_without_rendering()

@@ -191,6 +191,7 @@ def test_a_curve_of_one_point_is_drawn():
     assert [[FREQUENCY[0], 1.0]] in shown
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", [".png", ".svg", ".pdf"])
 def test_the_same_figure_gives_the_same_bytes(tmp_path, ending):
     for name in "ab":

@@ -141,6 +141,7 @@ def joint(tmp_path_factory):
     return path
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("with_places", [False, True])
 def test_contacts_have_a_page_with_all_that_one_bears_under_the_mouse(browser, joint, with_places):
     at = 0.99 * greatest(joint)[0]

@@ -22,6 +22,7 @@ def file(tmp_path_factory):
     return path, dataset
 
 
+@pytest.mark.slow
 def test_states_are_those_of_the_loops(file):
     path, dataset = file
     read = read_interface(path)

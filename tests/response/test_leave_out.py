@@ -81,6 +81,7 @@ def test_the_error_falls_with_the_fourth_power_of_the_frequency():
     assert np.log2(error[1] / error[0]) == pytest.approx(4.0, abs=0.3)
 
 
+@pytest.mark.slow
 def test_a_wrong_estimate_is_found_and_everything_kept(monkeypatch):
     scene = structure(120, 2, 20, 100.0)
     reference = trace(scene, tolerance=None)

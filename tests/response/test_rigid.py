@@ -122,6 +122,7 @@ def test_a_body_that_no_contact_holds_at_rest_is_said():
     assert not never.complete and "rigid-body modes are at rest only" in never.reason
 
 
+@pytest.mark.slow
 def test_a_body_that_stops_at_a_resonance_that_nothing_damps_is_told_what_does():
     """The fifth harmonic meets that of the body on its seat, the root of 10; damped as said it does not."""
     body = {"dofs": ["x"], "mass": [1.0], "frequency": [0.0], "damping": [0.01], "shapes": [[1.0]]}

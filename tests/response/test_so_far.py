@@ -138,6 +138,7 @@ def whole():
     return calls, told
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.2, 0.75, 0.95])
 def test_many_contacts_stopped_at_any_time_leave_the_best_curve_that_there_was(whole, share):
     """What the whole run has at that time is written, with its error; before the first curve nothing."""

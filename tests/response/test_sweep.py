@@ -59,6 +59,7 @@ def test_groups_give_the_curves_of_the_whole(scene, whole, small_groups):
         assert one.folds == pytest.approx(two.folds, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_two_cores_give_what_one_gives(scene, small_groups):
     shown = []
     response = trace(scene, "closed-form", jobs=2, progress=lambda share, _: shown.append(share))

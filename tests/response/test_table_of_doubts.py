@@ -155,6 +155,7 @@ def test_what_misses_the_accuracy_says_so(fcm, tmp_path, monkeypatch, analysis):
         assert all(curve["short_of_accuracy"] for curve in found["curves"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("analysis", [one for one in MISSED if one != "mode"])
 def test_where_stability_is_not_told_no_peak_is_without_that_word(fcm, tmp_path, monkeypatch, analysis):
     for module in (trust, level):

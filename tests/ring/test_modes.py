@@ -100,6 +100,7 @@ def test_cosine_and_sine_pairs_are_modes_of_the_whole_ring(sectors):
     scene_from_dict(with_modal(rings.sector(sectors, 1), given | {"shapes": rows, "pairs": False}))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rows", [40, 700])  # all modes at once; by Lanczos
 def test_flexibility_of_modes_left_out_keeps_the_receptances(rows):
     """A chain in a ring of chains, coupled askew, beside direct solutions."""

@@ -96,6 +96,7 @@ def test_an_accuracy_takes_the_harmonics_that_the_ring_takes():
     assert one.peak_amplitude.values == pytest.approx(whole.peak_amplitude.values[:, :3], rel=1e-8)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("contacts", [BOTH, (rings.IN_PLANE, rings.DAMPER)], ids=["lines", "plane"])
 @pytest.mark.parametrize(("sectors", "order"), [(5, 2), (6, -1), (6, 2), (6, 0)])
 def test_multipliers_are_those_of_the_ring(sectors, order, contacts):

@@ -81,6 +81,7 @@ def load_bytes(content: bytes) -> None:
         assert isinstance(load_scene(path), Scene)
 
 
+@pytest.mark.slow
 @settings(max_examples=int(200 * SCALE), deadline=None)
 @given(st.binary(max_size=300))
 def test_any_bytes(content):

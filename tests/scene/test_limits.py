@@ -109,6 +109,7 @@ def test_a_scene_too_large(tmp_path):
         load_scene(path)
 
 
+@pytest.mark.slow
 def test_files_larger_than_the_limit_when_unpacked(tmp_path):
     zeros = MODES | {"shapes": np.zeros((2, 500_000))}
     np.savez_compressed(tmp_path / "m.npz", **zeros)

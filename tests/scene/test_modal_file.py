@@ -222,6 +222,7 @@ def test_a_large_file_is_read_in_a_moment(tmp_path):
     assert scene.modal.shapes.shape == (20, 20_000)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("save, name", WRITERS)
 def test_a_modal_mass_under_another_name_is_used_and_said(tmp_path, save, name):
     """Shapes scaled to 1 and read without their masses gave 845 Hz for 590 without a word."""

@@ -11,6 +11,7 @@ from fcm.stability.floquet import multipliers_of
 from ..harmonic.strips import strip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("harmonics", "looks"), [((1,), 0.4), ((1, 2, 3), 0.5)])
 def test_few_points_tell_the_stability_of_all(harmonics, looks):
     """Beside the multipliers of every point, as far as these tell."""

@@ -25,6 +25,7 @@ def four(preload, **structure):
     return scene_from_dict(data, "four", FOLDER)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("preload", [20.0, 24.0])
 def test_curves_are_complete_and_their_peaks_those_of_the_exact_motion(preload):
     scene = four(preload)

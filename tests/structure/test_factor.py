@@ -122,6 +122,7 @@ def test_rows_that_nothing_couples_are_ordered(coupled):
     assert solve(loads) == pytest.approx(1.0 / np.arange(1.0, 41.0), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_nothing_is_dense_in_the_number_of_rows(tmp_path):
     """A square of thirty thousand numbers would be 7 GB."""
     rows = 30_000

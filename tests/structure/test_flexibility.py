@@ -210,6 +210,7 @@ def peak(one):
     return np.array([data[name].sel(dof="60w").item() for name in ("peak_amplitude", "peak_frequency")])
 
 
+@pytest.mark.slow
 def test_few_modes_with_the_flexibility_of_the_others_are_as_good_as_all(tmp_path):
     """And without it they are not: the contact's own flexibility is missing."""
     whole = peak(scene(tmp_path, modes=120))

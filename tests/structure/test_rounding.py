@@ -18,6 +18,7 @@ CANTILEVER, FREE = 1.8751040687**2, 4.7300407449**2  # (beta L)^2, published
 MASSES, AT, OMEGA = 30, 20, 0.25
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("elements, off", [(2000, 1e-7), (4000, 1e-5)])
 def test_a_fine_mesh_has_no_other_rigid_body_modes(elements, off):
     """Their stiffness is summed of terms that are up to 1e15 times as great."""

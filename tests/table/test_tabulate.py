@@ -90,6 +90,7 @@ def test_interruption_leaves_the_old_file_and_says_what_remains(fcm, tmp_path, m
     assert len(list(tmp_path.iterdir())) == 1
 
 
+@pytest.mark.slow
 def test_study_compares_layouts(fcm, tmp_path, monkeypatch):
     from fcm.table import study
 

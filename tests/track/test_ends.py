@@ -129,6 +129,7 @@ def test_a_peak_ends_where_another_extreme_within_the_cycle_overtakes_it(scene):
         assert max(counts) == min(counts) + 1
 
 
+@pytest.mark.slow
 def test_a_peak_at_which_no_curve_begins_is_told():
     """Each peak of ordinary runs at both ends of the level is on a curve, or is said to be on none."""
     other, span = load_scene(Path(__file__).parents[1] / "harmonic" / "scenes" / "sub.toml"), (0.7, 1.3)

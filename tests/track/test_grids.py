@@ -71,6 +71,7 @@ def test_folds(scene, preload, key, span):
         assert found == pytest.approx(frequencies(there, key, value, Mark.FOLD), rel=EXACT)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("what", "span"), [("slip", (20.0, 100.0)), ("separation", (2.0, 10.0))])
 def test_onsets(scene, what, span):
     """They are corners of the ordinary curve, and all of those at which the contact just slips or opens."""
@@ -84,6 +85,7 @@ def test_onsets(scene, what, span):
         assert found == pytest.approx(np.sort(z[np.abs(off) < 1e-9, -1]), rel=EXACT)
 
 
+@pytest.mark.slow
 def test_an_optimum_short_of_the_accuracy_says_so(scene, monkeypatch):
     aimed = replace(scene, optimum=Optimum((PRELOAD,), ((2.0, 20.0),), (Aim("u"),)))
     enough = optimise(aimed, accuracy=1e-3)
@@ -94,6 +96,7 @@ def test_an_optimum_short_of_the_accuracy_says_so(scene, monkeypatch):
     assert "with 1 harmonic the error of the least peak" in short.curves[0].short_of
 
 
+@pytest.mark.slow
 def test_an_optimum_short_of_the_accuracy_says_what_fewer_harmonics_found(scene, monkeypatch):
     aimed = replace(scene, optimum=Optimum((PRELOAD,), ((2.0, 20.0),), (Aim("u"),)))
     (fewer,) = optimise(aimed, harmonics=1).tracking.optima

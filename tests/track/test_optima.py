@@ -47,6 +47,7 @@ def sought(monkeypatch):
     return interrupted_after
 
 
+@pytest.mark.slow
 def test_an_interrupted_search_goes_on_from_the_optima_that_it_has_found(fcm, tmp_path, scene, sought):
     assert fcm(*COMMAND, "whole.nc").code == 0
     begun = sought(1)
@@ -62,6 +63,7 @@ def test_an_interrupted_search_goes_on_from_the_optima_that_it_has_found(fcm, tm
             np.testing.assert_array_equal(a[name][...], whole[name][...])
 
 
+@pytest.mark.slow
 def test_optima_are_kept_until_the_response_with_them_is_written(fcm, scene, sought, monkeypatch):
     monkeypatch.setattr("fcm.response.optimum.trace", Mock(side_effect=KeyboardInterrupt))
     done = fcm(*COMMAND, "a.nc")

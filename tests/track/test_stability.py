@@ -31,6 +31,7 @@ def narrow(tmp_path):
     return made
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("span", "harmonics", "count"), [((1.08, 1.13), 3, 2), ((2.2, 2.3), 1, 1)])
 def test_a_tracked_peak_is_stable_where_the_exact_motion_stays_there(narrow, span, harmonics, count):
     scene = load_scene(narrow(*span))
@@ -47,6 +48,7 @@ def test_a_tracked_peak_is_stable_where_the_exact_motion_stays_there(narrow, spa
     assert min(one.stable[0] for one in peaks) == 0.0
 
 
+@pytest.mark.slow
 def test_tracked_peaks_that_no_motion_stays_at_are_told_written_and_drawn(fcm, narrow):
     command = ("respond", narrow(2.2, 2.3), "--track", "peaks", "--over", "level", "--from", "0.98")
     done = fcm(*command, "--to", "1.02", "--harmonics", "1", "-o", "a.nc")
@@ -60,6 +62,7 @@ def test_tracked_peaks_that_no_motion_stays_at_are_told_written_and_drawn(fcm, n
     assert "dashed: no motion stays there" in Path("a.svg").read_text("utf-8")
 
 
+@pytest.mark.slow
 def test_the_least_peak_has_a_mark_where_no_motion_stays(fcm, narrow):
     scene = narrow(2.2, 2.3, OPTIMUM)
     done = fcm("respond", scene, "--harmonics", "1", "-o", "a.nc")
@@ -86,6 +89,7 @@ def test_the_least_peak_has_a_mark_where_no_motion_stays(fcm, narrow):
     assert exact.orbits.cycle_greatest[:, 0].max() < 0.5 * found["value"]
 
 
+@pytest.mark.slow
 def test_an_onset_is_unstable_between_the_folds_that_pass_it():
     """On the branch between the folds of the response, which meet the onset at turns of their own curve."""
     scene, span = load_scene("yang1998-n5"), (6.0, 8.0)

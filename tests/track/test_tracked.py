@@ -58,6 +58,7 @@ def frequencies_at(curves, value):
     return np.unique(np.concatenate(found).round(12))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("value", [-20.0, -10.0, 5.0, 7.5])
 def test_tracked_folds_are_those_of_ordinary_runs(scene, folds, value):
     _, paths = run(scene, value)
@@ -138,6 +139,7 @@ def test_interrupted_the_curves_that_are_finished_are_kept(scene, folds, tmp_pat
         stop_at(-1.0)
 
 
+@pytest.mark.slow
 def test_an_interrupted_run_goes_on_to_the_same_curves(scene, folds, tmp_path):
     shares, place = [], tmp_path / "folds.nc.unfinished"
 
@@ -170,6 +172,7 @@ def test_the_window_in_the_level_is_the_one_in_the_preload(scene, folds):
     assert turns == pytest.approx(np.sort([value for value in expected if value > 0.0]), abs=2e-6)
 
 
+@pytest.mark.slow
 def test_the_error_of_folds_is_what_twelve_harmonics_change(scene, folds):
     """At an end, and at a cusp, where it is of the number, too."""
     curve = folds.curves[0]
@@ -193,11 +196,13 @@ def test_the_error_of_peaks_is_what_twelve_harmonics_change(scene):
         assert one.relative == pytest.approx(abs(exact / curve.amplitude[one.point, 0] - 1.0), rel=0.1)
 
 
+@pytest.mark.slow
 def test_where_nothing_slips_or_opens_nothing_is_left_out(scene):
     curves = track(scene, "slip", PRELOAD, (60.0, 100.0), harmonics=1).tracking.curves
     assert max(one.relative for curve in curves for one in curve.errors) < 1e-8
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("harmonics", "to"), [((1,), 100.0), ((1, 2), 10.0)])
 def test_tracked_peaks_are_those_of_ordinary_runs(scene, harmonics, to):
     tracking = track(scene, "peaks", PRELOAD, (-20.0, to), harmonics=harmonics).tracking
@@ -211,6 +216,7 @@ def test_tracked_peaks_are_those_of_ordinary_runs(scene, harmonics, to):
             assert heights.max() == pytest.approx(amplitude[column], rel=1e-8)
 
 
+@pytest.mark.slow
 def test_the_onset_of_slip_is_where_stiff_contacts_reach_the_limit(scene):
     """Above the greatest preload of the curve nothing slips: the linear response of the stuck contact.
 
@@ -235,6 +241,7 @@ def test_the_onset_of_slip_is_where_stiff_contacts_reach_the_limit(scene):
     assert highest == pytest.approx(-best.fun, rel=1e-8)
 
 
+@pytest.mark.slow
 def test_separation_that_comes_and_goes_between_the_starts_is_met_by_the_peak(scene):
     tracking = track(scene, "separation", PRELOAD, (-20.0, 100.0), harmonics=1).tracking
     (curve,) = tracking.curves
@@ -380,6 +387,7 @@ def test_where_fewer_harmonics_lead_to_nothing_the_response_is_looked_at(between
     assert found.checked == checked
 
 
+@pytest.mark.slow
 def test_two_numbers_are_chosen_together(scene):
     """The best friction for the best preload: no response beside it has a lower peak."""
     keys = (PRELOAD, "contact.shroud.mu")
@@ -398,6 +406,7 @@ def test_two_numbers_are_chosen_together(scene):
             assert peak(beside) > found.value
 
 
+@pytest.mark.slow
 def test_no_plateau_of_a_stuck_contact_is_taken_for_the_least_of_two_numbers():
     """With much preload the contact sticks, and no small change of that changes anything."""
     scene, keys = two_resonances(), ("contact.c.n_0", "contact.c.k_u")
