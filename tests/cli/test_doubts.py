@@ -36,11 +36,9 @@ def test_where_nothing_that_was_found_is_stable_the_run_says_so(fcm, tmp_path):
 def test_the_exact_motion_is_not_offered_for_contacts_in_a_plane():
     curves = [{"parameters": {}, "may_not_be_unique": 3}]
     on_line = {"curves": curves, "method": "table", "notes": []}
-    assert maybe_not_unique(on_line).endswith("--method exact --at F tells how far they range")
+    assert maybe_not_unique(on_line).endswith("--method exact --at F tells how far the motions range")
     in_plane = on_line | {"directions": {"joint": {"x": "1x", "y": "1y", "normal": "1z"}}}
-    assert maybe_not_unique(in_plane).endswith(
-        "its residual friction may decide which of many motions that is"
-    )
+    assert maybe_not_unique(in_plane).endswith("keeps a friction force that its past decides")
 
 
 def test_of_many_stretches_without_a_stable_motion_the_widest_are_named():
