@@ -1,6 +1,7 @@
 """What goes back to other programs: displacements of all rows, contact forces, against independent sums."""
 
 import csv
+import json
 import shutil
 
 import h5py
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 import pyuff
 import scipy.linalg
+from tests.oscillator import oscillator
 from tests.program import called, ended
 from tests.scene.test_matrix_formats import BEAM
 
@@ -275,11 +277,32 @@ def test_what_cannot_be_exported_is_said(said, tmp_path, monkeypatch):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_ring_and_an_optimum_are_refused(tmp_path):
+def test_a_ring_is_refused(tmp_path):
     done = called("respond", "bladed-disk", "--export", tmp_path / "a.h5")
     assert done.code == 2 and "a ring's sector moves in modes that travel" in done.err
-    done = called("respond", "blade", "--export", tmp_path / "a.h5")
-    assert done.code == 2 and "write what [optimum] found into it" in done.err
+
+
+def test_motions_at_an_optimum_are_those_of_the_scene_with_its_numbers(tmp_path):
+    span = "[response]\nfrequency = [0.8, 1.6]\nharmonics = 1\n"
+    aim = '[optimum]\nvary = ["contact.shroud.n_0"]\nbounds = [[2.0, 20.0]]\nminimise = "peak.u"\n'
+    (tmp_path / "best.toml").write_text(oscillator(span, damping=0.05) + aim)
+    options = ("--contact-forces", tmp_path / "best.csv", "--export", tmp_path / "best.h5", "--json")
+    done = called("respond", tmp_path / "best.toml", *options)
+    assert done.code == 0, done.err
+    (found,) = json.loads(done.out)["optimum"]
+    preload = found["values"]["contact.shroud.n_0"]
+    assert abs(preload - 5.0) > 1.0
+    (tmp_path / "there.toml").write_text(oscillator(span, 0.05, n_0=preload))
+    options = ("--contact-forces", tmp_path / "there.csv", "--export", tmp_path / "there.h5")
+    assert called("respond", tmp_path / "there.toml", *options).code == 0
+    tables = (tmp_path / f"{name}.csv" for name in ("best", "there"))
+    of_best, of_there = (list(csv.DictReader(one.read_text().splitlines())) for one in tables)
+    assert len(of_best) == len(of_there) > 4
+    for key in ("real", "imag", "frequency [rad/s]"):
+        values = [[float(row[key]) for row in rows] for rows in (of_best, of_there)]
+        assert values[0] == pytest.approx(values[1], rel=1e-6, abs=1e-6)
+    with h5py.File(tmp_path / "best.h5") as one, h5py.File(tmp_path / "there.h5") as other:
+        assert one["displacement"][:] == pytest.approx(other["displacement"][:], rel=1e-6)
 
 
 def test_the_mesh_of_another_structure_is_refused(tmp_path):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -104,6 +104,12 @@ class Exporting:
         from fcm.export import motions_of
         from fcm.results.motions import Motions
 
+        if response.tracking is not None and response.tracking.optima:
+            from fcm.response.optimum import scenes_at
+
+            optima = response.tracking.optima
+            scene = replace(scene, curves=scenes_at(scene, optima))
+            self.scene = replace(self.scene, curves=scenes_at(self.scene, optima))
         self.motions = motions_of(response, scene, self.asked.motion_at)
         forces = self.asked.contact_forces is not None
         response.motions = Motions(tuple(self.motions), forces, self.asked.modal_amplitudes)
@@ -144,11 +150,10 @@ def exporting(messages: Messages, scene: Scene, asked: Asked) -> Exporting | Non
         return None
     from fcm.export.rows import ExportError, Rows, check_library, check_mesh, check_nodes
 
-    for table, there in (("[fit]", scene.fit), ("[optimum]", scene.optimum)):
-        if there is not None:
-            raise ExportError(
-                f"{scene.name}: motions are exported of a scene as it is; write what {table} found into it"
-            )
+    if scene.fit is not None:
+        raise ExportError(
+            f"{scene.name}: motions are exported of a scene as it is; write what [fit] found into it"
+        )
     if not scene.has_range:
         raise ExportError(f"{scene.name}: motions are exported of curves, and it has no [response]")
     from fcm.units import UNIT, in_unit
