@@ -33,6 +33,7 @@ def test_make_runs_the_commands_that_are_shown():
     assert len(COMMANDS) == 6
 
 
+@pytest.mark.slow
 def test_the_commands_run(tmp_path):
     for name in ("blade", "blade-scatter"):
         text = (SCENES / f"{name}.toml").read_text(encoding="utf-8")

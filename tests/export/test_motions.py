@@ -203,6 +203,7 @@ def test_the_universal_file_has_shapes_and_spectra(made):
     assert np.abs(one["data"] - value).max() < 1e-11 * size.max()
 
 
+@pytest.mark.slow
 def test_forces_in_a_plane_are_those_of_the_motion():
     scene = fcm.load_scene("platform-damper").in_use()
     response = trace(scene, harmonics=3)
@@ -222,6 +223,7 @@ def test_forces_in_a_plane_are_those_of_the_motion():
             assert np.abs(found - one).max() < 1e-9 * np.abs(exact[2]).max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["two-contacts", "blade", "bladed-disk"])
 def test_the_fundamental_of_a_peak_is_that_of_its_curve(name):
     """Contacts and modes that a run leaves out are there; a ring's sector has its contact forces."""

@@ -19,6 +19,7 @@ CASES = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "omega"), CASES)
 def test_against_solve_ivp_with_events(name, omega):
     motion = simulate(SCENES[name], omega, 20)

@@ -65,6 +65,7 @@ def shown(browser, path):
     return lambda script, *args: browser.execute_script(script, *args)
 
 
+@pytest.mark.slow
 def test_the_number_of_the_file_is_under_the_mouse(browser, file):
     run = shown(browser, page(file, "response", "--dof", "v"))
     with netCDF4.Dataset(file) as data:

@@ -161,6 +161,7 @@ max_step = 0.2
 GROUPS = "import fcm.response.sweep as sweep\nsweep.BATCH = 5"
 
 
+@pytest.mark.slow
 def test_ctrl_c_and_resume_give_the_same_file(program, tmp_path):
     program.write("scene.toml", SCENE)
     command = ["respond", "scene.toml", "--jobs", "2", "-o"]
@@ -209,6 +210,7 @@ print([(curve.complete, curve.reason[:31]) for curve in response.curves])
 """
 
 
+@pytest.mark.slow
 def test_a_process_that_dies_loses_no_other_curve(tmp_path):
     """Nor does a script need a guard against being imported by the processes: they do not."""
     (tmp_path / "deadly.py").write_text(DEADLY)

@@ -76,6 +76,7 @@ WRITERS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("write, ending", WRITERS)
 def test_every_kind_of_file(tmp_path, write, ending):
     write(tmp_path / f"K{ending}", K)
@@ -114,6 +115,7 @@ def test_frequencies_in_hertz():
     assert scene.frequency_range == pytest.approx((0.2 * pi, 10 * pi))
 
 
+@pytest.mark.slow
 def test_one_matrix_of_several_in_a_file(tmp_path):
     np.savez(tmp_path / "model.npz", K=K, M=M)
     scipy.io.savemat(tmp_path / "model.mat", {"K": K, "M": M})
@@ -124,6 +126,7 @@ def test_one_matrix_of_several_in_a_file(tmp_path):
         assert "structure.mass" in refused(tmp_path, mass=f"{name}:Q")
 
 
+@pytest.mark.slow
 def test_a_file_without_the_matrix_says_what_it_holds(tmp_path):
     scipy.io.savemat(tmp_path / "model.mat", {"text": "K"})
     scipy.io.savemat(tmp_path / "both.mat", {"K": K, "M": M})
@@ -138,6 +141,7 @@ def test_a_pattern_has_no_values(tmp_path):
     assert "it is a pattern: places of entries without their values" in said
 
 
+@pytest.mark.slow
 def test_op4(tmp_path):
     op4 = pytest.importorskip("pyyeti.nastran.op4")
     op4.write(str(tmp_path / "model.op4"), {"K": K, "M": M})
