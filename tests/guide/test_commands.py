@@ -12,9 +12,6 @@ from ..program import shell
 from .pages import PAGES, README, ROOT, blocks, commands, files, name_of
 
 TAUGHT = [page for page in PAGES if commands(page)]
-FROM_PROGRAMS = (
-    "howto/from-another-program.md"  # whose files come from elsewhere: test_from_another_program.py
-)
 
 
 def run(command, folder):
