@@ -81,3 +81,6 @@ def test_the_command_draws_and_says_what_was_paired(tmp_path):
     done = called("plot", "pairs", tmp_path / "model.toml", "--contact", "tip")
     assert done.code == 2 and "no contact of that name has pairs with places; there are joint" in done.err
     assert called("plot", "pairs", "yang1998", "-o", tmp_path / "q.png").code == 2
+    (tmp_path / "other.txt").write_text("1")
+    done = called("plot", "pairs", tmp_path / "model.toml", "-o", tmp_path / "q.png")
+    assert done.code == 2 and "node 1 is in both sets" in done.err

@@ -31,9 +31,9 @@ def pairs(
     Partners are joined by lines, coloured by how far apart they are; nodes without a partner are crosses.
     """
     from fcm.plot.pairs import draw_pairs
-    from fcm.scene import load_scene
+    from fcm.scene.load_pairs import load_pairs
 
-    loaded = load_scene(scene, largest_file=largest_file, solved=False)
+    loaded = load_pairs(scene, largest_file=largest_file)
     known = [one.name for one in loaded.interfaces]
     for name in contact:
         if name not in known:
@@ -45,5 +45,5 @@ def pairs(
     output = picture_of(Path(scene), output, "-pairs.png", *loaded.files)
     for note in loaded.notes:
         messages.info(note)
-    save_picture_of(lambda: draw_pairs(chosen, loaded.units[0]), output)
+    save_picture_of(lambda: draw_pairs(chosen, loaded.length), output)
     messages.info(f"wrote {output}")

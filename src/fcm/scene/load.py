@@ -77,6 +77,12 @@ def _bundled() -> Path:
     return Path(str(files("fcm") / "scenes"))
 
 
+def path_of(path_or_name: str | Path) -> Path:
+    """The file of a scene, or of a bundled name; SceneError where there is none."""
+    bundled = str(path_or_name) in bundled_scenes()
+    return _bundled() / f"{path_or_name}.toml" if bundled else _there(path_or_name)
+
+
 def load_scene(
     path_or_name: str | Path,
     *,
@@ -98,8 +104,7 @@ def load_scene(
     >>> scene.curves[0].parameters
     {'contact.shroud.n_0': 100.0}
     """
-    bundled = str(path_or_name) in bundled_scenes()
-    path = _bundled() / f"{path_or_name}.toml" if bundled else _there(path_or_name)
+    path = path_of(path_or_name)
     scene = scene_from_dict(
         read_toml(path, str(path_or_name)),
         str(path_or_name),

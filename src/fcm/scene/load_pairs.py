@@ -1,0 +1,46 @@
+"""The pairs of nodes of a scene's contacts alone, without the modes of its structure, which take longer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from fcm.model.interface import Interface
+from fcm.scene.cyclic import read_cyclic
+from fcm.scene.errors import Mistakes
+from fcm.scene.files import LARGEST, Files
+from fcm.scene.linear import read_linear
+from fcm.scene.load import path_of
+from fcm.scene.modal import UNITS
+from fcm.scene.parts import read_contacts, read_units
+from fcm.scene.section import Section
+from fcm.scene.toml import read_toml
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Where the pairs of each contact are, what is to be said of them, and the scene's unit of length."""
+
+    interfaces: tuple[Interface, ...]
+    notes: tuple[str, ...]
+    length: str
+    files: tuple[Path, ...]
+
+
+def load_pairs(path_or_name: str | Path, *, largest_file: int = LARGEST) -> Pairs:
+    """The pairs of a scene; SceneError names every mistake of its structure and contacts.
+
+    >>> load_pairs("yang1998").interfaces
+    ()
+    """
+    path, name = path_of(path_or_name), str(path_or_name)
+    mistakes, beside = Mistakes(name), Files(path.parent, largest_file)
+    top = Section(read_toml(path, name), "", mistakes)
+    given = top.data.get("frequency_unit")
+    unit = given if isinstance(given, str) and given in UNITS else "rad/s"
+    modal, _ = read_linear(top, beside, unit, read_cyclic(top))
+    read_contacts(top, modal["dofs"], beside)
+    length, _ = read_units(top)
+    mistakes.raise_if_any()
+    files = (path, *dict.fromkeys(beside.read))
+    return Pairs(tuple(beside.interfaces), tuple(beside.noted), length, files)
