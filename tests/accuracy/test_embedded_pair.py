@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from fcm.accuracy.embedded_pair import errors_along
+from fcm.accuracy.options import PAIR
 from fcm.accuracy.refinement import estimated
 from fcm.accuracy.trust import BELIEVED, astray
 from fcm.continuation import Mark, Status
@@ -279,3 +280,16 @@ def test_a_row_of_contacts_in_partial_slip_is_told_of_everywhere():
     true = np.abs(heights[1] / heights[0] - 1.0)
     assert np.median(true) > 0.1
     assert (few.peak > true / 1.1).all() and (few.peak < 1.1 * true).all()
+
+
+def test_points_are_moved_to_the_partner_as_the_work_allows():
+    """An interrupted curve is not looked at for longer than somebody waits."""
+    system = System(strip(), (1,))
+    outline = estimated(system, np.inf)
+    path = outline.traced.branches.paths[0]
+    every = errors_along(system, path)
+    none = replace(PAIR, seconds=0.0, points=0.0, dearest=0)
+    some = errors_along(system, path, options=none)
+    assert np.isfinite(every.truncation).mean() > 0.9
+    told = np.isfinite(some.truncation)
+    assert not told.any()

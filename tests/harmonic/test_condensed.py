@@ -1,5 +1,6 @@
 """The linear system of many contacts on few modes, condensed to the modes, beside the system itself."""
 
+import itertools
 import tracemalloc
 from dataclasses import replace
 
@@ -8,8 +9,10 @@ import pytest
 
 from fcm.continuation import Events, follow
 from fcm.continuation.corrector import Newton
+from fcm.harmonic import stiff
 from fcm.harmonic.condensed import CondensedOptions
 from fcm.harmonic.linear_contacts import foresee
+from fcm.harmonic.record import recorded
 from fcm.harmonic.stiff import _moved
 from fcm.harmonic.system import System
 from fcm.harmonic.whole import jacobian_of
@@ -256,3 +259,24 @@ def test_rounding_of_many_contacts_is_that_of_random_errors():
     np.testing.assert_array_less(found, 3.0 * scale[:-1] * (np.abs(inverse) @ errors) * (1.0 + 1e-6))
     typical = 3.0 * scale[:-1] * np.sqrt(np.square(inverse * errors).sum(axis=1))
     assert 0.8 < np.sqrt(np.mean(np.square(found / typical))) < 1.25
+
+
+def test_rounding_between_points_that_are_looked_at_is_the_greater_of_theirs(monkeypatch):
+    scene = mostly_stuck()
+    hard = tuple(replace(one, k_u=1e3, k_v=1e3, n_0=10.0) for one in scene.contacts)
+    system = System(replace(scene, contacts=hard), (1,), condensing=EVERY_MODE)
+    balance = system.balance()
+    path = follow(balance, np.append(np.zeros(balance.unknowns), 0.9), (0.9, 1.5))
+    monkeypatch.setattr(stiff, "STIFF", 0.0)
+    roundings = []
+    for points in (10**6, 3):
+        monkeypatch.setattr(stiff, "POINTS", points)
+        roundings.append(stiff.with_digits(system, recorded(system, [path]))[1])
+    every, some = roundings
+    last = len(path.z) - 1
+    looked = [0, round(0.5 * last), last]
+    assert last > 4 and every.min() > 0.0
+    np.testing.assert_array_equal(some[looked], every[looked])
+    for a, b in itertools.pairwise(looked):
+        between = some[a + 1 : b]
+        np.testing.assert_array_equal(between, np.tile(np.maximum(every[a], every[b]), (len(between), 1)))

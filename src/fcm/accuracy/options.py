@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 
@@ -37,6 +38,8 @@ class PairOptions:
         for what it has elsewhere;
     part, unnoticed : float
         but no more than this part of the work that the response itself took, or so many seconds.
+    points : float
+        The same that all points may take that are moved to the partner, those that are found too.
     step : float
         Longest along the partner.
     beyond : float
@@ -95,6 +98,7 @@ class PairOptions:
     nothing: float = 3e-5
     steep: float = 100.0
     seconds: float = 2.0
+    points: float = math.inf
     part: float = 0.3
     unnoticed: float = 0.1
     step: float = 0.1

@@ -157,7 +157,21 @@ class PartnerCurve:
         return float(seconds + (self.second.seconds() if self.second else 0.0))
 
     def find(self, points: Indices) -> None:
-        """The displacements of some points, which are then known."""
+        """The displacements of some points, which are then known; of those beyond what the work allows that
+        there is none."""
+        most = self.options.points / self.each
+        if most < np.inf:
+            for k, i in enumerate(points.tolist()):
+                if self.finding.lifted.newton.evaluations - self.before > most:
+                    rest = points[k:][~self.known[points[k:]]]
+                    self.change[rest], self.theirs[rest], self.known[rest] = np.nan, np.nan, True
+                    return
+                if not self.known[i]:
+                    self._find(points[k : k + 1])
+            return
+        self._find(points)
+
+    def _find(self, points: Indices) -> None:
         path = self.path
         self.finding.find(
             points, path.z, path.direction, self.amplitude, self.unit,

@@ -78,6 +78,8 @@ class Stretches:
         One piece that leads from one to the other, or what hangs on both as far as that stays near the
         stretch, and as the work allows.
         """
+        if self.budget.left <= 0.0:
+            return []
         tries, count = self.options.tries, len(self.curve.z)
         before = self._end(range(first, max(first - tries, -1), -1)) if first >= 0 else self._abreast(0)
         behind = self._end(range(last, min(last + tries, count))) if last < count else None

@@ -176,6 +176,8 @@ class Condensed:
                 self.take(2 * self.modes)
             self.holds = False
             self._factor()
+            if self.modes == self.ranking.size:  # that is the system itself
+                found += self._condensed(whole - self._image(found))
         right[:] = found / self.scale
 
     def _enough(self, right: FloatArray, found: FloatArray) -> float:

@@ -35,12 +35,15 @@ class HeldOptions:
 
     slight: part of a contact's springs, by which its tangent may differ from them. others: so many contacts
     that are stuck or open and were taken for the other before the modes on the springs are found again.
-    undamped: least damping ratio, of a mode that has none exactly at its own frequency.
+    undamped: least damping ratio, of a mode that has none exactly at its own frequency. lost: part of a
+    displacement that rounding of the modes on the springs may be; springs so stiff that it is more are not
+    taken for such.
     """
 
     slight: float = 1e-3
     others: int = 4
     undamped: float = 1e-9
+    lost: float = 0.1
 
 
 HELD = HeldOptions()  # where nothing else is said
@@ -75,7 +78,7 @@ class HeldContacts:
         self.open[:, 0] = -counts
         self.stuck = self.open + self.springs[:, None]
         self.closed: np.ndarray[tuple[int], np.dtype[np.bool_]] | None = None  # (contact,) of the modes
-        self.ports, self.size = np.zeros(0, dtype=np.intp), 0
+        self.ports, self.size, self.lost = np.zeros(0, dtype=np.intp), 0, 0.0
         self.solver = Solver(0)
 
     def look(self, tangent: FloatArray, most: int) -> bool:
@@ -92,7 +95,7 @@ class HeldContacts:
             self._on_springs(np.where(stuck | apart, stuck, self.closed))
         assert self.closed is not None
         others = np.flatnonzero(~np.where(self.closed[:, None], as_stuck, as_open).all(axis=1))
-        if self.parts * others.size >= most:
+        if self.parts * others.size >= most or not self.lost < self.options.lost:
             return False
         D = tangent[others].reshape(others.size, self.parts, self.each, self.parts, self.each)
         part, port = np.arange(self.parts)[:, None], np.arange(self.each)
@@ -111,6 +114,9 @@ class HeldContacts:
         self.K_mean = np.where(closed[:, None], self.stuck[:, 0], self.open[:, 0]).ravel()
         square, V = np.linalg.eigh(np.diag(natural**2) + (P * self.K) @ P.T)
         self.square, self.shapes = np.maximum(square, 0.0), np.ascontiguousarray(V.T @ P)
+        pushed, soft = np.square(P) @ self.K, self.square[self.square > 0.0].min(initial=np.inf)
+        stiffest = float((pushed[natural > 0.0] / natural[natural > 0.0] ** 2).max(initial=0.0))
+        self.lost = float(np.finfo(float).eps * self.square.max(initial=0.0) / soft * stiffest)
         least = 2.0 * self.options.undamped * np.sqrt(self.square)
         self.rate = np.maximum(np.square(V.T) @ rate, least)
         F = self.flexibility

@@ -32,6 +32,7 @@ from fcm.structure.travelling import TravellingReceptance
 STIFF = 1e4  # k |G| of a contact from which digits are counted
 EPS = 2.2e-16  # of float64
 ROUNDINGS = 4.0  # that come together in a sum
+POINTS = 16  # of a curve of many contacts that are looked at
 SIGNS = 8  # of errors that are looked at together, where contacts are many
 DEPENDENT = 1e10  # condition number of G from which its inverse is no good
 
@@ -53,7 +54,8 @@ def with_digits(system: System, points: Record) -> tuple[Record, FloatArray]:
     """Points with the digits that can be kept, and the relative rounding of the amplitudes (point, dof).
 
     Points of a structure whose contacts are not stiff stay as they are; their rounding is not looked at: 0.
-    Of a sector of a ring it is told what digits are lost.
+    Of a sector of a ring it is told what digits are lost. Many contacts are looked at in some points; those
+    between two of these have the greater rounding of both.
     """
     rounding = np.zeros_like(points.amplitude)
     springs = system.springs(stuck=True)
@@ -67,7 +69,10 @@ def with_digits(system: System, points: Record) -> tuple[Record, FloatArray]:
     )  # fmt: skip
     shown, forces = balance.shown, _Forces(system)
     apart = np.asarray(shown.apart) != 0
-    for i in stiff:
+    looked = stiff
+    if balance.rank and stiff.size > POINTS:
+        looked = stiff[np.linspace(0, stiff.size - 1, POINTS).round().astype(np.intp)]
+    for i in looked:
         found = _point(balance, made.z[i].copy(), points.tangent[i], springs, forces)
         made.z[i] = found.z
         balance.evaluate(found.z)
@@ -79,6 +84,9 @@ def with_digits(system: System, points: Record) -> tuple[Record, FloatArray]:
             made.amplitude[i, apart] = np.abs(found.X[apart])
         size = np.where(made.amplitude[i] > 0.0, made.amplitude[i], np.inf)
         rounding[i] = np.where(apart, found.dofs, found.ports @ np.abs(shown.attached)) / size
+    behind = np.searchsorted(looked, stiff)
+    before = np.where(looked[behind] == stiff, behind, behind - 1)
+    rounding[stiff] = np.maximum(rounding[looked[before]], rounding[looked[behind]])
     return made, rounding
 
 

@@ -42,7 +42,7 @@ from fcm.stability.bifurcations import Inserted, stability, with_points
 
 METHODS = ("table", "closed-form")
 ROUNDS = 2  # of more harmonics, for the frequencies at which stability is lost: what is left is said
-QUICK = replace(PAIR, seconds=0.1)  # where nobody waits any more
+QUICK = replace(PAIR, seconds=0.0, points=0.05, dearest=0)  # where nobody waits any more
 Rows = npt.NDArray[np.intp]
 
 
