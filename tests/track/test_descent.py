@@ -9,6 +9,7 @@ from fcm.cli.track import as_table
 from fcm.results.tracked import Optimal
 from fcm.track.descent import Valley, downhill
 from fcm.track.envelope import Height, least
+from fcm.track.options import DESCENT
 from fcm.track.trials import by_trials
 
 EDGE = 0.37  # of the first number: below it another, higher peak is there, which no way leads to
@@ -18,7 +19,7 @@ class Known(Valley):
     """A valley whose peaks are a slope along the first number and a parabola along the second."""
 
     def __init__(self):
-        self.lowest = None
+        self.lowest, self.options = None, DESCENT
 
     def peaks(self, q):
         return ["slope", "higher"] if q[0] < EDGE else ["slope"]

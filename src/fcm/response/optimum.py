@@ -27,7 +27,7 @@ from fcm.scene.address import replaced
 from fcm.scene.draft import Draft, Number, number_of
 from fcm.scene.errors import counted
 from fcm.track.envelope import UNFINISHED
-from fcm.track.lowest import HIGHER
+from fcm.track.options import SEARCH
 
 SEEKING = 0.8  # share of the bar that is over when the optimum is found
 SAME_PLACE = 1e-6  # relative difference of frequencies at which a peak was tracked and traced
@@ -203,7 +203,7 @@ def _higher(tracking: Tracking, response: Response) -> list[str]:
             what, _, dof = name.partition(".")
             peak = curve.peaks[dof]
             inside = what == "greatest" or peak.frequency not in ends
-            if inside and peak.amplitude > found.value * (1.0 + 10.0 * HIGHER):
+            if inside and peak.amplitude > found.value * (1.0 + 10.0 * SEARCH.higher):
                 said.append(
                     f"at the optimum there is a higher {name}, {peak.amplitude:.6g}, than was followed"
                 )

@@ -25,25 +25,15 @@ from scipy.optimize import minimize
 from fcm.harmonic.system import System
 from fcm.model.scene import FloatArray
 from fcm.scene.draft import Number
-from fcm.track.envelope import EQUAL, UNFINISHED, Height, Least, Target
+from fcm.track.envelope import UNFINISHED, Height, Least, Target
 from fcm.track.lowest import Search
 from fcm.track.nonsmooth_continuation import follow_special_point, land
+from fcm.track.options import DESCENT, DescentOptions
 from fcm.track.spot import Ending, Spot, Way
 from fcm.track.starts import moved, special_points
 from fcm.track.tracked import Condition, Kind
 from fcm.track.trials import by_trials
 from fcm.track.varied import Line
-
-LEVELS = (0.1, 0.5, 0.9)  # of each range, at which the first responses are traced
-STARTS = 2  # of the lowest of them, from which the way leads down
-ROUNDS = 6  # of descending and tracing anew
-HALVES = 8  # of a way at whose end other peaks are higher
-ITERATIONS = 20  # of one descent, after which the responses are traced anew: at some kinks it goes to and fro
-FURTHER = 1e-5  # relative: less of it along a single number is worth another way down
-COUNTS = 1e-6  # relative: what is higher than this has not been followed
-TOO_HIGH = 10.0  # relative height of a peak that has left the range, so that no step leads there
-ROUNDING = 1e-12  # of a range
-BOUND = 1e-6  # of a range: a number nearer to its end is there
 
 Member = tuple[Condition, int, FloatArray]  # what is tracked, the degree of freedom, z = (x, omega)
 
@@ -64,9 +54,14 @@ class Valley:
     """Peaks at numbers q (number,), scaled to 0 and 1 at their bounds."""
 
     def __init__(
-        self, system: System, numbers: Sequence[Number], bounds: FloatArray, targets: Sequence[Target]
+        self,
+        system: System,
+        numbers: Sequence[Number],
+        bounds: FloatArray,
+        targets: Sequence[Target],
+        options: DescentOptions = DESCENT,
     ) -> None:
-        self.system, self.numbers, self.targets = system, tuple(numbers), targets
+        self.system, self.numbers, self.targets, self.options = system, tuple(numbers), targets, options
         self.low, self.width = bounds[:, 0], bounds[:, 1] - bounds[:, 0]
         self.lowest: tuple[FloatArray, float, Member] | None = None  # of all that were traced until now
 
@@ -125,7 +120,7 @@ class Valley:
         last = spots[-1] if spots else start
         if ending is Ending.RANGE:
             raise LeftRangeError
-        whole = ending is Ending.SPAN and abs(last.z[-1] - 1.0) < COUNTS
+        whole = ending is Ending.SPAN and abs(last.z[-1] - 1.0) < self.options.counts
         return (condition, dof, last.z[:-1]) if whole else None
 
     def height(self, member: Member, q: FloatArray) -> tuple[float, FloatArray]:
@@ -153,10 +148,10 @@ def descend(valley: Valley, near: FloatArray | None = None) -> tuple[FloatArray,
     if not found:
         return None
     q, value, members = min(found, key=lambda one: one[1])
-    for _ in range(ROUNDS):
+    for _ in range(valley.options.rounds):
         lines = [_along(valley, q, k) for k in range(q.size)]
         followed, beside = all(line.followed for line in lines), min(lines, key=lambda line: line.value)
-        if not beside.value < value * (1.0 - FURTHER):
+        if not beside.value < value * (1.0 - valley.options.further):
             break
         again = downhill(valley, beside.q)
         if not again[1] < value:
@@ -165,9 +160,9 @@ def descend(valley: Valley, near: FloatArray | None = None) -> tuple[FloatArray,
     active = []
     for member in members:
         height, _ = valley.height(member, q)
-        if height >= value * (1.0 - 1e2 * EQUAL):
+        if height >= value * (1.0 - valley.options.equal):
             active.append(Height(height, 0.0, np.append(member[2], np.nan), member[1]))
-    edge = bool(((q < BOUND) | (q > 1.0 - BOUND)).any())
+    edge = bool(((q < valley.options.bound) | (q > 1.0 - valley.options.bound)).any())
     kind = "trials" if not followed else "kink" if len(active) > 1 else "bound" if edge else "smooth"
     return valley.low + q * valley.width, Least(np.nan, value, tuple(active), kind)
 
@@ -176,16 +171,17 @@ def _starts(valley: Valley, near: FloatArray | None) -> list[FloatArray]:
     """Numbers from which the way leads down: the lowest of a coarse grid where none are known."""
     if near is not None:
         return [np.clip((near - valley.low) / valley.width, 0.0, 1.0)]
-    grid = map(np.array, product(LEVELS, repeat=len(valley.numbers)))
+    grid = map(np.array, product(valley.options.levels, repeat=len(valley.numbers)))
     tried = [(valley.traced(q)[0], tuple(q)) for q in grid]
-    return [np.array(q) for value, q in sorted(tried)[:STARTS] if value < np.inf]
+    return [np.array(q) for value, q in sorted(tried)[: valley.options.starts] if value < np.inf]
 
 
 def _along(valley: Valley, q: FloatArray, k: int) -> OnLine:
     """The least over the range of one number, the others as they are."""
     origin, direction = np.array(q), np.eye(q.size)[k]
     origin[k] = 0.0
-    search = Search(valley.system, valley.line(origin, direction), (0.0, 1.0), valley.targets)
+    line, options = valley.line(origin, direction), valley.options.search
+    search = Search(valley.system, line, (0.0, 1.0), valley.targets, options)
     found = search.run()
     best = found.best if found.checked else by_trials(search)
     if best is None:
@@ -196,12 +192,12 @@ def _along(valley: Valley, q: FloatArray, k: int) -> OnLine:
 def downhill(valley: Valley, q: FloatArray) -> tuple[FloatArray, float, list[Member]]:
     """Down from q until there is nothing lower at the end of the way, nor nearer and nearer on it."""
     value, members = valley.traced(q)
-    for _ in range(ROUNDS):
+    for _ in range(valley.options.rounds):
         end = _minimax(valley, q, members, value)
-        for _ in range(HALVES):
+        for _ in range(valley.options.halves):
             there = valley.traced(end)
-            lower = there[0] < value * (1.0 - COUNTS)
-            if lower or there[0] <= value * (1.0 + COUNTS):
+            lower = there[0] < value * (1.0 - valley.options.counts)
+            if lower or there[0] <= value * (1.0 + valley.options.counts):
                 break
             end = 0.5 * (q + end)
         if not lower:
@@ -222,7 +218,10 @@ def _minimax(valley: Valley, q: FloatArray, members: list[Member], unit: float) 
             try:
                 followed = [None if one is None else valley.moved(one, here[0], to) for one in here[1]]
             except LeftRangeError:
-                memory[to.tobytes()] = np.full(len(members), TOO_HIGH), np.zeros((len(members), q.size))
+                memory[to.tobytes()] = (
+                    np.full(len(members), valley.options.too_high),
+                    np.zeros((len(members), q.size)),
+                )
                 return memory[to.tobytes()]
             rows = [(0.0, np.zeros(q.size)) if one is None else valley.height(one, to) for one in followed]
             values, slopes = zip(*rows, strict=True)
@@ -242,7 +241,7 @@ def _minimax(valley: Valley, q: FloatArray, members: list[Member], unit: float) 
             "jac": lambda x: np.column_stack((-heights(x[:-1])[1], np.ones(len(members)))),
         },
         method="SLSQP",
-        options={"ftol": 1e-10, "maxiter": ITERATIONS},
+        options={"ftol": valley.options.smallest, "maxiter": valley.options.iterations},
     )
     chosen: FloatArray = np.clip(found.x[:-1], 0.0, 1.0)
-    return np.where(np.abs(chosen - chosen.round()) < ROUNDING, chosen.round(), chosen)
+    return np.where(np.abs(chosen - chosen.round()) < valley.options.rounding, chosen.round(), chosen)

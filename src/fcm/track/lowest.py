@@ -23,14 +23,12 @@ from fcm.track.curve import Track, whole
 from fcm.track.envelope import FINE, UNFINISHED, Height, Least, Piece, Target, gaps, least, pieces_of
 from fcm.track.known import passed
 from fcm.track.nonsmooth_continuation import land
+from fcm.track.options import SEARCH, SearchOptions
 from fcm.track.spot import Spot, Way
 from fcm.track.starts import moved, special_points
 from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import Line
 
-VISITS = 12  # of lowest points, and of values about which nothing is followed
-HIGHER = 1e-5  # relative: a peak that is this much higher was not followed
-HIGH = 0.9  # of the highest: peaks that are followed from where they are met
 NOTHING = Height(0.0, 0.0, np.zeros(0), -1)
 
 
@@ -52,6 +50,7 @@ class Search:
     line: Line
     span: tuple[float, float]
     targets: Sequence[Target]
+    options: SearchOptions = SEARCH
     curves: list[Track] = field(default_factory=list)
     seen: dict[float, Height] = field(default_factory=dict)  # the greatest of the responses that were traced
     met: dict[float, list[tuple[Condition, Height]]] = field(default_factory=dict)  # and all of them
@@ -76,7 +75,7 @@ class Search:
                 self.visit(value)
         else:
             self.lift(known)
-        for count in range(VISITS):
+        for count in range(self.options.visits):
             if progress is not None:
                 progress(count / (count + 2.0))
             best = self.best()
@@ -86,8 +85,8 @@ class Search:
             fine = FINE * (self.span[1] - self.span[0])
             seen = [one.value for value, one in self.seen.items() if abs(value - best.s) <= fine]
             top = seen[0] if seen else self.visit(best.s)
-            checked = top <= best.value * (1.0 + HIGHER)
-            if checked and (top >= best.value * (1.0 - HIGHER) or len(self.curves) == before):
+            checked = top <= best.value * (1.0 + self.options.higher)
+            if checked and (top >= best.value * (1.0 - self.options.higher) or len(self.curves) == before):
                 break  # else a higher one is there; or lower ones, where the followed one ends
             if seen:
                 break  # a higher one that could not be followed
@@ -99,7 +98,7 @@ class Search:
         while True:
             best = least(self.way, self.pieces())
             new = [s for s in (*self._unknown(best), *self._lower(best)) if s not in self.visited]
-            if not new or len(self.seen) >= VISITS:
+            if not new or len(self.seen) >= self.options.visits:
                 return best
             for value in new:
                 self.visit(value)
@@ -109,13 +108,13 @@ class Search:
         return [s for s in gaps(self.way, self.pieces()) if best is None or self._near(s, best)]
 
     def _near(self, s: float, best: Least) -> bool:
-        if s not in self.seen and s not in self.span and len(self.seen) < VISITS:
+        if s not in self.seen and s not in self.span and len(self.seen) < self.options.visits:
             self.look(s)
-        return s not in self.seen or 0.0 < HIGH * self.seen[s].value <= best.value
+        return s not in self.seen or 0.0 < self.options.high * self.seen[s].value <= best.value
 
     def _lower(self, best: Least | None) -> list[float]:
         """Values at which the response was traced and is lower than the least of what was followed."""
-        below = 0.0 if best is None else best.value * (1.0 - HIGHER)
+        below = 0.0 if best is None else best.value * (1.0 - self.options.higher)
         return [s for s, top in self.seen.items() if 0.0 < top.value < below]
 
     def pieces(self) -> list[Piece]:
@@ -136,7 +135,7 @@ class Search:
         found = self.look(value)
         top = self.seen[value].value
         for condition, height in found:
-            spot = land(self.way, condition, height.z) if height.value >= HIGH * top else None
+            spot = land(self.way, condition, height.z) if height.value >= self.options.high * top else None
             if spot is not None:
                 self.follow(condition, spot)
         return top
