@@ -86,6 +86,7 @@ RUNS = {  # what writes the files whose variables are listed
     "modes": ("beam", "--mode", "1", "--level", "1e-6:1e-4", "--harmonics", "1"),
     "tracked points": ("yang1998-n5", "--track", "folds", "--over", "contact.shroud.n_0", "--from", "4",
                        "--to", "6"),
+    "mistuned rings": ("mistuned-ring",),
     "peaks only": ("yang1998-n5", "--peaks-only"),
     "single motions": ("yang1998-n5", "--contact-forces", "FORCES", "--modal-amplitudes"),
 }  # fmt: skip

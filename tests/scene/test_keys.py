@@ -50,8 +50,8 @@ def test_the_template_has_every_key():
     for table, keys in TABLES.items():
         for key in keys:
             word = key.strip('"').replace("NAME", "*")
-            if table == "" or key in ("paired", "correlation", "data"):
-                assert re.search(rf"^(# )?(\[\[?)?(sweep\.|fit\.)?{word}(\]| *=)", text, re.M), key
+            if table == "" or key in ("paired", "correlation", "data", "mistuning"):
+                assert re.search(rf"^(# )?(\[\[?)?(sweep\.|fit\.|cyclic\.)?{word}(\]| *=)", text, re.M), key
             else:
                 assert re.search(rf"[#{{ \n\"]{re.escape(word)}\"? *=", text), (table, key)
 

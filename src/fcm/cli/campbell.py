@@ -33,10 +33,12 @@ def campbell(messages: Messages, scene: str, output: Path | None, to_json: bool,
 
     Drawn are those with its contacts open and stuck. Bars show the range of frequencies at the engine order
     and its harmonics. Lines show all engine orders at the lowest (dotted) and highest (dashed) speed.
+    Of a mistuned ring it is that of the tuned one.
     """
     from fcm.scene import SceneError, load_scene
 
-    loaded = load_scene(scene, largest_file=largest_file).in_use()
+    loaded = load_scene(scene, largest_file=largest_file)
+    loaded = (loaded if loaded.tuned is None else loaded.tuned).in_use()
     if loaded.ring is None:
         raise SceneError(
             scene, ["has no [cyclic]: this diagram is of a ring of sectors; fcm plot modes lists the modes"]

@@ -32,9 +32,22 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
         return of_modes(summary, names, unit)
     dofs, length = _greatest(curves), summary.get("units", {}).get("length", "")
     parts = [_curves(curves, names, dofs, unit, length)]
+    parts += [_blades(curves, names, unit, length)] if "blades" in curves[0] else []
     parts += filter(None, [table(curves, names, dofs, unit) for table in (jump_table, untold_table)])
     parts += [_scatter(one, dofs, unit) for one in summary.get("scatter", ())]
     return "\n\n".join(parts)
+
+
+def _blades(curves: Sequence[Curve], names: list[str], unit: str, length: str) -> str:
+    """The worst blade of each curve of a mistuned ring, and how much more it moves than in the tuned one."""
+    head = ["worst", "amplitude", f"at {unit}", "tuned", f"at {unit}", "amplification"]
+    rows = []
+    for curve in curves:
+        for name, one in curve["blades"].items():
+            keys = ("amplitude", "frequency", "tuned_amplitude", "tuned_frequency", "amplification")
+            cells = [number(one[key]) for key in keys]
+            rows.append([*swept(curve), f"{_with_unit(name, length)} of sector {one['sector']}", *cells])
+    return aligned([[*names, *head], *rows], left=0)
 
 
 def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
@@ -52,6 +65,11 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
     rows += [
         [name, *map(number, one["frequency"].values()), _of_how_many(one)] for name, one in jumps.items()
     ]
+    for dof, one in found.get("blades", {}).items():
+        rows += [
+            [f"worst {dof}", *map(number, one["amplitude"].values()), ""],
+            [f"amplification {dof}", *map(number, one["amplification"].values()), ""],
+        ]
     given = ", ".join(f"{key} = {value:.6g}" for key, value in found["parameters"].items())
     head = f"percentiles of {found['curves']} curves{f' with {given}' if given else ''}"
     if not rows:

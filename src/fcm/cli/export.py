@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from fcm.results.result import Response
 
 UNIVERSAL, HDF5 = (".uff", ".unv"), (".h5", ".hdf5")
+_MISTUNED = (
+    "--export knows no mistuned ring, as its mesh is of one sector; -o FILE has all sectors' displacements"
+)
 _RING = "a ring's sector moves in modes that travel around it; its contact forces alone are exported"
 
 
@@ -165,6 +168,8 @@ def exporting(messages: Messages, scene: Scene, asked: Asked) -> Exporting | Non
             raise ExportError(f"--motion-at {one:g}: the range is {ends} {scene.frequency_unit}")
     if scene.ring is not None and (asked.export is not None or asked.modal_amplitudes):
         raise ExportError(f"{scene.name}: {_RING}")
+    if scene.tuned is not None and asked.export is not None:
+        raise ExportError(f"{scene.name}: {_MISTUNED}")
     mesh = None
     if asked.mesh is not None:
         mesh = _mesh(asked.mesh)

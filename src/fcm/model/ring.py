@@ -76,3 +76,12 @@ def with_own(dofs: tuple[str, ...], used: npt.NDArray[np.bool_]) -> npt.NDArray[
     """
     meant = {name.removeprefix(NEXT) for name, one in zip(dofs, used, strict=True) if one}
     return used | np.array([name in meant for name in dofs], dtype=np.bool_)
+
+
+def of_sector(name: str, sector: int) -> str:
+    """The name of a sector's degree of freedom or contact in the whole ring.
+
+    >>> of_sector("tip", 3)
+    'tip@3'
+    """
+    return f"{name}@{sector}"

@@ -236,6 +236,7 @@ class Scene:
     interfaces: tuple[Interface, ...] = field(default=(), repr=False, compare=False)  # where pairs are
     held: tuple[Held, ...] = ()  # that are not among the contacts: springs, or nothing, in their places
     draft: Source | None = field(default=None, repr=False, compare=False)  # what it was made of
+    tuned: Scene | None = field(default=None, repr=False, compare=False)  # of a mistuned ring: a sector of it
 
     @property
     def has_range(self) -> bool:

@@ -92,7 +92,9 @@ def _save(curves: Sequence[Curve], saved: int, report: Report) -> int:
 
 def anonymous(scenes: Group) -> list[Scene]:
     """The scenes without what no curve depends on: where they came from."""
-    return [replace(scene, name="", title="", curves=(), draft=None, files=()) for scene in scenes]
+    return [
+        replace(scene, name="", title="", curves=(), draft=None, tuned=None, files=()) for scene in scenes
+    ]
 
 
 def fit(groups: Sequence[Group], number: int, results: Any) -> bool:

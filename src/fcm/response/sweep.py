@@ -6,6 +6,7 @@ import os
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from fcm.harmonic.sampled import check_own_laws
@@ -14,6 +15,7 @@ from fcm.reduction import sentences
 from fcm.reduction.leave_out import TOLERANCE, Lighter, keep_all, leave_out
 from fcm.reduction.put_back import EACH_CHECKED, checked, restored
 from fcm.response.around import check_modes, unknown
+from fcm.response.blades import with_blades
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.groups import Work
 from fcm.response.trace import METHODS
@@ -107,6 +109,11 @@ def trace(
         response = _traced(_Sweep(scene, method, table, wanted, peaks_only, curves), tolerance, progress)
         if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
             checkpoint.done()
+    if scene.tuned is not None and not response.interrupted:
+        own = partial(
+            trace, method=method, table=table, harmonics=harmonics, accuracy=accuracy, tolerance=tolerance
+        )
+        response = with_blades(response, scene, own)
     response.defects = curves.defects
     response.seconds = time.perf_counter() - begin
     if progress is not None and not response.interrupted:

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.results.blades import blade_fields
 from fcm.results.curve_fields import curve_fields, gist_fields, scatter_fields, sensitivity_fields
 from fcm.results.field import Field
 from fcm.results.in_plane import plane_fields
@@ -80,6 +81,8 @@ def fields_of(response: Response) -> dict[str, Field]:
             out |= sensitivity_fields(response)
         if found := scatter(response):
             out |= scatter_fields(found, response.frequency_unit)
+        if response.blades is not None:
+            out |= blade_fields(response)
     if response.tracking is not None:
         from fcm.results.tracked_fields import tracked_fields
 

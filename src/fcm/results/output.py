@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 import fcm
 from fcm.files import replacing
+from fcm.results.blades import add_to_summary
 from fcm.results.field import Field
 from fcm.results.fields import fields_of, swept_names
 from fcm.results.in_plane import DIRECTIONS
@@ -45,6 +46,8 @@ def summary(response: Response) -> dict[str, Any]:
     if response.curves and (found := scatter(response)):
         unit = response.frequency_unit
         data["scatter"] = [summary_of(one, response.dofs, unit) for one in found]
+    if response.curves and response.blades is not None:
+        add_to_summary(response, data)
     if response.histories is not None:
         from fcm.motion import output
 

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.model.ring import of_sector
 from fcm.model.scene import Scene
 from fcm.results.cause import Cause
 from fcm.results.curve_summary import curve_summary
@@ -131,6 +132,26 @@ def _shared(value: Any) -> Any:
     return value
 
 
+@dataclass(frozen=True)
+class Blades:
+    """What is known of the sectors of a mistuned ring beside its curves; frequencies in rad/s."""
+
+    names: tuple[str, ...]  # degrees of freedom of a sector
+    factors: FloatArray  # (curve, sector) of the stiffness
+    tuned: FloatArray  # (curve, dof) greatest amplitude of the tuned ring; NaN where that is not known
+    tuned_frequency: FloatArray  # (curve, dof)
+
+    @property
+    def sectors(self) -> int:
+        """How many there are."""
+        return int(self.factors.shape[1])
+
+    def columns(self, dofs: Sequence[str]) -> npt.NDArray[np.intp]:
+        """Where those of the sectors are among all, (dof, sector)."""
+        place = {name: number for number, name in enumerate(dofs)}
+        return np.array([[place[of_sector(name, k)] for k in range(self.sectors)] for name in self.names])
+
+
 @dataclass
 class Response:
     """All curves of a scene."""
@@ -154,6 +175,7 @@ class Response:
     fitted: Fitted | None = None  # numbers fitted to measured data
     positions: dict[str, FloatArray] = field(default_factory=dict)  # (3,) of contacts of which that is known
     motions: Motions | None = None  # at peaks or chosen frequencies, with contact forces and modes
+    blades: Blades | None = None  # of a mistuned ring
 
     @staticmethod
     def of(scene: Scene, curves: list[Curve], method: str) -> Response:

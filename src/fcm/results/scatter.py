@@ -43,17 +43,23 @@ class Scatter:
 
 def scatter(response: Response) -> list[Scatter]:
     """One for each combination of the swept values that are not drawn; none where nothing is drawn."""
+    curves = response.curves
+    return [
+        _of(parameters, [curves[i] for i in places if curves[i].complete and curves[i].points])
+        for parameters, places in groups(response)
+    ]
+
+
+def groups(response: Response) -> list[tuple[dict[str, float], list[int]]]:
+    """Swept values that are not drawn, and the places of the curves with them; none if nothing is drawn."""
     if not response.drawn:
         return []
-    groups: dict[tuple[float, ...], list[Curve]] = {}
-    for curve in response.curves:
+    found: dict[tuple[float, ...], list[int]] = {}
+    for place, curve in enumerate(response.curves):
         key = tuple(value for name, value in curve.parameters.items() if name not in response.drawn)
-        groups.setdefault(key, []).append(curve)
+        found.setdefault(key, []).append(place)
     names = [name for name in response.parameters[0] if name not in response.drawn]
-    return [
-        _of(dict(zip(names, key, strict=True)), [one for one in curves if one.complete and one.points])
-        for key, curves in groups.items()
-    ]
+    return [(dict(zip(names, key, strict=True)), places) for key, places in found.items()]
 
 
 def _of(parameters: dict[str, float], curves: Sequence[Curve]) -> Scatter:
@@ -63,8 +69,8 @@ def _of(parameters: dict[str, float], curves: Sequence[Curve]) -> Scatter:
     each = [[_first(curve, sweep) for sweep in SWEEPS] for curve in curves]
     jumps = np.array(each or [[NONE] * len(SWEEPS)])
     return Scatter(
-        parameters, len(curves), _percentiles(heights), _percentiles(frequencies),
-        _percentiles(jumps), np.isfinite(jumps).mean(axis=0), np.isnan(jumps).mean(axis=0),
+        parameters, len(curves), percentiles(heights), percentiles(frequencies),
+        percentiles(jumps), np.isfinite(jumps).mean(axis=0), np.isnan(jumps).mean(axis=0),
         (stable == 0.0).mean(axis=0), np.isnan(stable).mean(axis=0),
     )  # fmt: skip
 
@@ -90,7 +96,7 @@ def _first(curve: Curve, sweep: str) -> float:
     return ahead * first if known else np.nan
 
 
-def _percentiles(values: npt.NDArray[np.float64]) -> FloatArray:
+def percentiles(values: npt.NDArray[np.float64]) -> FloatArray:
     """Of each column, (percent, column), without what is NaN."""
     out = np.full((len(PERCENTS), values.shape[1]), np.nan)
     for column, own in enumerate(values.T):

@@ -63,10 +63,14 @@ class Addresses:
         return tuple((kind, index, field) for kind, index in matched)
 
     def _members(self, key: str) -> tuple[Address, ...]:
-        """The numbers of all contacts of a group, which one [[contact]] with nodes has made."""
+        """The numbers of all contacts of a group, which one [[contact]] has made of nodes, or of sectors."""
         prefix, _, field = key.rpartition(".")
         drafts = enumerate(self.parts["contact"])
-        same = [i for i, draft in drafts if f"contact.{draft.get('group', '')}" == prefix and field in draft]
+        same = [
+            i
+            for i, draft in drafts
+            if prefix in {f"contact.{draft.get(key, '')}" for key in ("group", "of")} and field in draft
+        ]
         return tuple(("contact", i, field) for i in same if field in NUMBERS["contact"])
 
     def _element(self, key: str) -> Address | None:
@@ -129,6 +133,9 @@ def _numbers(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:
             yield from ((f"modal.{key}.{index}", ("modal", key, index)) for index in range(len(values)))
     if parts.get("cyclic"):
         yield "cyclic.engine_order", ("cyclic", 0, "engine_order")
+    if parts.get("whole"):  # of a mistuned ring
+        yield "cyclic.engine_order", ("whole", 0, "engine_order")
+        yield "cyclic.mistuning.scale", ("whole", 0, "scale")
     for draft in parts["base"]:
         yield from ((f"base.{key}", ("base", 0, key)) for key in ("acceleration", "phase") if key in draft)
     for kind, keys in NUMBERS.items():
@@ -138,9 +145,11 @@ def _numbers(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:
 
 def _arrays(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:
     """Key paths of arrays over the dofs."""
-    shapes = None if parts.get("cyclic") else parts["modal"]["shapes"]
+    shapes = None if parts.get("cyclic") or parts.get("whole") else parts["modal"]["shapes"]
     for index in range(0 if shapes is None else len(shapes)):
         yield f"modal.shapes.{index}", ("modal", "shapes", index)
+    if parts.get("whole"):
+        return
     for kind, keys in (("contact", ("tangential", "normal")), ("force", ("dof",)), ("load", ("dof",))):
         for prefix, index, draft in _named(parts, kind):
             if "second" in draft:  # of a contact in a plane the two are numbered, as they are in a list
@@ -155,7 +164,8 @@ def _named(parts: Mapping[str, Any], kind: str) -> Iterator[tuple[str, int, dict
     """Each contact or force by its index, then by its name where that is the only one."""
     names = [draft["name"] for draft in parts[kind]]
     for index, draft in enumerate(parts[kind]):
-        yield f"{kind}.{index}", index, draft
+        if "of" not in draft:  # those of sectors are known by their names alone
+            yield f"{kind}.{index}", index, draft
     for index, draft in enumerate(parts[kind]):
         if names[index] and names.count(names[index]) == 1:
             yield f"{kind}.{names[index]}", index, draft

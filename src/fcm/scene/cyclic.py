@@ -11,6 +11,7 @@ from fcm.model.ring import NEXT, Ring
 from fcm.model.scene import Modal, Scene
 from fcm.scene.errors import Mistakes, quoted
 from fcm.scene.keys import names
+from fcm.scene.mistuning import read_mistuning
 from fcm.scene.names import Names
 from fcm.scene.rules import RULES
 from fcm.scene.section import Part, Section
@@ -65,7 +66,9 @@ def read_cyclic(top: Section) -> list[Part]:
     for table, why in TABLES.items():
         if table in top.data:
             top.wrong(table, f"cannot be beside [cyclic]: {why}")
-    found = {key: section.number(key, RULES[key]) for key in ("sectors", "engine_order")}
+    found: Part = {key: section.number(key, RULES[key]) for key in ("sectors", "engine_order")}
+    if (mistuning := read_mistuning(section, found["sectors"])) is not None:
+        found["mistuning"] = mistuning
     if "base" in top.data and (why := _no_base(top, found["engine_order"])):
         top.wrong("base", f"cannot be beside [cyclic] {why}")
     return [found]

@@ -15,6 +15,7 @@ from fcm.scene.address import Addresses, overlap, replaced
 from fcm.scene.cyclic import ring_of
 from fcm.scene.errors import Mistakes, quoted
 from fcm.scene.excitation import DIRECTIONS, base_force, load_of
+from fcm.scene.mistuning import mistuned_modes, turned
 from fcm.scene.modal import UNITS, modal_of
 from fcm.scene.parts import contact_of, force_of
 from fcm.scene.rules import RULES, Rule
@@ -40,14 +41,14 @@ class Draft:
         for address, value in more.items():
             draft = replaced(draft, address, value)
         changed: dict[str, Any] = {}
-        if draft["modal"] is not parts["modal"]:
+        if draft["modal"] is not parts["modal"] or _mistuned_otherwise(draft, parts):
             changed["modal"], changed["ring"] = modes_of(draft, scene.frequency_unit)
         elif scene.ring is not None and draft["cyclic"] is not parts["cyclic"]:
             order = int(draft["cyclic"][0]["engine_order"])
             changed["ring"] = replace(scene.ring, engine_order=order)
         if draft["contact"] is not parts["contact"]:
             changed["contacts"] = tuple(map(contact_of, draft["contact"]))
-        if draft["force"] is not parts["force"] or draft["base"] is not parts["base"]:
+        if any(draft.get(key) is not parts.get(key) for key in ("force", "base", "whole")):
             changed["forces"] = forces_of(draft)
         if draft["load"] is not parts["load"]:
             changed["loads"] = tuple(map(load_of, draft["load"]))
@@ -199,13 +200,26 @@ def modes_of(parts: Parts, unit: str) -> tuple[Modal, Ring | None]:
     """The modes, which are those that the mean meets where the scene is a sector of a ring."""
     if parts["cyclic"]:
         return ring_of(parts["modal"], parts["cyclic"][0], UNITS[unit])
+    if parts.get("whole"):
+        return modal_of(mistuned_modes(parts["modal"], parts["whole"][0], UNITS[unit]), unit), None
     return modal_of(parts["modal"], unit), None
 
 
 def forces_of(parts: Parts) -> tuple[Force, ...]:
     """The harmonic forces, and those by which a base that moves pushes the structure."""
     of_base = (base_force(draft, parts["modal"]["dofs"]) for draft in parts["base"])
-    return (*map(force_of, parts["force"]), *of_base)
+    own = parts["force"]
+    if parts.get("whole"):
+        own = [one for draft in own for one in turned(draft, parts["whole"][0])]
+    return (*map(force_of, own), *of_base)
+
+
+def _mistuned_otherwise(draft: Parts, parts: Parts) -> bool:
+    """Whether the blades of a ring have other factors."""
+    if draft.get("whole") is parts.get("whole"):
+        return False
+    one, other = draft["whole"][0], parts["whole"][0]
+    return any(one[key] != other[key] for key in ("draw", "scale"))
 
 
 def _draft(scene: Scene) -> Draft:

@@ -15,6 +15,7 @@ from fcm.scene.cyclic import own_name, ring_names
 from fcm.scene.errors import quoted
 from fcm.scene.excitation import BASE, DIRECTIONS, distributions, with_displacements
 from fcm.scene.files import Files
+from fcm.scene.mistuning import energy_of_matrices
 from fcm.scene.modal import KEYS, UNITS, read_modal
 from fcm.scene.names import Names, RowNames
 from fcm.scene.section import Part, Parts, Section, described
@@ -130,6 +131,9 @@ def _of_ring(
     )
     if draft is None:
         return parts, notes
+    if "mistuning" in parts["cyclic"][0]:
+        found = parts["cyclic"][0]["mistuning"]
+        draft["energy"] = energy_of_matrices(found, matrices.K, draft["shapes"])
     of_next = np.zeros_like(draft["shapes"])  # what they are follows from the sector's own
     columns = {name: draft["shapes"] @ load for name, load in over_rows.items()}
     shapes = np.concatenate((draft["shapes"], of_next), axis=1)

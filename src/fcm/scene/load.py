@@ -31,6 +31,8 @@ from fcm.scene.linear import (
     without_others,
     without_rounding,
 )
+from fcm.scene.mistuning import KEY as MISTUNING
+from fcm.scene.mistuning import MistuningError, drawn_rings, read_blade, tuned_sweep, whole_ring
 from fcm.scene.modal import UNITS
 from fcm.scene.node_pairs import notes_of_shares
 from fcm.scene.optimum import read_optimum
@@ -146,7 +148,12 @@ def scene_from_dict(
     beside = Files(Path(folder), largest_file)
     fields = _read(top, beside, every_row, solved)
     mistakes.raise_if_any()
-    scene = replace(_made(name, fields, told), files=tuple(dict.fromkeys(beside.read)))
+    try:
+        scene = _made(name, fields, told)
+    except MistuningError as error:
+        mistakes.add(MISTUNING, str(error))
+        mistakes.raise_if_any()
+    scene = replace(scene, files=tuple(dict.fromkeys(beside.read)))
     _check_curves(scene, mistakes)
     return scene
 
@@ -163,7 +170,7 @@ def _read(top: Section, files: Files, every_row: bool, solved: bool) -> dict[str
     if schedule and any("second" in one for one in parts["contact"]):
         top.wrong("schedule", NOT_IN_PLANE)
     start = read_start(top, parts)
-    draft = Draft(parts, tuple(read_sweep(top, parts)))
+    draft = Draft(parts, tuple(read_sweep(top, parts, drawn_rings(parts))))
     notes = [*files.noted, *notes, *questions(top, parts, draft.swept)]
     return {
         "title": top.text("title", ""),
@@ -192,6 +199,7 @@ def _made(name: str, fields: dict[str, Any], told: Told | None) -> Scene:
     modal, ring = modes_of(draft.parts, fields["frequency_unit"])
     scene = Scene(
         name=name,
+        tuned=_tuned(name, fields),
         modal=modal,
         ring=ring,
         contacts=tuple(map(contact_of, draft.parts["contact"])),
@@ -216,6 +224,17 @@ def _made(name: str, fields: dict[str, Any], told: Told | None) -> Scene:
     )
 
 
+def _tuned(name: str, fields: dict[str, Any]) -> Scene | None:
+    """The tuned ring beside a mistuned one, as a scene of one sector."""
+    draft: Draft = fields["draft"]
+    if not draft.parts.get("whole"):
+        return None
+    whole = draft.parts["whole"][0]
+    of_sector = Draft(whole["tuned"], tuned_sweep(whole["tuned"], draft.swept))
+    nothing = {"notes": (), "read": (), "optimum": None, "fit": None}
+    return _made(name, fields | nothing | {"draft": of_sector, "reported": whole["reported"]}, None)
+
+
 def _parts(
     top: Section,
     files: Files,
@@ -228,6 +247,7 @@ def _parts(
     """The drafts of modes, contacts and forces; the degrees of freedom in results; and what is to be said."""
     cyclic = read_cyclic(top)
     modal, matrices = read_linear(top, files, unit, cyclic)
+    read_blade(top, files, cyclic, modal["dofs"], matrices)
     parts: Parts = {"modal": modal, "cyclic": cyclic}
     parts["contact"] = read_contacts(top, modal["dofs"], files)
     parts["force"] = read_forces(top, modal["dofs"], solved)
@@ -251,8 +271,13 @@ def _parts(
         return parts, (), []
     asked = response is not None and "output" in response.data
     reported = reported_of(parts, output, asked)
-    whole = matrices is None or every_row
-    return parts if whole else without_others(top, parts, reported), reported, notes
+    mistuned = bool(cyclic) and "mistuning" in cyclic[0]
+    if matrices is not None and (mistuned or not every_row):
+        parts = without_others(top, parts, reported)
+    if not mistuned:
+        return parts, reported, notes
+    parts, reported, more = whole_ring(top, parts, reported)
+    return parts, reported, [*notes, *more]
 
 
 def _check_curves(scene: Scene, mistakes: Mistakes) -> None:

@@ -60,11 +60,14 @@ class Swept:
         return self.draws is not None
 
 
-def read_sweep(top: Section, parts: Mapping[str, Any]) -> list[Swept]:
-    """The swept keys with their values; `parts` are the drafts of modal, contact and force."""
+def read_sweep(top: Section, parts: Mapping[str, Any], others: Sequence[Swept] = ()) -> list[Swept]:
+    """The swept keys with their values; `parts` are the drafts of modal, contact and force.
+
+    Before them are others, which are not of this table.
+    """
     section = top.table("sweep", "") if "sweep" in top.data else None
     if section is None:
-        return []
+        return list(others)
     addresses = Addresses(parts)
     found: list[Swept | None] = []
     correlation = read_correlation(section) if "correlation" in section.data else None
@@ -74,7 +77,7 @@ def read_sweep(top: Section, parts: Mapping[str, Any]) -> list[Swept]:
             found += _paired(section, addresses)
         elif key != "correlation":
             found.append(_swept(section, key, addresses, checked=key not in correlated))
-    swept = [one for one in found if one is not None]
+    swept = [*others, *(one for one in found if one is not None)]
     if correlation is not None:
         swept = _correlated(section, swept, correlation)
     _note_overlaps(section, swept)
@@ -211,6 +214,16 @@ def _values(section: Section, path: str, key: str, value: object) -> Any:
 
 
 _FORM_KEYS = {"from", "to", "count", "log", "seed", *DRAWN}
+
+
+def draws_in(table: Section, key: str) -> Draws | None:
+    """How random numbers of a key are drawn; None after a mistake."""
+    form = [word for word in DRAWN if word in table.data]
+    if len(form) != 1:
+        table.wrong("", "must be { normal = [mean, deviation], count = }, { uniform = [low, high], count = } "
+                    "or { distribution = , count = }")  # fmt: skip
+        return None
+    return read_draws(table, form[0], key, _integer)
 
 
 def _from_table(table: Section, key: str) -> Any:

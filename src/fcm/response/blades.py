@@ -1,0 +1,38 @@
+"""The tuned ring beside a mistuned one, by which its amplification is told."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from fcm.model.scene import Scene
+from fcm.results.result import Blades, Response
+from fcm.scene.mistuning import factors_of
+
+
+def with_blades(response: Response, scene: Scene, trace: Callable[[Scene], Response]) -> Response:
+    """The response of a mistuned ring with the peaks of the tuned one, which is traced.
+
+    What the tuned ring lacks of swept keys, as the numbers of one sector's contact, is there what it was.
+    """
+    assert scene.tuned is not None
+    tuned = scene.tuned.in_use()
+    names = tuned.reported
+    found = trace(tuned)
+    known = {tuple(one.parameters.values()): one.peaks for one in found.curves if one.complete}
+    keys = list(found.curves[0].parameters)
+    peaks = np.full((len(response.curves), len(names), 2), np.nan)
+    for row, curve in zip(peaks, response.curves, strict=True):
+        own = known.get(tuple(curve.parameters[key] for key in keys))
+        if own is not None:
+            row[:] = [own[name][:2] for name in names]
+    response.blades = Blades(names, _factors(scene), peaks[..., 0], peaks[..., 1])
+    return response
+
+
+def _factors(scene: Scene) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    """Of each curve, (curve, sector)."""
+    curves: Sequence[Scene] = scene.each_curve()
+    assert scene.draft is not None
+    return np.array([factors_of(scene.draft.fixed(one).parts["whole"][0]) for one in curves])

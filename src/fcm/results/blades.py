@@ -1,0 +1,137 @@
+"""What a mistuned ring does over its sectors: the envelope, the worst blade, its amplification."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.contact.limits import FloatArray
+from fcm.results.field import Field
+from fcm.results.padded import by_point
+from fcm.results.result import Curve, Response
+from fcm.results.scatter import PERCENTS, groups, percentiles
+from fcm.units import CF_UNIT, in_unit
+
+
+@dataclass(frozen=True)
+class Worst:
+    """The greatest peak over the sectors of a degree of freedom; frequencies in rad/s. All (curve, dof)."""
+
+    amplitude: FloatArray
+    frequency: FloatArray
+    sector: npt.NDArray[np.intp]
+    tuned: FloatArray  # peak of the tuned ring; NaN where that is not known
+    tuned_frequency: FloatArray
+
+    @property
+    def amplification(self) -> FloatArray:
+        """That of the worst blade, of its amplitude in the tuned ring; NaN where that does not move."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(self.tuned > 0.0, self.amplitude / self.tuned, np.nan)
+
+
+def worst_of(response: Response) -> Worst:
+    """The worst blade of each curve of a mistuned ring."""
+    blades = response.blades
+    assert blades is not None
+    columns = blades.columns(response.dofs)
+    peaks = np.array([[one[:2] for one in curve.peaks.values()] for curve in response.curves])
+    each = peaks.reshape(len(response.curves), len(response.dofs), 2)[:, columns]  # (curve, dof, sector, 2)
+    height = np.where(np.isnan(each[..., 0]), -np.inf, each[..., 0])
+    sector = height.argmax(axis=2)
+    amplitude, frequency = (
+        np.take_along_axis(each[..., i], sector[..., None], axis=2)[..., 0] for i in range(2)
+    )
+    return Worst(amplitude, frequency, sector, blades.tuned, blades.tuned_frequency)
+
+
+def envelope(curve: Curve, columns: npt.NDArray[np.intp]) -> FloatArray:
+    """The greatest amplitude over the sectors, (point, dof), of columns (dof, sector)."""
+    found: FloatArray = curve.amplitude[:, columns].max(axis=2)
+    return found
+
+
+def blade_fields(response: Response) -> dict[str, Field]:
+    """The variables of a mistuned ring."""
+    blades, unit = response.blades, response.frequency_unit
+    assert blades is not None
+    worst, at, of = worst_of(response), {"units": CF_UNIT[unit]}, ("curve", "sector_dof")
+    out = {
+        "sector_dof": Field(
+            ("sector_dof",), np.array(blades.names), {"long_name": "degree of freedom of a sector"}
+        ),
+        "sector": Field(("sector",), np.arange(blades.sectors), {"long_name": "sector"}),
+        "stiffness_factor": Field(
+            ("curve", "sector"),
+            blades.factors,
+            {"long_name": "factor of the blade's stiffness", "units": "1"},
+        ),
+        "worst_amplitude": Field(
+            of, worst.amplitude, {"long_name": "greatest amplitude over sectors and points"}
+        ),
+        "worst_frequency": Field(
+            of, in_unit(worst.frequency, unit), {"long_name": "its frequency"} | at
+        ),
+        "worst_sector": Field(of, worst.sector.astype(np.float64), {"long_name": "its sector", "units": "1"}),
+        "tuned_amplitude": Field(of, worst.tuned, {"long_name": "greatest amplitude of the tuned ring"}),
+        "tuned_frequency": Field(
+            of, in_unit(worst.tuned_frequency, unit), {"long_name": "its frequency in the tuned ring"} | at
+        ),
+        "amplification": Field(
+            of, worst.amplification, {"long_name": "worst_amplitude over tuned_amplitude", "units": "1"}
+        ),
+    }  # fmt: skip
+    if not response.peaks_only:
+        pick = partial(envelope, columns=blades.columns(response.dofs))
+        out["envelope"] = Field(
+            ("curve", "point", "sector_dof"),
+            by_point(response.curves, pick),
+            {"long_name": "greatest amplitude over the sectors"},
+        )
+    if found := groups(response):
+        by = ("scatter", "percent", "sector_dof")
+        for name, values in (("worst", worst.amplitude), ("amplification", worst.amplification)):
+            rows = np.stack([percentiles(values[_counted(response, places)]) for _, places in found])
+            out[f"{name}_percentile"] = Field(by, rows, {"long_name": f"percentile of {name}"})
+    return out
+
+
+def _counted(response: Response, places: Sequence[int]) -> list[int]:
+    """The curves that count in percentiles."""
+    return [i for i in places if response.curves[i].complete and response.curves[i].points]
+
+
+def add_to_summary(response: Response, data: dict[str, Any]) -> None:
+    """Add to what `fcm respond --json` prints: "blades" of each curve, and of the percentiles."""
+    blades, worst = response.blades, worst_of(response)
+    assert blades is not None
+    at, before = (in_unit(one, response.frequency_unit) for one in (worst.frequency, worst.tuned_frequency))
+    for i, curve in enumerate(data["curves"]):
+        curve["blades"] = {
+            name: {
+                "sector": int(worst.sector[i, d]),
+                "amplitude": float(worst.amplitude[i, d]),
+                "frequency": float(at[i, d]),
+                "tuned_amplitude": float(worst.tuned[i, d]),
+                "tuned_frequency": float(before[i, d]),
+                "amplification": float(worst.amplification[i, d]),
+            }
+            for d, name in enumerate(blades.names)
+        }
+    for one, (_, places) in zip(data.get("scatter", ()), groups(response), strict=True):
+        counted = _counted(response, places)
+        each = [percentiles(values[counted]) for values in (worst.amplitude, worst.amplification)]
+        one["blades"] = {
+            name: {
+                key: {
+                    f"{percent:g}": float(value) for percent, value in zip(PERCENTS, rows[:, d], strict=True)
+                }
+                for key, rows in zip(("amplitude", "amplification"), each, strict=True)
+            }
+            for d, name in enumerate(blades.names)
+        }

@@ -1,0 +1,164 @@
+r"""A ring whose blades differ, in the modes of the ring whose blades are alike.
+
+The tuned modes of nodal diameter n, P_i on one sector (P_i^H M P_i = 1 for each sector), move sector k by
+
+    x_k = sqrt(2 / N) Re(P_i exp(2 pi i n k / N) z),    z = c + i s
+
+with the two real coordinates c, s of modal mass 1; of n = 0 and of N / 2 there is c alone, with 1 / sqrt(N).
+Of blade k the stiffness K_b is multiplied by 1 + d_k. In these coordinates that adds
+
+    dK = sum_k d_k X_k^T K_b X_k,    X_k (row, coordinate) the displacements of sector k
+
+to diag(w_i^2), and couples the waves of all diameters. With all modes of the sector it is exact; with some
+of them it is the method of the subset of nominal modes (Yang and Griffin, Journal of Engineering for Gas
+Turbines and Power 123, 2001): good while the mistuned modes are combinations of the modes that are kept.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg.lapack import dgejsv
+
+from fcm.structure.eigen import FloatArray, StructureError
+
+ComplexArray = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class MistunedOptions:
+    """Tolerances of what is computed of a mistuned ring."""
+
+    rigid: float = 1e-9  # of the lowest w^2 of the tuned ring that is not 0: a w^2 below it is 0
+    alike: float = 0.5  # least likeness of the shapes of one family, where their strains are taken as alike
+
+
+OPTIONS = MistunedOptions()
+
+
+@dataclass(frozen=True)
+class Basis:
+    """The real coordinates of a ring: on sector k the shape of one is r_k Re P + i_k Im P of a mode's P."""
+
+    mode: npt.NDArray[np.intp]  # (coordinate,) the sector's mode that it belongs to
+    real: FloatArray  # (coordinate, sector)
+    imaginary: FloatArray  # (coordinate, sector)
+
+    def shapes(self, shapes: ComplexArray) -> FloatArray:
+        """Shapes of the ring (coordinate, sector, dof) from those of a sector (mode, dof)."""
+        own = shapes[self.mode][:, None, :]
+        found: FloatArray = self.real[..., None] * own.real + self.imaginary[..., None] * own.imag
+        return found
+
+    def stiffness(self, energy: FloatArray, change: FloatArray) -> FloatArray:
+        """dK (coordinate, coordinate) by changes d (sector,) of the blades' stiffness.
+
+        energy (2, mode, 2, mode) is K_b between the real (0) and imaginary (1) parts of the modes' shapes.
+        """
+        parts = (self.real, self.imaginary)
+        found = np.zeros((self.mode.size, self.mode.size))
+        for one, left in enumerate(parts):
+            for other, right in enumerate(parts):
+                block = energy[one, :, other, :][np.ix_(self.mode, self.mode)]
+                found += ((left * change) @ right.T) * block
+        return found
+
+
+def basis_of(diameter: npt.NDArray[np.int64], sectors: int) -> Basis:
+    """The coordinates of a ring of sectors, from the nodal diameters (mode,) of a sector's modes.
+
+    >>> basis = basis_of(np.array([0, 1, 2]), 4)
+    >>> basis.mode.tolist(), basis.real[1].round(3).tolist()
+    ([0, 1, 1, 2], [0.707, 0.0, -0.707, -0.0])
+    """
+    double = (diameter > 0) & (2 * diameter != sectors)
+    mode = np.repeat(np.arange(diameter.size), np.where(double, 2, 1))
+    second = np.append(False, mode[1:] == mode[:-1])  # the sine of a pair
+    angle = 2.0 * np.pi * (diameter[mode][:, None] * np.arange(sectors) % sectors) / sectors
+    size = np.sqrt(np.where(double[mode], 2.0, 1.0) / sectors)[:, None]
+    real = size * np.where(second[:, None], -np.sin(angle), np.cos(angle))
+    imaginary = -size * np.where(second[:, None], np.cos(angle), np.sin(angle))
+    return Basis(mode, real, imaginary)
+
+
+def energy_of(shapes: ComplexArray, weighted: ComplexArray) -> FloatArray:
+    """K_b between real and imaginary parts (2, mode, 2, mode); weighted is K_b times shapes (mode, row)."""
+    left, right = (np.concatenate((one.real, one.imag)) for one in (shapes, weighted))
+    found = left @ right.T
+    modes = len(shapes)
+    return np.ascontiguousarray(((found + found.T) / 2.0).reshape(2, modes, 2, modes))
+
+
+def strains(
+    frequency: FloatArray, shapes: ComplexArray, diameter: npt.NDArray[np.int64]
+) -> tuple[ComplexArray, FloatArray]:
+    """Strain amplitudes (mode, family) of sector modes whose stiffness is not known, and their likeness.
+
+    The fundamental mistuning model (Feiner and Griffin, Journal of Turbomachinery 124, 2002): the i-th modes
+    of all diameters are a family, in which a sector deforms alike. So the strain energy of a sector between
+    two of a family is w_i w_j times a factor of phase, that of P_ref^H P; between two families there is none.
+    The likeness (mode,) is |P_ref^H P| / (|P_ref| |P|), which the model takes as 1; P_ref is of the lowest
+    diameter.
+    """
+    order = np.lexsort((frequency, diameter))
+    families = int((diameter == diameter.min()).sum())
+    family = np.empty(diameter.size, dtype=np.intp)
+    family[order] = np.arange(diameter.size) % families
+    found = np.zeros((diameter.size, families), dtype=np.complex128)
+    likeness = np.ones(diameter.size)
+    size = np.linalg.norm(shapes, axis=1)
+    for place in range(families):
+        members = np.flatnonzero(family == place)
+        reference = members[diameter[members].argmin()]
+        product = shapes[members] @ shapes[reference].conj()
+        likeness[members] = np.abs(product) / (size[members] * size[reference])
+        found[members, place] = frequency[members] * np.exp(1j * np.angle(product))
+    return found, likeness
+
+
+def modes_of_mistuned(
+    squared: FloatArray, change: FloatArray, options: MistunedOptions = OPTIONS
+) -> tuple[FloatArray, FloatArray]:
+    """w^2 (mode,) in ascending order and vectors (coordinate, mode) of diag(squared) + change.
+
+    By a Jacobi method that is as accurate for the lowest modes as for the highest, which stand for
+    flexibility and can be a million times as high (Drmac and Veselic, SIAM Journal on Matrix Analysis 29,
+    2008).
+
+    Raises
+    ------
+    StructureError
+        If that has a negative eigenvalue, or one of 0 beside those that the tuned ring has.
+
+    Examples
+    --------
+    >>> found, vectors = modes_of_mistuned(np.array([1.0, 4.0]), np.array([[0.5, 0.0], [0.0, 0.0]]))
+    >>> found.round(6).tolist()
+    [1.5, 4.0]
+    """
+    rigid = squared <= 0.0
+    shift = float(squared[~rigid].min()) if rigid.any() and not rigid.all() else 0.0
+    whole = np.diag(np.where(rigid, 0.0, squared) + shift) + change
+    size = np.sqrt(np.maximum(whole.diagonal(), 0.0))
+    if not size.all():
+        raise StructureError(_SOFT)
+    try:
+        factor = np.linalg.cholesky(whole / size[:, None] / size) * size[:, None]
+    except np.linalg.LinAlgError:
+        raise StructureError(_SOFT) from None
+    values, vectors, _, work, _, info = dgejsv(factor, joba=2, jobu=0, jobv=3)
+    if info:
+        raise StructureError(f"the modes of the mistuned ring could not be found (LAPACK says {info})")
+    values = values * (work[0] / work[1])
+    found = values[::-1] ** 2 - shift
+    found[np.abs(found) < options.rigid * shift] = 0.0
+    if (found < 0.0).any() or (not rigid.any() and not found.all()):
+        raise StructureError(_SOFT)
+    return found, np.ascontiguousarray(vectors[:, ::-1])
+
+
+_SOFT = (
+    "with these factors the ring has a negative stiffness: the blade is not part of the sector's stiffness"
+)
