@@ -21,9 +21,7 @@ if TYPE_CHECKING:
     from fcm.results.result import Response
 
 UNIVERSAL, HDF5 = (".uff", ".unv"), (".h5", ".hdf5")
-_MISTUNED = (
-    "--export knows no mistuned ring, as its mesh is of one sector; -o FILE has all sectors' displacements"
-)
+_MISTUNED = "a mistuned ring has no mesh: that is of one sector; -o FILE has all displacements"
 _RING = "a ring's sector moves in modes that travel around it; its contact forces alone are exported"
 
 
