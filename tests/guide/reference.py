@@ -112,7 +112,7 @@ def files() -> str:
         "# Variables of files\n",
         f"{MADE}`fcm respond -o FILE.nc` writes netCDF. Curves are filled up with NaN to the longest.\n\n"
         "Without a unit here a variable has that of the scene. The last column says which runs write it.\n"
-        f"These are {', '.join(RUNS)}.\n",
+        f"Those are {', '.join(list(RUNS)[:5])}.\nThere are also {', '.join(list(RUNS)[5:])}.\n",
     ]
     rows = []
     for name, (of, unit, said, kinds) in sorted(found.items()):
