@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.mesh import Mesh
+from fcm.model.ring import NEXT
 from fcm.model.scene import Scene
 from fcm.results.motions import ComplexArray, Motion
 from fcm.scene.errors import choices, counted
@@ -44,9 +45,7 @@ class Rows:
         >>> rows.names[0], int(rows.node[0]), int(rows.direction[0])
         ('2x', 2, 0)
         """
-        names = [
-            (i, name) for i, name in enumerate(scene.modal.dofs) if not name.startswith((HIDDEN, "next."))
-        ]
+        names = [(i, name) for i, name in enumerate(scene.modal.dofs) if not name.startswith((HIDDEN, NEXT))]
         words = [at_node(name) if motion_of(name) else "" for _, name in names]
         letters = [word.lstrip("0123456789") for word in words]
         node = [int(word.removesuffix(end)) if word else -1 for word, end in zip(words, letters, strict=True)]
