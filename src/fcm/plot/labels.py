@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 _SYMBOLS = {"n_0": "$n_{0}$", "k_u": "$k_{u}$", "k_v": "$k_{v}$", "mu": "$\\mu$"}
-_WORDS = {*_SYMBOLS, "gap", "amplitude", "phase", "mass", "frequency", "damping"}
+_WORDS = {*_SYMBOLS, "gap", "amplitude", "phase", "mass", "frequency", "damping", "level"}
 
 
 def short_names(keys: Iterable[str]) -> dict[str, str]:
@@ -15,6 +15,8 @@ def short_names(keys: Iterable[str]) -> dict[str, str]:
     {'contact.shroud.n_0': 'n_0', 'modal.shapes.0.u': 'modal.shapes.0.u'}
     >>> list(short_names(["contact.a.mu", "contact.b.mu"]).values())
     ['contact.a.mu', 'contact.b.mu']
+    >>> short_names(["excitation.level"])
+    {'excitation.level': 'level'}
     """
     last = {key: key.rpartition(".")[2] for key in keys}
     several = list(last.values())
