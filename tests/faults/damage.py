@@ -38,6 +38,10 @@ SWEPT = (
     "[response]\nfrequency = [0.7, 1.7]\nmax_step = 0.5\nharmonics = 1\n"
     '[sweep]\n"contact.shroud.n_0" = [5.0, 2.0]\n'
 )
+RANGE = "[response]\nfrequency = [0.7, 1.7]\nharmonics = 1\n"
+OPTIMUM = '[optimum]\nvary = ["contact.shroud.n_0"]\nbounds = [[2.0, 20.0]]\nminimise = "peak.u"\n'
+FIT = '[fit]\nvary = ["modal.damping.0"]\n[[fit.data]]\nfile = "data.csv"\ndof = "u"\n'
+MEASURED = "frequency,amplitude\n0.8,1.3\n0.9,2.3\n1.0,7.5\n1.1,8.1\n1.2,6.2\n1.3,2.5\n1.4,1.3\n"
 SCHEDULE = "[[schedule]]\nfrequency = 1.1\ncycles = 4\n[[schedule]]\nfrequency = 1.2\ncycles = 4\n"
 MODEL = """[modal]
 dofs = ["u", "v"]
@@ -298,6 +302,10 @@ RESPOND: dict[str, list[str]] = {
     "schedule": ["SCHEDULE", "--harmonics", "1", "--max-step", "0.5"],
     "sensitivity": ["MODEL", "--sensitivity", "--harmonics", "1", "--max-step", "0.5"],
     "compare": ["MODEL", "--compare"],
+    "peaks": ["SWEPT", "--peaks-only"],
+    "level": ["MODEL", "--level", "0.5:2", "--at", "1.1", "--harmonics", "1"],
+    "optimum": ["OPTIMUM"],
+    "fit": ["FIT"],
     "track": [
         "MODEL", "--harmonics", "1", "--track", "peaks", "--over", "contact.shroud.n_0",
         "--from", "2", "--to", "5",
@@ -309,6 +317,10 @@ PICTURES = {  # of each kind: the file that is damaged, and how it is drawn
     "points": ("exact", ["response", "harmonics.nc", "--points", "FILE"]),
     "peak": ("plain", ["peak", "FILE"]),
     "tracked": ("track", ["peak", "FILE"]),
+    "level": ("level", ["response", "FILE"]),
+    "peaks": ("peaks", ["peak", "FILE"]),
+    "optimum": ("optimum", ["response", "FILE"]),
+    "fit": ("fit", ["response", "FILE"]),
     "loop": ("harmonics", ["loop", "FILE"]),
     "history": ("schedule", ["history", "FILE"]),
     "mode": ("mode", ["mode", "FILE"]),
@@ -345,6 +357,9 @@ def main() -> None:
         Path("MODEL.toml").write_text(MODEL + "[response]\nfrequency = [0.7, 1.7]\n")
         Path("SWEPT.toml").write_text(MODEL + SWEPT)
         Path("SCHEDULE.toml").write_text(MODEL + "[response]\nfrequency = [0.7, 1.7]\n" + SCHEDULE)
+        Path("OPTIMUM.toml").write_text(MODEL + RANGE + OPTIMUM)
+        Path("FIT.toml").write_text(MODEL + RANGE + FIT)
+        Path("data.csv").write_text(MEASURED)
         for name in sorted({"harmonics", *(PICTURES[kind][0] for kind in kinds if kind in PICTURES)}):
             scene, *options = RESPOND[name]
             code, words = run(["respond", f"{scene}.toml", *options, "-o", f"{name}.nc", "-q"])

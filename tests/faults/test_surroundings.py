@@ -215,6 +215,20 @@ END
     ]
 
 
+@pytest.mark.skipif(not SMALL, reason="no disk can be made here")
+def test_a_picture_on_a_full_disk_is_one_sentence(program):
+    """In each format, of which PDF packs what it writes."""
+    endings = ("png", "pdf", "svg", "html")
+    lines = [f"{sys.executable} -m fcm.cli plot response a.nc -o small/a.{one}; echo $?" for one in endings]
+    assert program("respond", "one.toml", "-o", "a.nc").returncode == 0
+    mount = "mkdir small; mount -t tmpfs -o size=4k none small"
+    program.write("full.sh", "\n".join((mount, *lines, "ls -A small")))
+    done = ended(*UNSHARED, "bash", "full.sh", cwd=program.folder)
+    assert done.out.split() == ["3"] * 4, done.err
+    disk = f"No space left on device (the disk of {program.folder / 'small'})"
+    assert done.err.splitlines() == [f"fcm: error: small/a.{one}: {disk}" for one in endings]
+
+
 def test_a_file_that_may_not_grow_is_no_defect(program):
     """The limit of a shell, `ulimit -f`, which netCDF calls an HDF error."""
     limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))  # noqa: E731

@@ -272,7 +272,7 @@ def test_a_binary_dataset_whose_bytes_are_more_than_all_that_it_says(tmp_path):
 
 
 def test_a_binary_dataset_alone_is_listed_and_a_cut_one_is_said(tmp_path):
-    with pytest.raises(SceneError, match="it has no normal mode; it holds 58b ×2: time responses"):
+    with pytest.raises(SceneError, match=r"holds 58b ×2: time responses\. A mode is a dataset 55 or 2414"):
         read_bytes(tmp_path, times(1) + times(2))
     with pytest.raises(SceneError, match='line 2, it is cut off within a dataset "58b"'):
         read_bytes(tmp_path, times()[:-60])

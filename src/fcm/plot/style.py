@@ -6,6 +6,7 @@ import logging
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -122,7 +123,11 @@ def lacking(figure: Figure) -> str:
 
 
 def save(figure: Figure, path: Path, dpi: int = DPI) -> None:
-    """Write the picture in the format of its ending: the same bytes for the same figure."""
-    ending = path.suffix.lower()
+    """Write the picture in the format of its ending: the same bytes for the same figure.
+
+    Drawn in memory first: on a full disk, a PDF would end by what its compression says of itself.
+    """
+    ending, drawn = path.suffix.lower(), BytesIO()
     with house_style():
-        figure.savefig(path, dpi=dpi, format=ending[1:], metadata=_UNDATED[ending])
+        figure.savefig(drawn, dpi=dpi, format=ending[1:], metadata=_UNDATED[ending])
+    path.write_bytes(drawn.getvalue())

@@ -59,7 +59,8 @@ def read_uff(path: Path) -> dict[str, Any]:
     of_modes = [one for one in datasets if _is_normal_mode(one)]
     if not of_modes:
         raise DataFileError(
-            f"{quoted(path.name)} cannot be read: it has no normal mode; {contents(datasets)}"
+            f"{quoted(path.name)} cannot be read: it has no normal mode; {contents(datasets)}. A mode is a "
+            "dataset 55 or 2414 at nodes, of analysis type 2 (normal mode): export the mode shapes"
         )
     faults: list[str] = []
     modes = [_intact(one, number, faults) for number, one in enumerate(of_modes, 1)]
