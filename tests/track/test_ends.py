@@ -13,6 +13,7 @@ from fcm.scene import load_scene
 from fcm.scene.draft import number_of
 from fcm.track import curves, nonsmooth_continuation
 from fcm.track.curves import tracks
+from fcm.track.options import PIECES
 from fcm.track.spot import Ending, Way
 from fcm.track.starts import moved
 from fcm.track.tracked import Condition, Kind
@@ -76,14 +77,13 @@ def test_no_point_stands_twice_and_no_value_asked_for_is_passed_over(found):
 
 
 @pytest.mark.slow
-def test_a_curve_goes_on_where_the_response_is_an_isolated_point(scene, monkeypatch):
+def test_a_curve_goes_on_where_the_response_is_an_isolated_point(scene):
     """Its peak and its trough meet there, and its folds, too: the response has no one direction."""
     span, isolated = (0.6, 0.68), 0
     narrow = replace(scene, frequency_range=(1.45, 1.56))
-    way = Way(System(narrow, (1, 2, 3)), along(number_of(scene, "level")), span)
+    few = replace(PIECES, step=replace(PIECES.step, most=25))
+    way = Way(System(narrow, (1, 2, 3)), along(number_of(scene, "level")), span, options=few)
     made = followed(narrow, Condition(Kind.PEAK, 2), span)
-    few = replace(nonsmooth_continuation.STEPS, most=25)
-    monkeypatch.setattr(nonsmooth_continuation, "STEPS", few)
     for one, (i, _) in [(curve, turn) for curve in made for turn in curve.turns()]:
         problem = way.tracked(one.condition)
         problem.measure(one.spots[i].z)

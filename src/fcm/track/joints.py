@@ -15,18 +15,6 @@ from fcm.track.onset import values
 from fcm.track.spot import Ending, Spot, Way, kinks
 from fcm.track.tracked import Condition, Kind
 
-FIRST = 1e-3  # step, in the problem's scale
-SHORTEST = 1e-7  # a step that is still too long then leads nowhere
-REACHED = 1e-5  # distance to a corner that has been reached, or passed by a step too short to tell
-KINK = 1e-9  # of the span, by which a kink is passed
-NEAR = 1e-2  # a corner further away than this does not end a piece
-LEAP = (1e-5, 1e-4, 1e-6, 1e-3)  # beyond a corner at which what is tracked is looked for again
-CONTINUOUS = 1e-4  # of what is special: less is no jump at a corner
-AHEAD = 0.5  # cosine of the angle with the direction, of what lies ahead
-RADII = (1e-6, 1e-5, 1e-4, 1e-3)  # of circles about a kink on which the curve is looked for
-OFF = 0.1  # of such a radius, by which the point found there may be wrong
-ACROSS = 0.7  # cosine of the angle of the way on with its radius; other lines cross the circle anyhow
-
 
 class Joints:
     """z, t: the point that the curve has come to, and the direction there in the problem's scale, a unit
@@ -37,12 +25,12 @@ class Joints:
     spots: list[Spot]
 
     def __init__(self, way: Way, condition: Condition) -> None:
-        self.way, self.condition = way, condition
+        self.way, self.condition, self.options = way, condition, way.options
         self.smooth = way.tracked(condition)
         self.low, self.high = way.system.scene.frequency_range
         self.turns = condition.kind in (Kind.FOLD, Kind.PEAK)
         self.values = sorted({*way.span, *way.stations})
-        self.kinks, self.first = kinks(way), FIRST
+        self.kinks, self.first = kinks(way), self.options.step.first
         self.held = np.eye(self.smooth.n + 2)[-1]
         self._use(None)
 
@@ -91,19 +79,21 @@ class Joints:
 
     def _outside(self, s: float) -> bool:
         low, high = self.way.span
-        return not low - KINK * self.smooth.span < s < high + KINK * self.smooth.span
+        return (
+            not low - self.options.kink * self.smooth.span < s < high + self.options.kink * self.smooth.span
+        )
 
     def _corners_near(self, z: FloatArray) -> Iterator[Condition]:
         """The corners of the response that a point is near to, the nearest first."""
         if self.turns:
             for off, at in nearest(self.smooth.varied, z, np.array(self.newton.scale)):
-                if off > NEAR:
+                if off > self.options.near:
                     break
                 yield at
 
     def _past_kink(self, z: FloatArray, row: FloatArray) -> FloatArray:
         """A point just beyond a kink."""
-        beyond: FloatArray = z + KINK * self.smooth.span * row
+        beyond: FloatArray = z + self.options.kink * self.smooth.span * row
         return beyond
 
     def _pass_kink(self) -> bool | Ending:
@@ -148,7 +138,9 @@ class Joints:
     def _back_before(self, corner: FloatArray) -> None:
         """Forget the points just beyond a corner: steps that are shorter than it is known may pass it."""
         scale = np.asarray(self.newton.scale)
-        while len(self.spots) > 1 and 0.0 <= (self.spots[-1].z - corner) / scale @ self.t < REACHED:
+        while (
+            len(self.spots) > 1 and 0.0 <= (self.spots[-1].z - corner) / scale @ self.t < self.options.reached
+        ):
             self.spots.pop()
 
     def _until(self, corner: FloatArray, at: Condition) -> Ending | bool:
@@ -157,7 +149,7 @@ class Joints:
             return True
         self._use(None)
         self._measure(self.z)
-        ending = self._passed(NEAR, corner)
+        ending = self._passed(self.options.near, corner)
         self._use(at)
         self._measure(self.z)
         return ending
@@ -166,12 +158,14 @@ class Joints:
         """Whether a corner lies where the curve leads."""
         off = (corner - self.z) / np.asarray(self.newton.scale)
         far = float(np.linalg.norm(off))
-        return far < NEAR and (far < REACHED or bool(off @ self.t > AHEAD * far))
+        return far < self.options.near and (
+            far < self.options.reached or bool(off @ self.t > self.options.ahead * far)
+        )
 
     def _go_on(self, there: FloatArray, side: int, came: FloatArray, before: float) -> bool:
         """Go on from a corner that was come to from a side: along it, or on its other side."""
         assert self.corner is not None
-        if abs(self.corner.sides(there)[1 - side]) > CONTINUOUS:
+        if abs(self.corner.sides(there)[1 - side]) > self.options.continuous:
             return self._along(there, came, before)
         exact = self.corner.zero(there, None)
         return exact is not None and self._beyond(exact, came, before, 1 - 2 * side)
@@ -185,10 +179,10 @@ class Joints:
         scale, t = np.array(self.newton.scale), found[1]
         ways = [t, -t] if t @ (came / scale) > 0.0 else [-t, t]
         for way in ways:
-            if self._solve(z + scale * LEAP[1] * way, way) and self._holds():
+            if self._solve(z + scale * self.options.leaps[1] * way, way) and self._holds():
                 self.newton.z[:], self.newton.tangent[:] = z, way
                 self._accept()
-                self.first = FIRST
+                self.first = self.options.step.first
                 self.spots.append(replace(self._spot(z, way), switch=True, turn=before * way[-1] < 0.0))
                 return True
         return False
@@ -197,7 +191,7 @@ class Joints:
         """Go on with the smooth curve from a corner, to the side where its function has a sign."""
         corner = self.corner
         assert corner is not None
-        for leap in LEAP:
+        for leap in self.options.leaps:
             self._use(corner.at)
             self._measure(z)
             there = self.corner.zero(z, None, sign * leap) if self.corner is not None else None
@@ -206,7 +200,7 @@ class Joints:
             self._use(None)
             self._measure(there)
             row = (there - z) / np.asarray(self.newton.scale)
-            if self._solve(there, row / np.linalg.norm(row)) and self.newton.moved < 1e-6:
+            if self._solve(there, row / np.linalg.norm(row)) and self.newton.moved < self.options.there:
                 self._accept()
                 self.first = leap
                 turn = bool(before * self.t[-1] < 0.0)
@@ -234,7 +228,7 @@ class Joints:
         direction of a curve of folds or peaks. Where the derivatives jump the response has a corner.
         """
         problem, ending = self.smooth if self.corner is None else self.corner.problem, Ending.STALLED
-        for radius in RADII:
+        for radius in self.options.radii:
             back = self._back(radius)
             if back is None:
                 break
@@ -261,9 +255,9 @@ class Joints:
         came, last = float(self.t[-1]), self.spots[-1]
         row = (there - self.z) / np.asarray(self.newton.scale)
         row /= np.linalg.norm(row)
-        if not self._solve(there, row) or self.newton.moved > OFF * radius:
+        if not self._solve(there, row) or self.newton.moved > self.options.off * radius:
             return None
-        if np.asarray(self.newton.tangent) @ row < ACROSS:
+        if np.asarray(self.newton.tangent) @ row < self.options.across:
             return None
         z, t = np.array(self.newton.z), np.array(self.newton.tangent)
         self.spots[-1] = replace(last, turn=last.turn or came * t[-1] < 0.0)

@@ -13,20 +13,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fcm.continuation import End, Events, FollowOptions, Mark, Path, Status, follow
-from fcm.continuation.options import StepOptions
 from fcm.model.scene import FloatArray
-from fcm.track.joints import FIRST, NEAR, SHORTEST, Joints
+from fcm.track.joints import Joints
 from fcm.track.spot import Ending, Spot, Way
 from fcm.track.top import is_top, overtaken
 from fcm.track.tracked import Condition
-
-FAR = 0.3  # in the problem's scale: a start that is corrected by more is none
-MOST = 3000  # points of a curve
-PIECES = 300  # of a curve
-FEW = 4  # steps in a row that may be short
-SHORT = 1e-3  # a step below which a corner of the response is looked for ahead
-GROWTH = 2.5  # of a step to the next, at most
-STEPS = StepOptions(first=FIRST, shortest=SHORTEST, most=MOST, back=())
 
 
 def follow_special_point(
@@ -66,11 +57,11 @@ class Pieces(Joints):
         for at in self._corners_near(z):
             self._use(at)
             self._measure(z)
-            if self._solve(z, self.held) and self.newton.moved < NEAR and self._holds():
+            if self._solve(z, self.held) and self.newton.moved < self.options.near and self._holds():
                 return self._held(z)
         self._use(None)
         self._measure(z)
-        if self._solve(z, self.held) and self.newton.moved < FAR:
+        if self._solve(z, self.held) and self.newton.moved < self.options.far:
             return self._held(z)
         return None
 
@@ -94,9 +85,9 @@ class Pieces(Joints):
         self.spots = [self._spot(self.z, self.t)]
         if beside[-1] != start.z[-1]:
             self.spots.insert(0, start)
-        if self._outside(self.z[-1] + self.t[-1] * SHORTEST * self.smooth.span):
+        if self._outside(self.z[-1] + self.t[-1] * self.options.step.shortest * self.smooth.span):
             return self.spots, Ending.SPAN
-        for _ in range(PIECES):
+        for _ in range(self.options.pieces):
             known = len(self.spots)
             ending = self._piece()
             if self.way.peaks_only:
@@ -106,11 +97,14 @@ class Pieces(Joints):
             at = self._closed(first, heading, known) if known > 2 else None
             if at is not None:
                 last = self.spots[at - 1].z
-                same = np.linalg.norm((last - first) / np.asarray(self.newton.scale)) < SHORTEST
+                same = (
+                    np.linalg.norm((last - first) / np.asarray(self.newton.scale))
+                    < self.options.step.shortest
+                )
                 return [*self.spots[: at - bool(same)], self.spots[0]], Ending.CLOSED
-            if ending is Ending.STALLED and np.linalg.norm(self._off(self.z - first)) < SHORT:
+            if ending is Ending.STALLED and np.linalg.norm(self._off(self.z - first)) < self.options.short:
                 return self.spots[:1], ending  # short steps about a kink, which lead nowhere
-            if isinstance(ending, Ending) or len(self.spots) > MOST:
+            if isinstance(ending, Ending) or len(self.spots) > self.options.points:
                 return self.spots, ending if isinstance(ending, Ending) else Ending.LONG
         return self.spots, Ending.LONG
 
@@ -125,8 +119,12 @@ class Pieces(Joints):
             ends=[end.holds for end in ends],
             last=Mark.FOLD if self.way.peaks_only else 0,
         )
-        slow, short = self.first < SHORT, 0.999 * SHORT
-        control = replace(STEPS, most=FEW) if slow else replace(STEPS, shortest=short)
+        slow, short = self.first < self.options.short, 0.999 * self.options.short
+        control = (
+            replace(self.options.step, most=self.options.few)
+            if slow
+            else replace(self.options.step, shortest=short)
+        )
         options = FollowOptions(max_step=self.way.step, step=replace(control, first=self.first))
         direction = self.t * np.asarray(self.newton.scale)
         path = follow(problem, self.z, (low, high), events, options, direction=direction)
@@ -140,7 +138,7 @@ class Pieces(Joints):
         if path.status is Status.EVENT:
             return Ending.TURNED if path.ended_by < 0 else ends[path.ended_by].then()
         if path.status is Status.TOO_LONG and slow:
-            self.first = GROWTH * float(np.linalg.norm(self._off(path.z[-1] - path.z[-2])))
+            self.first = self.options.growth * float(np.linalg.norm(self._off(path.z[-1] - path.z[-2])))
             return True
         if path.status is Status.STALLED:
             return self._way_on() if slow else self._slowly()
@@ -150,7 +148,7 @@ class Pieces(Joints):
         """Go on from where a step was too long: along a corner of the response ahead, or by short steps."""
         ending = self._meet()
         if not ending:
-            self.first = 0.25 * SHORT
+            self.first = 0.25 * self.options.short
         return ending or True
 
     def _ends_of_piece(self) -> list[_End]:
@@ -165,7 +163,7 @@ class Pieces(Joints):
         ends.append(_End(End(lambda z: 1.0 - 2.0 * overtaken(self.smooth, z)), self._overtaken))
         if self.turns:
             signs = self._signs(self.z)
-            same = End(lambda z: 1.0 - 2.0 * (self._signs(z) * signs < 0.0).any(), 0.25 * SHORT)
+            same = End(lambda z: 1.0 - 2.0 * (self._signs(z) * signs < 0.0).any(), 0.25 * self.options.short)
             ends.append(_End(same, self._slowly))
         return ends
 
@@ -176,7 +174,7 @@ class Pieces(Joints):
             station = z[-1] in self.values and bool(mark & (Mark.STATION | Mark.END))
             self.spots.append(Spot(z, way, at, turn=bool(mark & Mark.FOLD), station=station))
         self._go_to(path.z[-1], path.direction[-1])
-        self.first = FIRST
+        self.first = self.options.step.first
 
     def _off(self, way: FloatArray) -> FloatArray:
         """A way in the problem's scale."""
@@ -189,7 +187,7 @@ class Pieces(Joints):
         row[-2] = np.sign(self.t[-2]) or 1.0
         guess = np.array(self.z)
         guess[-2] = omega
-        if self._solve(guess, row) and self.newton.moved < FIRST:
+        if self._solve(guess, row) and self.newton.moved < self.options.step.first:
             spot = self._spot(np.array(self.newton.z), np.array(self.newton.tangent))
             spot.z[-2] = omega
             self.spots[-1] = replace(spot, turn=self.spots[-1].turn, station=self.spots[-1].station)

@@ -1,8 +1,49 @@
-"""Tolerances and limits of searches for the least peak over numbers of a scene."""
+"""Tolerances and limits of tracked curves, and of searches for the least peak over numbers of a scene."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+
+from fcm.continuation.options import StepOptions
+
+PIECE_STEPS = StepOptions(first=1e-3, shortest=1e-7, most=3000, back=())
+
+
+@dataclass(frozen=True)
+class PieceOptions:
+    """Of the smooth pieces of a tracked curve, and how they are joined. Lengths are in the problem's scale.
+
+    step: first, shortest and most of a piece. points, pieces: of a curve, at most. far: a start that is
+    corrected by more is none. few: steps in a row that may be short. short: a step below which
+    a corner of the response is looked for ahead. growth: of a step to the next after short ones, at most.
+
+    reached: distance to a corner that has been reached, or passed by a step too short to tell. near: a corner
+    further away does not end a piece. leaps: beyond a corner at which what is tracked is looked for again.
+    continuous: of what is special; less is no jump at a corner. ahead: cosine of the angle with the direction
+    of what lies ahead. there: what is found beside a corner is moved by less.
+
+    kink: of the span of the number, by which a kink is passed. radii: of circles about a kink on which the
+    curve is looked for. off: of such a radius, by which the point found there may be wrong. across: cosine of
+    the angle of the way on with its radius; other lines cross the circle anyhow.
+    """
+
+    step: StepOptions = PIECE_STEPS
+    points: int = 3000
+    pieces: int = 300
+    far: float = 0.3
+    few: int = 4
+    short: float = 1e-3
+    growth: float = 2.5
+    reached: float = 1e-5
+    near: float = 1e-2
+    leaps: tuple[float, ...] = (1e-5, 1e-4, 1e-6, 1e-3)
+    continuous: float = 1e-4
+    ahead: float = 0.5
+    there: float = 1e-6
+    kink: float = 1e-9
+    radii: tuple[float, ...] = (1e-6, 1e-5, 1e-4, 1e-3)
+    off: float = 0.1
+    across: float = 0.7
 
 
 @dataclass(frozen=True)
@@ -52,5 +93,6 @@ class DescentOptions:
     search: SearchOptions = SearchOptions()
 
 
-SEARCH = SearchOptions()  # where nothing else is said
+PIECES = PieceOptions()  # where nothing else is said
+SEARCH = SearchOptions()
 DESCENT = DescentOptions()

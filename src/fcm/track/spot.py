@@ -9,6 +9,7 @@ import numpy as np
 
 from fcm.harmonic.system import System
 from fcm.model.scene import FloatArray
+from fcm.track.options import PIECES, PieceOptions
 from fcm.track.tracked import Condition, Tracked
 from fcm.track.varied import Line, Varied
 
@@ -54,6 +55,7 @@ class Way:
     stations: tuple[float, ...] = ()
     step: float = 0.05  # longest
     peaks_only: bool = False  # a peak ends where it meets a trough, and the number turns back
+    options: PieceOptions = PIECES
 
     def tracked(self, condition: Condition) -> Tracked:
         """The problem of a condition, with a balance of its own."""
