@@ -278,3 +278,27 @@ def test_a_circle_whose_slip_limit_is_met_at_one_angle():
     u_x, u_y, v = [1e12, 1.0, 1e12], [1e12j - 1.0, 0.0, 1e12j], [1e12j, 1.0 + 0.5j, -1.0 - 1.0j]
     f_x, f_y, _ = planar_forces(u_x, u_y, v, 1.0, 1.0, 1e6, 1e12)
     np.testing.assert_allclose((f_x[2], f_y[2]), (1e12, 1e12j), rtol=2e-3, atol=0.0)
+
+
+def test_a_slider_that_a_period_moves_from_one_side_of_its_place_far_to_the_other():
+    """It slips hardly less than all the time: Newton's method alone goes to and fro."""
+    u_x = np.array([-0.0009204931847730045, -0.022205270221464242 - 0.7996911087362616j])
+    u_y = np.array([-0.00032242310377693487, -0.7996493171257968 + 0.022150432213327798j])
+    v = np.array([-1.0706678161955678e-05, -0.0008686104944947823 - 0.0022754563343190615j])
+    case = Planar(u_x, u_y, v, 0.4, 1.0, 1.0, 2.0)
+    f_x, f_y, _ = case.forces()
+    assert case.cycle().periods < 20
+    # radial return from beside there comes back: the slider slips a ten-thousandth of its circle in a period
+    place = np.array([u_x[0] - f_x[0], u_y[0] - f_y[0]]).real
+    w_x, w_y = place + np.array([3e-4, -3e-4])
+    turn = np.exp(2j * np.pi * np.arange(2000) / 2000)
+    x, y, load = ((one[0] + one[1] * turn).real for one in (u_x, u_y, v))
+    limit = 0.4 * (2.0 + load)
+    rests = []
+    for _ in range(15):
+        for a, b, r in zip(x.tolist(), y.tolist(), limit.tolist(), strict=True):
+            d_x, d_y = a - w_x, b - w_y
+            back = min(1.0, r / np.hypot(d_x, d_y))
+            w_x, w_y = a - back * d_x, b - back * d_y
+            rests.append((w_x, w_y))
+    assert np.mean(rests[-2000:], axis=0) == pytest.approx(place, abs=1e-5)

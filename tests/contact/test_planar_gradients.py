@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fcm import periodic_gradients, planar_gradients
+from fcm.contact.plane.forces import PlanarContact
 
 from .motions import random_cases
 from .planar_motions import Planar, kernel, random_planars
@@ -94,3 +95,30 @@ def test_shape_and_a_motion_that_is_open_or_stuck():
     np.testing.assert_allclose(stuck.dn[:, 2], 3.0 * identity, atol=1e-15)
     assert not stuck.df_x[:, 1:].any() and not stuck.dn[:, :2].any()
     assert not np.abs(np.stack(G[3:5]))[:, 1].any()
+
+
+@pytest.mark.parametrize(
+    "x",
+    [
+        # two discs hold the slider
+        [-0.00398, 1e-4, 0, -0.02218, -0.79968, -0.79968, 0.02218, -3e-5, -0.00997],
+        # less apart than the angles at which discs are compared at first
+        [-0.20118, 0.0019, 0, -0.01671, -0.72676, -0.72676, 0.01671, -0.00991, -0.68553],
+    ],
+)
+def test_a_slider_at_rest_that_two_discs_hold_in_a_kernel_that_has_not_slipped(x):
+    x, law = np.array(x), (0.4, 1.0, 1.0, 2.0)
+    contact = PlanarContact([1], [1])
+    contact.at(x, *law)
+    assert contact.cycle.resting.held == 2
+    J = np.array(contact.jacobian)
+    assert np.abs(J[:2, 3:7]).max() > 0.1
+    for column in range(x.size):
+        found, _ = differences(contact, x, law, column, 1e-7)
+        assert np.abs(J[:, column] - found).max() <= 1e-6
+    # and no disc is missed
+    contact.at(x, *law)
+    theta, force = np.linspace(0.0, 2.0 * np.pi, 20001), np.array(contact.forces)
+    u_x, u_y, v = (x[i + 3 + i] * np.cos(theta) - x[i + 4 + i] * np.sin(theta) for i in range(3))
+    held = np.hypot(u_x + force[0], u_y + force[1]) - 0.4 * (2.0 + v)
+    assert held.max() <= 1e-12

@@ -13,11 +13,13 @@ import pytest
 import fcm
 from fcm.contact.periodic.workspace import periodic_contact
 from fcm.contact.plane.workspace import planar_contact
+from fcm.continuation import Status
 from fcm.harmonic.periodic import Periodic
 from fcm.harmonic.planar import Planar
 from fcm.harmonic.reported import reported_at
 from fcm.harmonic.start import solutions
 from fcm.harmonic.system import System
+from fcm.harmonic.trace import traced
 from fcm.response import ResponseError
 from fcm.response.exact import trace_exact
 from fcm.response.level import trace_levels
@@ -311,3 +313,100 @@ def test_the_onset_of_slip_on_a_straight_way_is_that_of_a_line():
     plane = onset(Planar(planar_contact((1,), (1,)), *numbers), oblique, "slip", (1,))
     assert plane.value == pytest.approx(line.value, rel=1e-12)
     assert plane.by_number == pytest.approx(line.by_number, abs=1e-7)
+
+
+ROTATING = {"span": (0.6, 1.8), "n_0": 2.0, "mu": 0.4, "k_u": 1.0, "damping": 0.02, "force": (1.0, 1.0, 0.0)}
+
+
+def rotating(lag=QUARTER, frequency=(1.0, 1.0, 10.0), coupled=0.0, second=False, harmonics=1, **more):
+    """Two isotropic modes under a force that turns, and how that may be spoilt, as a scene."""
+    given = ROTATING | more
+    shapes, natural = np.eye(3), list(frequency)
+    shapes[2, :2] = coupled, 0.5 * coupled  # of the normal mode, along the contact
+    if second:
+        natural += [1.5, 1.5]
+        shapes = np.vstack([shapes, [[0.6, 0.0, 0.0], [0.0, 0.6, 0.0]]])
+    x, y, z = given["force"]
+    forces = [{"dof": "x", "amplitude": x}, {"dof": "y", "amplitude": y, "phase": -lag}]
+    contact = {"name": "pad", "tangential": ["x", "y"], "normal": "z", "k_v": 1.0}
+    data = {
+        "modal": {
+            "dofs": ["x", "y", "z"], "frequency": natural, "damping": [given["damping"]] * len(natural),
+            "shapes": shapes.tolist(),
+        },
+        "contact": [contact | {key: given[key] for key in ("mu", "k_u", "n_0")}],
+        "force": forces + ([{"dof": "z", "amplitude": z}] if z else []),
+        "response": {"frequency": list(given["span"]), "harmonics": harmonics},
+    }  # fmt: skip
+    return scene_from_dict(data)
+
+
+@pytest.mark.parametrize(
+    "varied",
+    [
+        {},
+        {"n_0": 1.0},
+        {"n_0": 4.0},
+        {"n_0": 0.3},
+        {"mu": 0.1},
+        {"mu": 1.0},
+        {"k_u": 4.0},
+        {"k_u": 0.2},
+        {"damping": 0.001},
+        {"damping": 0.1},
+    ],
+)
+def test_a_circle_begins_and_ceases_to_slip_all_around_at_once(varied):
+    """The curve goes on there, though on the slip side it leaves the limit as the square of the way."""
+    given = ROTATING | varied
+    response = fcm.respond(rotating(**varied), "closed-form", harmonics=1)
+    assert "reason" not in response and "branches_unsure_at" not in response
+    r, k, c = given["mu"] * given["n_0"] / given["k_u"], given["k_u"], 2.0 * given["damping"]
+
+    def radius(w):
+        """Where the size of the force is 1, stuck or slipping."""
+        stuck = 1.0 / abs(1.0 + k - w * w + 1j * c * w)
+        if stuck <= r:
+            return stuck
+        low, high = r, 1e4
+        for _ in range(100):
+            a = 0.5 * (low + high)
+            rest = complex((1.0 - w * w) * a + k * r * r / a, c * w * a + k * r * sqrt(1.0 - (r / a) ** 2))
+            low, high = (a, high) if abs(rest) < 1.0 else (low, a)
+        return low
+
+    w, a = response.frequency.values[0], response.amplitude.values[0, :, 0]
+    kept = np.isfinite(w)
+    assert a[kept] == pytest.approx([radius(one) for one in w[kept]], rel=1e-9)
+    top = float(response.peak_frequency.sel(dof="x")[0])
+    highest = max(radius(one) for one in np.linspace(top - 1e-4, top + 1e-4, 41))
+    assert response.peak_amplitude.sel(dof="x")[0] == pytest.approx(highest, rel=1e-6)
+    assert highest >= max(radius(one) for one in np.linspace(*given["span"], 401))
+
+
+@pytest.mark.parametrize(
+    "varied",
+    [
+        {"second": True, "span": (0.5, 2.5)},  # stops to slip at a corner of more than a right angle
+        {"force": (1.0, 1.0 - 1e-6, 0.0)},
+        {"force": (1.0, 0.999, 0.0)},
+        {"force": (1.0, 0.5, 0.0)},
+        {"lag": 0.8},
+        {"force": (1.0, 1.0, 1e-3)},
+        {"force": (1.0, 1.0, 1.0)},
+        {"force": (1.0, 1.0, 3.0), "frequency": (1.0, 1.0, 2.0)},
+        {"n_0": -1.0, "force": (1.0, 1.0, 3.0), "frequency": (1.0, 1.0, 2.0)},
+        {"coupled": 0.1, "frequency": (1.0, 1.0, 3.0)},
+        {"coupled": 0.5, "frequency": (1.0, 1.0, 3.0)},
+        {"harmonics": 3, "force": (1.0, 1.0, 1.0)},
+    ],
+)
+def test_no_curve_stops_where_slip_begins(varied):
+    scene = rotating(**varied)
+    system = System(scene, tuple(range(1, varied.get("harmonics", 1) + 1)))
+    found = traced(system)
+    assert all(one.complete for one in found.found) and not found.branches.lost
+    ways = found.branches.paths
+    assert all(way.status is Status.COMPLETE for way in ways)
+    reached = np.concatenate([way.parameter for way in ways])
+    assert (reached.min(), reached.max()) == pytest.approx(scene.frequency_range, abs=1e-12)

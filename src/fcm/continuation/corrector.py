@@ -42,13 +42,56 @@ class Newton(BorderedSystem):
         Converged is what is close, for convergence of the order 1.5, that of a force whose
         slope changes as a root.
         """
+        i: cython.Py_ssize_t
+        for i in range(self.z.shape[0]):  # a copy of all at once takes ten times as long
+            self.guess[i] = self.z[i]
+        if self.converges(reach, most):
+            return True
+        return self.problem.rooted and most == FAR and self.halve(reach)
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def once(self) -> cython.bint:
+        """Take one step from z; whether there is one."""
+        self.guess[:] = self.z
+        if not self.factor() or not self.step() < FAR:
+            return False
+        _move(self)
+        return True
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def halve(self, reach: cython.double) -> cython.bint:
+        """`correct`, from the guess once more, by half steps first; false also where these grow.
+
+        Where the equations begin as the root of a distance d > 0, as where a circle begins to slip, a whole
+        step leads from d to 2 sqrt(d d0) - d, beyond the corner if d > 4 d0; half a step to sqrt(d d0). So
+        half steps approach d0 from any distance, and the whole ones converge from less than 4 d0.
+        """
+        count: cython.int
+        i: cython.Py_ssize_t
+        step: cython.double
+        before: cython.double = reach
+        self.z[:] = self.guess
+        for count in range(self.options.halves):
+            if not self.factor():
+                return False
+            step = self.step()
+            if not step < FAR or (count > 1 and step > before):
+                return False
+            for i in range(self.z.shape[0]):
+                self.z[i] += 0.5 * self.scale[i] * self.delta[i]
+            before = step
+        return self.converges(reach, FAR)
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def converges(self, reach: cython.double, most: cython.double) -> cython.bint:
+        """`correct`, from z, with whole steps."""
         count: cython.int
         step: cython.double
         ratio: cython.double
         before: cython.double = reach
-        i: cython.Py_ssize_t
-        for i in range(self.z.shape[0]):  # a copy of all at once takes ten times as long
-            self.guess[i] = self.z[i]
         self.unsure = 0.0
         for count in range(self.options.iterations):
             if not self.factor():

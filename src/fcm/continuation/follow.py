@@ -27,6 +27,7 @@ from fcm.continuation.nonsmooth_points import NonsmoothPoints
 from fcm.continuation.options import FOLLOW, FollowOptions, StepOptions, SwitchingOptions
 from fcm.continuation.path import FloatArray, Mark, Path, Status
 from fcm.continuation.point import Point
+from fcm.continuation.point_store import PointStore
 from fcm.continuation.problem import Problem
 from fcm.continuation.recorder import Recorder, earlier
 from fcm.continuation.stepper import Stepper
@@ -40,16 +41,26 @@ if cython.compiled:
         detour,
         dip,
         even,
+        straight_ahead,
         turning,
     )
 else:
     from fcm.continuation.nonsmooth_points import before_corner
     from fcm.continuation.step_control import clear, extent, good, next_step
-    from fcm.continuation.switching_functions import ahead, crosses, detour, dip, even, turning
+    from fcm.continuation.switching_functions import (
+        ahead,
+        crosses,
+        detour,
+        dip,
+        even,
+        straight_ahead,
+        turning,
+    )
 
 __all__ = ["Progress", "Watch", "follow"]
 
 BRANCH = cython.declare(cython.long, int(Mark.BRANCH))
+CORNER = cython.declare(cython.long, int(Mark.CORNER))
 
 Progress = Callable[[float], None]  # fraction of the range that has been covered
 Watch = Callable[[Checkpoint], None]
@@ -178,6 +189,10 @@ class Follower:
                         return self.smooth()
                     step = hidden
                     continue
+            if self.problem.rooted:
+                status = self.straight(step, reach)
+                if status is not Status.STALLED:
+                    return status
             # the curve may turn back in a corner, so that nothing is to be found beyond
             if reach < step and clear(stepper, reach * (1.0 - switching.past)):
                 return self.smooth()
@@ -195,6 +210,30 @@ class Follower:
         if detour(stepper, self.recorder.most) != 0.0:
             return False
         return self.options.hasty or not crosses(stepper) or even(stepper)
+
+    @cython.cfunc
+    def straight(self, step: cython.double, reach: cython.double) -> object:
+        """Go on from the corner where a margin vanishes that goes on as it does here.
+
+        STALLED if none does, or that is where the prediction comes to it, too.
+        """
+        stepper: Stepper = self.stepper
+        switching: SwitchingOptions = self.options.switching
+        at: cython.double = straight_ahead(stepper)
+        store: PointStore = self.recorder.store
+        if store.ends_at(stepper.here) and store.mark[store.count - 1] & CORNER:
+            return Status.STALLED  # nothing was found beyond
+        if reach < step and reach > switching.met * at:
+            return Status.STALLED
+        past: cython.double = switching.across * at
+        if 0.0 < past < step and stepper.go(past) and stepper.missed < 1.0 and crosses(stepper):
+            status = self.corner()
+            if status is not Status.STALLED:
+                return status
+        if 0.0 < at < switching.touched_root:  # the curve may turn back there
+            stepper.drift(at)
+            return self.leave(stepper.here, 0.0)
+        return Status.STALLED
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)

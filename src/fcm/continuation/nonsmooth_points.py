@@ -101,16 +101,23 @@ def cross(stepper: Stepper, stops: cython.double[::1]) -> cython.bint:
     """Go on, from a corner that is here, to the nearest point that the curve is found to have beyond.
 
     Several margins may be zero here or very near, so that more than two smooth pieces meet; all that is
-    nearer is one corner. Where no point is found, or a value of the parameter is passed that is to be landed
-    on, only the direction of the curve is taken and here remains.
+    nearer is one corner, as is what the curve comes to at once beyond it. Where no point is found, or a value
+    of the parameter is passed that is to be landed on, only the direction of the curve is taken and here
+    remains.
     """
     count: cython.int
     length: cython.double = stepper.options.switching.beyond
+    first: cython.double = 0.0  # the nearest, though another corner is as near
     for count in range(stepper.options.switching.further):  # noqa: B007
         if leaves(stepper, length):
-            take(stepper, length, not passes(stepper, stops))
-            return True
+            if not stepper.problem.rooted or free(stepper, 10.0 * length):
+                take(stepper, length, not passes(stepper, stops))
+                return True
+            first = first or length
         length *= 10.0
+    if first > 0.0 and leaves(stepper, first):
+        take(stepper, first, not passes(stepper, stops))
+        return True
     aim(stepper, stepper.options.switching.beyond)
     if not onwards(stepper, stepper.options.switching.beyond):
         return False
@@ -133,14 +140,46 @@ def leaves(stepper: Stepper, length: cython.double) -> cython.bint:
         if not onwards(stepper, length):
             return False
         stepper.between.z[:] = stepper.newton.z
-        near: cython.bint = (
-            stepper.newton.correct(length)
-            and stepper.newton.moved < stepper.options.switching.astray * length
-        )
-        if near and stepper.newton.orientation == stepper.here.orientation:
+        if stepper.newton.correct(length) and near(stepper, length):
+            return True
+        # whole steps may have led to another part of the curve
+        if stepper.problem.rooted and stepper.newton.halve(length) and near(stepper, length):
             return True
         stepper.newton.z[:] = stepper.between.z
+        # along the edge of a piece, as where a circle ceases to slip, only the equations lead across it
+        if stepper.problem.rooted and not stepper.newton.once():
+            return False
     return False
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def near(stepper: Stepper, length: cython.double) -> cython.bint:
+    """Whether the corrector has come to a point beyond a corner that is where it was looked for."""
+    if not stepper.newton.moved < stepper.options.switching.astray * length:
+        return False
+    return stepper.newton.orientation == stepper.here.orientation
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def free(stepper: Stepper, length: cython.double) -> cython.bint:
+    """Whether no margin changes its sign within a length from where the corrector is.
+
+    A circle that starts to slip leaves its limit as the square of the length: what is found first may be
+    beside that by rounding, on the side from where the curve comes.
+    """
+    i: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    there: Point = stepper.between
+    stepper.record(there, True, False)
+    for i in range(stepper.guess.shape[0]):
+        stepper.guess[i] = there.z[i] + length * stepper.newton.scale[i] * there.tangent[i]
+    stepper.problem.bound(stepper.guess)
+    for k in range(stepper.problem.margins):
+        if there.margin[k] * there.asked(k, stepper.problem) < 0.0:
+            return False
+    return True
 
 
 @cython.cfunc

@@ -1,5 +1,5 @@
 cdef class NewtonOptions:
-    cdef readonly int iterations, chords, kept
+    cdef readonly int iterations, chords, kept, halves
     cdef readonly double close, preliminary, small, exact, rough, left, chord, shrinking, brief, hopeless
     cdef readonly double slight, coarsest, astray, roundings
 
@@ -15,7 +15,7 @@ cdef class EventOptions:
 
 cdef class SwitchingOptions:
     cdef readonly int most, further, pieces, many
-    cdef readonly double known, known_label, past, before, touched, near, nearer, beyond, astray
+    cdef readonly double known, known_label, past, across, met, touched_root, before, touched, near, nearer, beyond, astray
 
 cdef class FollowOptions:
     cdef readonly double max_step

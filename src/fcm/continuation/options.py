@@ -32,6 +32,8 @@ class NewtonOptions:
         A step after which there is no further one.
     exact : float
         A step that is not worth another evaluation.
+    halves : int
+        Half steps where the equations begin as a root, before whole ones are tried again.
     rough : float
         A step that does not shrink, and is taken for rounding though the way was long.
     left : float
@@ -61,6 +63,7 @@ class NewtonOptions:
     preliminary: cython.double = 1e-9
     small: cython.double = 1e-12
     exact: cython.double = 1e-11
+    halves: cython.int = 8
     rough: cython.double = 1e-9
     left: cython.double = 1e-10
     chord: cython.double = 1e-6
@@ -190,10 +193,16 @@ class SwitchingOptions:
         Part of the length to there, to which that is found; and where a label changes.
     past : float
         Part of a step that ends at a corner, by which it goes past.
+    across : float
+        Times as long as the way to where a margin vanishes that goes on as it does, is a step across that.
+    met : float
+        Part of that way, within which the prediction comes to a margin that is a root: half of it.
     before : float
         Part of the way to a corner: up to here the curve is smooth.
     touched : float
         A corner this near is met: less than `beyond`.
+    touched_root : float
+        The same where a margin is the root of the distance, which rounding hides.
     near, nearer : float
         A corner further away is gone to by steps, each this part of the way.
     beyond : float
@@ -212,8 +221,11 @@ class SwitchingOptions:
     known: cython.double = 1e-4
     known_label: cython.double = 2e-3
     past: cython.double = 1e-3
+    across: cython.double = 1.1
+    met: cython.double = 0.75
     before: cython.double = 1e-6
     touched: cython.double = 1e-8
+    touched_root: cython.double = 1e-4
     near: cython.double = 1e-4
     nearer: cython.double = 0.9
     beyond: cython.double = 1e-7

@@ -1,5 +1,7 @@
 from fcm.continuation.problem cimport Problem
 
+cdef double AHEAD
+
 cdef class Point:
     cdef public double[::1] z
     cdef public double[::1] tangent

@@ -9,6 +9,7 @@ cdef class Problem:
     cdef public int group
     cdef public bint coarse
     cdef public bint labelled
+    cdef public bint rooted
     cdef public bint costly
     cdef public double unbounded
     cdef public double[::1] residual

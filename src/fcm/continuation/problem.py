@@ -30,6 +30,7 @@ class Problem:
     coarse: whether there are approximate equations, with which each point is sought first; see `refine`.
     costly: whether there are so many unknowns that every point counts: slight corners are stepped over,
     peaks and folds sought between all points of a step that are known.
+    rooted: whether a margin may begin as a root of the distance from a corner, so that `Newton` halves steps.
     labelled: whether the margins are labels: while they stay the problem is smooth; else it may not be.
     """
 
@@ -38,6 +39,7 @@ class Problem:
     ) -> None:
         self.unknowns, self.margins, self.outputs, self.rank = unknowns, margins, outputs, rank
         self.coarse, self.labelled, self.unbounded = False, False, BOUNDLESS
+        self.rooted = False
         self.group, self.costly = margins, unknowns >= DEAR
         self.residual = np.zeros(unknowns)
         self.jacobian = np.zeros((unknowns, 1 if rank else unknowns + 1))

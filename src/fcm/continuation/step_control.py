@@ -25,7 +25,9 @@ def good(stepper: Stepper) -> cython.bint:
     """Whether the curve was where it was predicted, and went on as it did."""
     options: StepOptions = stepper.options.step
     if stepper.step <= options.sharp:
-        return stepper.cosine > 0.0
+        # beyond a corner that turns by more than a right angle the way back is as near
+        back: cython.bint = stepper.problem.rooted and not kept(stepper) and stepper.cosine < options.cosine
+        return stepper.cosine > 0.0 and not back
     if not (kept(stepper) and stepper.missed < options.far and stepper.cosine > options.cosine):
         return False
     return unforeseen(stepper) < options.uneven_times * options.uneven

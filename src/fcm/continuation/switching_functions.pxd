@@ -8,5 +8,6 @@ cdef double turning(Stepper stepper) except -1
 cdef double opposite(double rise, double begin, double end, double least, double doubtful) noexcept nogil
 cdef double lowest(double before, double begin, double after, double end) noexcept nogil
 cpdef double ahead(Stepper stepper, double step) except -1
+cdef double straight_ahead(Stepper stepper) except -1
 cdef double label_ahead(Stepper stepper, double step) except -1
 cdef bint crossed(Stepper stepper, double step) except -1

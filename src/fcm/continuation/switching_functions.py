@@ -10,6 +10,11 @@ from cython.cimports.libc.math import fabs, sqrt
 
 from fcm.continuation.stepper import Stepper
 
+if cython.compiled:
+    from cython.cimports.fcm.continuation.point import AHEAD
+else:
+    from fcm.continuation.point import AHEAD
+
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
@@ -185,6 +190,29 @@ def ahead(stepper: Stepper, step: cython.double) -> cython.double:
             low, aside = at, known / 3.0
             before = stepper.here.asked(which, stepper.problem) or before
     return high
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def straight_ahead(stepper: Stepper) -> cython.double:
+    """Length at which the first margin vanishes that goes on as it does here; 0 if none approaches zero.
+
+    A margin that is the root of the distance from a corner is as straight as the curve; the prediction,
+    along which that distance is as straight, meets the corner halfway.
+    """
+    k: cython.Py_ssize_t
+    first: cython.double = 0.0
+    if not stepper.here.inclined:
+        stepper.here.incline(stepper.problem, stepper.newton.scale, stepper.guess)
+    for k in range(stepper.problem.margins):
+        if stepper.here.margin[k] * stepper.here.slope[k] < 0.0:
+            here: cython.double = stepper.here.margin[k]
+            beside: cython.double = here + AHEAD * stepper.here.slope[k]
+            # the square of such a root falls half as fast along the tangent as it does along the curve
+            at: cython.double = 2.0 * AHEAD * here * here / (here * here - beside * beside)
+            if here * beside > 0.0 and (first == 0.0 or at < first):
+                first = at
+    return first
 
 
 @cython.cfunc

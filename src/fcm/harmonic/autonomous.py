@@ -73,7 +73,7 @@ class Autonomous(Problem):
         self.contact_unknowns, self.kept = self.contacts.unknowns, guess.kept.size
         count = self.contact_unknowns + 2 * self.kept + 2
         super().__init__(count, sum(law.margins for law in self.contacts.laws), 2)
-        self.n = count
+        self.n, self.rooted = count, any(law.directions > 2 for law in self.contacts.laws)
         self.static = self.linear.ports.T @ self.linear.flexibility @ self.linear.ports
         self.largest = np.zeros(self.ports)
         self.views = {name: np.asarray(getattr(self, name)) for name in ("residual", "jacobian", "scale")}

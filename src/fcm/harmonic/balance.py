@@ -65,6 +65,7 @@ class Balance(Problem):
         self.seen, self.shown, self.laws, self.contacts, self.width = seen, shown, laws, len(laws), width
         self.layout, self.directions, self.ports = layout, layout.directions, layout.ports
         self.group = laws[0].margins if laws else 0  # all contacts have as many
+        self.rooted = layout.directions > 2  # in a plane a circle begins to slip all around at once
         self.counted, self.span, self.load, self.share = np.array(counted), span, 1.0, 1.0
         self.rest = np.zeros(layout.ports)
         self.force, self.now, self.rate, self.by_frequency = np.zeros((4, self.unknowns))

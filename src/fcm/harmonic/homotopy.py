@@ -14,6 +14,7 @@ class Homotopy(Problem):
 
     def __init__(self, inner: Problem) -> None:
         Problem.__init__(self, inner.unknowns, 0, 0, inner.rank)
+        self.rooted = inner.rooted
         self.inner, self.taken, self.removed = inner, 0.0, np.zeros(inner.unknowns)
         self.jacobian = inner.jacobian
 

@@ -25,7 +25,7 @@ class Level(Problem):
         self.margin, self.kind, self.angle = balance.margin, balance.kind, balance.angle
         self.unbounded *= self.unbounded  # as much again as the level may grow
         self.balance, self.z = balance, np.zeros(balance.unknowns + 1)
-        self.many = self.costly
+        self.many, self.rooted = self.costly, balance.rooted
         self.begin(omega)
 
     def begin(self, omega: float, lightly: bool = False) -> None:

@@ -39,6 +39,7 @@ class Share(Problem):
 
     def __init__(self, balance: Balance, omega: float) -> None:
         Problem.__init__(self, balance.unknowns, balance.margins, 0, balance.rank)
+        self.rooted = balance.rooted
         self.balance, self.at_omega = balance, np.full(balance.unknowns + 1, omega)
         self.by_share = np.zeros(balance.unknowns)
         self.by_share[balance.layout.mean_at] = -np.asarray(balance.rest)

@@ -70,6 +70,7 @@ class Tracked(Problem):
         self.varied, self.condition, self.span = varied, condition, span
         self.n, self.offset = varied.balance.unknowns, 0.0  # of an onset: its function, in the scale, is this
         Problem.__init__(self, self.n + 1, 0, 0)
+        self.rooted = varied.balance.rooted
         self.row = np.zeros(self.n + 1)
         self.row[-1] = 1.0
         self.angles: FloatArray | None = None  # of the extremes whose peak it is, that were greatest last

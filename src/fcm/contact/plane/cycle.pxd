@@ -11,10 +11,14 @@ cdef class Cycle:
     cdef readonly Resting resting
     cdef readonly Crossings crossings
     cdef readonly int kind, behaviour, periods
-    cdef double moved_x, moved_y
+    cdef double moved_x, moved_y, place_x, place_y
+    cdef double[:, ::1] side
+    cdef int sides, replaced
     cdef double[::1] cut
     cdef int[::1] cut_kind
     cdef int solve(self, int behaviour, double s_x, double s_y, bint gradient) noexcept nogil
     cdef int opening(self, bint gradient) noexcept nogil
     cdef int closed(self, bint gradient) noexcept nogil
     cdef double period(self, double begin, double w_x, double w_y) noexcept nogil
+    cdef bint bracket(self, double w_x, double w_y) noexcept nogil
+    cdef bint between(self, double w_x, double w_y) noexcept nogil

@@ -62,7 +62,9 @@ class Cycle:
         self.cut_kind = np.zeros(self.crossings.capacity, dtype=np.intc)
         self.kind = self.behaviour = UNKNOWN
         self.periods = 0
-        self.moved_x = self.moved_y = 0.0
+        self.moved_x = self.moved_y = self.place_x = self.place_y = 0.0
+        self.side = np.zeros((2, 4))  # places of the slider, and how far a period moves it from there
+        self.sides, self.replaced = 0, -1
 
     def solve(self, behaviour: cython.int, s_x: float, s_y: float, gradient: bool) -> cython.int:
         """The cycle of the motion that is loaded, of a slider that began at a place, from the means of u."""
@@ -178,6 +180,7 @@ class Cycle:
         rounding: float = 4.0 * EPSILON * self.motion.size
         self.slider.gathering, self.slider.varying, self.slider.gradient = False, True, False
         self.slider.derivatives.take(0, 2)
+        self.sides = 0
         for i in range(PERIODS):
             self.periods = i + 1
             change = self.period(begin, w_x, w_y)
@@ -198,15 +201,18 @@ class Cycle:
             ):
                 w_x, w_y = w_x + x, w_y + y
                 break
+            bounded: cython.bint = self.bracket(w_x, w_y)
             if change < 0.5 * before and fabs(by) > 1e-13:
                 before = change
                 w_x, w_y = w_x + (d * x - b * y) / by, w_y + (a * y - c * x) / by
                 # the next change is of the square of this one
                 if change * change < 0.01 * fine * self.motion.reach * by * by:
                     break
+                if bounded and not self.between(w_x, w_y):
+                    w_x, w_y = self.place_x, self.place_y
             else:
                 before = 2.0 * change if change < before else 1e300
-                w_x, w_y = w_x + x, w_y + y
+                w_x, w_y = (self.place_x, self.place_y) if bounded else (w_x + x, w_y + y)
         else:
             if nearest > DOUBLE * self.motion.reach:
                 return UNSOLVED
@@ -215,6 +221,51 @@ class Cycle:
         self.slider.derivatives.take(0, self.slider.derivatives.unknowns)
         self.period(begin, w_x, w_y)
         return UNSOLVED if self.slider.failed else MIXED
+
+    def bracket(self, w_x: float, w_y: float) -> bool:
+        """Whether two places of the slider were moved towards each other in a period; `place` lies between.
+
+        Where the slider slips hardly less than all the time, a period moves it from one side of its steady
+        place far to the other side, which Newton's method does not see. A period takes all places to a curve,
+        nearly: along the line between two of them the way is bounded, by the Illinois rule.
+        """
+        i: cython.int
+        x: float = self.moved_x
+        y: float = self.moved_y
+        i = 0
+        if self.sides == 2:
+            d_x: float = self.side[1, 0] - self.side[0, 0]
+            d_y: float = self.side[1, 1] - self.side[0, 1]
+            along: float = (x * d_x + y * d_y) / (d_x * d_x + d_y * d_y)
+            i = 0 if along > 0.0 else 1
+            self.side[1 - i, 2] *= 0.5 if i == self.replaced else 1.0
+            self.side[1 - i, 3] *= 0.5 if i == self.replaced else 1.0
+            self.replaced = i
+            # across the line the way of a period is taken
+            w_x, w_y = w_x + x - along * d_x, w_y + y - along * d_y
+        elif self.sides == 1 and x * self.side[0, 2] + y * self.side[0, 3] < 0.0:
+            i, self.sides, self.replaced = 1, 2, -1
+        else:
+            self.sides = 1
+        self.side[i, 0], self.side[i, 1], self.side[i, 2], self.side[i, 3] = w_x, w_y, x, y
+        if self.sides < 2:
+            return False
+        x, y = self.side[1, 0] - self.side[0, 0], self.side[1, 1] - self.side[0, 1]
+        one: float = self.side[0, 2] * x + self.side[0, 3] * y
+        two: float = self.side[1, 2] * x + self.side[1, 3] * y
+        if not one > 0.0 > two:  # they no longer are
+            self.sides = 0
+            return False
+        part: float = one / (one - two)
+        self.place_x, self.place_y = self.side[0, 0] + part * x, self.side[0, 1] + part * y
+        return True
+
+    def between(self, w_x: float, w_y: float) -> bool:
+        """Whether a place is between those two."""
+        d_x: float = self.side[1, 0] - self.side[0, 0]
+        d_y: float = self.side[1, 1] - self.side[0, 1]
+        along: float = (w_x - self.side[0, 0]) * d_x + (w_y - self.side[0, 1]) * d_y
+        return 0.0 <= along <= d_x * d_x + d_y * d_y
 
     def period(self, begin: float, w_x: float, w_y: float) -> float:
         """Once around from a place of the slider; how far it is from there at the end."""

@@ -224,6 +224,7 @@ class PlanarContact:
         i: cython.int
         k: cython.int
         p: cython.int
+        self.derivatives.take(0, self.unknowns)  # a cycle that was sought before may have left fewer
         self.jacobian[2, 2] = 1.0
         for k in range(self.motion.count):
             for i in range(self.outputs):

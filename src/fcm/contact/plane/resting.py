@@ -47,7 +47,7 @@ class Resting:
 
     def __init__(self, motion: PlaneMotion) -> None:
         self.motion = motion
-        self.nodes = 8 * max(motion.highest, 1) + 3
+        self.nodes = 12 * max(motion.highest, 1) + 3
         self.step = TWO_PI / self.nodes
         angle = np.outer(self.step * (FIRST + np.arange(self.nodes)), np.asarray(motion.order))
         self.node_cos, self.node_sin = np.cos(angle), np.sin(angle)
@@ -168,6 +168,9 @@ class Resting:
             after = self.gap[j + 1 if j + 1 < self.nodes else 0]
             if self.gap[j] >= before and self.gap[j] >= after and self.gap[j] + rise >= most:
                 self.refine(self.step * (FIRST + j))
+        # two discs less than a step apart, between which no node tells: each goes on from where it was
+        for j in range(self.held):
+            self.refine(self.basis[j, 3])
 
     def outside(self, theta: float) -> float:
         """How far the place in `x`, `y` is outside the disc of an angle; see `refine` for the slope."""
