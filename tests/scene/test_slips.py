@@ -112,3 +112,13 @@ def test_text_that_is_not_utf_8_names_its_line(tmp_path):
     (tmp_path / "s.toml").write_bytes("a = 1\n".encode("utf-16"))
     with pytest.raises(SceneError, match=r"save it as UTF-8$"):
         load_scene(tmp_path / "s.toml")
+
+
+@pytest.mark.parametrize("word, written", [("True", "true"), ("FALSE", "false"), ("Inf", "inf")])
+def test_a_word_of_another_language_is_not_told_to_need_quotes(tmp_path, word, written):
+    path = tmp_path / "a.toml"
+    path.write_text(f"[structure]\nflexibility = {word}\n")
+    with pytest.raises(SceneError) as refused:
+        load_scene(path)
+    said = str(refused.value)
+    assert f"write flexibility = {written}" in said and "quotes" not in said

@@ -173,7 +173,12 @@ def _dof(section: Section, reported: Sequence[str], needed: bool) -> str:
     dof = section.text("dof")
     found = Names(reported).find(dof) if reported and dof else dof
     if dof and not found:
-        section.wrong("dof", f"there is no degree of freedom {quoted(dof)} in the results", dof, reported)
+        section.wrong(
+            "dof",
+            f"there is no degree of freedom {quoted(dof)} in the results, which have {choices(reported)}",
+            dof,
+            reported,
+        )
     return found or dof
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from fcm.model.scene import Aim, Optimum
 from fcm.scene.address import overlap
 from fcm.scene.draft import Draft, Number, number_in
-from fcm.scene.errors import kind, quoted, shown
+from fcm.scene.errors import choices, kind, quoted, shown
 from fcm.scene.keys import names
 from fcm.scene.names import Names
 from fcm.scene.rules import as_float
@@ -78,7 +78,10 @@ def _aims(section: Section, reported: Sequence[str]) -> list[Aim]:
             )
         elif reported and not (named := Names(reported).find(dof)):
             section.wrong(
-                "minimise", f"there is no degree of freedom {quoted(dof)} in the results", dof, reported
+                "minimise",
+                f"there is no degree of freedom {quoted(dof)} in the results, which have {choices(reported)}",
+                dof,
+                reported,
             )
         else:
             found.append(Aim(named if reported else dof, what == "greatest"))

@@ -249,11 +249,14 @@ def _decimal_commas(line: str) -> str:
     return _outside(lambda part: re.sub(r"\s*;\s*", ", ", mend(part)))(line)
 
 
+def _in_small(part: str) -> str:
+    """True, False and words that stand for them, as TOML writes them."""
+    return _VALUE.sub(lambda match: match[1] + _WORDS.get(match[2].rstrip(), match[2]), part)
+
+
 def _value_of_word(match: re.Match[str]) -> str:
-    """A word as a value: true and false, a number without its unit, or a string."""
+    """A word as a value: a string, or what is one in TOML already."""
     before, word = match[1], match[2].rstrip()
-    if word in _WORDS:
-        return before + _WORDS[word]
     if word in ("true", "false", "inf", "nan", *_NOTHING) or all(map(_NUMBER.fullmatch, word.split())):
         return match[0]
     return before + (f"'{word}'" if "\\" in word else f'"{word}"')
@@ -335,6 +338,7 @@ _REMEDIES: tuple[tuple[str, Remedy], ...] = (
     ("each key is on a line of its own", lambda line: line.replace("\r", "\n")),
     ("each key is on a line of its own", _statements),
     ("units are not written", _units),
+    ("it is true, false, inf or nan, in small letters", _outside(_in_small)),
     ("a word needs quotes", _outside(lambda part: _VALUE.sub(_value_of_word, part))),
     ("a key that is no plain word needs quotes", _of_code(_ODD_KEY, r'\1"\2" =')),
     ("numbers have a decimal point, and commas part them", _points_and_commas),
