@@ -19,7 +19,7 @@ from fcm.continuation.stepper import Stepper
 from fcm.harmonic.cost import seconds_of
 from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.reported import Reported, reported
-from fcm.harmonic.start import NEAR, solutions
+from fcm.harmonic.start import NEAR, few_of, solutions
 from fcm.harmonic.system import System
 from fcm.harmonic.work import TooLongError
 from fcm.model.scene import FloatArray
@@ -123,21 +123,27 @@ class Stretches:
         if lifted.abreast(guess, True):
             return self._found(i)
         even = curve.orientation[i] * np.sign(curve.direction[i, -1])
-        work, before = self.finer.work, self.finer.work.seconds
-        try:
-            with work.up_to(before + max(self.budget.left, 0.0)):
-                known = solutions(self.finer, float(z[-1]), NEAR).solutions
-        except TooLongError:
-            return None
-        finally:
-            self.budget.left -= work.seconds - before
+        known = self._passed(float(z[-1]))
         for one in sorted(known, key=lambda one: float(np.linalg.norm((one - guess) / lifted.newton.scale))):
             if (
-                lifted.abreast(one, False)
+                lifted.abreast(one, True)
                 and lifted.newton.orientation * lifted.newton.tangent[-1] * even > 0.0
             ):
                 return self._found(i)
         return None
+
+    def _passed(self, omega: float) -> list[FloatArray]:
+        """What the level of the forces passes at a frequency with a few harmonics, without further ones."""
+        finer, work, before = self.finer, self.finer.work, self.finer.work.seconds
+        few = finer.with_harmonics(finer.harmonics[: few_of(finer)])
+        try:
+            with work.up_to(before + max(self.budget.left, 0.0)):
+                found = solutions(few, omega, NEAR).solutions
+        except TooLongError:
+            return []
+        finally:
+            self.budget.left -= work.seconds - before
+        return [finer.extended(one, few.harmonics) for one in found]
 
     def _found(self, i: int) -> End:
         """Where the partner was found last, beside a point."""
