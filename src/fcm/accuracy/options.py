@@ -100,7 +100,7 @@ class PairOptions:
     seconds: float = 2.0
     points: float = math.inf
     part: float = 0.3
-    unnoticed: float = 0.1
+    unnoticed: float = 0.4
     step: float = 0.1
     beyond: float = 1.0
     tries: int = 8

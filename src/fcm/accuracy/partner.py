@@ -15,7 +15,7 @@ from fcm.model.scene import FloatArray
 from fcm.scene.rules import MOST_HARMONICS
 
 ENOUGH = 0.01  # of a displacement: when a Newton step was less than this, what is left is far less
-MOST = 8  # balances that are kept for the next curve
+MOST = 24  # balances that are kept for the next curve
 
 
 def partner_of(

@@ -19,7 +19,7 @@ from fcm.continuation.stepper import Stepper
 from fcm.harmonic.cost import seconds_of
 from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.reported import Reported, reported
-from fcm.harmonic.start import NEAR, few_of, solutions
+from fcm.harmonic.start import NEAR, solutions
 from fcm.harmonic.system import System
 from fcm.harmonic.work import TooLongError
 from fcm.model.scene import FloatArray
@@ -100,7 +100,7 @@ class Stretches:
     def through(self, i: int, span: tuple[float, float]) -> list[Piece]:
         """The partner both ways from the frequency of a point, as far as it stays in a span and the work
         allows; nothing where no motion of it is found there."""
-        begin = self._abreast(i) if self.budget.left > 0.0 else None
+        begin = self._abreast(i, False) if self.budget.left > 0.0 else None
         if begin is None:
             return []
         pieces = [self._followed(begin, None, span, way) for way in (True, False) if self.budget.left > 0.0]
@@ -115,9 +115,9 @@ class Stretches:
                 return self._found(i)
         return None
 
-    def _abreast(self, i: int) -> End | None:
+    def _abreast(self, i: int, alike: bool = True) -> End | None:
         """At the frequency of a point: what its motion leads to, or the nearest that the level of the forces
-        passes with an odd or even number of real multipliers above 1 as it has."""
+        passes; alike with an odd or even number of real multipliers above 1 as it has."""
         z, lifted, curve = self.curve.z[i], self.lifted, self.curve
         guess = self.finer.extended(z, self.fewer)
         if lifted.abreast(guess, True):
@@ -125,25 +125,22 @@ class Stretches:
         even = curve.orientation[i] * np.sign(curve.direction[i, -1])
         known = self._passed(float(z[-1]))
         for one in sorted(known, key=lambda one: float(np.linalg.norm((one - guess) / lifted.newton.scale))):
-            if (
-                lifted.abreast(one, True)
-                and lifted.newton.orientation * lifted.newton.tangent[-1] * even > 0.0
-            ):
+            if not lifted.abreast(one, False):
+                continue
+            if not alike or lifted.newton.orientation * lifted.newton.tangent[-1] * even > 0.0:
                 return self._found(i)
         return None
 
-    def _passed(self, omega: float) -> list[FloatArray]:
-        """What the level of the forces passes at a frequency with a few harmonics, without further ones."""
-        finer, work, before = self.finer, self.finer.work, self.finer.work.seconds
-        few = finer.with_harmonics(finer.harmonics[: few_of(finer)])
+    def _passed(self, omega: float) -> tuple[FloatArray, ...]:
+        """What the level of the forces passes at a frequency, as the budget allows."""
+        work, before = self.finer.work, self.finer.work.seconds
         try:
             with work.up_to(before + max(self.budget.left, 0.0)):
-                found = solutions(few, omega, NEAR).solutions
+                return solutions(self.finer, omega, NEAR).solutions
         except TooLongError:
-            return []
+            return ()
         finally:
             self.budget.left -= work.seconds - before
-        return [finer.extended(one, few.harmonics) for one in found]
 
     def _found(self, i: int) -> End:
         """Where the partner was found last, beside a point."""

@@ -14,7 +14,7 @@ from fcm.continuation.stepper import Stepper
 from fcm.harmonic.condensed import condensed_size
 from fcm.harmonic.system import System
 from fcm.scene.rules import MOST_HARMONICS, harmonics_up_to
-from fcm.structure.layout import Layout
+from fcm.structure.layout import layout_of
 
 PATIENCE = 30.0  # seconds that all rounds of more and more harmonics may take: levels, branches, errors
 AGAIN = 3.0  # where they are followed a dozen times, as in a search, or with one harmonic more each time
@@ -28,7 +28,7 @@ def seconds_of(system: System, evaluations: int, harmonics: int) -> float:
 
     A condensed matrix is formed first, see `condensed`, by 2 multiplications for each mode and entry.
     """
-    layout = Layout(len(system.scene.contacts), system.scene.directions_of_contact, harmonics)
+    layout = layout_of(len(system.scene.contacts), system.scene.directions_of_contact, harmonics)
     contacts, width, unknowns = layout.contacts, layout.width, layout.unknowns
     rank = condensed_size(system.yields, layout.ports, harmonics, system.condensing)
     solved = rank or unknowns

@@ -42,6 +42,7 @@ UNKNOWNS = 64  # or as many as make this many unknowns
 ENOUGH = 3  # harmonics, with which a peak that one harmonic has at twice its height is within some per cent
 NEAR = 3.0  # level that a curve has to stay above for that of more harmonics not to come back to 1
 FURTHER = 2.0  # times its greatest level before, up to which that of more is followed
+ROUNDED = 1e-9  # relative, by which two ways to one level may differ
 BESIDE = 1e-4  # relative distance from a resonance, which an undamped structure has no response at
 
 
@@ -131,13 +132,15 @@ def _shared(system: System, omega: float, top: float) -> Found | None:
 
     That is followed to its end, which is dear where fewer harmonics tell that less is enough.
     """
-    if not system.unit or top >= GREATEST or top > system.unit * highest(system.normal, omega):
+    if not system.unit or top >= GREATEST:
         return None
     path = in_common(system, omega, _whole)
     if path is not None:  # whoever followed it
         system.work.take(seconds_of(system, path.evaluations, len(system.harmonics)))
-    found = None if path is None else passings(system, path, omega)
-    if path is None or found is None:
+    if path is None or top > (1.0 + ROUNDED) * system.unit * path.parameter[-1]:
+        return None
+    found = passings(system, path, omega)
+    if found is None:
         return None
     reach = _reach(system, path.status, system.unit * path.parameter)
     turns = turns_of(path, omega, system.unit)

@@ -28,7 +28,7 @@ from fcm.harmonic.single import SingleHarmonic
 from fcm.harmonic.travelling import TravellingDisplacements
 from fcm.harmonic.work import Work
 from fcm.model.scene import FloatArray, Scene
-from fcm.structure.layout import Layout
+from fcm.structure.layout import Layout, layout_of
 from fcm.structure.linear import ComplexArray, Linear, linear_of
 from fcm.structure.receptance import Receptance
 from fcm.structure.ring import RingLinear
@@ -96,18 +96,18 @@ class System:
     def _with(self, **other: object) -> System:
         found = object.__new__(type(self))
         found.__dict__.update(vars(self), **other)
-        for made in ("_workspace", "unit", "normal", "yields"):
+        for made in ("_workspace", "unit", "normal", "yields", "layout"):
             found.__dict__.pop(made, None)
         return found
 
-    @property
+    @cached_property
     def layout(self) -> Layout:
         """Where the contacts' displacements are among the unknowns."""
         return self.layout_of(self.harmonics)
 
     def layout_of(self, harmonics: tuple[int, ...]) -> Layout:
         """The same with other harmonics."""
-        return Layout(len(self.scene.contacts), self.scene.directions_of_contact, len(harmonics))
+        return layout_of(len(self.scene.contacts), self.scene.directions_of_contact, len(harmonics))
 
     def extended(self, z: FloatArray, harmonics: tuple[int, ...]) -> FloatArray:
         """Unknowns (..., unknown + any) with other harmonics, and what follows them, as those of this: what

@@ -114,10 +114,16 @@ class Layout:
 
 
 @lru_cache(maxsize=256)
+def layout_of(contacts: int, directions: int, harmonics: int) -> Layout:
+    """That of so many, made once."""
+    return Layout(contacts, directions, harmonics)
+
+
+@lru_cache(maxsize=256)
 def _between(layout: Layout, old: tuple[int, ...], new: tuple[int, ...]) -> tuple[int, IntArray, IntArray]:
     """How many unknowns there are with new harmonics; where those of harmonics that both have are among
     these, and among the old ones."""
-    wide = Layout(layout.contacts, layout.directions, len(new))
+    wide = layout_of(layout.contacts, layout.directions, len(new))
     both = [h for h in (0, *old) if h == 0 or h in new]
     to, of = (
         (
