@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fcm.harmonic.reported import reported
-from fcm.harmonic.system import System
-from fcm.harmonic.trace import traced
+from fcm.branches.trace import traced
+from fcm.harmonic_balance.reported_quantities import reported
+from fcm.harmonic_balance.system import System
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
 

@@ -11,7 +11,7 @@ import pytest
 import xarray
 
 import fcm
-from fcm.orbit import periodic
+from fcm.shooting import periodic
 
 from .program import AS_A_MODULE, called, ended, python
 from .report import contact_figures, response_figures

@@ -14,16 +14,16 @@ from pathlib import Path
 import numpy as np
 
 try:
-    from ..harmonic.truth import MANY, SAME, Truth, exact, scene
+    from ..harmonic_balance.truth import MANY, SAME, Truth, exact, scene
 except ImportError:  # run as a program
-    sys.path.append(str(Path(__file__).parents[1] / "harmonic"))
+    sys.path.append(str(Path(__file__).parents[1] / "harmonic_balance"))
     from truth import MANY, SAME, Truth, exact, scene
 
 from fcm.accuracy.options import PAIR
 from fcm.accuracy.refinement import estimated
 from fcm.continuation import FollowOptions, Mark, follow
-from fcm.harmonic.reported import reported
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.reported_quantities import reported
+from fcm.harmonic_balance.system import System
 
 CASES = (
     *(("yang1998", preload) for preload in (100, 50, 20, 10, 5, 2, 0, -5, -20)),

@@ -8,23 +8,23 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.accuracy.borne import relative
+from fcm.accuracy.contact_load_errors import relative
 from fcm.accuracy.options import PAIR
 from fcm.accuracy.refinement import estimated
 from fcm.continuation import Mark
-from fcm.harmonic.record import borne_along
-from fcm.harmonic.system import System
-from fcm.motion import SimulationError
-from fcm.orbit.periodic import periodic
-from fcm.orbit.problem import OrbitProblem
-from fcm.orbit.sample import recorded
+from fcm.harmonic_balance.response_quantities import borne_along
+from fcm.harmonic_balance.system import System
 from fcm.response.exact import trace_exact
 from fcm.response.level import trace_levels
 from fcm.response.mode import trace_modes
+from fcm.response.request import Request
 from fcm.response.trace import traced_curve
-from fcm.response.wanted import Wanted
+from fcm.shooting.orbit_record import recorded
+from fcm.shooting.periodic import periodic
+from fcm.shooting.problem import OrbitProblem
+from fcm.time_domain import SimulationError
 
-from ..harmonic.truth import SAME, Truth, scene, state
+from ..harmonic_balance.truth import SAME, Truth, scene, state
 
 NAMES = ("greatest_normal_force", "greatest_friction_force", "slip_path", "dissipated_energy")
 SMALLEST = 1e-3  # errors below are not compared
@@ -91,14 +91,14 @@ def test_a_contact_without_friction_closes_and_opens_with_any_number_of_harmonic
     exact = trace_exact(one, [1.9]).curves[0]
     assert set(exact.regime[:, 0]) == {"SE"} and not exact.cycle[:, 0, 1:].any()
     for harmonics in ((1,), (1, 2, 3)):
-        curve = traced_curve(one, Wanted(harmonics, 1e-2))
+        curve = traced_curve(one, Request(harmonics, 1e-2))
         assert set(curve.regime[:, 0]) == {"S", "SE"} and not curve.cycle[:, 0, 1:].any()
 
 
 @pytest.mark.parametrize("preload", [20, 5, 0, -5])
 def test_the_greatest_of_a_curve_beside_that_of_many_harmonics(preload):
     one = scene("yang1998", preload)
-    few, many = (traced_curve(one, Wanted(tuple(range(1, n + 1)), 1e-2)).greatest for n in (1, 21))
+    few, many = (traced_curve(one, Request(tuple(range(1, n + 1)), 1e-2)).greatest for n in (1, 21))
     true = np.abs(many.value / few.value - 1.0)
     for told, is_really in zip(few.error.ravel(), true.ravel(), strict=True):
         if is_really > SMALLEST:

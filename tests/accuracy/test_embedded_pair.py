@@ -9,20 +9,20 @@ import pytest
 from fcm.accuracy.embedded_pair import errors_along
 from fcm.accuracy.options import PAIR
 from fcm.accuracy.refinement import estimated
-from fcm.accuracy.trust import BELIEVED, astray
+from fcm.accuracy.stability_validity import BELIEVED, astray
 from fcm.continuation import Mark, Status
-from fcm.harmonic.system import System
-from fcm.orbit import periodic
-from fcm.orbit.harmonic import state_of
-from fcm.orbit.problem import OrbitProblem
+from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.response.exact import trace_exact
 from fcm.scene import load_scene, scene_from_dict
+from fcm.shooting import periodic
+from fcm.shooting.harmonic_balance_state import state_of
+from fcm.shooting.problem import OrbitProblem
 from fcm.stability.floquet import multipliers
 
-from ..harmonic.scenes import up_to
-from ..harmonic.strips import strip
-from ..harmonic.truth import Truth, exact, scene
+from ..harmonic_balance.scenes import up_to
+from ..harmonic_balance.strips import strip
+from ..harmonic_balance.truth import Truth, exact, scene
 from ..response.random_peaks import height
 from ..response.random_scenes import random_scene
 from .calibration import points

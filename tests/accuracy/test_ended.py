@@ -2,7 +2,7 @@
 
 from fcm.accuracy.refinement import given
 from fcm.continuation import Mark
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.system import System
 from fcm.scene import scene_from_dict
 
 

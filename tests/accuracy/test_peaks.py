@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from fcm.accuracy.refinement import estimated
-from fcm.harmonic.system import System
-from fcm.orbit.problem import OrbitProblem
+from fcm.harmonic_balance.system import System
 from fcm.response.exact import trace_exact
 from fcm.scene import scene_from_dict
+from fcm.shooting.problem import OrbitProblem
 
-from ..harmonic.scenes import up_to
+from ..harmonic_balance.scenes import up_to
 from ..response.random_peaks import height
 from ..response.random_scenes import random_scene
 

@@ -10,17 +10,17 @@ import pytest
 from fcm.accuracy import outline, refinement
 from fcm.accuracy.outline import Outline, outlined
 from fcm.accuracy.refinement import accurate, enlarged, estimated, judged
+from fcm.branches import force_level, shared_levels, trace
 from fcm.continuation import follow
 from fcm.continuation.all_branches import contains
-from fcm.harmonic import start, trace
-from fcm.harmonic.condensed import OPTIONS
-from fcm.harmonic.cost import seconds_of
-from fcm.harmonic.system import System
-from fcm.harmonic.work import TooLongError
+from fcm.harmonic_balance.cost_model import seconds_of
+from fcm.harmonic_balance.modal_condensation import OPTIONS
+from fcm.harmonic_balance.system import System
+from fcm.harmonic_balance.work_budget import TooLongError
+from fcm.response.request import Request
 from fcm.response.trace import traced_curve
-from fcm.response.wanted import Wanted
 
-from ..harmonic.truth import scene
+from ..harmonic_balance.truth import scene
 
 EXACT = {
     300: 7.517e-5,
@@ -119,15 +119,15 @@ def test_levels_are_followed_with_the_last_harmonics_and_lead_to_no_branch_that_
     last = found.system.harmonics
     assert found.reached and len(passes) == 2 and passes[-1] == last
     assert followed == [(1,), last]
-    for omega in start.looked_at(found.system):
-        for z in start.solutions(found.system, omega).solutions:
+    for omega in force_level.looked_at(found.system):
+        for z in force_level.solutions(found.system, omega).solutions:
             assert any(contains(path, z, found.system.balance()) for path in found.traced.branches.paths)
 
 
 def test_a_branch_that_fewer_harmonics_do_not_lead_to_is_found_by_the_level_at_last(monkeypatch):
     """As if there were no other way to a closed branch: that is another to be chosen for, too."""
     known = accurate(System(scene("isola")), 1e-2)
-    led, ahead = outline.traced_from, refinement.foreseen
+    led, ahead = outline.traced_from, refinement.required_harmonics
     asked: list[int] = []
 
     def the_first_alone(*args):
@@ -137,7 +137,7 @@ def test_a_branch_that_fewer_harmonics_do_not_lead_to_is_found_by_the_level_at_l
 
     monkeypatch.setattr(outline, "traced_from", the_first_alone)
     monkeypatch.setattr(
-        refinement, "foreseen", lambda one, *a: asked.append(len(one.shown)) or ahead(one, *a)
+        refinement, "required_harmonics", lambda one, *a: asked.append(len(one.shown)) or ahead(one, *a)
     )
     found = accurate(System(scene("isola")), 1e-2)
     assert asked == [1] and len(known.shown) == 2
@@ -181,16 +181,17 @@ def test_what_has_been_taken_counts_in_what_takes_too_long(monkeypatch):
 def test_what_is_taken_is_levels_branches_and_error_points(monkeypatch):
     """Of levels and branches as counted from outside, by evaluations of balances of their sizes; curves of
     folds, which are followed in the level as well, take no more than these again."""
+    shared_levels.forget()  # those that another test has followed
     system = System(scene("yang1998", 5), (1, 2, 3))
     paths = {}
-    for module in (start, trace):
+    for module in (force_level, trace):
         some = paths[module] = []
         keep = some.append
         monkeypatch.setattr(
             module, "follow", lambda *a, keep=keep, **k: keep(path := follow(*a, **k)) or path
         )
     found = outlined(system)
-    assert paths[start] and paths[trace]
+    assert paths[force_level] and paths[trace]
     evaluations = sum(path.evaluations for some in paths.values() for path in some)
     counted = seconds_of(system, evaluations, 3)
     assert counted <= found.seconds < 2.0 * counted
@@ -235,7 +236,7 @@ def test_a_round_that_takes_longer_than_was_foreseen_is_given_up(monkeypatch):
     assert found.system.harmonics == (1,) and not found.reached
     assert found.worst == pytest.approx(0.062, rel=0.1)
     assert found.system.work.most == np.inf
-    curve = traced_curve(system.scene, Wanted(harmonics=None, accuracy=1e-3))
+    curve = traced_curve(system.scene, Request(harmonics=None, accuracy=1e-3))
     assert "with 1 harmonic an estimated error of 6" in curve.short_of
     assert "; more were given up after" in curve.short_of
     assert {int(h) for h in re.split("[, ]", curve.short_of.split("--harmonics ")[1])} <= set(found.further)
@@ -264,8 +265,8 @@ def test_no_more_harmonics_are_added_than_some_seconds_allow():
 
 def test_where_nothing_is_told_of_more_harmonics_they_take_no_longer_than_some_seconds(monkeypatch):
     """The lowest three are added all the same: one harmonic may have a branch of no motion at all."""
-    own = refinement.foreseen
-    monkeypatch.setattr(refinement, "foreseen", lambda *a: replace(own(*a), change=0.0, told=False))
+    own = refinement.required_harmonics
+    monkeypatch.setattr(refinement, "required_harmonics", lambda *a: replace(own(*a), change=0.0, told=False))
     monkeypatch.setattr(outline, "DOUBTFUL", 0.0)
     found = accurate(System(scene("yang1998", 5)), 1e-4)
     assert found.system.harmonics == (1, 2, 3) and not found.reached

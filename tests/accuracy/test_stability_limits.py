@@ -5,12 +5,12 @@ import pytest
 
 from fcm.accuracy.refinement import estimated
 from fcm.accuracy.stability_limits import Lost, lost_along, moved
-from fcm.harmonic.system import System
-from fcm.orbit import periodic
+from fcm.harmonic_balance.system import System
 from fcm.response.exact import trace_exact
+from fcm.response.request import Request
 from fcm.response.trace import traced_curve
-from fcm.response.wanted import Wanted
 from fcm.scene import scene_from_dict
+from fcm.shooting import periodic
 from fcm.stability.bifurcations import stability
 
 MANY = tuple(range(1, 21))
@@ -86,7 +86,7 @@ def bouncing():
 @pytest.mark.slow
 def test_the_accuracy_holds_for_where_stability_is_lost(bouncing):
     """Swept upwards, the exact motion repeats after one period at 0.742 rad/s, and at 0.757 no more."""
-    curve = traced_curve(bouncing, Wanted(None, 1e-2))
+    curve = traced_curve(bouncing, Request(None, 1e-2))
     first = next(one.frequency for one in curve.jumps() if one.sweep == "up")
     (exact,) = trace_exact(bouncing, (0.70, 0.72, 0.735, 0.742, 0.757)).curves
     up = exact.orbits.repeats[:5]
@@ -98,7 +98,7 @@ def test_the_accuracy_holds_for_where_stability_is_lost(bouncing):
 @pytest.mark.slow
 def test_stability_is_not_said_to_be_lost_where_that_cannot_be_told(bouncing):
     """With few harmonics, as 0.1 takes, multipliers are above 1 before those of the exact motion."""
-    curve = traced_curve(bouncing, Wanted(None, 0.1))
+    curve = traced_curve(bouncing, Request(None, 0.1))
     held = [periodic(bouncing, omega).stable for omega in (0.72, 0.735, 0.742)]
     assert all(held)
     assert not (curve.stable[(curve.frequency > 0.7) & (curve.frequency < 0.742)] == 0.0).any()
@@ -130,7 +130,7 @@ def test_where_it_cannot_be_told_how_far_the_loss_of_stability_is_off_more_harmo
             "response": {"frequency": [0.5, 2.2]},
         }
     )
-    curve = traced_curve(scene, Wanted(None, 1e-2))
+    curve = traced_curve(scene, Request(None, 1e-2))
     assert not curve.short_of and len(curve.harmonics) > 3
     between = (curve.frequency > 0.885) & (curve.frequency < 0.9)
     assert [periodic(scene, omega).stable for omega in (0.885, 0.892, 0.9)] == [True, False, True]

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.accuracy.refinement import given
-from fcm.harmonic.system import System
-from fcm.orbit import periodic
-from fcm.orbit.harmonic import state_of
+from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.response.exact import trace_exact
 from fcm.scene import scene_from_dict
+from fcm.shooting import periodic
+from fcm.shooting.harmonic_balance_state import state_of
 
 
 def test_errors_where_a_corner_has_moved_are_those_at_the_same_frequency():

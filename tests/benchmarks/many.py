@@ -12,8 +12,8 @@ import time
 
 import numpy as np
 
-from fcm.harmonic.system import System
-from fcm.harmonic.trace import traced
+from fcm.branches.trace import traced
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import Scene
 from fcm.scene import scene_from_dict
 from fcm.stability.bifurcations import stability

@@ -18,15 +18,15 @@ import numpy as np
 from unit import SINE, sine
 
 import fcm
-from fcm.motion.measure import measure
-from fcm.motion.run import march
-from fcm.motion.state import entry
-from fcm.motion.system import System
-from fcm.orbit import Shooting, periodic
-from fcm.orbit.derivative import derivative_at
 from fcm.response import Response
 from fcm.response.exact import trace_exact
 from fcm.scene import Contact, Force, Modal, Scene
+from fcm.shooting import Shooting, periodic
+from fcm.shooting.period_derivative import derivative_at
+from fcm.time_domain.cycle_measures import measure
+from fcm.time_domain.simulation import march
+from fcm.time_domain.state import entry
+from fcm.time_domain.system import System
 
 FREQUENCIES = np.linspace(0.7, 1.7, 40)
 STEPS = (100, 200, 400)  # in a cycle

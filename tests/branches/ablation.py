@@ -15,8 +15,8 @@ import numpy as np
 
 from fcm.accuracy import outline, refinement
 from fcm.response import all_branches
+from fcm.response.request import Request
 from fcm.response.trace import traced_curve
-from fcm.response.wanted import Wanted
 from fcm.scene import load_scene
 
 from ..response.random_scenes import random_scene
@@ -57,7 +57,7 @@ def without(patches):
 def answer(scene, harmonics):
     """What is compared."""
     given = tuple(range(1, harmonics + 1)) if harmonics else None
-    curve = traced_curve(scene, Wanted(given, ACCURACY))
+    curve = traced_curve(scene, Request(given, ACCURACY))
     answers = {f"peak {dof}": peak.amplitude for dof, peak in curve.peaks.items()}
     answers["branches"] = int(np.isnan(curve.frequency).sum()) + 1
     return answers | {"folds": len(curve.folds), "complete": curve.complete}

@@ -11,13 +11,13 @@ import matplotlib as mpl
 import numpy as np
 
 from fcm.branches.fold_continuation import folds_from
+from fcm.branches.force_level import looked_at, solutions
 from fcm.branches.options import FOLDS
 from fcm.branches.search import every_branch
 from fcm.branches.surface import Surface
 from fcm.continuation import Status
-from fcm.harmonic.reported import reported
-from fcm.harmonic.start import looked_at, solutions
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.reported_quantities import reported
+from fcm.harmonic_balance.system import System
 from fcm.scene import load_scene
 
 SCENE = Path(__file__).parent / "scenes/closed_impact.toml"

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fcm.harmonic.system import System
-from fcm.harmonic.whole import jacobian_of
-from fcm.motion import State, simulate
+from fcm.harmonic_balance.dense_jacobian import jacobian_of
+from fcm.harmonic_balance.system import System
+from fcm.response.request import Request
 from fcm.response.trace import traced_curve
-from fcm.response.wanted import Wanted
+from fcm.time_domain import State, simulate
 
 from .relatives import EACH, KINDS
 
@@ -111,7 +111,7 @@ def _newton(balance, x, omega, known):
 
 def hunt(scene, looks=5, tries=6, deflate=False):
     """What the response of a scene by default lacks at some frequencies."""
-    curve = traced_curve(scene, Wanted(None, ACCURACY))
+    curve = traced_curve(scene, Request(None, ACCURACY))
     low, high = scene.frequency_range
     frequencies = np.linspace(low, high, looks + 2)[1:-1]
     yield from marched(scene, curve, frequencies, tries)

@@ -12,7 +12,7 @@ from .ablation import OFF, answer, changes, without
 from .test_further_levels import ONE_MODE
 from .test_low_harmonics import beyond
 
-SCENES, KNOWN = Path(__file__).parent / "scenes", Path(__file__).parents[1] / "harmonic/scenes"
+SCENES, KNOWN = Path(__file__).parent / "scenes", Path(__file__).parents[1] / "harmonic_balance/scenes"
 
 
 def one(folder, name, span=None):

@@ -8,11 +8,11 @@ import pytest
 from fcm.branches.branch_points import branch_points
 from fcm.branches.mirror import mirrors
 from fcm.branches.search import every_branch
+from fcm.branches.trace import traced
 from fcm.continuation.all_branches import contains
-from fcm.harmonic.system import System
-from fcm.harmonic.trace import traced
+from fcm.harmonic_balance.system import System
+from fcm.response.request import Request
 from fcm.response.trace import traced_curve
-from fcm.response.wanted import Wanted
 from fcm.scene import load_scene
 
 SCENE = load_scene(Path(__file__).parent / "scenes/equal_stops.toml").each_curve()[0]
@@ -22,7 +22,7 @@ SCENE = load_scene(Path(__file__).parent / "scenes/equal_stops.toml").each_curve
 def test_the_highest_peak_of_equal_stops_is_of_a_motion_that_is_not_symmetric():
     """Marched independently: 0.31653 at 1.7695 rad/s, stable, on two mirrored motions. Those of the symmetric
     motion are lower by 4 %."""
-    curve = traced_curve(SCENE, Wanted((1, 2, 3, 4, 5), 1e-2))
+    curve = traced_curve(SCENE, Request((1, 2, 3, 4, 5), 1e-2))
     peak = curve.peaks["x1"]
     assert curve.complete
     assert peak.amplitude == pytest.approx(0.31653, rel=1e-3)
@@ -33,7 +33,7 @@ def test_the_highest_peak_of_equal_stops_is_of_a_motion_that_is_not_symmetric():
 @pytest.mark.slow
 def test_even_harmonics_are_taken_where_a_symmetric_motion_loses_its_symmetry():
     """With odd harmonics alone the symmetric motion is within the accuracy, and its branch points hidden."""
-    curve = traced_curve(SCENE, Wanted(None, 1e-2))
+    curve = traced_curve(SCENE, Request(None, 1e-2))
     assert {2, 4} < set(curve.harmonics)
     assert curve.peaks["x1"].amplitude == pytest.approx(0.31653, rel=1e-3)
 
@@ -58,14 +58,14 @@ def test_both_sides_of_a_branch_point_are_mirror_images_of_which_one_is_traced()
 @pytest.mark.slow
 def test_where_odd_harmonics_alone_are_given_it_is_said_where_symmetry_is_lost(fcm, tmp_path):
     """The branch points are those of all harmonics; the unsymmetric motions have even ones."""
-    odd = traced_curve(SCENE, Wanted((1, 3, 5)))
+    odd = traced_curve(SCENE, Request((1, 3, 5)))
     system = System(SCENE, (1, 2, 3, 4, 5))
     there = [
         point.z[-1]
         for point in branch_points(system, (1, 3, 5), traced(System(SCENE, (1, 3, 5))).branches.paths)
     ]
     assert odd.symmetry_lost and odd.symmetry_lost == pytest.approx(there)
-    whole = traced_curve(SCENE, Wanted((1, 2, 3, 4, 5)))
+    whole = traced_curve(SCENE, Request((1, 2, 3, 4, 5)))
     assert whole.symmetry_lost == [] and whole.mirrored and not odd.mirrored
     done = fcm("respond", Path(__file__).parent / "scenes/equal_stops.toml", "--harmonics", "1,3,5", "--json")
     assert "loses its symmetry" in done.err and f"{odd.symmetry_lost[0]:.5g} rad/s" in done.err

@@ -7,16 +7,16 @@ from pathlib import Path as File
 import numpy as np
 import pytest
 
+from fcm.branches.force_level import solutions
 from fcm.branches.options import LEVELS
-from fcm.harmonic.start import solutions
-from fcm.motion import State, simulate
 from fcm.response import further_levels, trace
+from fcm.response.request import Request
 from fcm.response.trace import traced_curve
-from fcm.response.wanted import Wanted
 from fcm.scene import load_scene, scene_from_dict
 from fcm.stability.unstable_ranges import unstable_stretches
+from fcm.time_domain import State, simulate
 
-KNOWN = File(__file__).parents[1] / "harmonic/scenes"
+KNOWN = File(__file__).parents[1] / "harmonic_balance/scenes"
 MARCHED = (1.6231, 7.0014, 6.7749, 3.7635)
 
 
@@ -41,7 +41,7 @@ def test_a_stable_branch_that_was_missed_is_looked_for_where_nothing_is_stable()
     """At 1.567 rad/s a march of the contact law, with 3000 and 12000 steps of a cycle, settles at the same
     motion from all of 12 random states. The other branches there are 14 % lower and more, and unstable."""
     scene = load_scene(KNOWN / "missed.toml").each_curve()[0]
-    curve = traced_curve(replace(scene, frequency_range=(1.35, 2.156)), Wanted(None, 1e-2))
+    curve = traced_curve(replace(scene, frequency_range=(1.35, 2.156)), Request(None, 1e-2))
     off, stable = curve.frequency - 1.567, curve.stable == 1.0
     (i,) = np.flatnonzero((off[:-1] * off[1:] < 0.0) & stable[:-1] & stable[1:])
     part = off[i] / (off[i] - off[i + 1])
@@ -107,12 +107,12 @@ def test_a_level_that_is_not_followed_to_its_end_leaves_branches_unsure(monkeypa
 @pytest.mark.slow
 def test_ranges_are_looked_at_the_widest_first_as_long_as_it_may_take_and_the_others_are_told(monkeypatch):
     scene = replace(load_scene(KNOWN / "chaos.toml"), frequency_range=(1.15, 1.45))
-    every = traced_curve(scene, Wanted(tuple(range(1, 6)), 1e-2)).summary()
+    every = traced_curve(scene, Request(tuple(range(1, 6)), 1e-2)).summary()
     few = replace(LEVELS, share=0.05, unnoticed=0.0)
     whole = further_levels.with_levels_where_unstable
     module = import_module("fcm.response.trace")
     monkeypatch.setattr(module, "with_levels_where_unstable", lambda *args: whole(*args, few))
-    some = traced_curve(scene, Wanted(tuple(range(1, 6)), 1e-2)).summary()
+    some = traced_curve(scene, Request(tuple(range(1, 6)), 1e-2)).summary()
     left, none = some["no_stable_motion_not_looked_at"], every.get("no_stable_motion_not_looked_at", [])
     assert len(none) < len(left) <= len(some["no_stable_motion"])
     looked = [ends for ends in some["no_stable_motion"] if ends not in left]
@@ -135,7 +135,7 @@ def test_a_window_of_stability_that_was_not_seen_is_where_a_look_finds_it():
         "force": [{"dof": "v", "amplitude": 1.0}],
         "response": {"frequency": [1.1187, 1.4861]},
     }  # fmt: skip
-    curve = traced_curve(scene_from_dict(given), Wanted(tuple(range(1, 11)), 1e-2))
+    curve = traced_curve(scene_from_dict(given), Request(tuple(range(1, 11)), 1e-2))
     off = curve.frequency - 1.425
     (i,) = np.flatnonzero(off[:-1] * off[1:] < 0.0)
     assert (curve.stable[i : i + 2] == 1.0).all()
@@ -152,7 +152,7 @@ HIGHER = (2.78856, 1.13617, 3.59541, 2.31086)
 def curve(count, span):
     """Of the first harmonics, about a closed branch that seven of them have and five have not."""
     scene = load_scene(KNOWN / "chaos.toml")
-    return traced_curve(replace(scene, frequency_range=span), Wanted(tuple(range(1, count + 1))))
+    return traced_curve(replace(scene, frequency_range=span), Request(tuple(range(1, count + 1))))
 
 
 def test_of_peaks_that_a_branch_of_more_harmonics_exceeds_no_error_is_told():

@@ -9,16 +9,16 @@ import pytest
 
 from fcm.branches import search
 from fcm.branches.fold_continuation import Ending, Folds, folds_from
+from fcm.branches.force_level import looked_at, solutions
 from fcm.branches.isolas import crossings
 from fcm.branches.options import FOLDS
 from fcm.branches.search import every_branch
 from fcm.branches.surface import Surface
+from fcm.branches.trace import traced
 from fcm.continuation import Mark, Status
-from fcm.harmonic.start import looked_at, solutions
-from fcm.harmonic.system import System
-from fcm.harmonic.trace import traced
+from fcm.harmonic_balance.system import System
+from fcm.response.request import Request
 from fcm.response.trace import traced_curve
-from fcm.response.wanted import Wanted
 from fcm.scene import load_scene
 
 SCENES = Path(__file__).parent / "scenes"
@@ -50,7 +50,7 @@ def test_a_closed_branch_of_an_impact_oscillator_is_found(harmonics, within):
     """At 1.6 rad/s an independent march settles at 0.5009; the branch spans 1.492 to 1.969 rad/s. Neither the
     ends of the range nor the resonance have more solutions than one."""
     given = None if harmonics is None else tuple(range(1, harmonics + 1))
-    curve = traced_curve(scene("closed_impact"), Wanted(given, ACCURACY))
+    curve = traced_curve(scene("closed_impact"), Request(given, ACCURACY))
     assert curve.complete
     there = [amplitude for amplitude, stable in passings(curve, 1.6) if stable == 1.0]
     assert min(abs(float(one[0]) / 0.5009 - 1.0) for one in there) < 5e-3
@@ -163,15 +163,15 @@ def test_where_folds_are_lost_a_response_says_from_where_on(monkeypatch):
     """And with what is left of them the closed branch is not found."""
     options = replace(FOLDS, share=0.0, unnoticed=0.0)
     monkeypatch.setattr(search, "crossings", lambda *args: crossings(*args, options))
-    curve = traced_curve(scene("closed_impact"), Wanted((1, 2, 3, 4), ACCURACY))
+    curve = traced_curve(scene("closed_impact"), Request((1, 2, 3, 4), ACCURACY))
     assert curve.complete and curve.folds_unsure and not curve.unsure
     assert curve.summary()["folds_unsure_at"] == curve.folds_unsure
     monkeypatch.undo()
-    curve = traced_curve(scene("closed_impact"), Wanted((1, 2, 3, 4), ACCURACY))
+    curve = traced_curve(scene("closed_impact"), Request((1, 2, 3, 4), ACCURACY))
     assert curve.folds_unsure == [] and "folds_unsure_at" not in curve.summary()
 
 
-KNOWN = Path(__file__).parents[1] / "harmonic/scenes"
+KNOWN = Path(__file__).parents[1] / "harmonic_balance/scenes"
 MARCHED = [
     # where the curve of folds leads to them, and motions at which marches of the contact law from random
     # states settle, by the method of Runge and Kutta or with steps of a fixed length
@@ -191,7 +191,7 @@ def test_closed_branches_that_marches_settle_on_are_found(name, span, harmonics,
     one = load_scene(KNOWN / f"{name}.toml").each_curve()[0]
     one = one if span is None else replace(one, frequency_range=span)
     given = None if harmonics is None else tuple(range(1, harmonics + 1))
-    curve = traced_curve(one, Wanted(given, 1e-2))
+    curve = traced_curve(one, Request(given, 1e-2))
     off = [np.nanmax(np.abs(amplitude / marched - 1.0)) for amplitude, _ in passings(curve, omega)]
     assert curve.complete and min(off) < within
 

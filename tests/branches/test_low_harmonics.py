@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from fcm.accuracy.refinement import accurate
-from fcm.harmonic.start import with_low_harmonics
-from fcm.harmonic.system import System
-from fcm.harmonic.trace import traced
+from fcm.branches.force_level import with_low_harmonics
+from fcm.branches.trace import traced
+from fcm.harmonic_balance.system import System
+from fcm.response.request import Request
 from fcm.response.trace import traced_curve
-from fcm.response.wanted import Wanted
 
-from ..harmonic.scenes import scene
-from ..harmonic.truth import exact
+from ..harmonic_balance.scenes import scene
+from ..harmonic_balance.truth import exact
 
 MODAL = {
     "dofs": ["u", "v"],
@@ -81,7 +81,7 @@ def test_impacts_beside_a_gap_that_just_stays_open_are_found():
     """The open motion fills 0.91 of the gap, and the level of one harmonic does not turn. At 2.3427 rad/s a
     march of the exact motion settles, from each of 12 random states, at another one: that of IMPACTS."""
     of = scene(NEVER_CLOSED, [GAP], (2.1, 2.45))
-    curve = traced_curve(of, Wanted(None, 1e-2))
+    curve = traced_curve(of, Request(None, 1e-2))
     off, stays, v = curve.frequency - 2.3427, curve.stable != 0.0, curve.amplitude[:, 0]  # or just begins to
     passed = np.flatnonzero((off[:-1] * off[1:] < 0.0) & stays[:-1] & stays[1:])
     least, greatest = sorted((v[i] * off[i + 1] - v[i + 1] * off[i]) / (off[i + 1] - off[i]) for i in passed)

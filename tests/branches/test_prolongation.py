@@ -8,18 +8,18 @@ import pytest
 
 from fcm.accuracy.refinement import accurate, given
 from fcm.branches.prolongation import at_its_frequency
-from fcm.harmonic.system import System
-from fcm.harmonic.trace import traced
-from fcm.motion import State, simulate
+from fcm.branches.trace import traced
+from fcm.harmonic_balance.system import System
+from fcm.response.request import Request
 from fcm.response.trace import traced_curve
-from fcm.response.wanted import Wanted
 from fcm.scene import load_scene
+from fcm.time_domain import State, simulate
 
-from ..harmonic.scenes import displacements, isola_stuck, up_to
-from ..harmonic.truth import exact
+from ..harmonic_balance.scenes import displacements, isola_stuck, up_to
+from ..harmonic_balance.truth import exact
 from ..response.random_scenes import random_scene
 
-KNOWN = Path(__file__).parents[1] / "harmonic/scenes"
+KNOWN = Path(__file__).parents[1] / "harmonic_balance/scenes"
 
 
 def amplitudes_at(found, omega):
@@ -152,6 +152,6 @@ def test_a_solution_that_only_the_level_of_some_harmonics_leads_to_is_found_with
     of ten random states. The level of 7, 8, 9 or 14 harmonics passes it, that of 11, 19 or 20 does not.
     """
     scene = load_scene(KNOWN / "pinched_level.toml").each_curve()[0]
-    curve = traced_curve(replace(scene, frequency_range=(0.78, 0.82)), Wanted(up_to(highest)))
+    curve = traced_curve(replace(scene, frequency_range=(0.78, 0.82)), Request(up_to(highest)))
     marched = (2.3889, 1.7381, 2.8195, 1.2588)
     assert min(np.abs(one / marched - 1.0).max() for one in displacements_at(curve, 0.8018)) < 1e-2

@@ -11,8 +11,8 @@ import xarray
 
 from fcm.compare import MEASURES, comparison, exact, methods
 from fcm.compare import startup as startups
-from fcm.orbit import periodic
 from fcm.scene import load_scene
+from fcm.shooting import periodic
 
 from ..report.evidence import evidence as page
 

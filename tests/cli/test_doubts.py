@@ -13,7 +13,7 @@ from fcm.cli.doubts import maybe_not_unique, nothing_stable, short_of_accuracy
 from fcm.response.exact import trace_exact
 from fcm.scene import load_scene
 
-SCENE = Path(__file__).parents[1] / "orbit/scenes/two_periods.toml"
+SCENE = Path(__file__).parents[1] / "shooting/scenes/two_periods.toml"
 
 
 @pytest.mark.slow

@@ -121,7 +121,7 @@ def test_a_curve_without_points_is_a_header(fcm, scene, tmp_path):
     assert len((tmp_path / "a.csv").read_text().splitlines()) == 1
 
 
-SCENES = Path(__file__).parents[1] / "orbit/scenes"
+SCENES = Path(__file__).parents[1] / "shooting/scenes"
 
 
 @pytest.mark.slow

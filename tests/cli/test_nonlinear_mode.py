@@ -7,7 +7,7 @@ import netCDF4
 import numpy as np
 import pytest
 
-from fcm.harmonic.mode import nonlinear_mode
+from fcm.nonlinear_modes.backbone import nonlinear_mode
 
 MODE = ("respond", "yang1998-n5", "--mode", 1, "--level", "0.1:100", "--harmonics", 1)
 

@@ -174,7 +174,7 @@ def test_without_force_there_is_no_motion(fcm, alone):
 def test_an_interruption_keeps_what_is_finished(request, program, tmp_path, kind, left, finished):
     request.getfixturevalue(kind)
     code = f"""
-import os, signal, fcm.motion.record as record
+import os, signal, fcm.time_domain.schedule_record as record
 real, calls = record.measure, []
 def measure(*args):
     calls.append(0)

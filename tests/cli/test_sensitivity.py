@@ -8,10 +8,10 @@ import pytest
 
 from fcm.cli.messages import Messages
 from fcm.cli.sensitivity import added
-from fcm.harmonic.sensitivity import sensitivities
 from fcm.response import trace
 from fcm.results.cause import Cause
 from fcm.scene import load_scene
+from fcm.sensitivity.peaks import sensitivities
 
 
 @pytest.fixture

@@ -229,14 +229,14 @@ TWO = OPTIMUM.replace('"]', '", "contact.shroud.mu"]').replace("]]", "], [0.2, 0
 
 @pytest.mark.parametrize(
     ("wanted", "where", "stops_at"),
-    [(OPTIMUM, "lowest", "whole"), (TWO, "descent", "downhill")],
+    [(OPTIMUM, "lowest_peak", "whole"), (TWO, "minimax", "downhill")],
     ids=["one number", "two"],
 )
 def test_the_least_so_far_of_an_interrupted_search_is_kept(fcm, scene, monkeypatch, wanted, where, stops_at):
     """All that had been traced was lost. What is kept is the peak of the ordinary response there."""
     text = scene.read_text()
     scene.write_text(text + wanted)
-    monkeypatch.setattr(f"fcm.track.{where}.{stops_at}", Mock(side_effect=KeyboardInterrupt))
+    monkeypatch.setattr(f"fcm.tracking.{where}.{stops_at}", Mock(side_effect=KeyboardInterrupt))
     done = fcm("respond", scene, "--harmonics", "1", "-o", "best.nc", "--sensitivity")
     assert done.code == 3 and "the least so far" in done.out and "the optimum was sought for" in done.err
     assert done.err.endswith("; what was traced is reported and written\n")
@@ -254,6 +254,6 @@ def test_the_least_so_far_of_an_interrupted_search_is_kept(fcm, scene, monkeypat
 
 
 def test_of_a_search_that_found_nothing_before_it_was_interrupted_nothing_is_said(fcm, optimum, monkeypatch):
-    monkeypatch.setattr("fcm.track.lowest.special_points", Mock(side_effect=KeyboardInterrupt))
+    monkeypatch.setattr("fcm.tracking.lowest_peak.special_points", Mock(side_effect=KeyboardInterrupt))
     done = fcm("respond", optimum, "--harmonics", "1", "-o", "best.nc")
     assert (done.code, done.out) == (3, "") and not Path("best.nc").exists()

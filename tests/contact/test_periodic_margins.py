@@ -11,7 +11,7 @@ import pytest
 
 from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.periodic.measures import Measures
-from fcm.harmonic.periodic import Periodic
+from fcm.harmonic_balance.line_contact import Periodic
 
 from .motions import SINE, STILL, Case, random_case, random_cases
 

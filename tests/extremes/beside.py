@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from fcm.model.scene import Scene
-from fcm.motion import Measure, SimulationError
-from fcm.orbit import harmonic_state, periodic
 from fcm.response import Curve
+from fcm.shooting import harmonic_state, periodic
+from fcm.time_domain import Measure, SimulationError
 
 SHARES = (0.02, 0.25, 0.5, 0.75, 0.98)  # where along a curve it is compared, beside its highest point
 FROM_FOLDS = 0.03  # relative distance in frequency within which a fold of the exact curve may lie elsewhere

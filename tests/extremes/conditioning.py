@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import Scene
-from fcm.reduction.put_back import unknowns
+from fcm.reduction.restore import unknowns
 from fcm.response import Curve
 
 

@@ -437,7 +437,7 @@ fcm.response.scheduled.histories = stop
 
 AT = ("respond", "sweep.toml", "--method", "exact", "--at", "1.15:1.3:12", "-o", "a.nc")
 VISITED = """
-import fcm.response.visit as visit, time
+import fcm.response.stepped_sweep as visit, time
 real = visit.Visitor._go
 def go(self, omega, sweep):
     with open("visits", "a") as file:

@@ -7,9 +7,9 @@ import pytest
 
 from fcm.fit.parameters import parameters_of
 from fcm.fit.solve import Problem, solved
-from fcm.harmonic.mode import nonlinear_mode
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import Measured
+from fcm.nonlinear_modes.backbone import nonlinear_mode
 from fcm.scene.load import scene_from_dict
 
 HARMONICS = (1, 2, 3)

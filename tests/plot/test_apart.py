@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from fcm import load_scene
-from fcm.plot.apart import apart
 from fcm.plot.errors import PlotError
 from fcm.plot.read import read_response
+from fcm.plot.reader_process import apart
 from fcm.response import trace
 from fcm.results.output import write_netcdf
 
@@ -56,7 +56,7 @@ def test_what_a_process_that_died_had_to_read_is_damaged():
 @pytest.mark.slow
 def test_a_file_that_is_read_without_end_is_damaged(monkeypatch):
     """As the library does that follows a damaged file from place to place for ever."""
-    monkeypatch.setattr("fcm.plot.apart.ALLOWED", 1.0)
+    monkeypatch.setattr("fcm.plot.reader_process.ALLOWED", 1.0)
     with pytest.raises(PlotError, match=r"^a\.nc: damaged: "):
         circles("a.nc")
 
@@ -92,7 +92,7 @@ def test_a_damaged_file_is_read_or_refused(monkeypatch, tmp_path, response, numb
         begin = rng.randrange(len(whole))
         whole[begin : begin + 512] = bytes(len(whole[begin : begin + 512]))
     path.write_bytes(whole)
-    monkeypatch.setattr("fcm.plot.apart.ALLOWED", 2.0)
+    monkeypatch.setattr("fcm.plot.reader_process.ALLOWED", 2.0)
     try:
         read_response(path)
     except PlotError as error:

@@ -25,7 +25,7 @@ def panels(figure):
 
 def states(axes):
     """The states drawn, by their colours."""
-    by_colour = {to_rgb(look["color"]): state for state, (_, look) in STATES.items()}
+    by_colour = {to_rgb(poll["color"]): state for state, (_, poll) in STATES.items()}
     lines = [line for line in axes.lines if line.get_linewidth() >= 1.0 and line.get_linestyle() != "None"]
     return [by_colour[to_rgb(line.get_color())] for line in lines]
 
@@ -83,9 +83,9 @@ def test_slip_limits_that_are_not_seen_are_said_to_be_far():
 
 
 def test_the_looks_are_told_apart_without_colour():
-    looks = [look for _, look in STATES.values()]
-    assert len({(str(look["linestyle"]), look["linewidth"]) for look in looks}) == len(looks)
-    grey = sorted(np.dot(to_rgb(look["color"]), (0.299, 0.587, 0.114)) for look in looks)
+    looks = [poll for _, poll in STATES.values()]
+    assert len({(str(poll["linestyle"]), poll["linewidth"]) for poll in looks}) == len(looks)
+    grey = sorted(np.dot(to_rgb(poll["color"]), (0.299, 0.587, 0.114)) for poll in looks)
     assert grey[0] < 0.05
 
 

@@ -7,7 +7,7 @@ import pytest
 from fcm.plot import PlotError
 from fcm.plot.interface import draw_interface, greatest_takers, points_of, read_interface, read_places
 
-from ..harmonic.strips import strip
+from ..harmonic_balance.strips import strip
 from ..program import called
 
 

@@ -18,10 +18,10 @@ import pytest
 from scipy.optimize import fsolve
 
 import fcm
-from fcm.harmonic.rigid import too_stiff
-from fcm.harmonic.system import System
-from fcm.orbit.start import solution_at
+from fcm.harmonic_balance.stiff_contacts import too_stiff
+from fcm.harmonic_balance.system import System
 from fcm.response import trace
+from fcm.shooting.initial_orbits import solution_at
 
 SAID = r"the k_u of contact (\w+) is .*: try (\S+), nearly rigid; half of that tells how nearly"
 FRICTION = 0.5  # over the amplitude of the force

@@ -9,8 +9,8 @@ import pytest
 
 from fcm import load_scene
 from fcm.continuation import Status
-from fcm.harmonic.mode import nonlinear_mode
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.system import System
+from fcm.nonlinear_modes.backbone import nonlinear_mode
 
 PERCENT = 0.01
 

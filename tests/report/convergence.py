@@ -16,9 +16,9 @@ from fcm.cli.messages import Messages, pass_messages
 from fcm.compare.exact import exact_lines
 from fcm.model.scene import Scene
 from fcm.plot.convergence import Balanced, Line, draw_convergence
+from fcm.response.request import Request
 from fcm.response.sweep import trace
 from fcm.response.trace import traced_curve
-from fcm.response.wanted import Wanted
 from fcm.results.result import Curve
 from fcm.scene.load import load_scene
 from fcm.table import Table, open_table
@@ -99,7 +99,7 @@ def _measured(case: Case, table: Table) -> Line:
 
     if not exact.complete:
         raise click.ClickException(f"{case.name}, exact: {exact.reason}")
-    alone = balanced(1, partial(traced_curve, scene, Wanted(table=table, corrected=False)))
+    alone = balanced(1, partial(traced_curve, scene, Request(table=table, corrected=False)))
     rows = [balanced(h, partial(_curve, scene, h)) for h in HARMONICS]
     return Line(case.name, rows, alone, _milliseconds(partial(exact_lines, scene)), convergence_order(rows))
 

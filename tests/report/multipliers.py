@@ -9,13 +9,13 @@ from pathlib import Path
 import click
 import numpy as np
 
+from fcm.branches.force_level import solutions
 from fcm.cli.messages import Messages, pass_messages
-from fcm.harmonic.start import solutions
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import Scene
-from fcm.orbit import periodic
 from fcm.plot.multipliers import Way, draw_multipliers
 from fcm.scene.load import load_scene
+from fcm.shooting import periodic
 from fcm.stability.floquet import ComplexArray, multipliers
 
 from .measured import write_measured

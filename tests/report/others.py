@@ -13,7 +13,7 @@ import click
 from fcm.cli.columns import aligned
 from fcm.cli.messages import Messages, pass_messages
 from fcm.files import replacing
-from fcm.plot.others import Points, draw_others
+from fcm.plot.other_packages import Points, draw_others
 from fcm.plot.style import save
 
 from .measured import DPI

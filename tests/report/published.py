@@ -13,12 +13,12 @@ import numpy as np
 
 from fcm.cli.messages import Messages, pass_messages
 from fcm.files import replacing
-from fcm.harmonic.mode import nonlinear_mode
-from fcm.harmonic.system import System
-from fcm.orbit.start import solution_at
+from fcm.harmonic_balance.system import System
+from fcm.nonlinear_modes.backbone import nonlinear_mode
 from fcm.response.sweep import trace
 from fcm.results.result import Curve
 from fcm.scene.load import load_scene
+from fcm.shooting.initial_orbits import solution_at
 from fcm.structure.diameters import nodal_diameters
 
 from .page import Section, Table

@@ -5,7 +5,7 @@ import pytest
 
 from fcm.plot.multipliers import draw_multipliers
 
-from ..motion.cases import yang
+from ..time_domain.cases import yang
 from .multipliers import ways_of
 
 

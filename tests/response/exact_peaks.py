@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import fcm
 from fcm.model.scene import Scene
-from fcm.motion import SimulationError
-from fcm.orbit import Orbit, harmonic_state, periodic
 from fcm.response import Curve, trace
+from fcm.shooting import Orbit, harmonic_state, periodic
+from fcm.time_domain import SimulationError
 
 FIRST, LAST = 2e-3, 2e-6  # [rad/s] steps of the climb: near a maximum the amplitude errs by their square
 SAME_BRANCH = 0.3  # greatest relative change of the amplitude by a step

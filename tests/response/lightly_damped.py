@@ -21,7 +21,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from fcm.response import exact_work
+from fcm.response import exact_curve
 from fcm.response.exact import trace_exact
 from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.orbit_curve import orbit_curve
@@ -59,7 +59,7 @@ def taken(seed: int, limit: float, damping: float | None, only: str | None) -> T
         return orbit_curve(found, *rest)
 
     begin = time.process_time()
-    with patch.object(exact_work, "orbit_curve", noted):
+    with patch.object(exact_curve, "orbit_curve", noted):
         (curve,) = trace_exact(scene, limit=limit, only=only).curves
     seconds, points = time.process_time() - begin, np.count_nonzero(np.isfinite(curve.frequency))
     return Taken(curve.complete, curve.reason, seconds, int(points), len(curve.folds), _bare(groups))

@@ -16,18 +16,18 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.accuracy.refinement import Accurate, accurate
-from fcm.harmonic.system import System
-from fcm.motion import SimulationError
-from fcm.orbit.harmonic import state_of
-from fcm.orbit.located import Guess, located
-from fcm.orbit.problem import OrbitProblem
-from fcm.orbit.sample import Sample
+from fcm.harmonic_balance.system import System
+from fcm.shooting.harmonic_balance_state import state_of
+from fcm.shooting.orbit_record import Sample
+from fcm.shooting.peaks_and_folds import Guess, located
+from fcm.shooting.problem import OrbitProblem
+from fcm.time_domain import SimulationError
 
 if __package__:
     from .in_time import in_time
     from .random_scenes import random_scene
 else:  # run as a program
-    sys.path += [str(Path(__file__).parents[1] / "harmonic")]
+    sys.path += [str(Path(__file__).parents[1] / "harmonic_balance")]
     from in_time import in_time
     from random_scenes import random_scene
 

@@ -11,7 +11,7 @@ import fcm
 from fcm.response import trace
 from fcm.response.exact import trace_exact
 
-from ..motion.cases import yang
+from ..time_domain.cases import yang
 
 
 def test_the_balance_and_the_exact_motion_tell_the_same_period_doublings():
@@ -24,7 +24,7 @@ def test_the_balance_and_the_exact_motion_tell_the_same_period_doublings():
 
 
 def test_both_tell_the_same_neimark_sacker_bifurcation():
-    path = Path(__file__).parents[1] / "harmonic/scenes/chaos.toml"
+    path = Path(__file__).parents[1] / "harmonic_balance/scenes/chaos.toml"
     scene = replace(fcm.load_scene(path).each_curve()[0], frequency_range=(2.32, 2.38))
     (balanced,), (exact,) = trace(scene, harmonics=5).curves, trace_exact(scene).curves
     ((kind, at),) = exact.bifurcations

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
+from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.response.track import track
-from fcm.response.wanted import Wanted
 from fcm.scene import scene_from_dict
 
 COUNT = 60  # masses in a row, between two walls
@@ -33,7 +33,7 @@ def masses(output, modes, n_0):
 
 def test_peaks_among_many_are_those_alone_and_cost_few_points():
     """Alone its peak is a point of the curve, found as it is followed; among many it is between points."""
-    alone, among = (traced_curve(masses(o, 6, 2.0).in_use(), Wanted((1, 2, 3))) for o in (ALONE, ["*"]))
+    alone, among = (traced_curve(masses(o, 6, 2.0).in_use(), Request((1, 2, 3))) for o in (ALONE, ["*"]))
     for name in ALONE:
         one, other = among.peaks[name], alone.peaks[name]
         assert one.amplitude == pytest.approx(other.amplitude, rel=1e-9)
@@ -47,7 +47,7 @@ def test_peaks_among_many_are_those_alone_and_cost_few_points():
 
 def test_peaks_among_many_are_those_of_the_linear_structure():
     """The contact sticks: the greatest answers of the matrices with its springs."""
-    curve = traced_curve(masses(["*"], COUNT, 50.0), Wanted((1, 2)))
+    curve = traced_curve(masses(["*"], COUNT, 50.0), Request((1, 2)))
     natural, shapes = np.linalg.eigh(STIFFNESS)
     damping = shapes @ np.diag(0.02 * np.sqrt(natural)) @ shapes.T
     whole = STIFFNESS + np.diag(900.0 * (np.arange(COUNT) == 20) + 300.0 * (np.arange(COUNT) == 21))
@@ -72,6 +72,6 @@ def test_of_many_outputs_those_that_lead_are_tracked_and_the_others_are_said_to_
     assert {f"peak of {name}" for name in ("m7", "m20", "m21")} <= whats and len(whats) < 10
     (said,) = found.left_out
     assert f"of {COUNT} degrees of freedom" in said and "[response] output" in said
-    curve = traced_curve(masses(["*"], 2, 50.0), Wanted((1,)))
+    curve = traced_curve(masses(["*"], 2, 50.0), Request((1,)))
     highest = max(one.amplitude[-1, found.dofs.index("m7")] for one in found.tracking.curves)
     assert highest == pytest.approx(curve.peaks["m7"].amplitude, rel=1e-8)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.reduction import leave_out
+from fcm.reduction import negligible_parts
 from fcm.reduction.static_modes import condensed
 from fcm.response import trace
 from fcm.scene import scene_from_dict
@@ -50,7 +50,7 @@ def bound(response):
 def test_five_hundred_modes_within_the_bound():
     scene = structure(500, 4, 40, 300.0)
     light, full = trace(scene), trace(scene, tolerance=None)
-    assert full.left_out == [] and 0.0 < bound(light) <= leave_out.TOLERANCE
+    assert full.left_out == [] and 0.0 < bound(light) <= negligible_parts.TOLERANCE
     one, other = light.curves[0], full.curves[0]
     assert len(one.folds) == len(other.folds)
     for dof, (amplitude, frequency, *_) in other.peaks.items():
@@ -62,10 +62,10 @@ def test_a_smaller_tolerance_keeps_more():
     scene = structure(200, 2, 20, 150.0)
     kept = []
     for tolerance in (1e-3, 1e-5, 1e-7):
-        lighter = leave_out.leave_out((scene,), tolerance)
+        lighter = negligible_parts.leave_out((scene,), tolerance)
         kept.append(lighter.curves[0].modal.frequency.size)
     assert kept[0] <= kept[1] <= kept[2]
-    assert leave_out.leave_out((scene,), 0.0).curves == (scene,)
+    assert negligible_parts.leave_out((scene,), 0.0).curves == (scene,)
 
 
 def test_the_error_falls_with_the_fourth_power_of_the_frequency():

@@ -7,22 +7,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fcm.branches.force_level import level_curve, resonances, solutions
+from fcm.branches.linear_limits import highest, least
+from fcm.branches.shared_levels import forget
 from fcm.continuation import Status
-from fcm.harmonic.common_levels import forget
-from fcm.harmonic.linear_contacts import highest, least
-from fcm.harmonic.record import recorded_at_levels
-from fcm.harmonic.start import level_curve, resonances, solutions
-from fcm.harmonic.system import System
-from fcm.orbit import periodic
+from fcm.harmonic_balance.response_quantities import recorded_at_levels
+from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.response.level import trace_levels
 from fcm.results.csv_file import write_csv
 from fcm.results.output import to_dataset
 from fcm.scene import load_scene
+from fcm.shooting import periodic
 
-from ..harmonic.scenes import isola, isola_stuck, up_to
-from ..harmonic.truth import state
-from ..motion.cases import yang
+from ..harmonic_balance.scenes import isola, isola_stuck, up_to
+from ..harmonic_balance.truth import state
+from ..time_domain.cases import yang
 from .random_scenes import random_scene
 
 
@@ -160,7 +160,7 @@ def test_one_curve_of_levels_is_followed_for_a_sweep_of_preloads(monkeypatch):
         followed.append(given)
         return level_curve(*given, **options)
 
-    monkeypatch.setattr("fcm.harmonic.start.level_curve", counted)
+    monkeypatch.setattr("fcm.branches.force_level.level_curve", counted)
     forget()
     curves = [preloaded(isola(), n_0) for n_0 in (-15.0, -15.5, -60.0)]
     for one in curves:

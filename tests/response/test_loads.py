@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.harmonic.rest import RestError, rest_of
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.static_equilibrium import RestError, rest_of
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import Force, Load
-from fcm.motion import State, simulate
-from fcm.motion.energy import energy
-from fcm.orbit.shooting import Shooting
 from fcm.reduction.linear import linear_response
 from fcm.response import ResponseError, trace
 from fcm.response.level import trace_levels
 from fcm.scene import load_scene, scene_from_dict
+from fcm.shooting.residual import Shooting
+from fcm.time_domain import State, simulate
+from fcm.time_domain.energy import energy
 
-from ..motion.reference import Law, integrate
 from ..program import called
+from ..time_domain.reference import Law, integrate
 
 YANG = load_scene("yang1998-n5")
 U, V = np.eye(2)

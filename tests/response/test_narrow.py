@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from fcm.orbit import periodic
 from fcm.response import trace
 from fcm.scene import Contact, Modal, scene_from_dict
+from fcm.shooting import periodic
 
-from ..motion.cases import yang
+from ..time_domain.cases import yang
 
 STEPS = (0.2, 0.1, 0.05, 0.02)
 

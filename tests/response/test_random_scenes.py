@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fcm.branches.trace import traced
 from fcm.continuation import Status
-from fcm.harmonic.system import System
-from fcm.harmonic.trace import traced
-from fcm.orbit.start import solution_at
+from fcm.harmonic_balance.system import System
 from fcm.response import trace
+from fcm.shooting.initial_orbits import solution_at
 
 from .random_scenes import AGREE, outcome, random_scene
 

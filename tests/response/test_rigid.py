@@ -5,9 +5,9 @@ import re
 import numpy as np
 import pytest
 
-from fcm.orbit import periodic
 from fcm.response import trace
 from fcm.scene import scene_from_dict
+from fcm.shooting import periodic
 
 CONTACT = {"name": "c", "tangential": "x", "normal": "y", "mu": 0.4, "k_u": 1.0, "k_v": 1.0, "n_0": 5.0}
 BODY = {  # free along x and along y, but for its contact

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fcm.response.short_of import short_of
+from fcm.response.accuracy_shortfall import short_of
 
 
 def scene_at(*dofs):

@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 
 from fcm import load_scene
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.response.groups import Work, fits
+from fcm.response.request import Request
 from fcm.response.trace import traced_curve
-from fcm.response.wanted import Wanted
 from fcm.run import Interrupted
 from fcm.run.work import Report
 from fcm.scene import scene_from_dict
 
-from ..harmonic.truth import scene
+from ..harmonic_balance.truth import scene
 
-FINE = Wanted(None, 1e-5)
+FINE = Request(None, 1e-5)
 
 
 class _Stops:
@@ -38,7 +38,7 @@ def test_the_first_curve_is_kept_with_its_error():
     with pytest.raises(Interrupted) as stopped:
         traced_curve(one, FINE, tell=stops)
     (curve,) = stopped.value.results
-    true = traced_curve(one, Wanted(tuple(range(1, 16)))).peaks["u"].amplitude
+    true = traced_curve(one, Request(tuple(range(1, 16)))).peaks["u"].amplitude
     peak = curve.peaks["u"]
     assert curve.harmonics == (1,) and not curve.complete
     off = abs(true / peak.amplitude - 1.0)
@@ -59,7 +59,7 @@ def test_the_last_of_several_is_kept_and_each_is_told():
 
 def test_given_harmonics_leave_the_curve_of_fewer():
     with pytest.raises(Interrupted) as stopped:
-        traced_curve(scene("yang1998", 5), Wanted(tuple(range(1, 12))), tell=_Stops(1))
+        traced_curve(scene("yang1998", 5), Request(tuple(range(1, 12))), tell=_Stops(1))
     (curve,) = stopped.value.results
     assert curve.harmonics == (1,) and "before it was traced with 11" in curve.reason
 
@@ -130,11 +130,11 @@ def whole():
     """How often a whole run of many contacts looks for an interruption, and what it has said before which."""
     told, calls = [], 0
 
-    def look():
+    def poll():
         nonlocal calls
         calls += 1
 
-    traced_curve(_joint(), Wanted(None, 1e-2), look, lambda text: told.append((calls, text)))
+    traced_curve(_joint(), Request(None, 1e-2), poll, lambda text: told.append((calls, text)))
     return calls, told
 
 
@@ -151,7 +151,7 @@ def test_many_contacts_stopped_at_any_time_leave_the_best_curve_that_there_was(w
 
     known = [text for at, text in told if at <= int(share * calls)]
     with pytest.raises(KeyboardInterrupt) as stopped:
-        traced_curve(_joint(), Wanted(None, 1e-2), stop)
+        traced_curve(_joint(), Request(None, 1e-2), stop)
     assert isinstance(stopped.value, Interrupted) == bool(known)
     if known:
         (curve,) = stopped.value.results

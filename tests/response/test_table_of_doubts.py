@@ -6,10 +6,9 @@ from dataclasses import replace
 import netCDF4
 import pytest
 
-from fcm.accuracy import outline, trust
-from fcm.branches import search
+from fcm.accuracy import outline, stability_validity
+from fcm.branches import force_level, search
 from fcm.branches.isolas import Crossings
-from fcm.harmonic import start
 from fcm.response import level, mode
 
 from .test_doubts_of_analyses import CREEPING
@@ -112,8 +111,8 @@ def test_where_folds_of_the_level_are_lost_branches_may_be_missing(fcm, tmp_path
 def test_where_levels_are_not_followed_to_their_end_branches_may_be_missing(
     fcm, tmp_path, monkeypatch, analysis
 ):
-    known = start._followed  # what follows the level at one frequency
-    monkeypatch.setattr(start, "_followed", lambda *args: replace(known(*args), complete=False))
+    known = force_level._followed  # what follows the level at one frequency
+    monkeypatch.setattr(force_level, "_followed", lambda *args: replace(known(*args), complete=False))
     done, found = run(fcm, tmp_path, PAIR, analysis, *FEW)
     assert "may be missing" in done.err and "was not followed to its end" in done.err
     if LOST.get(analysis) != "tracked":
@@ -158,7 +157,7 @@ def test_what_misses_the_accuracy_says_so(fcm, tmp_path, monkeypatch, analysis):
 @pytest.mark.slow
 @pytest.mark.parametrize("analysis", [one for one in MISSED if one != "mode"])
 def test_where_stability_is_not_told_no_peak_is_without_that_word(fcm, tmp_path, monkeypatch, analysis):
-    for module in (trust, level):
+    for module in (stability_validity, level):
         monkeypatch.setattr(module, "BELIEVED", 0.0)
     extra, options = ANALYSES[analysis]
     (tmp_path / "s.toml").write_text(PAIR + extra)

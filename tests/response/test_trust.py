@@ -20,7 +20,7 @@ def curves():
 def test_stability_changes_at_the_folds_and_nowhere_else(curves):
     for curve in curves.values():
         if curve.parameters["contact.shroud.n_0"] == 0.0:
-            continue  # it loses stability near 0.75 rad/s without a fold: tests/harmonic/test_stability.py
+            continue  # it loses stability near 0.75 rad/s without a fold: tests/stability
         known = np.isfinite(curve.stable)
         stable, frequency = curve.stable[known], curve.frequency[known]
         changes = np.flatnonzero(np.diff(stable))

@@ -13,7 +13,7 @@ import fcm as package
 from fcm.response import trace
 from fcm.response.exact import trace_exact
 from fcm.response.groups import KINDS
-from fcm.results.gist import without_points
+from fcm.results.condensed_curves import without_points
 from fcm.results.jumps import swept
 from fcm.run.records import unpacked
 from fcm.scene import scene_from_dict

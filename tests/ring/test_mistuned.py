@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.harmonic.record import amplitudes_at
-from fcm.harmonic.start import solutions
-from fcm.harmonic.system import System
+from fcm.branches.force_level import solutions
+from fcm.harmonic_balance.response_quantities import amplitudes_at
+from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.scene import SceneError, scene_from_dict
 from fcm.structure.linear import linear_of

@@ -7,8 +7,8 @@ import pytest
 import scipy.linalg
 import scipy.sparse
 
-from fcm.harmonic.start import solutions
-from fcm.harmonic.system import System
+from fcm.branches.force_level import solutions
+from fcm.harmonic_balance.system import System
 from fcm.scene import SceneError, scene_from_dict
 from fcm.structure.diameters import nodal_diameters
 from fcm.structure.linear import linear_of

@@ -10,7 +10,7 @@ import pytest
 
 import fcm
 from fcm.plot.campbell import Ring, draw_campbell, folded
-from fcm.response.wanted import ResponseError
+from fcm.response.request import ResponseError
 from fcm.scene import SceneError, scene_from_dict
 
 from ..program import called

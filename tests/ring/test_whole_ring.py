@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.harmonic.record import amplitudes_at, cycles, loops
-from fcm.harmonic.start import solutions
-from fcm.harmonic.system import System
-from fcm.harmonic.trace import traced
+from fcm.branches.force_level import solutions
+from fcm.branches.trace import traced
+from fcm.harmonic_balance.response_quantities import amplitudes_at, cycles, loops
+from fcm.harmonic_balance.system import System
 from fcm.scene import scene_from_dict
 from fcm.stability.bifurcations import stability
 from fcm.stability.floquet import multipliers, multipliers_of

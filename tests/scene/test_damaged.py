@@ -11,7 +11,7 @@ import pytest
 import scipy.sparse
 from scipy.io import mmwrite, savemat
 
-from fcm.scene import SceneError, apart, scene_from_dict
+from fcm.scene import SceneError, reader_process, scene_from_dict
 
 from ..program import AS_A_MODULE, python
 
@@ -85,7 +85,7 @@ def test_every_byte_of_a_universal_file(tmp_path):
 
 
 # The reader of .mat files may end by a signal on a damaged one: it is scipy's, and what it may do is what
-# `fcm.scene.apart` keeps away from the program. Here each changed byte has a process of its own, twice: with
+# `fcm.scene.reader_process` keeps from the program. Each changed byte has a process of its own, twice: with
 # the tags checked, as the program does it, and without.
 READER = """
 import os, sys
@@ -144,7 +144,7 @@ def test_every_byte_of_a_matrix_market_file(tmp_path):
 def test_a_signal_becomes_a_sentence(tmp_path, monkeypatch):
     """Were a file to end the reader all the same, the program would say so."""
     savemat(tmp_path / "m.mat", MODES)
-    monkeypatch.setattr(apart, "_CODE", "import os; os.kill(os.getpid(), 11)")
+    monkeypatch.setattr(reader_process, "_CODE", "import os; os.kill(os.getpid(), 11)")
     data = {"modal": {"file": "m.mat"}, "force": [], "response": {"frequency": [0.5, 1.5]}}
     with pytest.raises(SceneError, match=r"m.mat.* cannot be read: it is damaged: what it says of itself"):
         scene_from_dict(data, "test.toml", tmp_path)

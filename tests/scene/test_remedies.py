@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fcm.motion.errors import SimulationError
-from fcm.orbit import periodic
 from fcm.scene import SceneError, scene_from_dict
+from fcm.shooting import periodic
+from fcm.time_domain.errors import SimulationError
 
 from ..program import called
 

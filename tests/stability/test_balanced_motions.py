@@ -9,22 +9,22 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
+from fcm.branches.force_level import solutions
 from fcm.continuation import FollowOptions, Mark, Status, follow
-from fcm.harmonic.start import solutions
-from fcm.harmonic.system import System
-from fcm.motion import simulate
-from fcm.orbit import periodic
+from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.scene import Contact, Force, Modal, Scene, scene_from_dict
+from fcm.shooting import periodic
 from fcm.stability import multipliers as module
 from fcm.stability.bifurcation_functions import dip, seen
 from fcm.stability.bifurcations import stability, with_points
 from fcm.stability.floquet import multipliers
 from fcm.stability.multipliers import Multipliers
 from fcm.stability.verdict import Bifurcation, Spectrum, Verdict, even
+from fcm.time_domain import simulate
 
-from ..harmonic.truth import state
-from ..motion.cases import SCENES, one_mode, yang
+from ..harmonic_balance.truth import state
+from ..time_domain.cases import SCENES, one_mode, yang
 
 
 def system(scene, highest=1, span=None):

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from fcm.harmonic.start import solutions
-from fcm.harmonic.system import System
-from fcm.orbit import periodic
+from fcm.branches.force_level import solutions
+from fcm.harmonic_balance.system import System
 from fcm.scene import scene_from_dict
+from fcm.shooting import periodic
 from fcm.stability.multipliers import Multipliers
 from fcm.stability.verdict import meeting
 

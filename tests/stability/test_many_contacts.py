@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from fcm.harmonic.system import System
-from fcm.harmonic.trace import traced
+from fcm.branches.trace import traced
+from fcm.harmonic_balance.system import System
 from fcm.stability.bifurcations import stability
 from fcm.stability.floquet import multipliers_of
 
-from ..harmonic.strips import strip
+from ..harmonic_balance.strips import strip
 
 
 @pytest.mark.slow

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from fcm.harmonic.start import solutions
-from fcm.harmonic.system import System
+from fcm.branches.force_level import solutions
+from fcm.harmonic_balance.system import System
 from fcm.stability.balanced_sequence import BalancedSequence
 from fcm.stability.many_monodromy import ManyMonodromy
 from fcm.stability.monodromy import Monodromy
 from fcm.stability.stiffness import Stiffness
 
-from ..harmonic.strips import strip
+from ..harmonic_balance.strips import strip
 
 
 def multipliers(matrix):
@@ -29,7 +29,7 @@ def test_multipliers_are_those_of_states_put_together_anew(omega, n_0, yielding,
     contact = np.array([[c.mu, c.k_u, c.k_v, c.n_0] for c in system.scene.contacts])
     states = BalancedSequence(contact, [1, 2, 3])
     states.yielding = yielding
-    assert states.look(z) and states.events > 12
+    assert states.poll(z) and states.events > 12
     near = linear.ports[~far], linear.natural[~far], linear.damping[~far]
     soft = (linear.ports[far].T / linear.natural[far] ** 2) @ linear.ports[far]
     anew = Monodromy(Stiffness(*near, soft if follow else None, contact), states)

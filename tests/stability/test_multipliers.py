@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fcm.harmonic.start import solutions
-from fcm.harmonic.system import System
+from fcm.branches.force_level import solutions
+from fcm.harmonic_balance.system import System
 from fcm.stability.multipliers import Multipliers
 
-from ..harmonic.strips import strip
+from ..harmonic_balance.strips import strip
 
 
 @pytest.mark.parametrize("contacts", [5, 12])

@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fcm.harmonic.trace import traced
-from fcm.orbit import periodic
+from fcm.branches.trace import traced
 from fcm.scene import Contact, Force, Modal, Scene, load_scene
-from fcm.stability.finer import beyond
+from fcm.shooting import periodic
+from fcm.stability.force_harmonics import beyond
 from fcm.stability.multipliers import Multipliers
-from fcm.stability.refined import Refined
+from fcm.stability.rebalanced import Refined
 
-from ..harmonic.truth import state
+from ..harmonic_balance.truth import state
 from .test_balanced_motions import only, system
 
 

@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from fcm.accuracy.options import PAIR, PairOptions
-from fcm.harmonic.work import Work
+from fcm.harmonic_balance.work_budget import Work
 
 
 @dataclass
 class Budget:
-    """Seconds of calculated work, as of `fcm.harmonic.cost`, that are left: those who follow take from it."""
+    """Seconds of work that are left, as of `harmonic_balance.cost_model`: those who follow take from it."""
 
     left: float = PAIR.seconds
 
@@ -19,7 +19,7 @@ class Budget:
     def of(cls, work: Work, options: PairOptions) -> Budget:
         """In proportion to the work that the response itself took, so that its error never takes much more.
 
-        >>> from fcm.harmonic.work import Work
+        >>> from fcm.harmonic_balance.work_budget import Work
         >>> work = Work()
         >>> work.take(1.0)
         >>> Budget.of(work, PairOptions(part=0.3, unnoticed=0.1)).left

@@ -1,4 +1,4 @@
-from fcm.harmonic.lifted cimport Lifted
+from fcm.harmonic_balance.normal_plane_prolongation cimport Lifted
 
 cdef class Displacement:
     cdef public Lifted lifted

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cython
 
-from fcm.harmonic.lifted import Lifted
+from fcm.harmonic_balance.normal_plane_prolongation import Lifted
 
 NAN = cython.declare(cython.double, float("nan"))
 

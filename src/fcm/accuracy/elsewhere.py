@@ -15,11 +15,11 @@ from fcm.accuracy.budget import Budget
 from fcm.accuracy.options import PairOptions
 from fcm.accuracy.partner import give_back, lifted_of
 from fcm.accuracy.partner_curve import curve_piece
-from fcm.accuracy.pieces import CurvePiece
-from fcm.accuracy.stretch import Stretches
+from fcm.accuracy.partner_pieces import CurvePiece
+from fcm.accuracy.partner_stretch import Stretches
 from fcm.continuation import Path
-from fcm.harmonic.reported import Reported
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.reported_quantities import Reported
+from fcm.harmonic_balance.system import System
 
 if TYPE_CHECKING:
     from fcm.accuracy.embedded_pair import Errors

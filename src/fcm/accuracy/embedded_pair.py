@@ -16,20 +16,20 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
-from fcm.accuracy.borne import of_borne, relative
 from fcm.accuracy.budget import Budget
+from fcm.accuracy.contact_load_errors import of_borne, relative
 from fcm.accuracy.crossings import with_crossings
 from fcm.accuracy.elsewhere import elsewhere
 from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.partner import partner_of
 from fcm.accuracy.partner_curve import Followed, Indices, PartnerCurve
+from fcm.accuracy.partner_pieces import CurvePiece, distinct, lengths, nearest, piece_of
 from fcm.accuracy.peaks import heights, rise_beside
-from fcm.accuracy.pieces import CurvePiece, distinct, lengths, nearest, piece_of
 from fcm.continuation import Mark, Path
-from fcm.harmonic.further import HIGHEST, Further
-from fcm.harmonic.record import borne_along
-from fcm.harmonic.reported import Reported, reported
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.reported_quantities import Reported, reported
+from fcm.harmonic_balance.residual_spectrum import HIGHEST, FurtherHarmonics
+from fcm.harmonic_balance.response_quantities import borne_along
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
 Mask = npt.NDArray[np.bool_]
@@ -49,7 +49,7 @@ class Errors:
     share (harmonic 1 to HIGHEST,): what each harmonic left out would have without feedback, at peaks and
     folds, of the greatest amplitude of the degree of freedom to which it matters most.
     partner: its harmonics.
-    borne (point, contact, 4): of what the contacts bear, as of `fcm.harmonic.record.cycles`, each relative
+    borne (point, contact, 4): of what the contacts bear, see `response_quantities.cycles`, each relative
     to itself; infinite where it is nothing, and something in the partner. greatest (contact, 4): of the
     greatest of each along the path. pieces: what is known of the partner's curve.
     """
@@ -111,7 +111,7 @@ def errors_along(
     inside = (tops > 0) & (tops < len(path.z) - 1)
     at_ends = shown.amplitude[tops, d] + unit[tops, d] * shift[tops, d]
     for end in {0, len(path.z) - 1}.intersection(tops.tolist()):  # which the partner is known beyond, or not
-        there = partner.abreast(end)
+        there = partner.normal_point(end)
         at_ends = at_ends if there is None else np.where(tops == end, there, at_ends)
     height = np.where(inside, heights(partner, change[:, 1:], followed, tops), at_ends)
     rise = rise_beside(partner, np.zeros_like(unit), tops)  # no error
@@ -206,7 +206,7 @@ def _spectrum(
 ) -> tuple[FloatArray, Indices]:
     """What each harmonic left out would have without feedback (harmonic,) of sizes (dof,), at most, at
     special points and where one that is left out meets a mode and leads there; and these."""
-    further, place = Further(system), lengths(path)
+    further, place = FurtherHarmonics(system), lengths(path)
     special = special[distinct(place[special], options.together * (place[-1] - place[0]))]
     met: Indices = further.meetings(path.z, shown.amplitude)
     share = further.shares(path.z[special], np.tile(size, (len(special), 1))).max(axis=0)

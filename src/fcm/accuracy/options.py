@@ -33,7 +33,7 @@ class PairOptions:
     steep : float
         Relative change of an amplitude over that of the frequency, up to which both count.
     seconds : float
-        Of calculated work, as of `fcm.harmonic.cost`, that following the partner may take where no
+        Of work, as of `fcm.harmonic_balance.cost_model`, that following the partner may take where no
         point of it lies normal to the curve; as much again for points that are not found, and as much again
         for what it has elsewhere;
     part, unnoticed : float

@@ -11,15 +11,15 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from fcm.branches.force_level import Found
 from fcm.branches.prolongation import prolongated
+from fcm.branches.trace import Traced, traced, traced_from, with_levels
 from fcm.continuation import Path
 from fcm.continuation.follow import Progress
-from fcm.harmonic.cost import PATIENCE, seconds_of
-from fcm.harmonic.reported import Reported, reported
-from fcm.harmonic.start import Found
-from fcm.harmonic.system import System
-from fcm.harmonic.trace import Traced, traced, traced_from, with_levels
-from fcm.harmonic.work import TooLongError
+from fcm.harmonic_balance.cost_model import PATIENCE, seconds_of
+from fcm.harmonic_balance.reported_quantities import Reported, reported
+from fcm.harmonic_balance.system import System
+from fcm.harmonic_balance.work_budget import TooLongError
 from fcm.model.scene import FloatArray
 
 LOW = 3  # up to this no single harmonic is left out: stability between folds may hang on it

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from fcm.accuracy.options import PAIR, PairOptions
-from fcm.harmonic.lifted import Lifted
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.normal_plane_prolongation import Lifted
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.scene.rules import MOST_HARMONICS
 

@@ -14,17 +14,17 @@ from fcm.accuracy.displacement import Displacement
 from fcm.accuracy.interpolation import Filled, places, steepness
 from fcm.accuracy.options import PairOptions
 from fcm.accuracy.partner import give_back, lifted_of, partner_of
-from fcm.accuracy.pieces import CurvePiece, distinct, piece_of, piece_through, rates
+from fcm.accuracy.partner_pieces import CurvePiece, distinct, piece_of, piece_through, rates
+from fcm.accuracy.partner_stretch import Piece, Stretches
 from fcm.accuracy.residual import left_out
 from fcm.accuracy.same_frequency import shifted
-from fcm.accuracy.stretch import Piece, Stretches
 from fcm.continuation import Mark, Path
-from fcm.harmonic.cost import seconds_of
-from fcm.harmonic.further import LEAST_AMPLITUDE, Further
-from fcm.harmonic.record import borne_along
-from fcm.harmonic.reported import Reported
-from fcm.harmonic.runs import runs
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.cost_model import seconds_of
+from fcm.harmonic_balance.reported_quantities import Reported
+from fcm.harmonic_balance.residual_spectrum import LEAST_AMPLITUDE, FurtherHarmonics
+from fcm.harmonic_balance.response_quantities import borne_along
+from fcm.harmonic_balance.runs import runs
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
 Indices = npt.NDArray[np.intp]
@@ -68,7 +68,7 @@ class Second:
         """Whether it is found from a point of the partner: at its frequency, or normal to a direction;
         amplitude (dof,) is then there."""
         if direction is None:
-            there = self.lifted.abreast(self.system.extended(z, self.finer.harmonics), True)
+            there = self.lifted.normal_point(self.system.extended(z, self.finer.harmonics), True)
         else:
             there = self.lifted.beside(z, direction, True)
         self.amplitude = np.array(self.lifted.found[1:])
@@ -182,7 +182,7 @@ class PartnerCurve:
         """By how much (dof,) a partner of its own differs from it at the frequency of a point, in the unit of
         that; None where either has no motion there."""
         lifted = self.finding.lifted
-        if not lifted.abreast(self._padded(i), True):
+        if not lifted.normal_point(self._padded(i), True):
             return None
         z, amplitude = np.array(lifted.newton.z), np.array(lifted.found[1:])
         second = self._second(z, amplitude)
@@ -237,7 +237,7 @@ class PartnerCurve:
         lifted, path = self.finding.lifted, self.path
         if normal and lifted.beside(path.z[i], path.direction[i], True):
             return True
-        return not normal and bool(lifted.abreast(self._padded(i), True))
+        return not normal and bool(lifted.normal_point(self._padded(i), True))
 
     def _second(self, z: FloatArray, amplitude: FloatArray) -> Second | None:
         """A partner of its own; None where that has no more harmonics, or too many unknowns. It is that of
@@ -246,18 +246,18 @@ class PartnerCurve:
         if self.dear:
             return None
         if self.second is None:
-            share = Further(finer).shares(z[None], amplitude[None])[0]
+            share = FurtherHarmonics(finer).shares(z[None], amplitude[None])[0]
             own = replace(options, times=options.again, named=options.again_named)
             more = partner_of(finer.harmonics, share, finer.layout.ports, own)
             self.dear = more == finer.harmonics or finer.layout.ports * (1 + 2 * len(more)) > options.dearest
             self.second = None if self.dear else Second(finer, more)
         return self.second
 
-    def abreast(self, i: int) -> FloatArray | None:
+    def normal_point(self, i: int) -> FloatArray | None:
         """Amplitudes (dof,) of the partner at the frequency of a point; None where Newton's method finds
         none that is as even."""
         lifted, path = self.finding.lifted, self.path
-        if self.linear[i] or not lifted.abreast(self._padded(i), True):
+        if self.linear[i] or not lifted.normal_point(self._padded(i), True):
             return None
         even = path.orientation[i] * path.direction[i, -1]
         if not lifted.newton.orientation * lifted.newton.tangent[-1] * even > 0.0:

@@ -10,13 +10,13 @@ import numpy as np
 
 from fcm.accuracy.budget import Budget
 from fcm.accuracy.embedded_pair import Errors, errors_along, with_nearest
-from fcm.accuracy.foreseen import foreseen, needed
 from fcm.accuracy.options import PAIR, REFINEMENT, PairOptions, RefinementOptions
 from fcm.accuracy.outline import Outline, near, outlined, with_more
+from fcm.accuracy.required_harmonics import needed, required_harmonics
+from fcm.branches.force_level import few_of, with_low_harmonics
 from fcm.continuation.follow import Progress
-from fcm.harmonic.cost import AGAIN
-from fcm.harmonic.start import few_of, with_low_harmonics
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.cost_model import AGAIN
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
 # what has been traced, by how much its partner changes it (NaN: not told), and the harmonics that come next
@@ -77,7 +77,7 @@ def accurate(
     for _ in range(options.rounds):
         if not found.shown:
             break
-        sure, ahead = None, foreseen(found, options)
+        sure, ahead = None, required_harmonics(found, options)
         if ahead.told and ahead.change <= accuracy:
             found = found.whole()
             if found.further:
@@ -188,7 +188,7 @@ def enlarged(found: Accurate, accuracy: float, seconds: float = np.inf) -> tuple
 
     No more are added than can be followed in some seconds.
     """
-    has, ahead = found.system.harmonics, foreseen(found)
+    has, ahead = found.system.harmonics, required_harmonics(found)
     if np.isfinite(found.worst):
         ahead = replace(ahead, change=found.worst, told=True)
     share = ahead.share

@@ -1,6 +1,6 @@
 r"""What the harmonics that the partner lacks would still do to a motion of it, without feedback.
 
-Each is the coefficient of the exact forces times the receptance, as in `fcm.harmonic.further`; all of them
+Each is the coefficient of the exact forces times the receptance, as in `residual_spectrum`; all of them
 together are added to the motion, whose half peak-to-peak displacement then differs. Far below some
 modes these are met by harmonics so high that no balance has them.
 """
@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.options import PairOptions
-from fcm.harmonic.reported import reported_at
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.reported_quantities import reported_at
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
 ComplexArray = npt.NDArray[np.complex128]

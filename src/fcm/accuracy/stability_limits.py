@@ -13,18 +13,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fcm.accuracy.foreseen import Foreseen, needed
 from fcm.accuracy.options import AT_POINTS
 from fcm.accuracy.partner import give_back, lifted_of, partner_of
+from fcm.accuracy.required_harmonics import RequiredHarmonics, needed
 from fcm.continuation import Path, Segment
 from fcm.continuation.root_finding import Secants
-from fcm.harmonic.further import HIGHEST, Further
-from fcm.harmonic.lifted import Lifted
-from fcm.harmonic.reported import reported_at
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.normal_plane_prolongation import Lifted
+from fcm.harmonic_balance.reported_quantities import reported_at
+from fcm.harmonic_balance.residual_spectrum import HIGHEST, FurtherHarmonics
+from fcm.harmonic_balance.system import System
 from fcm.stability.along_branch import EITHER
 from fcm.stability.floquet import multipliers_of
-from fcm.stability.inserted import Crossing
+from fcm.stability.inserted_points import Crossing
 
 FAR = 32.0  # points to either side up to which the crossing of more harmonics is sought, from these on:
 FIRST = 0.5
@@ -74,7 +74,7 @@ def _lost(
     """Of one; known are the curves of more harmonics that others have been looked for on."""
     z, direction = one.z[None], one.direction[None]
     amplitude = reported_at(system, z, direction).amplitude[0]
-    share = Further(system).shares(z, amplitude[None])[0]
+    share = FurtherHarmonics(system).shares(z, amplitude[None])[0]
     more = partner_of(system.harmonics, share, system.layout.ports, AT_POINTS)
     if more == system.harmonics:  # nothing is left out
         return Lost(one.frequency, 0.0, more)
@@ -82,7 +82,9 @@ def _lost(
         known[more] = _Beside(system.with_harmonics(more), path, lifted_of(system, more), system)
     found = known[more].crossing(one, PART * accuracy)
     error = abs(found / one.frequency - 1.0)
-    ahead = Foreseen(0.0 if math.isnan(error) else error, not math.isnan(error), share[:HIGHEST], more)
+    ahead = RequiredHarmonics(
+        0.0 if math.isnan(error) else error, not math.isnan(error), share[:HIGHEST], more
+    )
     return Lost(one.frequency, error, needed(ahead, system.harmonics, accuracy))
 
 

@@ -26,9 +26,9 @@ from fcm.branches.options import BRANCHING, BranchingOptions
 from fcm.continuation import Path, Segment
 from fcm.continuation.all_branches import contains
 from fcm.continuation.corrector import Newton
-from fcm.harmonic.balance import Balance
-from fcm.harmonic.system import System
-from fcm.harmonic.whole import jacobian_of
+from fcm.harmonic_balance.dense_jacobian import jacobian_of
+from fcm.harmonic_balance.residual import Balance
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
 
@@ -81,7 +81,7 @@ def _with_all(
         newton.scale[:], newton.z[:] = newton.problem.scale, one
         row = way / np.asarray(newton.scale)
         newton.row[:] = row / np.linalg.norm(row)
-        if not newton.look():
+        if not newton.poll():
             continue
         off = np.asarray(newton.problem.residual) / np.asarray(newton.scale)[:-1]
         if np.abs(off).max(initial=0.0) < options.driven:

@@ -14,16 +14,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from fcm.branches.fold_continuation import Folds, folds_from
+from fcm.branches.force_level import Found, few_of
+from fcm.branches.level_turns import Turn
 from fcm.branches.options import FOLDS, FoldOptions
 from fcm.branches.surface import Surface
 from fcm.continuation import Path
 from fcm.continuation.all_branches import contains
-from fcm.harmonic.cost import seconds_of
-from fcm.harmonic.lifted import Lifted
-from fcm.harmonic.start import Found, few_of
-from fcm.harmonic.system import System
-from fcm.harmonic.turned import Turn
-from fcm.harmonic.work import TooLongError
+from fcm.harmonic_balance.cost_model import seconds_of
+from fcm.harmonic_balance.normal_plane_prolongation import Lifted
+from fcm.harmonic_balance.system import System
+from fcm.harmonic_balance.work_budget import TooLongError
 from fcm.model.scene import FloatArray
 
 
@@ -131,7 +131,7 @@ def _at_level_one(few: System, system: System, curve: Folds) -> Iterator[FloatAr
         way = curve.singular[i if part < 0.5 else i + 1][:-1]
         there = _in_its_plane(few, z, way)
         if there is not None and few.harmonics != system.harmonics:
-            there = _led(few, system, there, way)
+            there = _prolongated(few, system, there, way)
         if there is not None:
             yield there
 
@@ -146,7 +146,7 @@ def _in_its_plane(system: System, z: FloatArray, way: FloatArray) -> FloatArray 
     return np.array(newton.z) if newton.correct(1.0) else None
 
 
-def _led(few: System, system: System, z: FloatArray, way: FloatArray) -> FloatArray | None:
+def _prolongated(few: System, system: System, z: FloatArray, way: FloatArray) -> FloatArray | None:
     """The solution with more harmonics near one with few."""
     lifted = Lifted(system.balance(), list(few.harmonics), list(system.harmonics), 1e-6)
     if not lifted.beside(z, way):

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.branches.options import BRANCHING, BranchingOptions
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
 

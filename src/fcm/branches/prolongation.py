@@ -16,8 +16,8 @@ import numpy.typing as npt
 
 from fcm.branches.options import PROLONGATION, ProlongationOptions
 from fcm.continuation import Mark, Path
-from fcm.harmonic.lifted import Lifted
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.normal_plane_prolongation import Lifted
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
 

@@ -7,15 +7,15 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.branches.branch_points import BranchPoint, all_up_to, branch_points
+from fcm.branches.force_level import few_of
 from fcm.branches.isolas import crossings
 from fcm.branches.mirror import mirrors
 from fcm.branches.options import BRANCHING, BranchingOptions
 from fcm.branches.prolongation import prolongated
+from fcm.branches.trace import Traced, traced, with_further
 from fcm.continuation import Path, Status
 from fcm.continuation.all_branches import contains
-from fcm.harmonic.start import few_of
-from fcm.harmonic.system import System
-from fcm.harmonic.trace import Traced, traced, with_further
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
 

@@ -1,5 +1,5 @@
 from fcm.continuation.dense_solver cimport Solver
-from fcm.harmonic.balance cimport Balance
+from fcm.harmonic_balance.residual cimport Balance
 
 cdef class Surface:
     cdef public Balance balance
@@ -23,4 +23,4 @@ cdef class Surface:
     cpdef bint put(self, double ahead, double aside) except -1
     cdef bint factor(self) except -1
     cdef double correct(self, double ahead, double aside) except -2
-    cdef bint look(self) except -1
+    cdef bint poll(self) except -1

@@ -23,8 +23,8 @@ from cython.cimports.libc.math import fabs, isfinite, sqrt
 
 from fcm.branches.options import SURFACE, SurfaceOptions
 from fcm.continuation.dense_solver import Solver
-from fcm.harmonic.balance import Balance
-from fcm.harmonic.whole import jacobian_of
+from fcm.harmonic_balance.dense_jacobian import jacobian_of
+from fcm.harmonic_balance.residual import Balance
 
 
 @cython.cclass
@@ -106,7 +106,7 @@ class Surface:
                 return False
             if step < self.close:
                 length: cython.double = self.share * sqrt(ahead * ahead + aside * aside)
-                return (step < max(self.flat, length) or self.factor()) and self.look()
+                return (step < max(self.flat, length) or self.factor()) and self.poll()
         return False
 
     @cython.cfunc
@@ -165,7 +165,7 @@ class Surface:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def look(self) -> cython.bint:
+    def poll(self) -> cython.bint:
         """The tangents and the test function, from the equations as they are factored."""
         n: cython.Py_ssize_t = self.n
         i: cython.Py_ssize_t

@@ -44,7 +44,7 @@ def respond(messages: Messages, /, scene: str, **options: Any) -> None:
         _compare(messages, scene, asked)
         return
     _check_options(asked)
-    from fcm.response.visible import visible
+    from fcm.response.visible_dofs import visible
 
     loaded, exporting = _loaded(messages, scene, asked)
     check_not_read(_files(asked), [*loaded.files, asked.table, asked.mesh])
@@ -114,7 +114,7 @@ def _check_left_out(asked: Asked) -> None:
 
 def _loaded(messages: Messages, name: str, asked: Asked) -> tuple[Scene, export.Exporting | None]:
     """The scene at the degrees of freedom in use, and what is to be exported of it."""
-    from fcm.response.visible import check_solvable
+    from fcm.response.visible_dofs import check_solvable
     from fcm.scene import load_scene
     from fcm.scene.told import Told
 
@@ -147,7 +147,7 @@ def _check_scene(scene: Scene, asked: Asked) -> None:
     if scene.fit is not None:
         fit.check_scene(scene, asked)
     if asked.sensitivity:
-        from fcm.response.around import check_no_ring
+        from fcm.response.ring_limits import check_no_ring
 
         check_no_ring(scene, "sensitivities")
     if scene.optimum is not None and asked.track is None:

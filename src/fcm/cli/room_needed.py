@@ -25,7 +25,7 @@ def check_room(messages: Messages, scene: Scene, count: int, asked: Asked) -> No
     ResponseError
         With what it takes at the least, what there is, and what takes less.
     """
-    from fcm.response.wanted import ResponseError
+    from fcm.response.request import ResponseError
     from fcm.results.size import bytes_of_matrices, bytes_of_results
 
     harmonics = asked.harmonics or scene.harmonics or (1,)

@@ -15,9 +15,9 @@ from fcm.rotation import MOST_DOFS
 
 if TYPE_CHECKING:
     from fcm.model.scene import Scene
-    from fcm.motion import Histories
     from fcm.response import Response
     from fcm.run import Checkpoint
+    from fcm.time_domain import Histories
 
 Summary = Mapping[str, Any]  # one of the summary's "histories"
 
@@ -48,9 +48,9 @@ def check_options(scene: Scene, history_csv: Path | None) -> None:
 
 def simulated(messages: Messages, scene: Scene, response: Response, keep: Checkpoint | None) -> Histories:
     """The motion through the schedule, after the curves; an interruption does not take those away."""
-    from fcm.motion.histories import not_begun
     from fcm.response import scheduled
     from fcm.run.progress import part
+    from fcm.time_domain.histories import not_begun
 
     if response.interrupted:
         return not_begun(scene)
@@ -67,7 +67,7 @@ def simulated(messages: Messages, scene: Scene, response: Response, keep: Checkp
 
 def write_csv(response: Response, path: Path) -> None:
     """Write the motion as CSV."""
-    from fcm.motion.output import write_csv
+    from fcm.time_domain.history_output import write_csv
 
     if response.histories is not None:
         write_csv(response.histories, path)

@@ -11,8 +11,8 @@ from fcm.compare.errors import Errors, Reference, Shown, reference, worst
 from fcm.compare.methods import CLOSED_FORM, EXACT, Method, Run, run, solve, with_step
 from fcm.compare.startup import Startup, startup
 from fcm.model.scene import Scene
-from fcm.reduction.leave_out import TOLERANCE
-from fcm.response.around import refuse_other_harmonics, refuse_own_laws, refuse_plane, refuse_ring
+from fcm.reduction.negligible_parts import TOLERANCE
+from fcm.response.ring_limits import refuse_other_harmonics, refuse_own_laws, refuse_plane, refuse_ring
 from fcm.response.sweep import trace
 from fcm.scene.errors import counted
 from fcm.table import open_table

@@ -9,12 +9,12 @@ from scipy.optimize import minimize_scalar
 
 from fcm.compare.lines import Line, amplitude, line_of
 from fcm.model.scene import Scene
-from fcm.motion import SimulationError, State
-from fcm.orbit import harmonic_state, periodic
 from fcm.response.exact import trace_exact
 from fcm.results.result import Curve
 from fcm.run import Progress
 from fcm.run.progress import part
+from fcm.shooting import harmonic_state, periodic
+from fcm.time_domain import SimulationError, State
 
 LIMIT = 60.0  # [s] of processor time for a curve
 CLOSE = 1e-8  # to which the frequency of a peak is located, relative

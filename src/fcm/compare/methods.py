@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 from fcm.compare.exact import exact_lines
 from fcm.compare.lines import Line, line_of
 from fcm.model.scene import Scene
-from fcm.reduction.leave_out import leave_out
+from fcm.reduction.negligible_parts import leave_out
+from fcm.response.request import Request
 from fcm.response.sweep import trace
 from fcm.response.trace import traced_curve
-from fcm.response.wanted import Wanted
 from fcm.run import Progress
 from fcm.table import Table
 
@@ -75,7 +75,7 @@ def solve(
     if method.name == EXACT:
         return exact_lines(lighter, progress)
     if not method.corrected:
-        wanted = Wanted(table=method.table, corrected=False)
+        wanted = Request(table=method.table, corrected=False)
         curves = [traced_curve(curve, wanted) for curve in lighter.each_curve()]
         return [line_of(curve, scene) for curve in curves]
     kind = "closed-form" if method.table is None else "table"

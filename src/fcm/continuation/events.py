@@ -151,10 +151,10 @@ def found(stepper: Stepper, length: float, mark: int, point: Point) -> Event:
     return Event(length, mark, np.array(point.z), direction, point.orientation, stepper.there.shift)
 
 
-def seen(stepper: Stepper, look: Sample, mark: int) -> Event:
+def seen(stepper: Stepper, poll: Sample, mark: int) -> Event:
     """A look to keep."""
     scale = np.asarray(stepper.newton.scale)
-    return Event(look.at, mark, scale * look.z, scale * look.tangent, look.orientation, stepper.there.shift)
+    return Event(poll.at, mark, scale * poll.z, scale * poll.tangent, poll.orientation, stepper.there.shift)
 
 
 def first_margin(stepper: Stepper) -> float:
@@ -281,8 +281,8 @@ def located(
 ) -> list[Event]:
     """The root of a function along the step, as a list of one point, or none if the curve is not found."""
     if looks is not None:
-        look = looks.extreme(None if kind == FOLD else k)
-        return [seen(stepper, look, mark)] if look.at <= limit else []
+        poll = looks.extreme(None if kind == FOLD else k)
+        return [seen(stepper, poll, mark)] if poll.at <= limit else []
     at = root_within(stepper, TestFunction(kind, k))
     if at == LOST:
         event = enclosed(stepper)

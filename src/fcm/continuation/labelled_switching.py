@@ -191,20 +191,20 @@ class LabelledSwitching:
                     np.asarray(stepper.aside)[:] = 0.0
                 return None
         np.asarray(stepper.aside)[:] = 0.0
-        return None if self.any_way(follower) else Status.STALLED
+        return None if self.leave_corner(follower) else Status.STALLED
 
     def leads_on(self, cosine: float) -> bool:
         """Whether a direction at that angle to the old one is another, the problem being bound on the way."""
         new = not np.array_equal(np.asarray(self.stepper.problem.margin), self.label)
         return cosine > (self.options.spike if new else self.options.back)
 
-    def any_way(self, follower: Follower) -> bool:
+    def leave_corner(self, follower: Follower) -> bool:
         """Whether the curve leaves a corner by any way that is tried around it: then it is left there."""
         stepper = self.stepper
         if self.repeated > self.options.looks:
             return False
         self.repeated += 1
-        way = way_on(stepper, self.came, self.leads_on)
+        way = direction_beyond(stepper, self.came, self.leads_on)
         if way is None:
             return False
         np.asarray(stepper.here.tangent)[:] = way.direction
@@ -216,7 +216,7 @@ class LabelledSwitching:
         return True
 
 
-class WayOn(NamedTuple):
+class DirectionBeyond(NamedTuple):
     """To a point of the curve that is about a reach from the corner."""
 
     reach: float
@@ -224,7 +224,9 @@ class WayOn(NamedTuple):
     aside: FloatArray  # (unknown + 1,) scaled, from where that direction leads to the point's guess
 
 
-def way_on(stepper: Stepper, came: FloatArray, leads_on: Callable[[float], bool]) -> WayOn | None:
+def direction_beyond(
+    stepper: Stepper, came: FloatArray, leads_on: Callable[[float], bool]
+) -> DirectionBeyond | None:
     """The first that is found from the corner that is here; None without any.
 
     Parameters
@@ -235,10 +237,12 @@ def way_on(stepper: Stepper, came: FloatArray, leads_on: Callable[[float], bool]
         Whether a way at an angle of that cosine to it is another, the problem being bound there.
     """
     for reach in stepper.options.labels.reaches:
-        for look, aside in _guesses(stepper.options.labels, reach, came):
-            direction = _direction(stepper, look)
-            if direction is not None and _found(stepper, came, WayOn(reach, direction, aside), leads_on):
-                return WayOn(reach, direction, aside)
+        for poll, aside in _guesses(stepper.options.labels, reach, came):
+            direction = _direction(stepper, poll)
+            if direction is not None and _found(
+                stepper, came, DirectionBeyond(reach, direction, aside), leads_on
+            ):
+                return DirectionBeyond(reach, direction, aside)
     return None
 
 
@@ -246,24 +250,26 @@ def _guesses(
     options: LabelOptions, reach: float, came: FloatArray
 ) -> Iterator[tuple[FloatArray, FloatArray]]:
     """Where a direction is looked for, and from where it is taken, both from the corner."""
-    for look, aside in product(options.parts, options.parts):
-        yield look * reach * came, aside * reach * came
+    for poll, aside in product(options.parts, options.parts):
+        yield poll * reach * came, aside * reach * came
     around = np.random.default_rng(0).normal(size=(options.around, came.size))
     for way in around / np.linalg.norm(around, axis=1, keepdims=True):
         yield reach * way, np.zeros(came.size)
 
 
-def _direction(stepper: Stepper, look: FloatArray) -> FloatArray | None:
+def _direction(stepper: Stepper, poll: FloatArray) -> FloatArray | None:
     """That which the equations have there, with the orientation of here."""
     newton = stepper.newton
-    np.asarray(newton.row)[:] = look / np.linalg.norm(look)
-    np.asarray(newton.z)[:] = np.asarray(stepper.here.z) + np.asarray(newton.scale) * look
-    if not newton.look():
+    np.asarray(newton.row)[:] = poll / np.linalg.norm(poll)
+    np.asarray(newton.z)[:] = np.asarray(stepper.here.z) + np.asarray(newton.scale) * poll
+    if not newton.poll():
         return None
     return np.array(newton.tangent) * (1.0 if newton.orientation == stepper.here.orientation else -1.0)
 
 
-def _found(stepper: Stepper, came: FloatArray, way: WayOn, leads_on: Callable[[float], bool]) -> bool:
+def _found(
+    stepper: Stepper, came: FloatArray, way: DirectionBeyond, leads_on: Callable[[float], bool]
+) -> bool:
     """Whether a way leads to a point at which the curve goes on from here; the problem is bound there."""
     newton, here, scale = stepper.newton, np.asarray(stepper.here.z), np.asarray(stepper.newton.scale)
     np.asarray(newton.row)[:] = way.direction

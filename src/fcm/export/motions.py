@@ -13,11 +13,11 @@ import numpy as np
 
 from fcm.continuation.corrector import Newton
 from fcm.export.options import EXPORT, ExportOptions
-from fcm.harmonic.record import amplitudes_at
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.response_quantities import amplitudes_at
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Modal, Scene
-from fcm.reduction.put_back import unknowns
-from fcm.response.wanted import ResponseError
+from fcm.reduction.restore import unknowns
+from fcm.response.request import ResponseError
 from fcm.results.motions import ComplexArray, Motion
 from fcm.results.result import Curve, Response
 from fcm.rotation import greatest_first
@@ -140,7 +140,7 @@ class _Solver:
         newton.scale[:] = newton.problem.scale
         newton.z[:] = z
         newton.row[:] = np.eye(z.size)[-1]
-        if along and newton.look():
+        if along and newton.poll():
             newton.row[:] = newton.tangent
         newton.z[:] = z
         return np.array(newton.z) if newton.correct(1.0) else None

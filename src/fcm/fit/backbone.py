@@ -1,6 +1,6 @@
 r"""Residuals of a measured backbone: frequency and damping of a nonlinear mode against its amplitude.
 
-The mode R(z, ln a) = 0 of the model (see `fcm.harmonic.autonomous`) is solved where its amplitude is the
+The mode R(z, ln a) = 0 of the model (`nonlinear_modes.backbone`) is solved where its amplitude is the
 measured one. By a number p it changes there by w with R_z w = -R_p and the amplitude held.
 """
 
@@ -15,12 +15,12 @@ from fcm.continuation.corrector import Newton
 from fcm.fit.forced import NoMotionError
 from fcm.fit.options import BACKBONE, FitOptions
 from fcm.fit.rows import Rows
-from fcm.harmonic.autonomous import Autonomous
-from fcm.harmonic.mode import Mode, linear_modes, nonlinear_mode
-from fcm.harmonic.peak import STENCIL
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Measured, Scene
+from fcm.nonlinear_modes.backbone import Mode, linear_modes, nonlinear_mode
+from fcm.nonlinear_modes.extended_periodic_motion import Autonomous
 from fcm.scene.draft import Number
+from fcm.sensitivity.peak import STENCIL
 
 
 def backbone_rows(

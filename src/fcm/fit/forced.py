@@ -20,17 +20,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from fcm.branches.trace import traced
 from fcm.continuation.corrector import Newton
 from fcm.fit.options import NEAREST, FitOptions, NearestOptions
 from fcm.fit.rows import Rows
-from fcm.harmonic.balance import Balance
-from fcm.harmonic.by_number import Rates, growth_of, rates_of
-from fcm.harmonic.record import recorded
-from fcm.harmonic.system import System
-from fcm.harmonic.trace import traced
-from fcm.harmonic.whole import jacobian_of
+from fcm.harmonic_balance.dense_jacobian import jacobian_of
+from fcm.harmonic_balance.residual import Balance
+from fcm.harmonic_balance.response_quantities import recorded
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Measured, Scene
 from fcm.scene.draft import LEVEL, number_of
+from fcm.sensitivity.parameter_derivatives import Rates, growth_of, rates_of
 from fcm.units import QUANTITIES
 
 ComplexArray = npt.NDArray[np.complex128]

@@ -60,13 +60,13 @@ class Problem:
     harmonics: tuple[int, ...]
     blurred: bool
     options: FitOptions = FIT
-    look: Callable[[], None] = int  # type: ignore[assignment]
+    poll: Callable[[], None] = int  # type: ignore[assignment]
     known: tuple[bytes, list[Rows] | None] = field(default=(b"", None))
 
     def parts(self, x: FloatArray) -> list[Rows] | None:
         """Rows of each data set; None where the model has no response."""
         if self.known[0] != x.tobytes():
-            self.look()
+            self.poll()
             try:
                 self.known = (x.tobytes(), self._parts(x))
             except (NoMotionError, np.linalg.LinAlgError):

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from fcm.plot.apart import apart
 from fcm.plot.errors import PlotError
 from fcm.plot.read import LARGEST, opened, read
+from fcm.plot.reader_process import apart
 from fcm.plot.style import house_style, new_figure, plain_ticks
 
 if TYPE_CHECKING:

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from fcm.plot.apart import apart
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
+from fcm.plot.reader_process import apart
 
 _CYCLES = ("cycle_start", "cycle_elapsed", "cycle_part", "cycle_greatest", "cycle_least", "cycle_mean")
 _PHASES = ("schedule_frequency", "schedule_cycles", "schedule_start")

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from fcm.plot.apart import apart
 from fcm.plot.errors import PlotError
 from fcm.plot.pairs import plane_view
 from fcm.plot.read import FloatArray, floats, opened
+from fcm.plot.reader_process import apart
 from fcm.plot.style import TWO_COLUMNS, WIDTH, house_style, new_figure
 
 if TYPE_CHECKING:

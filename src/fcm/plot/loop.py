@@ -127,13 +127,13 @@ def _draw_loop(axes: Axes, drawn: DrawnLoop) -> None:
     axes.axhline(0.0, color="0.85", linewidth=0.5, zorder=0)
     axes.axvline(0.0, color="0.85", linewidth=0.5, zorder=0)
     for part in parts(drawn.loop):
-        look = STATES[part.state][1]
+        poll = STATES[part.state][1]
         u, f = drawn.points(part)
         if part.state == "S":  # to and fro on one line, whose dashes would fill each other's gaps
             u, f = np.array([u.min(), u.max()]), np.zeros(2)
-        axes.plot(u, f, **look)
+        axes.plot(u, f, **poll)
         if part.state in "PN":
-            _arrow(axes, drawn, part, look["color"])
+            _arrow(axes, drawn, part, poll["color"])
 
 
 def _arrow(axes: Axes, drawn: DrawnLoop, part: Part, colour: str) -> None:
@@ -212,7 +212,7 @@ def _legend(figure: Figure, loops: Sequence[DrawnLoop], names: LoopAxes, limits:
     from matplotlib.lines import Line2D
 
     found = {state for drawn in loops for state in drawn.loop.sequence}
-    handles = [Line2D([], [], label=name, **look) for state, (name, look) in STATES.items() if state in found]
+    handles = [Line2D([], [], label=name, **poll) for state, (name, poll) in STATES.items() if state in found]
     label = names.limit if limits else f"{names.limit}: beyond the panel"
     handles.append(Line2D([], [], label=label, **_LIMIT))
     if any(drawn.loop.angles.size for drawn in loops):

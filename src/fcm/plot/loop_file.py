@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fcm.plot.apart import apart
 from fcm.plot.errors import PlotError
 from fcm.plot.read import FloatArray, floats, opened, read_response
+from fcm.plot.reader_process import apart
 
 MOST_NAMES = 10  # contacts that a message lists
 _ENERGY = "dissipated_energy"

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fcm.plot.apart import apart
 from fcm.plot.curve_names import name_at_side
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label
 from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
+from fcm.plot.reader_process import apart
 from fcm.plot.style import HEIGHT, WIDTH, house_style, new_figure, sequence_colours
 
 if TYPE_CHECKING:

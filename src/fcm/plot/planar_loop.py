@@ -112,9 +112,9 @@ def _draw_plane(axes: Axes, drawn: DrawnPlanarLoop, path: Path) -> None:
     for state in dict.fromkeys("EPS"):
         if (path.states == state).any():
             x, y = _only(path.u, path.states == state).T
-            look = STATES[state][1]
+            poll = STATES[state][1]
             name = {"E": "$u$, stick", "P": "$u$, slip", "S": "$u$, separation"}[state]
-            axes.plot(x, y, zorder=3, label=name, **look)
+            axes.plot(x, y, zorder=3, label=name, **poll)
     shown_at = _instants(path, drawn.instants)
     low = np.minimum(path.u.min(axis=0), (path.u[shown_at] - radius[shown_at, None]).min(axis=0))
     high = np.maximum(path.u.max(axis=0), (path.u[shown_at] + radius[shown_at, None]).max(axis=0))

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from fcm.plot.apart import apart
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label
 from fcm.plot.read import DrawnCurve, DrawnResponse, opened, read_response
+from fcm.plot.reader_process import apart
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -13,12 +13,12 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.files import NETCDF, no_file
-from fcm.plot.apart import apart
 from fcm.plot.dof import leading_column
 from fcm.plot.errors import PlotError
 from fcm.plot.layout import check_layout, is_text
 from fcm.plot.measured import NEEDED as MEASURED
 from fcm.plot.measured import DrawnMeasured, measured_of
+from fcm.plot.reader_process import apart
 from fcm.units import CF_UNIT
 from fcm.untold import untold
 

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fcm.plot.apart import apart
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import staying
 from fcm.plot.read import LARGEST, FloatArray, floats, opened, swept_units, swept_values
+from fcm.plot.reader_process import apart
 from fcm.plot.style import WIDTH, house_style, new_figure
 
 if TYPE_CHECKING:

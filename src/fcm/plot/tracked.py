@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fcm.plot.apart import apart
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label, staying, symbols, with_unit
 from fcm.plot.read import FloatArray, floats, opened
+from fcm.plot.reader_process import apart
 from fcm.plot.style import (
     HEIGHT,
     WIDTH,

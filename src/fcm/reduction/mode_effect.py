@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from fcm.model.scene import Scene
-from fcm.motion.errors import SimulationError
-from fcm.orbit import harmonic_state, periodic
-from fcm.orbit.start import inner_resonances, near_balance
-from fcm.reduction.leave_out import Lighter
+from fcm.reduction.negligible_parts import Lighter
 from fcm.results.result import Curve, Response
+from fcm.shooting import harmonic_state, periodic
+from fcm.shooting.initial_orbits import inner_resonances, near_balance
+from fcm.time_domain.errors import SimulationError
 
 MOST_CURVES = 8  # of a sweep, of which points are looked at
 MOST_POINTS = 4  # of a curve, those of its peaks first
@@ -22,7 +22,7 @@ def effect(response: Response, lighter: Lighter) -> float:
     return max(each, default=0.0)
 
 
-def foreseen(lighter: Lighter) -> float:
+def expected_effect(lighter: Lighter) -> float:
     """The same at the motions that the balance leads to, before any curve is followed."""
     numbers = np.unique(np.linspace(0, len(lighter.full) - 1, MOST_CURVES).astype(int))
     return max((_of_starts(lighter.curves[k], lighter.exact[k]) for k in numbers), default=0.0)

@@ -12,7 +12,7 @@ from fcm.scene.errors import counted
 from fcm.units import UNIT
 
 if TYPE_CHECKING:
-    from fcm.reduction.leave_out import Lighter
+    from fcm.reduction.negligible_parts import Lighter
 
 MOST_NAMES = 6  # of contacts in one sentence
 

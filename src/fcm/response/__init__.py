@@ -7,9 +7,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fcm.model.scene import Scene
+from fcm.response.request import ResponseError
 from fcm.response.sweep import trace
 from fcm.response.trace import METHODS
-from fcm.response.wanted import ResponseError
 from fcm.results.result import Curve, Response
 from fcm.run import Factory, place_of
 from fcm.scene.rules import step_fault
@@ -80,8 +80,8 @@ def respond(
     >>> data.fold_frequency.values.round(4).tolist()
     [[1.2388, 1.1875]]
     """
-    from fcm.response.around import check_no_ring, refuse_own_laws
-    from fcm.response.visible import check_solvable, visible
+    from fcm.response.ring_limits import check_no_ring, refuse_own_laws
+    from fcm.response.visible_dofs import check_solvable, visible
     from fcm.results.output import to_dataset
 
     if not isinstance(scene, Scene):
@@ -104,7 +104,7 @@ def respond(
 
         add_sensitivities(response, scene)
     if scene.schedule:
-        from fcm.motion import histories
+        from fcm.time_domain import histories
 
         response.histories = histories(scene)
     return to_dataset(visible(response, scene))

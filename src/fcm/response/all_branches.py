@@ -10,7 +10,7 @@ from fcm.accuracy.refinement import Accurate, enlarged, finer
 from fcm.branches.branch_points import all_up_to
 from fcm.branches.prolongation import prolongated
 from fcm.branches.search import symmetry_lost, with_branching, with_isolas
-from fcm.harmonic.trace import with_further
+from fcm.branches.trace import with_further
 from fcm.response.further_levels import with_levels_below_peaks, with_traced
 
 ROUNDS = 3  # of more harmonics, for branches that were not known when the harmonics were chosen

@@ -11,18 +11,18 @@ from pathlib import Path
 import numpy as np
 
 from fcm.model.scene import Scene
-from fcm.reduction.held import on_contacts
-from fcm.reduction.leave_out import TOLERANCE, leave_out_modes
-from fcm.reduction.mode_effect import effect, foreseen
+from fcm.reduction.constant_state_contacts import on_contacts
+from fcm.reduction.mode_effect import effect, expected_effect
+from fcm.reduction.negligible_parts import TOLERANCE, leave_out_modes
 from fcm.reduction.sentences import on_modes
-from fcm.response.around import refuse_other_harmonics, refuse_own_laws, refuse_plane, refuse_ring
+from fcm.response.coexisting_orbits import Unreached
+from fcm.response.coexisting_search import FOUND
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
-from fcm.response.exact_work import ExactWork
-from fcm.response.legs import LEGS
-from fcm.response.search import FOUND
-from fcm.response.unreached import Unreached
-from fcm.response.visit import STATES
-from fcm.response.wanted import ResponseError
+from fcm.response.exact_curve import ExactWork
+from fcm.response.request import ResponseError
+from fcm.response.resumable_branches import LEGS
+from fcm.response.ring_limits import refuse_other_harmonics, refuse_own_laws, refuse_plane, refuse_ring
+from fcm.response.stepped_sweep import STATES
 from fcm.results.at_rest import without_rounding
 from fcm.results.result import Response
 from fcm.run import Checkpoint, Factory, Progress, fingerprint
@@ -118,7 +118,7 @@ class _Run:
         if tolerance is None:
             return self._swept(scene, scenes, progress)  # the comparison's, which leaves out by itself
         lighter = leave_out_modes(scenes, tolerance, HIGHEST)
-        if lighter.above is not None and 2.0 * foreseen(lighter) > tolerance:
+        if lighter.above is not None and 2.0 * expected_effect(lighter) > tolerance:
             lighter = leave_out_modes(scenes, 0.0, HIGHEST)
         response, said = self._swept(scene, lighter.curves, progress), list(lighter.sentences)
         if lighter.above is not None and not response.interrupted:

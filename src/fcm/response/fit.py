@@ -16,12 +16,12 @@ from fcm.fit.forced import errors_of
 from fcm.fit.options import FIT
 from fcm.fit.parameters import FitError, Parameters, parameters_of
 from fcm.fit.solve import Solved, solved
-from fcm.harmonic.mode import ModeError
 from fcm.model.scene import FloatArray, Measured, Scene
-from fcm.response.around import check_no_ring, refuse_own_laws
+from fcm.nonlinear_modes.backbone import ModeError
 from fcm.response.mode import check_free
+from fcm.response.request import ResponseError, request_of
+from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.sweep import trace
-from fcm.response.wanted import ResponseError, wanted_of
 from fcm.results.fitted import Fitted, FittedData, FittedStart
 from fcm.results.result import Response
 from fcm.run import Progress
@@ -66,7 +66,7 @@ def fit(
     refuse_own_laws(scene, "a fit")
     if any(one.damping is not None for one in scene.fit.data):
         check_free(scene)
-    begin, wanted = time.perf_counter(), wanted_of(scene, harmonics, accuracy)
+    begin, wanted = time.perf_counter(), request_of(scene, harmonics, accuracy)
     plain = replace(scene, fit=None)
     chosen, values = wanted.harmonics or (1,), None
     for _ in range(ROUNDS):

@@ -15,13 +15,13 @@ import numpy as np
 
 from fcm.accuracy.outline import Outline
 from fcm.accuracy.refinement import Accurate, judged
+from fcm.branches.force_level import NEAR, Found, resonances, solutions
 from fcm.branches.options import LEVELS, LevelOptions
 from fcm.branches.prolongation import at_its_frequency
-from fcm.harmonic.reported import reported, reported_at
-from fcm.harmonic.start import NEAR, Found, resonances, solutions
-from fcm.harmonic.system import System
-from fcm.harmonic.trace import Traced, with_further
-from fcm.harmonic.work import TooLongError
+from fcm.branches.trace import Traced, with_further
+from fcm.harmonic_balance.reported_quantities import reported, reported_at
+from fcm.harmonic_balance.system import System
+from fcm.harmonic_balance.work_budget import TooLongError
 from fcm.model.scene import FloatArray
 from fcm.stability.unstable_ranges import Stretch, stretches_of
 

@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from fcm.harmonic.common_levels import forget
+from fcm.branches.shared_levels import forget
 from fcm.model.scene import Scene
+from fcm.response.request import Request
 from fcm.response.trace import traced_curve
-from fcm.response.wanted import Wanted
 from fcm.results.cause import Cause
-from fcm.results.gist import Gist, without_points
-from fcm.results.greatest import Greatest
+from fcm.results.condensed_curves import Gist, without_points
+from fcm.results.contact_maxima import Greatest
 from fcm.results.jumps import Jump, Swept, Untold
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance
 from fcm.results.orbits import Orbits, Stuck
@@ -50,7 +50,7 @@ _BY_POINT = (
 class Work:
     """What all groups are traced with."""
 
-    wanted: Wanted
+    wanted: Request
     peaks_only: bool = False
     samples: int = 0  # points that are kept all the same
 

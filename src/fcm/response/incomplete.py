@@ -7,11 +7,11 @@ import numpy.typing as npt
 
 from fcm.accuracy.refinement import Accurate
 from fcm.continuation import Status
-from fcm.harmonic.drift import REASONS, undetermined
-from fcm.harmonic.points import Points
-from fcm.harmonic.record import Record
-from fcm.harmonic.rigid import too_stiff
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.points import Points
+from fcm.harmonic_balance.response_quantities import Record
+from fcm.harmonic_balance.stiff_contacts import too_stiff
+from fcm.harmonic_balance.system import System
+from fcm.harmonic_balance.well_posedness import REASONS, undetermined
 from fcm.model.scene import FloatArray
 from fcm.units import in_unit
 

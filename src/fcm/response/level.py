@@ -15,29 +15,29 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fcm.accuracy.at_levels import errors_at_levels, evenness, stable_at_levels
+from fcm.accuracy.level_errors import errors_at_levels, evenness, stable_at_levels
 from fcm.accuracy.options import REFINEMENT
-from fcm.accuracy.trust import BELIEVED
+from fcm.accuracy.stability_validity import BELIEVED
+from fcm.branches.force_level import level_curve
+from fcm.branches.linear_limits import highest
 from fcm.continuation import Mark, Status
 from fcm.continuation.path import Path
-from fcm.harmonic.cost import with_twice_as_many
-from fcm.harmonic.in_plane import in_plane
-from fcm.harmonic.linear_contacts import highest
-from fcm.harmonic.record import cycles, loops, recorded_at_levels
-from fcm.harmonic.rest import RestError
-from fcm.harmonic.start import level_curve
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.cost_model import with_twice_as_many
+from fcm.harmonic_balance.planar_quantities import in_plane
+from fcm.harmonic_balance.response_quantities import cycles, loops, recorded_at_levels
+from fcm.harmonic_balance.static_equilibrium import RestError
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
-from fcm.response.around import check_modes
 from fcm.response.groups import anonymous, lost_curve
 from fcm.response.incomplete import because, no_steady_states
-from fcm.response.loose import loose
-from fcm.response.one_by_one import one_by_one
+from fcm.response.request import Request, ResponseError, request_of
+from fcm.response.ring_limits import check_modes
+from fcm.response.serial_sweep import one_by_one
 from fcm.response.trace import Rows, pick
-from fcm.response.wanted import ResponseError, Wanted, wanted_of
+from fcm.response.undetermined_traction import undetermined
 from fcm.results.at_rest import without_rounding
 from fcm.results.cause import Cause
-from fcm.results.greatest import greatest_of
+from fcm.results.contact_maxima import greatest_of
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
 from fcm.run import Checkpoint, Progress, fingerprint
@@ -79,7 +79,7 @@ def trace_levels(
     if not all(np.isfinite(f) and f > 0.0 for f in at):
         raise ResponseError("a frequency must be finite and greater than 0")
     begin = time.perf_counter()
-    wanted = wanted_of(scene, harmonics, accuracy)
+    wanted = request_of(scene, harmonics, accuracy)
     check_modes(scene, wanted)
     ways = [
         (curve, frequency * UNIT[scene.frequency_unit]) for curve in scene.each_curve() for frequency in at
@@ -117,7 +117,7 @@ def _without(scene: Scene, omega: float, reason: str, cause: Cause = Cause.CALCU
     return replace(lost_curve(scene, reason, cause), parameters=parameters, level=np.empty(0))
 
 
-def _level(scene: Scene, wanted: Wanted, omega: float, span: tuple[float, float]) -> Curve:
+def _level(scene: Scene, wanted: Request, omega: float, span: tuple[float, float]) -> Curve:
     """With the harmonics that are wanted; with ever more until they are enough for the accuracy."""
     begin, stopped = time.perf_counter(), ""
     system = System(scene, wanted.harmonics or (1,))
@@ -226,7 +226,7 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     folds = level[(path.mark[inside] & Mark.FOLD) > 0]
     of_curve = {
         "level_folds": folds.tolist(),
-        "loose": int(loose(system.scene, words).sum()),
+        "undetermined": int(undetermined(system.scene, words).sum()),
         "reason": _lost(system, level, lost),
         "in_plane": None if plane is None else plane.at(rows),
     }

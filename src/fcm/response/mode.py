@@ -9,26 +9,26 @@ from functools import partial
 
 import numpy as np
 
-from fcm.accuracy.borne import relative
+from fcm.accuracy.contact_load_errors import relative
 from fcm.accuracy.options import PAIR
 from fcm.continuation import Mark, Status
-from fcm.harmonic.cost import with_twice_as_many
-from fcm.harmonic.in_plane import in_plane
-from fcm.harmonic.mode import Mode, ModeError, half_peak_to_peak, nonlinear_mode, truncation
-from fcm.harmonic.mode_forced import flanks, modal_force, resonances, resonant_level
-from fcm.harmonic.record import cycles, loops
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.cost_model import with_twice_as_many
+from fcm.harmonic_balance.planar_quantities import in_plane
+from fcm.harmonic_balance.response_quantities import cycles, loops
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
-from fcm.response.around import check_no_ring, refuse_other_harmonics, refuse_own_laws
+from fcm.nonlinear_modes.backbone import Mode, ModeError, half_peak_to_peak, nonlinear_mode, truncation
+from fcm.nonlinear_modes.forced_response import flanks, modal_force, resonances, resonant_level
 from fcm.response.groups import anonymous, lost_curve
 from fcm.response.incomplete import because, no_steady_states
-from fcm.response.loose import loose
-from fcm.response.one_by_one import one_by_one
+from fcm.response.request import Request, ResponseError, request_of
+from fcm.response.ring_limits import check_no_ring, refuse_other_harmonics, refuse_own_laws
+from fcm.response.serial_sweep import one_by_one
 from fcm.response.trace import pick
-from fcm.response.wanted import ResponseError, Wanted, wanted_of
+from fcm.response.undetermined_traction import undetermined
 from fcm.results.at_rest import without_rounding
 from fcm.results.cause import Cause
-from fcm.results.greatest import greatest_of
+from fcm.results.contact_maxima import greatest_of
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance
 from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
 from fcm.run import Checkpoint, Progress, fingerprint
@@ -75,7 +75,7 @@ def trace_modes(
         raise ResponseError("a level of the forces must be finite and greater than 0")
     check_free(scene)
     begin = time.perf_counter()
-    wanted = wanted_of(scene, harmonics, accuracy)
+    wanted = request_of(scene, harmonics, accuracy)
     levels = tuple(float(level) for level in force_levels)
     of_curves = (number, span, wanted, levels, anonymous(scene.each_curve()))
     mark = b"" if keep is None else fingerprint("mode", *of_curves)
@@ -110,7 +110,7 @@ def check_free(scene: Scene) -> None:
 
 
 def _curve(
-    scene: Scene, number: int, span: tuple[float, float], wanted: Wanted, levels: tuple[float, ...]
+    scene: Scene, number: int, span: tuple[float, float], wanted: Request, levels: tuple[float, ...]
 ) -> Curve:
     begin = time.perf_counter()
     system = System(scene, wanted.harmonics or (1,))
@@ -179,7 +179,7 @@ def _recorded(
         truncation_error=error,
         complete=not reason,
         reason=reason,
-        loose=int(loose(scene, words).sum()),
+        undetermined=int(undetermined(scene, words).sum()),
         evaluations=path.evaluations,
         harmonics=system.harmonics,
         harmonic=X if len(system.harmonics) > 1 else None,

@@ -13,23 +13,23 @@ import numpy as np
 
 from fcm.continuation import Mark
 from fcm.model.scene import FloatArray, Scene
-from fcm.motion.errors import SimulationError
-from fcm.orbit.bounded import Doubts
-from fcm.orbit.harmonic import state_of
-from fcm.orbit.located import SAME, Guess, located
-from fcm.orbit.periodic import Look
-from fcm.orbit.problem import OrbitProblem
-from fcm.orbit.sample import Sample
-from fcm.orbit.start import near_balance
-from fcm.reduction.put_back import unknowns
+from fcm.reduction.restore import unknowns
+from fcm.response.coexisting_search import Search
 from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.orbit_curve import curve_of_points, orbit_curve
-from fcm.response.search import Search
+from fcm.response.request import ACCURACY, ONE_HARMONIC, Request
 from fcm.response.trace import traced_curve
-from fcm.response.wanted import ACCURACY, ONE_HARMONIC, Wanted
 from fcm.results.jumps import Jump, Swept
 from fcm.results.result import Curve
 from fcm.run import Report
+from fcm.shooting.harmonic_balance_state import state_of
+from fcm.shooting.initial_orbits import near_balance
+from fcm.shooting.orbit_record import Sample
+from fcm.shooting.peaks_and_folds import SAME, Guess, located
+from fcm.shooting.periodic import Poll
+from fcm.shooting.problem import OrbitProblem
+from fcm.shooting.work_budget import Doubts
+from fcm.time_domain.errors import SimulationError
 
 HIGH = 0.9  # of the greatest amplitude of a degree of freedom: peaks of the balance that may be the highest
 NEARLY = 0.1  # error of peaks by one harmonic, beyond which one that is near enough has too many
@@ -45,14 +45,14 @@ class Alone:
     doubts: Doubts = field(default_factory=Doubts)  # of the balance that they are near
 
 
-def peaks_alone(scene: Scene, known: list[Sample], report: Report, look: Look) -> Alone | None:
+def peaks_alone(scene: Scene, known: list[Sample], report: Report, poll: Poll) -> Alone | None:
     """The peaks, folds and jumps of a scene; None where the balance has others.
 
     known : to which points are added as they are found.
     """
-    if not _leads_on(traced_curve(scene, ONE_HARMONIC, look)):
+    if not _leads_on(traced_curve(scene, ONE_HARMONIC, poll)):
         return None
-    balanced = traced_curve(scene, Wanted(None, ACCURACY), look)
+    balanced = traced_curve(scene, Request(None, ACCURACY), poll)
     swept = balanced.swept()
     if not balanced.complete or swept.untold or not _at_folds(swept, balanced):
         return None
@@ -60,7 +60,7 @@ def peaks_alone(scene: Scene, known: list[Sample], report: Report, look: Look) -
     guesses = list(_guesses(scene, balanced))
     for number, guess in enumerate(guesses):
         report(number / len(guesses), f"{number} of {len(guesses)} peaks and folds")
-        look()
+        poll()
         found = located(problem, guess, known)
         if found is None:
             return None

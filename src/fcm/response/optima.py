@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
-from fcm.response.least import ROUNDS, Found, Task, enough, optimum
+from fcm.response.least_peak import ROUNDS, Found, Task, enough, optimum
 from fcm.results.tracked import Optimal, TrackedCurve
 from fcm.run import Checkpoint, Progress, Results, fingerprint
 from fcm.run.progress import part

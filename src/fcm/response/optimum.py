@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 from fcm.model.scene import Optimum, Scene
-from fcm.response.around import check_no_ring, refuse_own_laws
 from fcm.response.curve_sweep import checkpoint_of
-from fcm.response.least import Found, Task, with_values
+from fcm.response.least_peak import Found, Task, with_values
 from fcm.response.optima import optima
+from fcm.response.request import ResponseError, request_of
+from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.sweep import trace
-from fcm.response.wanted import ResponseError, wanted_of
-from fcm.results.gist import gist_of, without_points
+from fcm.results.condensed_curves import gist_of, without_points
 from fcm.results.peak import stability_at_top
 from fcm.results.result import INTERRUPTED, Curve, Response
 from fcm.results.tracked import Optimal, Tracking
@@ -26,8 +26,8 @@ from fcm.run.progress import part
 from fcm.scene.address import replaced
 from fcm.scene.draft import Draft, Number, number_of
 from fcm.scene.errors import counted
-from fcm.track.envelope import UNFINISHED
-from fcm.track.options import SEARCH
+from fcm.tracking.options import SEARCH
+from fcm.tracking.peak_envelope import UNFINISHED
 
 SEEKING = 0.8  # share of the bar that is over when the optimum is found
 SAME_PLACE = 1e-6  # relative difference of frequencies at which a peak was tracked and traced
@@ -69,7 +69,7 @@ def optimise(
     refuse_own_laws(scene, "an optimum")
     begin = time.perf_counter()
     numbers, free = _freed(scene, scene.optimum.vary)
-    wanted = wanted_of(scene, harmonics, accuracy)
+    wanted = request_of(scene, harmonics, accuracy)
     tasks = [Task(curve, numbers, wanted.accuracy) for curve in free.each_curve()]
     with checkpoint_of(keep, resume) as checkpoint:
         found, stopped = optima(tasks, wanted.harmonics, checkpoint, part(progress, 0.0, SEEKING))

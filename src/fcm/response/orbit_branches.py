@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from fcm.continuation import Path
-from fcm.orbit.doubled import Doubled, to_flips
-from fcm.orbit.landing import with_landings
-from fcm.orbit.problem import OrbitProblem
-from fcm.orbit.sample import Sample, samples
+from fcm.shooting.jump_landings import with_landings
+from fcm.shooting.orbit_record import Sample, samples
+from fcm.shooting.period_doubling import Doubled, to_flips
+from fcm.shooting.problem import OrbitProblem
 
 
 @dataclass(frozen=True)

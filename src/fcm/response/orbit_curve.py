@@ -11,21 +11,27 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.continuation import Mark
 from fcm.model.scene import Scene
-from fcm.orbit.doubled import bifurcations, flip, flips
-from fcm.orbit.sample import Sample
-from fcm.reduction.held import NotKeptError, lost_by, whole_borne, whole_state, whole_states
+from fcm.reduction.constant_state_contacts import (
+    NotKeptError,
+    lost_by,
+    whole_borne,
+    whole_state,
+    whole_states,
+)
+from fcm.response.coexisting_search import Search
+from fcm.response.coexisting_stuck import stuck_beside
+from fcm.response.friction_extent import NotUnique, not_unique
 from fcm.response.groups import lost_curve
-from fcm.response.loose import loose
-from fcm.response.not_unique import NotUnique, not_unique
 from fcm.response.orbit_branches import OrbitBranches
-from fcm.response.search import Search
-from fcm.response.stuck_beside import stuck_beside
-from fcm.response.visit import Visitor
-from fcm.results.greatest import greatest_of
+from fcm.response.stepped_sweep import Visitor
+from fcm.response.undetermined_traction import undetermined
+from fcm.results.contact_maxima import greatest_of
 from fcm.results.jumps import Swept
 from fcm.results.orbits import Orbits, Stuck
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve
+from fcm.shooting.orbit_record import Sample
+from fcm.shooting.period_doubling import bifurcations, flip, flips
 
 LONGEST_REGIME = 60  # letters; a contact that chatters has more, and the rest is cut off
 
@@ -136,7 +142,7 @@ def _curve(
         error=np.repeat(error[:, None], amplitude.shape[1], axis=1),
         truncation_error=zero,
         complete=not reason,
-        loose=int((loose(scene, regime) & ~told).sum()),
+        undetermined=int((undetermined(scene, regime) & ~told).sum()),
         peaks={d: _peak(amplitude[:, i], frequency, error, at_top[i]) for i, d in enumerate(empty.peaks)},
         orbits=_orbits(points, empty, others, stuck),
     )

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from fcm.model.scene import Scene
-from fcm.motion import Energy, Histories, State, histories
-from fcm.motion.record import Passed, PhaseResult, Record
 from fcm.response.groups import anonymous
 from fcm.run import Checkpoint, Progress, fingerprint
+from fcm.time_domain import Energy, Histories, State, histories
+from fcm.time_domain.schedule_record import Passed, PhaseResult, Record
 
 _KINDS = (Record, PhaseResult, Passed, State, Energy)  # what is kept consists of these
 

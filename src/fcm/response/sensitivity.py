@@ -7,15 +7,15 @@ from collections.abc import Iterable
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic.peak import Kind
-from fcm.harmonic.sensitivity import Sensitivities, sensitivities
 from fcm.model.scene import FloatArray, Scene
-from fcm.reduction.put_back import unknowns
-from fcm.response.around import check_no_ring, refuse_own_laws
+from fcm.reduction.restore import unknowns
 from fcm.response.optimum import scenes_at
+from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.results.cause import Cause
 from fcm.results.result import INTERRUPTED, Curve, Response
 from fcm.run import Progress
+from fcm.sensitivity.peak import Kind
+from fcm.sensitivity.peaks import Sensitivities, sensitivities
 
 WITHOUT = f"{INTERRUPTED} before its sensitivities were known"
 REMARKS = {

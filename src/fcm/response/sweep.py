@@ -9,17 +9,17 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from fcm.harmonic.sampled import check_own_laws
+from fcm.harmonic_balance.sampled import check_own_laws
 from fcm.model.scene import Scene
 from fcm.reduction import sentences
-from fcm.reduction.leave_out import TOLERANCE, Lighter, keep_all, leave_out
-from fcm.reduction.put_back import EACH_CHECKED, checked, restored
-from fcm.response.around import check_modes, unknown
+from fcm.reduction.negligible_parts import TOLERANCE, Lighter, keep_all, leave_out
+from fcm.reduction.restore import EACH_CHECKED, checked, restored
 from fcm.response.blades import with_blades
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.groups import Work
+from fcm.response.request import Request, ResponseError, request_of
+from fcm.response.ring_limits import check_modes, unknown
 from fcm.response.trace import METHODS
-from fcm.response.wanted import ResponseError, Wanted, wanted_of
 from fcm.results.at_rest import without_rounding
 from fcm.results.result import Response
 from fcm.run import Checkpoint, Factory, Progress, fingerprint
@@ -101,7 +101,7 @@ def trace(
     if not scene.has_range:
         raise ResponseError("the scene has no [response] with frequency = [from, to], so no curve to trace")
     begin = time.perf_counter()
-    wanted = wanted_of(scene, harmonics, accuracy)
+    wanted = request_of(scene, harmonics, accuracy)
     check_own_laws(scene)
     check_modes(scene, wanted)
     with checkpoint_of(keep, resume) as checkpoint:
@@ -155,7 +155,7 @@ class _Sweep:
         scene: Scene,
         method: str,
         table: Table | None,
-        wanted: Wanted,
+        wanted: Request,
         peaks_only: bool,
         curves: CurveSweep,
     ) -> None:

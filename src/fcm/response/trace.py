@@ -13,28 +13,28 @@ import numpy.typing as npt
 from fcm.accuracy.options import PAIR
 from fcm.accuracy.refinement import Accurate, accurate, enlarged, finer, given, judged
 from fcm.accuracy.stability_limits import Lost, lost_along, moved
-from fcm.accuracy.trust import astray, disbelieved
+from fcm.accuracy.stability_validity import astray, disbelieved
 from fcm.branches.options import FOLDS
 from fcm.contact.contact_law import ContactLawError
 from fcm.continuation import Mark
-from fcm.harmonic.in_plane import in_plane
-from fcm.harmonic.record import Record, cycles, loops, recorded
-from fcm.harmonic.reported import Reported, reported_at
-from fcm.harmonic.rest import RestError
-from fcm.harmonic.rigid import too_stiff
-from fcm.harmonic.stiff import with_digits
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.planar_quantities import in_plane
+from fcm.harmonic_balance.reported_quantities import Reported, reported_at
+from fcm.harmonic_balance.response_quantities import Record, cycles, loops, recorded
+from fcm.harmonic_balance.rounding import with_digits
+from fcm.harmonic_balance.static_equilibrium import RestError
+from fcm.harmonic_balance.stiff_contacts import too_stiff
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
+from fcm.response.accuracy_shortfall import short_of
 from fcm.response.all_branches import with_all_branches
+from fcm.response.best_so_far import SoFar, Tell
 from fcm.response.further_levels import with_levels_where_unstable
 from fcm.response.incomplete import FLOATING, incomplete
-from fcm.response.leading import leading, of_all, with_tops
-from fcm.response.loose import loose
-from fcm.response.short_of import short_of
-from fcm.response.so_far import SoFar, Tell
-from fcm.response.wanted import ONE_HARMONIC, Wanted
+from fcm.response.master_dofs import leading, of_all, with_tops
+from fcm.response.request import ONE_HARMONIC, Request
+from fcm.response.undetermined_traction import undetermined
 from fcm.results.cause import Cause
-from fcm.results.greatest import greatest_of
+from fcm.results.contact_maxima import greatest_of
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve
 from fcm.run import Interrupted
@@ -48,11 +48,11 @@ Rows = npt.NDArray[np.intp]
 
 def traced_curve(
     scene: Scene,
-    wanted: Wanted = ONE_HARMONIC,
-    look: Callable[[], None] | None = None,
+    wanted: Request = ONE_HARMONIC,
+    poll: Callable[[], None] | None = None,
     tell: Tell | None = None,
 ) -> Curve:
-    """The response curve of a scene without a sweep; look is called now and then, tell with what there is.
+    """The response curve of a scene without a sweep; poll is called now and then, tell with what there is.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def traced_curve(
 
     begin, so_far = time.perf_counter(), SoFar(tell)
     try:
-        curve = _traced_curve(scene, wanted, look, so_far)
+        curve = _traced_curve(scene, wanted, poll, so_far)
     except ContactLawError as useless:  # of a motion that was not tried before
         curve = lost_curve(scene, str(useless))
     except KeyboardInterrupt:
@@ -80,7 +80,7 @@ def _unfinished(so_far: SoFar, scene: Scene) -> Curve:
     """The best curve that there is, with its errors as far as they are told quickly."""
     assert so_far.found is not None
     found = so_far.found
-    found.system.work.look = int  # which interrupts no more
+    found.system.work.poll = int  # which interrupts no more
     if not isinstance(found, Accurate):
         found = judged(found, np.inf, options=QUICK)
     stable = [np.full(len(path.z), np.nan) for path in found.traced.branches.paths]
@@ -91,11 +91,11 @@ def _unfinished(so_far: SoFar, scene: Scene) -> Curve:
     return curve
 
 
-def _traced_curve(scene: Scene, wanted: Wanted, look: Callable[[], None] | None, so_far: SoFar) -> Curve:
+def _traced_curve(scene: Scene, wanted: Request, poll: Callable[[], None] | None, so_far: SoFar) -> Curve:
     from fcm.response.groups import lost_curve
 
     system = System(leading(scene), wanted.harmonics or (1,), wanted.table, wanted.corrected)
-    system.work.look = look or system.work.look
+    system.work.poll = poll or system.work.poll
     by_need = wanted.harmonics is None
     try:
         found = accurate(system, wanted.accuracy, keep=so_far) if by_need else given(system, keep=so_far)
@@ -210,7 +210,7 @@ def _curve(followed: _Followed) -> Curve:
         harmonics=system.harmonics,
         harmonic=pick(X, rows) if len(system.harmonics) > 1 else None,
         in_plane=None if plane is None else plane.at(rows),
-        loose=int(loose(scene, words).sum()),
+        undetermined=int(undetermined(scene, words).sum()),
         unsure=[one.omega for one in found.traced.found if not one.complete],
         folds_unsure=list(found.traced.folds_lost),
         symmetry_lost=list(found.traced.symmetry_lost),

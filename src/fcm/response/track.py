@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 
 from fcm.accuracy.refinement import accurate
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import Scene
-from fcm.response.around import check_no_ring, refuse_own_laws
 from fcm.response.curve_sweep import checkpoint_of
-from fcm.response.leading import leading
+from fcm.response.master_dofs import leading
+from fcm.response.request import Request, ResponseError, request_of
+from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.tracked_work import KINDS, STATES, Followed, TrackedWork
-from fcm.response.wanted import ResponseError, Wanted, wanted_of
 from fcm.results.result import DEFECT, NOT_BEGUN, Response
 from fcm.results.tracked import Tracking
 from fcm.run import (
@@ -36,7 +36,7 @@ from fcm.run import (
 from fcm.scene.draft import LEVEL, Number, number_of
 from fcm.scene.errors import counted
 from fcm.structure.linear import linear_of
-from fcm.track.onset import KINDS as ONSETS
+from fcm.tracking.onset_functions import KINDS as ONSETS
 
 NARROWEST = 1e-6  # of its ends: of a narrower span not even the first steps can be told from rounding
 WHAT = ("folds", "peaks", *ONSETS)
@@ -103,7 +103,7 @@ def track(
     _check(scene, number, span)
     begin = time.perf_counter()
     free = number.freed(scene)
-    wanted = wanted_of(scene, harmonics, accuracy)
+    wanted = request_of(scene, harmonics, accuracy)
     tracked = leading(free)
     curves = tracked.each_curve()
     chosen = wanted.harmonics or needed(curves, number, span, wanted)
@@ -218,7 +218,7 @@ def _at_ends(scene: Scene, number: Number, span: tuple[float, float]) -> list[Sc
 
 
 def needed(
-    curves: Sequence[Scene], number: Number, span: tuple[float, float], wanted: Wanted
+    curves: Sequence[Scene], number: Number, span: tuple[float, float], wanted: Request
 ) -> tuple[int, ...]:
     """The harmonics that an accuracy takes, at both ends of a span and in its middle."""
     found = {1}

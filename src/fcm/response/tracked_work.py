@@ -16,25 +16,25 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from fcm.accuracy import trust
-from fcm.harmonic.record import cycles, loops
-from fcm.harmonic.system import System
+from fcm.accuracy import stability_validity
+from fcm.harmonic_balance.response_quantities import cycles, loops
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.incomplete import because, no_steady_states
-from fcm.response.loose import loose
+from fcm.response.undetermined_traction import undetermined
 from fcm.results.result import INTERRUPTED
 from fcm.results.tracked import TrackedCurve, TrackedError
 from fcm.run import Interrupted, Report
 from fcm.scene.draft import Number
-from fcm.track.curve import Track
-from fcm.track.curves import tracks
-from fcm.track.error import change, places
-from fcm.track.onset import KINDS as ONSETS
-from fcm.track.spot import Ending, Spot, Way
-from fcm.track.stability import stability_along
-from fcm.track.starts import Special, moved
-from fcm.track.tracked import Condition, Kind
-from fcm.track.varied import along
+from fcm.tracking.curve import Track
+from fcm.tracking.curves import tracks
+from fcm.tracking.error import change, places
+from fcm.tracking.extended_system import Condition, Kind
+from fcm.tracking.onset_functions import KINDS as ONSETS
+from fcm.tracking.parameter_line import along
+from fcm.tracking.stability import stability_along
+from fcm.tracking.starts import Special, moved
+from fcm.tracking.tracked_point import Ending, Spot, Way
 from fcm.units import in_unit
 
 STOPPED = f"{INTERRUPTED}, so that curves and errors may be missing"
@@ -160,7 +160,7 @@ def as_curve(
         complete=one.whole and not reason,
         reason=f"stopped at {end:.6g}: {stopped[0].value}" if stopped else reason,
         errors=told,
-        loose=count,
+        undetermined=count,
     )
 
 
@@ -170,7 +170,7 @@ def _disbelieved(told: Sequence[TrackedError], count: int) -> npt.NDArray[np.boo
     far = np.zeros(count, dtype=np.bool_)
     places = sorted((one.point, one.relative) for one in told)
     for k, (_, error) in enumerate(places):
-        if error > trust.BELIEVED:
+        if error > stability_validity.BELIEVED:
             first = places[k - 1][0] if k else 0
             last = places[k + 1][0] if k + 1 < len(places) else count - 1
             far[first : last + 1] = True
@@ -184,7 +184,7 @@ def _along_spots(way: Way, one: Track) -> tuple[dict[str, npt.NDArray[np.bool_]]
     for k, spot in enumerate(one.spots):
         system = moved(way.system, way.line.scene(way.system.scene, float(spot.z[-1])))
         z = np.array(spot.z[None, :-1])
-        count += int(loose(system.scene, cycles(system, z, loops(system, z))[0]).sum())
+        count += int(undetermined(system.scene, cycles(system, z, loops(system, z))[0]).sum())
         for why, which in no_steady_states(system, z, np.ones(1)).items():
             lost.setdefault(why, np.zeros(len(one.spots), dtype=np.bool_))[k] = which[0]
     return lost, count

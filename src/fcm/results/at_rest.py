@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.at_rest import RestOptions, at_rest
-from fcm.results.gist import Gist
+from fcm.results.condensed_curves import Gist
 from fcm.results.jumps import Swept
 from fcm.results.nonlinear_mode import NonlinearMode
 from fcm.results.peak import Peak

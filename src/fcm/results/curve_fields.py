@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from fcm.results.condensed_curves import Gist, gist_of
+from fcm.results.contact_maxima import Greatest
 from fcm.results.field import Field
-from fcm.results.gist import Gist, gist_of
-from fcm.results.greatest import Greatest
 from fcm.results.meanings import CYCLE
 from fcm.results.padded import by_fold
 from fcm.results.result import Curve, Response
@@ -42,10 +42,10 @@ def _doubts(response: Response, gists: Sequence[Gist]) -> dict[str, Field]:
     """What may be missing in curves, or lacking, which the summary of a file with all points says."""
     curves, unit, out = response.curves, response.frequency_unit, dict[str, Field]()
     in_file = {"units": CF_UNIT[unit]}
-    if any(curve.loose for curve in curves):
+    if any(curve.undetermined for curve in curves):
         meaning = "points at which the motion is one of many, by the residual friction of stuck contacts"
-        loose = np.array([curve.loose for curve in curves], dtype=np.float64)
-        out["points_maybe_not_unique"] = Field(("curve",), loose, {"long_name": meaning, "units": "1"})
+        undetermined = np.array([curve.undetermined for curve in curves], dtype=np.float64)
+        out["points_maybe_not_unique"] = Field(("curve",), undetermined, {"long_name": meaning, "units": "1"})
     if any(curve.unsure for curve in curves):
         meaning = "frequencies at which solutions were not looked for to the end: branches may be missing"
         unsure = by_fold(curves, lambda curve: in_unit(np.array(curve.unsure), unit))

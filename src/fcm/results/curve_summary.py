@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fcm.results.gist import Gist, gist_of, worst
-from fcm.results.greatest import Greatest
+from fcm.results.condensed_curves import Gist, gist_of, worst
+from fcm.results.contact_maxima import Greatest
 from fcm.results.jumps import Jump, Untold
 from fcm.results.meanings import CYCLE
 from fcm.results.orbits import Orbits, Stuck
@@ -17,8 +17,8 @@ from fcm.stability.unstable_ranges import not_looked_at
 from fcm.units import in_unit
 
 if TYPE_CHECKING:
-    from fcm.harmonic.sensitivity import Sensitivities
     from fcm.results.result import Curve
+    from fcm.sensitivity.peaks import Sensitivities
 
 
 def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict[str, Any]:
@@ -47,8 +47,8 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
         out["levels_looked_at"] = list(curve.folds_between)
     if curve.mirrored:
         out["mirrored_branches"] = curve.mirrored
-    if curve.loose:
-        out["may_not_be_unique"] = curve.loose
+    if curve.undetermined:
+        out["may_not_be_unique"] = curve.undetermined
     out["peak"] = {dof: _peak(curve, peak, gist, unit) for dof, peak in curve.peaks.items()}
     if curve.greatest is not None and contacts:
         out["contacts"] = _contacts(curve.greatest, contacts, unit)

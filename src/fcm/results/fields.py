@@ -96,9 +96,9 @@ def fields_of(response: Response) -> dict[str, Field]:
 
         out |= motion_fields(response.motions, response.frequency_unit)
     if response.histories is not None:
-        from fcm.motion import output
+        from fcm.time_domain import history_output
 
-        out |= {name: Field(*parts) for name, parts in output.variables(response.histories).items()}
+        out |= {name: Field(*parts) for name, parts in history_output.variables(response.histories).items()}
     return _with_units(out, response.units, [dof for dof in response.dofs if is_rotation(dof)])
 
 

@@ -49,9 +49,9 @@ def summary(response: Response) -> dict[str, Any]:
     if response.curves and response.blades is not None:
         add_to_summary(response, data)
     if response.histories is not None:
-        from fcm.motion import output
+        from fcm.time_domain import history_output
 
-        data["histories"] = output.summary(response.histories)
+        data["histories"] = history_output.summary(response.histories)
     if response.tracking is not None:
         unit = response.frequency_unit
         data["tracked"] = response.tracking.summary(unit)

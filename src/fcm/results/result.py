@@ -14,22 +14,22 @@ from fcm.contact.limits import FloatArray
 from fcm.model.ring import of_sector
 from fcm.model.scene import Scene
 from fcm.results.cause import Cause
+from fcm.results.condensed_curves import Gist
+from fcm.results.contact_maxima import Greatest
 from fcm.results.curve_summary import curve_summary
 from fcm.results.directions import directions_of, positions_of
-from fcm.results.gist import Gist
-from fcm.results.greatest import Greatest
 from fcm.results.jumps import Jump, Swept, swept
 from fcm.results.peak import Peak
 
 if TYPE_CHECKING:
-    from fcm.harmonic.in_plane import InPlane
-    from fcm.harmonic.sensitivity import Sensitivities
-    from fcm.motion.histories import Histories
+    from fcm.harmonic_balance.planar_quantities import InPlane
     from fcm.results.fitted import Fitted
     from fcm.results.motions import Motions
     from fcm.results.nonlinear_mode import NonlinearMode
     from fcm.results.orbits import Orbits
     from fcm.results.tracked import Tracking
+    from fcm.sensitivity.peaks import Sensitivities
+    from fcm.time_domain.histories import Histories
 
 DEFECT = "a defect of fcm"  # how the reason of a curve that was lost to one is worded,
 INTERRUPTED = "interrupted"  # and that of one which an interruption has cut off, or left out; see `Cause`
@@ -79,7 +79,9 @@ class Curve:
     harmonics: tuple[int, ...] = ()  # of the balance
     harmonic: npt.NDArray[np.complex128] | None = None  # (point, harmonic, dof) of Im(X exp(i h omega t))
     orbits: Orbits | None = None  # of the exact motion
-    loose: int = 0  # points at which a contact never slips and another may feel it, if that is not told
+    undetermined: int = (
+        0  # points at which a contact never slips and another may feel it, if that is not told
+    )
     gist: Gist | None = None  # in the place of most points, where only peaks and folds were asked for
     mode: NonlinearMode | None = None
     digits: bool = False  # whether displacements far below the greatest have digits, as contacts are stiff

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.model.scene import FloatArray
-from fcm.results.gist import gist_of
+from fcm.results.condensed_curves import gist_of
 from fcm.results.peak import Peak
 from fcm.results.result import Curve, Response
 from fcm.units import in_unit

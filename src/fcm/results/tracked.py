@@ -43,7 +43,7 @@ class TrackedCurve:
     complete: bool
     reason: str
     errors: tuple[TrackedError, ...] = ()
-    loose: int = 0  # points at which a contact never slips and another may feel it
+    undetermined: int = 0  # points at which a contact never slips and another may feel it
 
     def summary(self, unit: str) -> dict[str, Any]:
         """For JSON."""
@@ -73,7 +73,7 @@ class TrackedCurve:
                 for one in self.errors
             ],
             **self._stability(unit),
-            **({"may_not_be_unique": self.loose} if self.loose else {}),
+            **({"may_not_be_unique": self.undetermined} if self.undetermined else {}),
             "complete": self.complete,
             **({} if self.complete else {"reason": self.reason}),
         }

@@ -108,7 +108,7 @@ class Workers:
             raise ClusterError(
                 f"the scheduler at {address} has no workers; one is started with: dask worker {address}"
             ) from None
-        self.look()
+        self.poll()
         if not self.good:
             raise ClusterError(f"the scheduler at {address} has no worker with this fcm")
 
@@ -122,7 +122,7 @@ class Workers:
         """Batches for them at a time; none as long as there is nobody to compute one."""
         return AHEAD * sum(self.threads[address] for address in self.good)
 
-    def look(self) -> None:
+    def poll(self) -> None:
         """See who is there, and ask those who are new; `Gone` if there has been nobody for long."""
         if (now := time.monotonic()) - self._looked < LOOK:
             return
@@ -166,10 +166,10 @@ class Cluster(Elsewhere):
             super().__init__(work, workers.client.get_executor(pure=False))
         except Exception as error:
             raise Gone(workers.lost) from error
-        self.look()
+        self.poll()
 
-    def look(self) -> None:
-        self.workers.look()
+    def poll(self) -> None:
+        self.workers.poll()
         self.width = self.workers.width
 
     def result(self, future: Future[Attempt]) -> Attempt:

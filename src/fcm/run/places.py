@@ -35,7 +35,7 @@ class Place(ABC):
         """What came of a batch whose future is done; or `Died`, `Again` or `Gone`."""
         return future.result()
 
-    def look(self) -> None:  # noqa: B027
+    def poll(self) -> None:  # noqa: B027
         """See now and then how it is; or `Gone`."""
 
     def stop(self) -> None:  # noqa: B027

@@ -150,7 +150,7 @@ class _Sweep:
                     todo.appendleft(number)
                 else:
                     yield number, found
-            place.look()
+            place.poll()
             self.bar.draw()
 
     def _submit(self, place: Place, number: int) -> None:

@@ -14,7 +14,6 @@ import numpy as np
 from fcm.files import NOT_THERE, no_file
 from fcm.model.scene import Scene
 from fcm.scene.cyclic import check_diameters, note_of_stability, only_own, own_names, read_cyclic
-from fcm.scene.doubtful import questions
 from fcm.scene.draft import Draft, forces_of, modes_of
 from fcm.scene.errors import Mistakes, SceneError, choices, kind, quoted, suggestion
 from fcm.scene.excitation import load_of, read_base, read_loads
@@ -47,6 +46,7 @@ from fcm.scene.parts import (
     response_table,
 )
 from fcm.scene.plane import check_plane, notes_of_planes
+from fcm.scene.questionable_values import questions
 from fcm.scene.schedule import read_schedule, read_start, with_schedule
 from fcm.scene.section import Parts, Section
 from fcm.scene.shared_normal import note_of_shared_normals

@@ -14,11 +14,11 @@ import numpy as np
 
 from fcm.files import MEASURED
 from fcm.model.scene import FloatArray
-from fcm.scene.apart import NAMES, read_apart
 from fcm.scene.archive import names_in_npz, read_npz
 from fcm.scene.errors import choices, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.number_text import fault_of_number, number_in
+from fcm.scene.reader_process import NAMES, read_apart
 from fcm.scene.uff_functions import read_functions
 
 FAULTS = 5  # of a file that are told

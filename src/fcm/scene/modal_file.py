@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from fcm.scene.apart import NAMES, read_apart
 from fcm.scene.archive import names_in_npz, read_npz
 from fcm.scene.errors import counted, kind, quoted
 from fcm.scene.files import DataFileError, Files
+from fcm.scene.reader_process import NAMES, read_apart
 from fcm.scene.readers import own_endings, own_reader, read_own
 from fcm.scene.uff import read_uff
 

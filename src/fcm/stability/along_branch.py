@@ -13,12 +13,12 @@ from functools import cached_property
 import numpy as np
 
 from fcm.continuation import Mark, Path, Segment
-from fcm.harmonic.balance import Balance
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.residual import Balance
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.bifurcation_functions import MANY, Seen, seen
 from fcm.stability.floquet import multipliers_of
-from fcm.stability.inserted import Inserted
+from fcm.stability.inserted_points import Inserted
 from fcm.stability.multipliers import far_above
 from fcm.stability.verdict import SMALL, Verdict, apart
 

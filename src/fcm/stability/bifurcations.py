@@ -18,12 +18,12 @@ import numpy.typing as npt
 
 from fcm.continuation import Path
 from fcm.continuation.root_finding import Secants
-from fcm.harmonic.runs import runs
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.runs import runs
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.along_branch import Verdicts
 from fcm.stability.bifurcation_functions import MANY, dip
-from fcm.stability.inserted import Crossing, Inserted, with_points
+from fcm.stability.inserted_points import Crossing, Inserted, with_points
 from fcm.stability.multipliers import MANY_CONTACTS
 from fcm.stability.verdict import FLIP_NEAR, Bifurcation, Verdict
 
@@ -83,7 +83,7 @@ class _Along:
         crossings: list[Crossing] = []
         for first, end in runs(even & ~beyond):
             last = end - 1
-            self._look(first, last)
+            self._poll(first, last)
             if not self.many:
                 self._hidden(first, last)
             places = self.verdicts.among(first, last)
@@ -105,7 +105,7 @@ class _Along:
         even: npt.NDArray[np.bool_] = (sign > 0.0) | self.verdicts.fold
         return even
 
-    def _look(self, first: int, last: int) -> None:
+    def _poll(self, first: int, last: int) -> None:
         """Enough points of a run."""
         parts = max(-(-(last - first) // self.span), 1)
         angle = self.verdicts.rotation[first : last + 1]

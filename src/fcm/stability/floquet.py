@@ -7,7 +7,7 @@ import threading
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.hill import HillMultipliers
 from fcm.stability.multipliers import Multipliers
@@ -72,7 +72,7 @@ def multipliers(system: System, z: FloatArray) -> ComplexArray:
     Examples
     --------
     >>> import fcm
-    >>> from fcm.harmonic.start import solutions
+    >>> from fcm.branches.force_level import solutions
     >>> system = System(fcm.load_scene("yang1998-n5"), (1, 2, 3))
     >>> (z,) = solutions(system, 1.3).solutions
     >>> abs(multipliers(system, z)).max().round(2)

@@ -22,7 +22,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.verdict import UNKNOWN, Spectrum, Verdict
 from fcm.structure.layout import Layout

@@ -20,16 +20,16 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.balanced_sequence import BalancedSequence
 from fcm.stability.eigenvalues import eigenvalues
-from fcm.stability.finer import PORTS, Finer, beyond
+from fcm.stability.force_harmonics import PORTS, Finer, beyond
 from fcm.stability.many_monodromy import ManyMonodromy
 from fcm.stability.monodromy import Monodromy
 from fcm.stability.planar_monodromy import PlanarMonodromy, PlanarSequence
 from fcm.stability.propagator import Propagator
-from fcm.stability.refined import Refined
+from fcm.stability.rebalanced import Refined
 from fcm.stability.stiffness import Stiffness
 from fcm.stability.verdict import PASSIVE, UNKNOWN, Spectrum, Verdict, doubtful, either, even, meeting
 
@@ -111,7 +111,7 @@ class Multipliers:
 
     def see(self, states: BalancedSequence | PlanarSequence, x: FloatArray) -> bool:
         """Let states look at the motion x; false where a number is not finite."""
-        return bool(states.look(x))
+        return bool(states.poll(x))
 
     def of_period(self, values: list[complex]) -> list[complex]:
         """The multipliers of a period from the eigenvalues of what the monodromy follows."""

@@ -113,7 +113,7 @@ class Cycle:
 
 @dataclass
 class PlanarSequence:
-    """`look` at a motion finds the cycles of its contacts; contact (contact, 4): mu, k_u, k_v, n_0."""
+    """`poll` at a motion finds the cycles of its contacts; contact (contact, 4): mu, k_u, k_v, n_0."""
 
     contact: FloatArray
     harmonics: tuple[int, ...]
@@ -127,7 +127,7 @@ class PlanarSequence:
         self.kernel = PlanarContact(list(self.harmonics), [1], self.options.panels)
         self.width = 3 + 6 * len(self.harmonics)
 
-    def look(self, x: FloatArray) -> bool:
+    def poll(self, x: FloatArray) -> bool:
         """Find the states of the motion x; false where a number is not finite, or a cycle is not found."""
         self.cycles = []
         for c, numbers in enumerate(self.contact):

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic.system import System
+from fcm.harmonic_balance.system import System
 from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray
 from fcm.stability.balanced_sequence import BalancedSequence
-from fcm.stability.finer import Finer, beyond
+from fcm.stability.force_harmonics import Finer, beyond
 from fcm.stability.multipliers import Followed, Multipliers, far_above
 from fcm.stability.planar_monodromy import PlanarMonodromy, PlanarSequence
 from fcm.stability.ring_monodromy import RingMonodromy
@@ -118,7 +118,7 @@ class RingMultipliers(Multipliers):
         whole = np.empty((len(shift), self.contacts, states.width))
         whole[..., :d] = blocks[:, :d]
         whole[..., d:] = shifted.reshape(len(shift), self.contacts, d * count).view(np.float64)
-        return bool(states.look(whole.ravel()))
+        return bool(states.poll(whole.ravel()))
 
     def verdict(self, z: FloatArray, turning: bool = False, enough: Sequence[float] = ()) -> Verdict:
         """As `Multipliers.verdict`; in a part of a period multipliers turn by as much less towards -1."""

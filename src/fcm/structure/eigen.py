@@ -45,7 +45,7 @@ class EigenOptions:
     no_mass: float = 1e-13  # relative: such an eigenvalue of the inverse problem is a row without mass
     negative: float = 1e-9  # of a mass whose diagonal is 1: an eigenvalue less negative is rounding
     least: float = 1e-6  # relative to the greatest: how closely the least eigenvalue of a mass is looked for
-    look: float = 1e-3  # relative: how closely it is looked for a mode that was passed by
+    poll: float = 1e-3  # relative: how closely it is looked for a mode that was passed by
     same: float = 1e-6  # relative: so near to the highest, a mode that is left is not below it
     most_corrections: int = 12  # of static displacements; a shift that needs more is replaced
 
@@ -233,7 +233,7 @@ def _complete(system: System, shapes: FloatArray, count: int) -> FloatArray:
     while True:
         shapes = _apart(system, shapes)  # of mass 1, and orthogonal where frequencies are close
         highest = np.sort(elastic_energy(system.K, shapes))[count - 1]
-        further = of_shapes(system, _lanczos(system, 1, shapes, OPTIONS.look))
+        further = of_shapes(system, _lanczos(system, 1, shapes, OPTIONS.poll))
         # it is told higher than it is, never lower
         if further.stiffness[0] >= highest - OPTIONS.same * abs(highest):
             return shapes

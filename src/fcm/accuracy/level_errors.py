@@ -1,0 +1,100 @@
+"""How far the points of a curve of levels can be believed: their errors, and whether they are stable.
+
+A solution at one level of the forces is one at the level 1 of forces as much greater. So its stability is
+that of its motion, whatever the forces; and what the harmonics left out would do to it is found by balancing
+them too, at the same frequency and level.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.accuracy.contact_load_errors import relative
+from fcm.accuracy.options import PAIR, PairOptions
+from fcm.accuracy.partner import partner_of
+from fcm.continuation import Path
+from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
+from fcm.harmonic_balance.response_quantities import borne_along, recorded_at_levels
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray
+from fcm.stability.floquet import multipliers_of
+
+FAR = 0.5  # a change of this part of the greatest displacement is not believed: another branch may be there
+
+
+def stable_at_levels(system: System, z: FloatArray, even: npt.NDArray[np.bool_]) -> FloatArray:
+    """Whether the points z (point, unknown + 1) of a curve of levels are stable, 1 or 0; NaN where untold.
+
+    even : (point,) of `evenness`.
+    """
+    if not system.scene.contacts:
+        return np.ones(len(z))
+    of = multipliers_of(system, float(z[:, -1].max()))
+    return np.array([of.verdict(one).stable if here else 0.0 for one, here in zip(z, even, strict=True)])
+
+
+def evenness(path: Path) -> npt.NDArray[np.bool_]:
+    """Whether the number of real multipliers above 1 is even at the points of a curve of levels."""
+    even: npt.NDArray[np.bool_] = path.orientation * np.sign(path.direction[:, -1]) > 0.0
+    return even
+
+
+def errors_at_levels(
+    system: System,
+    z: FloatArray,
+    level: FloatArray,
+    amplitude: FloatArray,
+    borne: FloatArray,
+    even: npt.NDArray[np.bool_],
+    options: PairOptions = PAIR,
+) -> tuple[FloatArray, FloatArray]:
+    """By how much the partner's amplitudes differ from amplitude (point, dof), and what its contacts bear
+    from borne (point, contact, 4), at the same levels, relative.
+
+    NaN where that is not found, as beside folds, where the curve with them has no such solution.
+    """
+    further, error, of_borne = FurtherHarmonics(system), np.zeros_like(amplitude), np.zeros_like(borne)
+    bent = np.flatnonzero(~further.linear(z))
+    if not bent.size:
+        return error, of_borne
+    share = further.shares(z[bent], amplitude[bent]).max(axis=0)
+    more = partner_of(system.harmonics, share, system.layout.ports, options)
+    if more == system.harmonics:
+        error[bent], of_borne[bent] = np.nan, np.nan
+        return error, of_borne
+    there, theirs = _balanced(system, system.with_harmonics(more), z[bent], level[bent], even[bent])
+    now, size = amplitude[bent], amplitude[bent].max(axis=1, keepdims=True)
+    change = np.abs(there - now)
+    far = (change > FAR * size).any(axis=1)
+    change[far], theirs[far] = np.nan, np.nan
+    error[bent] = change / np.where(now > 0.0, now, 1.0)
+    of_borne[bent] = relative(theirs - borne[bent], borne[bent], borne.max(axis=0), options)
+    return error, of_borne
+
+
+def _balanced(
+    system: System, finer: System, z: FloatArray, level: FloatArray, even: npt.NDArray[np.bool_]
+) -> tuple[FloatArray, FloatArray]:
+    """Amplitudes (point, dof) with the harmonics of another system, and what its contacts bear.
+
+    NaN where Newton's method finds none that is as the point is, with an even or odd number of real
+    multipliers above 1.
+    """
+    raised, front = finer.raised
+    newton, found = front.newton, np.zeros((len(z), raised.unknowns + 1))
+    known = np.zeros(len(z), dtype=np.bool_)
+    for i, one in enumerate(z):
+        raised.begin(float(one[-1]))
+        newton.z[:] = finer.extended(one, system.harmonics)
+        newton.z[-1] = level[i]
+        raised.measure(newton.z)
+        newton.scale[:] = raised.scale
+        newton.row[:] = np.eye(raised.unknowns + 1)[-1]
+        known[i] = newton.correct(1.0) and (newton.orientation * np.sign(newton.tangent[-1]) > 0.0) == even[i]
+        found[i] = newton.z
+        found[i, -1] = one[-1]
+    amplitude = recorded_at_levels(finer, found, level)[2]
+    borne = borne_along(finer, found)
+    amplitude[~known], borne[~known] = np.nan, np.nan
+    return amplitude, borne

@@ -1,0 +1,207 @@
+"""Stretches of the partner that are followed: beside them no point of it lies normal to the curve.
+
+Where a corner or a pair of folds has moved, Newton's method in the normal plane leads nowhere. But it does on
+both sides, and from one of them the partner can be followed to the other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.accuracy.budget import Budget
+from fcm.accuracy.options import PairOptions
+from fcm.branches.force_level import NEAR, solutions
+from fcm.continuation import Events, FollowOptions, Path, Status
+from fcm.continuation.follow import Follower
+from fcm.continuation.stepper import Stepper
+from fcm.harmonic_balance.cost_model import seconds_of
+from fcm.harmonic_balance.normal_plane_prolongation import Lifted
+from fcm.harmonic_balance.reported_quantities import Reported, reported
+from fcm.harmonic_balance.system import System
+from fcm.harmonic_balance.work_budget import TooLongError
+from fcm.model.scene import FloatArray
+
+
+class SpentError(Exception):
+    """Following the partner takes more than it may."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A piece of the partner, from one end of a stretch; arrived: up to the other."""
+
+    path: Path
+    shown: Reported
+    arrived: bool
+
+    @property
+    def whole(self) -> bool:
+        """Whether it ends where the partner does, or the stretch."""
+        return self.path.status not in (Status.INTERRUPTED, Status.STALLED)
+
+
+@dataclass(frozen=True)
+class End:
+    """A point of the partner at an end of a stretch, and whether the frequency rises there along the
+    curve."""
+
+    number: int
+    z: FloatArray
+    amplitude: FloatArray
+    rises: bool
+
+
+class Stretches:
+    """`between` two points of a curve the partner is followed, as long as the budget allows."""
+
+    def __init__(
+        self,
+        fewer: System,
+        finer: System,
+        lifted: Lifted,
+        curve: Path,
+        options: PairOptions,
+        budget: Budget,
+    ) -> None:
+        self.fewer = fewer.harmonics
+        self.finer, self.lifted, self.curve, self.options = finer, lifted, curve, options
+        self.each = seconds_of(finer, 1, len(finer.harmonics))
+        self.budget, self.evaluations = budget, 0
+        self._stepper: Stepper | None = None
+
+    def between(self, first: int, last: int) -> list[Piece]:
+        """The partner between point first and point last of the curve, which may be beyond its ends.
+
+        One piece that leads from one to the other, or what hangs on both as far as that stays near the
+        stretch, and as the work allows.
+        """
+        if self.budget.left <= 0.0:
+            return []
+        tries, count = self.options.tries, len(self.curve.z)
+        before = self._end(range(first, max(first - tries, -1), -1)) if first >= 0 else self._normal_point(0)
+        behind = self._end(range(last, min(last + tries, count))) if last < count else None
+        if before is None and behind is None:
+            behind = self._normal_point(last - 1)
+        span, pieces = self._span(before, behind), list[Piece]()
+        for begin, end in ((before, behind), (behind, before)):
+            if begin is None or not span[0] < span[1]:
+                continue
+            if self.budget.left <= 0.0:
+                break
+            piece = self._followed(begin, end, span, begin.rises == (begin is before))
+            if piece.arrived:
+                return [piece]
+            pieces += [piece] if len(piece.path.z) > 1 else []
+        return pieces
+
+    def through(self, i: int, span: tuple[float, float]) -> list[Piece]:
+        """The partner both ways from the frequency of a point, as far as it stays in a span and the work
+        allows; nothing where no motion of it is found there."""
+        begin = self._normal_point(i, False) if self.budget.left > 0.0 else None
+        if begin is None:
+            return []
+        pieces = [self._followed(begin, None, span, way) for way in (True, False) if self.budget.left > 0.0]
+        return [piece for piece in pieces if len(piece.path.z) > 1]
+
+    def _end(self, places: Iterable[int]) -> End | None:
+        """At the first of some places where there is one."""
+        for i in places:
+            if 0 <= i < len(self.curve.z) and self.lifted.beside(
+                self.curve.z[i], self.curve.direction[i], True
+            ):
+                return self._found(i)
+        return None
+
+    def _normal_point(self, i: int, alike: bool = True) -> End | None:
+        """At the frequency of a point: what its motion leads to, or the nearest that the level of the forces
+        passes; alike with an odd or even number of real multipliers above 1 as it has."""
+        z, lifted, curve = self.curve.z[i], self.lifted, self.curve
+        guess = self.finer.extended(z, self.fewer)
+        if lifted.normal_point(guess, True):
+            return self._found(i)
+        even = curve.orientation[i] * np.sign(curve.direction[i, -1])
+        known = self._passed(float(z[-1]))
+        for one in sorted(known, key=lambda one: float(np.linalg.norm((one - guess) / lifted.newton.scale))):
+            if not lifted.normal_point(one, False):
+                continue
+            if not alike or lifted.newton.orientation * lifted.newton.tangent[-1] * even > 0.0:
+                return self._found(i)
+        return None
+
+    def _passed(self, omega: float) -> tuple[FloatArray, ...]:
+        """What the level of the forces passes at a frequency, as the budget allows."""
+        work, before = self.finer.work, self.finer.work.seconds
+        try:
+            with work.up_to(before + max(self.budget.left, 0.0)):
+                return solutions(self.finer, omega, NEAR).solutions
+        except TooLongError:
+            return ()
+        finally:
+            self.budget.left -= work.seconds - before
+
+    def _found(self, i: int) -> End:
+        """Where the partner was found last, beside a point."""
+        newton = self.lifted.newton
+        rises = bool(newton.tangent[-1] * self.curve.direction[i, -1] > 0.0)
+        return End(i, np.array(newton.z), np.array(self.lifted.found[1:]), rises)
+
+    def _span(self, before: End | None, behind: End | None) -> tuple[float, float]:
+        """Frequencies of a stretch, and beyond them, as folds may have moved."""
+        ends = [end for end in (before, behind) if end]
+        first = before.number if before else 0
+        last = behind.number if behind else len(self.curve.z) - 1
+        inside = np.append(self.curve.parameter[first : last + 1], [end.z[-1] for end in ends])
+        low, high = float(inside.min()), float(inside.max())
+        reach = self.options.beyond * (high - low)
+        lowest, highest = self.finer.scene.frequency_range
+        return max(low - reach, min(lowest, low)), min(high + reach, max(highest, high))
+
+    def _followed(self, begin: End, end: End | None, span: tuple[float, float], forward: bool) -> Piece:
+        """The partner from one end to the other, or as far as it stays in the span."""
+        stepper, known = self.stepper, 0
+
+        def pay(_: float) -> None:
+            nonlocal known
+            new, known = stepper.newton.evaluations - known, stepper.newton.evaluations
+            self.evaluations += new
+            self.budget.left -= new * self.each
+            if self.budget.left < 0.0:
+                raise SpentError
+
+        wanted = Events((float(end.z[-1]),) if end else ())
+        follower = Follower(stepper.problem, span, wanted, FollowOptions(self.options.step), pay, stepper)
+        if not follower.begin(begin.z, forward):
+            path = follower.path(Status.STALLED)
+        else:
+            try:
+                path = follower.run(None)
+            except SpentError:
+                path = follower.path(Status.INTERRUPTED)
+        shown = reported(self.finer, path)
+        if end is None:
+            return Piece(path, shown, False)
+        off = np.abs(shown.amplitude - end.amplitude).max(axis=1, initial=0.0)
+        near = off < self.options.same * end.amplitude.max()
+        there = np.flatnonzero((path.parameter == end.z[-1]) & near)
+        if not there.size:
+            return Piece(path, shown, False)
+        rows = slice(0, int(there[0]) + 1)
+        return Piece(_part(path, rows), shown.part(rows), True)
+
+    @property
+    def stepper(self) -> Stepper:
+        """Of a balance of its own."""
+        if self._stepper is None:
+            self._stepper = Stepper(self.finer.balance())
+        return self._stepper
+
+
+def _part(path: Path, rows: slice) -> Path:
+    """Some points of a path."""
+    return Path(
+        path.z[rows], path.direction[rows], path.mark[rows], path.orientation[rows], path.shift[rows],
+        path.status, path.evaluations,
+    )  # fmt: skip

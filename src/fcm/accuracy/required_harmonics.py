@@ -1,0 +1,137 @@
+r"""Which harmonics an accuracy takes: the spectrum of the exact forces times the receptance of the structure.
+
+The peaks and folds of a curve are displaced to its partner. There every harmonic has, or would have without
+feedback, |G(h omega) F_h| of the amplitude. What those that the curve lacks do together is more, as
+they change one another: by the gain, which the pair tells,
+
+    gain = change / sum of the shares of the partner's further harmonics
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.accuracy.options import PAIR, REFINEMENT, PairOptions, RefinementOptions
+from fcm.accuracy.outline import LOW, Outline
+from fcm.accuracy.partner import give_back, lifted_of, partner_of
+from fcm.continuation import Mark, Path
+from fcm.harmonic_balance.normal_plane_prolongation import Lifted
+from fcm.harmonic_balance.residual_spectrum import HIGHEST, FurtherHarmonics
+from fcm.model.scene import FloatArray
+
+
+@dataclass(frozen=True)
+class RequiredHarmonics:
+    """change: by how much a peak or fold is changed by the partner, relative, at most, as far as it is told.
+
+    told: whether it is of all peaks. share (harmonic,): what each has, or would have, at most. partner: its
+    harmonics.
+    """
+
+    change: float
+    told: bool
+    share: FloatArray
+    partner: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class _Place:
+    """A peak or a fold: places of a path where the partner is looked for, one after the other, and
+    which of the
+    frequency and the amplitudes (1 + dof,) count there."""
+
+    path: Path
+    amplitude: FloatArray
+    tries: list[int]
+    counts: npt.NDArray[np.bool_]
+
+
+def required_harmonics(
+    found: Outline, options: RefinementOptions = REFINEMENT, pair: PairOptions = PAIR
+) -> RequiredHarmonics:
+    """What the partner changes of a response, at its peaks and folds alone."""
+    system, amplitudes = found.system, [one.amplitude for one in found.shown]
+    height = np.max([one.max(axis=0) for one in amplitudes], axis=0)
+    size = np.where(height > options.nothing * height.max(), height, np.inf)
+    places = list(_places(found.traced.branches.paths, amplitudes, height, options))
+    share = _most(FurtherHarmonics(system), np.array([one.path.z[one.tries[0]] for one in places]), size)
+    more = partner_of(system.harmonics, share, system.layout.ports, pair)
+    if not share.any() or more == system.harmonics:
+        return RequiredHarmonics(0.0, True, share, system.harmonics)
+    lifted, motions, change, told = lifted_of(system, more), [], 0.0, True
+    for place in places:
+        values = _displaced(lifted, place)
+        if values is None:
+            told &= bool(place.counts[0])
+            continue
+        motions.append(np.array(lifted.newton.z))
+        change = max(change, float((values / np.append(1.0, size))[place.counts].max(initial=0.0)))
+    give_back(lifted, system, more)
+    if motions:
+        finer = FurtherHarmonics(system.with_harmonics(more))
+        theirs = _most(finer, np.array(motions), size, ())
+        share = theirs if told else np.maximum(share, theirs)  # where a peak is missed its own spectrum names
+    return RequiredHarmonics(change, told, share, more)
+
+
+def needed(
+    ahead: RequiredHarmonics,
+    harmonics: tuple[int, ...],
+    accuracy: float,
+    options: RefinementOptions = REFINEMENT,
+) -> tuple[int, ...]:
+    """Harmonics, and those that have most of what they lack, until what is left is a part of the accuracy."""
+    share = ahead.share.copy()
+    share[np.array(harmonics) - 1] = 0.0
+    order = np.argsort(-share, kind="stable")
+    left = share.sum() - np.cumsum(share[order])
+    new = [h - 1 for h in ahead.partner if h not in harmonics and h <= HIGHEST]
+    known = ahead.told and ahead.change > accuracy and share[new].any()
+    gain = max(ahead.change / share[new].sum(), 1.0) if known else options.unknown
+    count = 1 + int(np.count_nonzero(gain * left > options.spare * accuracy))
+    count = min(count, max(options.first, options.times * len(harmonics)), HIGHEST - len(harmonics))
+    chosen = {int(k) + 1 for k in order[:count] if share[k] > 0.0}
+    low = range(1, LOW + 1) if chosen else ()
+    return tuple(sorted({*harmonics, *chosen, *low}))
+
+
+def _places(
+    paths: Sequence[Path], amplitudes: Sequence[FloatArray], height: FloatArray, options: RefinementOptions
+) -> list[_Place]:
+    """Tops of paths nearly as high as the height (dof,), and folds."""
+    found, dofs = [], len(height)
+    for path, amplitude in zip(paths, amplitudes, strict=True):
+        tops, most = amplitude.argmax(axis=0), amplitude.max(axis=0)
+        rivals = (most > options.rival * height) & (height > options.nothing * height.max())
+        for top in np.unique(tops[rivals]).tolist():
+            counts = np.append(False, rivals & (tops == top))
+            beside = (0, *(way * step for step in options.beside for way in (-1, 1)))
+            tries = [top + step for step in beside if 0 <= top + step < len(path.z)]
+            found.append(_Place(path, amplitude, tries, counts))
+        folds = path.where(Mark.FOLD)
+        for fold in folds[:: -(-len(folds) // options.folds) or 1].tolist():
+            found.append(_Place(path, amplitude, [fold], np.arange(1 + dofs) == 0))
+    return found
+
+
+def _displaced(lifted: Lifted, place: _Place) -> FloatArray | None:
+    """By how much the frequency, relative, and the amplitudes (1 + dof,) of the partner differ beside
+    a place."""
+    for i in place.tries:
+        if lifted.beside(place.path.z[i], place.path.direction[i], True):
+            found, omega = np.asarray(lifted.found), place.path.parameter[i]
+            off: FloatArray = np.abs(np.append(found[0] / omega - 1.0, found[1:] - place.amplitude[i]))
+            return off
+    return None
+
+
+def _most(
+    further: FurtherHarmonics, z: FloatArray, size: FloatArray, known: tuple[int, ...] | None = None
+) -> FloatArray:
+    """What each harmonic (harmonic,) but the known ones has at most at motions z (place, unknown + 1)."""
+    share: FloatArray = further.shares(z, np.tile(size, (len(z), 1)), known).max(axis=0, initial=0.0)
+    return share[:HIGHEST]

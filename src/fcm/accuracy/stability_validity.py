@@ -1,0 +1,58 @@
+"""Where a curve of a balance is too far from the motion, or may be, for its solutions to be called stable."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.harmonic_balance.runs import runs
+from fcm.model.scene import FloatArray
+
+Mask = npt.NDArray[np.bool_]
+
+BELIEVED = 0.2  # estimated error of the amplitudes, up to which a solution is called stable
+AT_FOLD = 1e-2  # of its frequency: as far as a fold may be moved, where nothing is said of the accuracy
+LONG = 64  # points in a row without a partner, after which a branch is not one of more harmonics
+
+
+def disbelieved(
+    frequency: FloatArray, truncations: Sequence[FloatArray], stable: FloatArray, fold: Mask
+) -> Mask:
+    """Which points of branches, one after the other, are too far from the motion, or may be.
+
+    Parameters
+    ----------
+    frequency, stable, fold : array (point,)
+        fold is whether a point is one.
+    truncations : sequence of array (point,)
+        Estimated errors of each branch, NaN where there is none.
+    """
+    truncation = np.concatenate(truncations)
+    lost = np.concatenate([astray(one) for one in truncations])
+    far: Mask = (truncation > BELIEVED) | lost | _untold(frequency, truncation, stable, fold)
+    return far
+
+
+def astray(truncation: FloatArray) -> Mask:
+    """Where (point,) a branch has long lost that of more harmonics, and says nothing of the motion."""
+    far = np.zeros(len(truncation), dtype=np.bool_)
+    for first, end in runs(np.isnan(truncation)):
+        far[first:end] = end - first > LONG
+    return far
+
+
+def _untold(frequency: FloatArray, truncation: FloatArray, stable: FloatArray, fold: Mask) -> Mask:
+    """Stretches (point,) without an error: marches leave many of them.
+
+    Of those at a fold, which has no error either, whose stable part is no more than that of a fold, nothing
+    is said. A point alone with an error, as one of several at a corner may be, does not part a stretch.
+    """
+    found, untold = np.zeros(len(truncation), dtype=np.bool_), np.isnan(truncation)
+    untold[1:-1] |= untold[:-2] & untold[2:] & (truncation[1:-1] <= BELIEVED)
+    for first, end in runs(untold):
+        own = frequency[first:end][stable[first:end] == 1.0]
+        wide = own.size > 0 and np.ptp(own) > AT_FOLD * own.max()
+        found[first:end] = wide or not fold[max(first - 1, 0) : end + 1].any()
+    return found

@@ -1,0 +1,123 @@
+"""Where the level of the forces turns back before 1, and what solutions come of that at other frequencies.
+
+The level of the forces at which its curve turns is another at each frequency. Where it comes to be 1 a window
+of several solutions begins or ends: a fold of the response, and maybe of a closed branch that lies between
+the frequencies at which the level was followed, and that none of them tells of but by a turn near 1.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+import numpy as np
+
+from fcm.continuation import Mark, Path
+from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray
+
+if TYPE_CHECKING:
+    from fcm.harmonic_balance.system import System
+
+SHORT = 4.0  # times 1, and that part of it: between these a turn may come to 1 within a range,
+STAGE = 1.25  # by stages, each of so many times the level,
+SHORTEST = 0.5  # and this part of that where Newton's method does not lead from one to the next
+ASIDE = (0.02, 0.1)  # of its size: from a solution beside a fold to those on either side of that
+FAR = 0.5  # of a solution's size: what Newton's method finds further away has little to do with the turn
+
+
+class Loaded(Protocol):
+    """A problem in the frequency, at the level of the forces that is its load."""
+
+    load: float
+    scale: FloatArray
+
+    def measure(self, z: FloatArray) -> int:
+        """See `Problem`."""
+
+
+class Turn(NamedTuple):
+    """Where the curve of a level turns: z (unknown + 1,), with the frequency; the curve's directions before
+    and after, which differ at a corner, (unknown + 2,): displacements, frequency, which does not change, and
+    level; short if it turns before it passes the level 1."""
+
+    level: float
+    z: FloatArray
+    before: FloatArray
+    after: FloatArray
+    short: bool
+
+    @property
+    def direction(self) -> FloatArray:
+        """In which displacements and frequency change there, (unknown + 1,)."""
+        return self.before[:-1]
+
+    @property
+    def directions(self) -> tuple[FloatArray, ...]:
+        """In which displacements, frequency and level change there: in the middle, before, after."""
+        smooth = self.before is self.after
+        return (self.before,) if smooth else (self.before + self.after, self.before, self.after)
+
+    @property
+    def may_come(self) -> bool:
+        """Whether the level may be 1 at a turn like this one within a range."""
+        return self.short and 1.0 / SHORT < self.level < SHORT
+
+    def extended(self, system: System, harmonics: tuple[int, ...]) -> Turn:
+        """That of a balance with some harmonics as one of a system with more."""
+        before, after = (system.extended(one, harmonics) for one in (self.before, self.after))
+        after = before if self.before is self.after else after
+        return self._replace(z=system.extended(self.z, harmonics), before=before, after=after)
+
+
+def turns_of(path: Path, omega: float, unit: float = 1.0) -> tuple[Turn, ...]:
+    """Where a curve of levels at a frequency turns; its displacements and levels are multiples of a unit."""
+    levels = (unit * path.parameter).tolist()
+    rises = [after > before for before, after in pairwise(levels)]
+    found = []
+    for i in (i for i in range(1, len(rises)) if rises[i] != rises[i - 1]):
+        z, before = np.append(unit * path.z[i, :-1], omega), _direction(path, i, unit)
+        corner = path.mark[i] & Mark.CORNER
+        after = _direction(path, i + 1, unit) if corner else before
+        found.append(Turn(levels[i], z, before, after, (levels[i] < 1.0) == rises[i - 1]))
+    return tuple(found)
+
+
+def _direction(path: Path, i: int, unit: float) -> FloatArray:
+    """Of a curve of the level at its point, (unknown + 2,)."""
+    return unit * np.insert(path.direction[i], -1, 0.0)
+
+
+def came(problem: Loaded, newton: Newton, turn: Turn) -> bool:
+    """Whether a turn leads to a solution at the level 1, by shorter stages where one was too long; newton is
+    of that problem, and comes to it."""
+    problem.load = turn.level
+    problem.measure(turn.z)
+    newton.z[:], newton.scale[:] = turn.z, problem.scale
+    along = turn.direction / np.asarray(problem.scale)
+    newton.row[:] = along / np.linalg.norm(along)
+    left, known = math.log(turn.level), turn.z
+    stage = left / max(math.ceil(abs(left) / math.log(STAGE)), 1)
+    shortest = stage * SHORTEST
+    while left != 0.0:
+        then = left - stage if abs(left) > 1.5 * abs(stage) else 0.0
+        problem.load = math.exp(then)
+        if newton.correct(1.0) and newton.moved < FAR:
+            left, known, newton.row[:] = then, np.array(newton.z), newton.tangent
+        elif abs(stage) > abs(shortest):
+            stage, newton.z[:] = 0.5 * stage, known
+        else:
+            return False
+    return True
+
+
+def beside(newton: Newton) -> list[FloatArray]:
+    """Solutions on both sides of the one that was found last, in its plane or a little along its curve."""
+    middle, along = np.array(newton.z), np.array(newton.tangent)
+    found = [middle]
+    for way in (sign * aside for aside in ASIDE for sign in (-1.0, 1.0)):
+        newton.z[:], newton.row[:] = middle + way * along * np.asarray(newton.scale), along
+        if newton.correct(abs(way)):
+            found.append(np.array(newton.z))
+    return found

@@ -1,0 +1,98 @@
+"""Curves of the level that systems have in common, whose preloads alone differ, and those all by one factor.
+
+The equations are homogeneous in displacements, forces and preloads together: what a preload n_0 makes of the
+level 1, the preload 1 makes of the level 1 / n_0. So a sweep of preloads follows one curve at a frequency,
+of the greatest preload 1 (and -1), and each of its curves finds its solutions on that. Which one of them
+followed it does not matter.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from collections.abc import Callable
+
+import numpy as np
+
+from fcm.continuation import Path, Status
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray
+
+MOST = 32  # curves that are kept for each thread
+OUTSIDE = 1e-3  # of the way from a point to the next, by which a solution between them may lie beyond
+
+Followed = Callable[[System, float], Path]
+
+
+class _Kept(threading.local):
+    """Curves by what they are of; nothing for those that did not come to their end."""
+
+    def __init__(self) -> None:
+        self.paths: OrderedDict[tuple[object, ...], Path | None] = OrderedDict()
+
+
+_KEPT = _Kept()
+
+
+def forget() -> None:
+    """Begin another sweep."""
+    _KEPT.paths.clear()
+
+
+def in_common(system: System, omega: float, followed: Followed) -> Path | None:
+    """The curve of the system with preloads of 1, as it is followed once.
+
+    Nothing if that does not come to its end.
+    """
+    key = (*_made_of(system), omega)
+    kept = _KEPT.paths
+    if key in kept:
+        kept.move_to_end(key)
+        return kept[key]
+    path = followed(system.normal, omega)
+    kept[key] = path if path.status is Status.COMPLETE else None
+    if len(kept) > MOST:
+        kept.popitem(last=False)
+    return kept[key]
+
+
+def _made_of(system: System) -> tuple[object, ...]:
+    """What the curve is of, besides the frequency."""
+    laws = tuple((c.mu, c.k_u, c.k_v, c.n_0) for c in system.normal.scene.contacts)
+    return *system.linear.numbers, laws, system.harmonics
+
+
+def passings(system: System, path: Path, omega: float) -> list[FloatArray] | None:
+    """Solutions (unknown + 1,) of the system at the level 1, from the curve in common.
+
+    Nothing if one that has to be there is not found between the points that enclose it.
+    """
+    unit = system.unit
+    off = path.parameter - 1.0 / unit
+    found = []
+    for i in np.flatnonzero((off[:-1] * off[1:] < 0.0) | (off[:-1] == 0.0)):
+        ends = unit * path.z[i : i + 2, :-1]
+        x = _between(system, omega, ends, off[i] / (off[i] - off[i + 1]))
+        if x is None:
+            return None
+        found.append(np.append(x, omega))
+    return found
+
+
+def _between(system: System, omega: float, ends: FloatArray, part: float) -> FloatArray | None:
+    """The solution near a part of the way between two of other levels, if it lies between them."""
+    level, stepper = system.raised
+    level.begin(omega)
+    newton, chord = stepper.newton, ends[1] - ends[0]
+    newton.z[:] = np.append(ends[0] + part * chord, 1.0)
+    newton.row[:] = np.append(np.zeros(chord.size), 1.0)
+    level.measure(newton.z)
+    newton.scale[:] = level.scale
+    unit = np.asarray(newton.scale)[:-1]
+    way = chord / unit
+    length = float(np.linalg.norm(way))
+    if not newton.correct(length) or newton.moved > length:
+        return None
+    x = np.array(newton.z)[:-1]
+    along = float(((x - ends[0]) / unit) @ way) / length**2
+    return x if -OUTSIDE <= along <= 1.0 + OUTSIDE else None

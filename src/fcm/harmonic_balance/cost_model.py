@@ -1,0 +1,80 @@
+"""What a balance of more harmonics would take, so that what takes too long is said and not begun.
+
+It is told in seconds of a core on which numpy's sine takes 10 ns a number, from the size of the balance and
+not from a clock: the same scene has the same answer on every machine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from fcm.continuation import Path
+from fcm.continuation.follow import Progress
+from fcm.continuation.stepper import Stepper
+from fcm.harmonic_balance.modal_condensation import condensed_size
+from fcm.harmonic_balance.system import System
+from fcm.scene.rules import MOST_HARMONICS, harmonics_up_to
+from fcm.structure.layout import layout_of
+
+PATIENCE = 30.0  # seconds that all rounds of more and more harmonics may take: levels, branches, errors
+AGAIN = 3.0  # where they are followed a dozen times, as in a search, or with one harmonic more each time
+CYCLE = 1.4e-6  # seconds of an evaluation for the mean and each harmonic of a contact, which slips
+ENTRY = 3e-9  # for each number of the contacts' tangents and of the matrix: filled, copied, solved with
+SYSTEM = 1.8e-11  # and for each third power of the unknowns that are solved for: 1/3 multiplication
+
+
+def seconds_of(system: System, evaluations: int, harmonics: int) -> float:
+    """About what evaluations of the balance with so many harmonics take, each solved for a step.
+
+    A condensed matrix is formed first, see `condensed`, by 2 multiplications for each mode and entry.
+    """
+    layout = layout_of(len(system.scene.contacts), system.scene.directions_of_contact, harmonics)
+    contacts, width, unknowns = layout.contacts, layout.width, layout.unknowns
+    rank = condensed_size(system.yields, layout.ports, harmonics, system.condensing)
+    solved = rank or unknowns
+    cubes = float(solved) ** 3 + 6.0 * rank / (1 + 2 * harmonics) * unknowns * rank
+    each = CYCLE * contacts * (1 + harmonics) + ENTRY * unknowns * (solved + width) + SYSTEM * cubes
+    return evaluations * each
+
+
+def seconds_with(system: System, evaluations: int, harmonics: int) -> float:
+    """About what following curves of a system with so many harmonics takes.
+
+    evaluations are those that its own took: they grow as the harmonics do, with the corners and folds.
+    """
+    return seconds_of(system, evaluations, harmonics) * harmonics / max(len(system.harmonics), 1)
+
+
+def with_twice_as_many(system: System, evaluations: int) -> System | None:
+    """A system with the harmonics up to twice the highest and one more, for what is followed again with more
+    and more of them; None where none are left, or that takes too long.
+
+    evaluations: what following it with its own harmonics took.
+    """
+    highest = system.harmonics[-1]
+    more = min(2 * highest + 1, MOST_HARMONICS)
+    if more == highest or seconds_with(system, evaluations, more) > AGAIN:
+        return None
+    return system.with_harmonics(harmonics_up_to(more))
+
+
+def paid(
+    system: System, stepper: Stepper, progress: Progress | None, follow: Callable[[Progress], Path]
+) -> Path:
+    """What follow returns with a progress that adds what it takes to the work of a system, as it goes on."""
+    known, each = 0, seconds_of(system, 1, len(system.harmonics))
+
+    def add(evaluations: int) -> None:
+        nonlocal known
+        new, known = evaluations - known, evaluations
+        system.work.take(new * each)
+
+    def report(share: float) -> None:
+        add(stepper.newton.evaluations)
+        if progress is not None:
+            progress(share)
+
+    with system.alone():
+        path = follow(report)
+    add(path.evaluations)
+    return path

@@ -1,0 +1,125 @@
+"""The whole Jacobian of a balance, and what its structure answers to forces of its contacts, as arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.harmonic_balance.residual import Balance
+from fcm.model.scene import FloatArray
+
+ComplexArray = npt.NDArray[np.complex128]
+
+REFINED = 8  # Newton steps to an extreme from where it was
+SETTLED = 1e-9  # [rad] the last of them, at which the value errs by its square
+
+
+def jacobian_of(balance: Balance) -> FloatArray:
+    """Of a balance as it was evaluated last, (unknown, unknown + 1), also of one that is condensed."""
+    if not balance.rank:
+        return np.array(balance.jacobian)
+    tangent, n, w = np.asarray(balance.tangent), balance.unknowns, balance.width
+    found = np.empty((n, n + 1))
+    for c in range(balance.contacts):
+        columns = np.zeros((n, w))
+        columns[c * w : (c + 1) * w] = tangent[c]
+        found[:, c * w : (c + 1) * w] = answer(balance, columns)
+    found[range(n), range(n)] += 1.0
+    found[:, n] = np.asarray(balance.jacobian)[:, 0]
+    return found
+
+
+def answer(balance: Balance, force: FloatArray) -> FloatArray:
+    """G F: the displacements (unknown, ...) that forces (unknown, ...) of the contacts take away."""
+    seen, (mean, first) = balance.seen, places(balance)
+    if balance.condensed is not None:
+        return balance.condensed.answer.to(force)
+    out = np.empty_like(force)
+    out[mean] = np.asarray(seen.static) @ force[mean]
+    G = np.asarray(seen.G_re) + 1j * np.asarray(seen.G_im)
+    F = force[first] + 1j * force[first + 1]
+    x = (G @ F.reshape(*first.shape, -1)).reshape(F.shape)
+    out[first], out[first + 1] = x.real, x.imag
+    return out
+
+
+def places(balance: Balance) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+    """Where the mean (port,) and the real part of each harmonic (harmonic, port) are among the unknowns."""
+    return balance.layout.mean_at, balance.layout.waves_at
+
+
+class Amplitude:
+    """Half the peak-to-peak displacement of a degree of freedom, with its slopes.
+
+    With the displacement's amplitudes X_h it changes by Re sum_h W_h dX_h, where W_h = exp(i h theta) at the
+    greatest displacement, minus that at the least, halved.
+    """
+
+    def __init__(self, balance: Balance, dof: int) -> None:
+        self.balance, self.dof = balance, dof
+        self.value, self.slopes = 0.0, np.zeros(balance.unknowns + 1)
+        self.weights = np.zeros(balance.seen.count, dtype=np.complex128)
+        self.angles = np.zeros(2)  # of the extremes, if there are several harmonics
+        self.of_forces = np.zeros(balance.unknowns)  # its slopes by the contacts' forces
+
+    def at(self, z: FloatArray, near: FloatArray | None = None) -> None:
+        """Where the balance was evaluated last, z (unknown + 1,).
+
+        With near, angles (2,), of the extremes next to these, be they the greatest of the cycle or not; the
+        value is NaN where they are no more.
+        """
+        balance, d, n = self.balance, self.dof, self.balance.unknowns
+        direction = np.zeros(n + 1)
+        direction[-1] = 1.0
+        balance.report(z, direction)
+        self.value, self.slopes[n] = balance.output[d], balance.growth[d]
+        shown, seen, rows = balance.shown, balance.seen, places(balance)[1]
+        X = np.asarray(shown.re)[:, d] + 1j * np.asarray(shown.im)[:, d]
+        h, self.angles = np.asarray(seen.harmonics), np.array(shown.angles)[:, d]
+        if near is not None and h.size > 1:
+            self.angles = _extremes(X, h, near)
+            if np.isnan(self.angles).any():
+                self.value = np.nan
+                return
+        self.weights = W = _weights(X, h, self.angles)
+        if near is not None and h.size > 1:
+            by_omega = np.asarray(shown.d_re)[:, d] + 1j * np.asarray(shown.d_im)[:, d]
+            self.value, self.slopes[n] = float((W @ X).real), (W @ by_omega).real
+        if not balance.contacts:
+            return
+        if not shown.apart[d]:  # of the contacts' own displacements
+            of_ports = W[:, None] * np.asarray(shown.attached)[:, d]
+            self.slopes[rows], self.slopes[rows + 1] = of_ports.real, -of_ports.imag
+            return
+        c = np.asarray(seen.c_re) + 1j * np.asarray(seen.c_im)
+        of_ports = -W[:, None] * ((c * np.asarray(shown.shapes)[:, d]) @ np.asarray(seen.shapes))
+        self.of_forces[rows], self.of_forces[rows + 1] = of_ports.real, -of_ports.imag
+        blocks = self.of_forces.reshape(balance.contacts, 1, -1) @ np.asarray(balance.tangent)
+        self.slopes[:n] = blocks.ravel()
+
+
+def _weights(X: ComplexArray, harmonics: FloatArray, angles: FloatArray) -> ComplexArray:
+    """W (harmonic,) of a displacement X (harmonic,) with its greatest and least value at angles (2,)."""
+    if harmonics.size == 1:
+        size = np.abs(X)
+        return np.asarray(np.conj(X) / np.where(size > 0.0, size, 1.0), dtype=np.complex128)
+    ends = np.exp(1j * harmonics[:, None] * angles)
+    return 0.5 * (ends[:, 0] - ends[:, 1])  # type: ignore[no-any-return]
+
+
+def _extremes(X: ComplexArray, harmonics: FloatArray, near: FloatArray) -> FloatArray:
+    """Angles (2,) of the maximum and minimum of Re sum X_h exp(i h theta) next to two angles, else NaN."""
+    theta: FloatArray = near
+    h = np.asarray(harmonics, dtype=np.float64)
+    for _ in range(REFINED):
+        turned = np.exp(1j * np.outer(theta, h)) * X
+        slope, bend = -(turned.imag @ h), -(turned.real @ (h * h))
+        if not (bend[0] < 0.0 < bend[1]):
+            break
+        step = slope / bend
+        theta = theta - step
+        if np.abs(theta - near).max() * h[-1] > np.pi:  # more than half the shortest wave
+            break
+        if np.abs(step).max() < SETTLED:
+            return np.asarray(theta, dtype=np.float64)
+    return np.full(2, np.nan)

@@ -1,0 +1,210 @@
+r"""The linear system of a balance of which most contacts stay stuck or open, condensed to the other forces.
+
+A contact that stays stuck through the cycle is a pair of springs, one that stays open is nothing: both are
+linear. With T = K + D, the springs of these in K and D zero but for the forces of the other contacts,
+
+    1 + A T = (1 + A K) (1 + G D),    G = (1 + A K)^-1 A,    (1 + A K)^-1 = 1 - G K
+
+where G is the receptance of the structure on these springs: by its modes, which are found once. With E the
+rows of D that are not zero, b the derivative by the parameter and a row that closes the system,
+
+    [1 + A T  b  ] [x]   [r]        [1 + D G E      D S b     ] [y]   [D S r      ]
+    [row'     rho] [l] = [s]   is   [-row' G E   rho - row' S b] [l] = [s - row' S r],   S = 1 - G K
+
+with y = D x and x = S r - G E y - S b l, of the same sign of the determinant, as that of 1 + A K is positive.
+
+Modal damping couples the modes on springs a little. That is left out of G, so that this is not the system
+itself but close to it: what is left out is put right by iterations, see `modal_condensation`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.continuation.dense_solver import Solver
+from fcm.harmonic_balance.modal_receptance import ModalAnswer
+from fcm.model.scene import FloatArray
+from fcm.structure.receptance import Receptance
+
+
+@dataclass(frozen=True)
+class HeldOptions:
+    """Which contacts are linear.
+
+    slight: part of a contact's springs, by which its tangent may differ from them. others: so many contacts
+    that are stuck or open and were taken for the other before the modes on the springs are found again.
+    undamped: least damping ratio, of a mode that has none exactly at its own frequency. lost: part of a
+    displacement that rounding of the modes on the springs may be; springs so stiff that it is more are not
+    taken for such.
+    """
+
+    slight: float = 1e-3
+    others: int = 4
+    undamped: float = 1e-9
+    lost: float = 0.1
+
+
+HELD = HeldOptions()  # where nothing else is said
+
+
+class HeldContacts:
+    """`poll` at the tangents first, then `factor` and `solve` the system condensed to `size - 1` forces.
+
+    springs (port,): of all contacts stuck; counted (contact,): what of their normal springs is counted to
+    the structure in the means. Tangents are (contact, part port, part port), the parts being the mean and the
+    real and imaginary part of each harmonic.
+    """
+
+    def __init__(
+        self,
+        answer: ModalAnswer,
+        flexibility: FloatArray,
+        springs: FloatArray,
+        counted: FloatArray,
+        options: HeldOptions = HELD,
+    ) -> None:
+        self.seen: Receptance = answer.seen
+        self.place, self.flexibility, self.options = answer.place, flexibility, options
+        self.contacts, self.parts = counted.size, answer.place.shape[0]
+        self.each = springs.size // counted.size
+        self.springs = springs.reshape(self.contacts, self.each)
+        self.slight = options.slight * self.springs.max(axis=1)[:, None, None]
+        counts = np.zeros_like(self.springs)
+        counts[:, -1] = counted
+        # diagonals of the tangents (contact, part, port) of contacts that stay open, or stuck
+        self.open = np.zeros((self.contacts, self.parts, self.each))
+        self.open[:, 0] = -counts
+        self.stuck = self.open + self.springs[:, None]
+        self.closed: np.ndarray[tuple[int], np.dtype[np.bool_]] | None = None  # (contact,) of the modes
+        self.ports, self.size, self.lost = np.zeros(0, dtype=np.intp), 0, 0.0
+        self.solver = Solver(0)
+
+    def poll(self, tangent: FloatArray, most: int) -> bool:
+        """Whether the condensed system is no larger than the most at tangents; it is ready to be factored
+        then."""
+        diagonal = tangent.diagonal(axis1=1, axis2=2).reshape(self.stuck.shape)
+        as_stuck, as_open = (
+            (np.abs(diagonal - linear) <= self.slight).all(axis=1) for linear in (self.stuck, self.open)
+        )
+        stuck, apart = as_stuck.all(axis=1), as_open.all(axis=1)
+        if self.closed is None:
+            self._on_springs(~apart | stuck)
+        elif int((np.where(self.closed, apart, stuck) & (stuck != apart)).sum()) > self.options.others:
+            self._on_springs(np.where(stuck | apart, stuck, self.closed))
+        assert self.closed is not None
+        others = np.flatnonzero(~np.where(self.closed[:, None], as_stuck, as_open).all(axis=1))
+        if self.parts * others.size >= most or not self.lost < self.options.lost:
+            return False
+        D = tangent[others].reshape(others.size, self.parts, self.each, self.parts, self.each)
+        part, port = np.arange(self.parts)[:, None], np.arange(self.each)
+        linear = np.where(self.closed[others, None, None], self.stuck[others], self.open[others])
+        D[:, part, port, part, port] -= linear
+        which, port = np.nonzero((np.abs(D) > self.slight[others, :, :, None, None]).any(axis=(1, 3, 4)))
+        self.ports, self.D = others[which] * self.each + port, D[which, :, port]
+        self.size = self.parts * self.ports.size + 1
+        return self.size <= most
+
+    def _on_springs(self, closed: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> None:
+        """Find the modes with the springs of some contacts."""
+        self.closed, seen = closed, self.seen
+        P, natural, rate = (np.asarray(a) for a in (seen.shapes, seen.natural, seen.rate))
+        self.K = (self.springs * closed[:, None]).ravel()
+        self.K_mean = np.where(closed[:, None], self.stuck[:, 0], self.open[:, 0]).ravel()
+        square, V = np.linalg.eigh(np.diag(natural**2) + (P * self.K) @ P.T)
+        self.square, self.shapes = np.maximum(square, 0.0), np.ascontiguousarray(V.T @ P)
+        pushed, soft = np.square(P) @ self.K, self.square[self.square > 0.0].min(initial=np.inf)
+        stiffest = float((pushed[natural > 0.0] / natural[natural > 0.0] ** 2).max(initial=0.0))
+        self.lost = float(np.finfo(float).eps * self.square.max(initial=0.0) / soft * stiffest)
+        least = 2.0 * self.options.undamped * np.sqrt(self.square)
+        self.rate = np.maximum(np.square(V.T) @ rate, least)
+        F = self.flexibility
+        held = np.linalg.solve(np.eye(natural.size) + F @ (P * self.K_mean) @ P.T, F)
+        self.mean = V.T @ held @ V
+
+    @np.errstate(invalid="ignore", over="ignore", divide="ignore")
+    def factor(self, row: FloatArray, by: FloatArray) -> float:
+        """Of the system closed by a row (unknown + 1,), by (unknown,) the derivative by the parameter; the
+        sign of its determinant, or 0."""
+        h = np.asarray(self.seen.harmonics)[:, None] * self.seen.omega
+        c = 1.0 / (self.square - h * h + 1j * h * self.rate)
+        self.c_re, self.c_im = np.ascontiguousarray(c.real), np.ascontiguousarray(c.imag)
+        count, parts, forces = self.seen.count, self.parts, self.ports.size
+        self.on_forces = np.ascontiguousarray(self.shapes[:, self.ports])
+        which = self.ports // self.each
+        contacts, number = np.unique(which, return_inverse=True)
+        self.beside = contacts[:, None] * self.each + np.arange(self.each)
+        self.number = number
+        around = self.shapes[:, self.beside.ravel()]
+        if self.solver.size != self.size:
+            self.solver = Solver(self.size)
+        M = np.zeros((forces, parts, parts, forces))
+        mean = around.T @ (self.mean @ self.on_forces)
+        mean = mean.reshape(contacts.size, self.each, forces)[number]
+        M[:, :, 0, :] = self.D[:, :, 0] @ mean
+        turned = np.empty((contacts.size, 2, self.each, 2, forces))
+        for j in range(count):
+            re = (around.T @ (self.c_re[j][:, None] * self.on_forces)).reshape(
+                contacts.size, self.each, forces
+            )
+            im = (around.T @ (self.c_im[j][:, None] * self.on_forces)).reshape(
+                contacts.size, self.each, forces
+            )
+            turned[:, 0, :, 0], turned[:, 0, :, 1] = re, -im
+            turned[:, 1, :, 0], turned[:, 1, :, 1] = im, re
+            columns = turned.reshape(contacts.size, 2 * self.each, 2 * forces)[number]
+            of = self.D[:, :, 1 + 2 * j : 3 + 2 * j].reshape(forces, parts, 2 * self.each)
+            M[:, :, 1 + 2 * j : 3 + 2 * j] = (of @ columns).reshape(forces, parts, 2, forces)
+        matrix, size = np.asarray(self.solver.matrix), self.size - 1
+        matrix[:size, :size] = M.transpose(1, 0, 2, 3).reshape(size, size)
+        matrix[np.arange(size), np.arange(size)] += 1.0
+        self.row = row
+        self.by = self._held(by[self.place])
+        matrix[:size, size] = self._other(self.by)
+        across = row[:-1][self.place]
+        matrix[size, :size] = -self._answered(across, self.shapes, self.on_forces, -1.0).ravel()
+        matrix[size, size] = row[-1] - np.vdot(across, self.by)
+        return self.solver.orientation if self.solver.factor() else 0.0
+
+    @np.errstate(invalid="ignore", over="ignore")
+    def solve(self, right: FloatArray) -> FloatArray:
+        """The solution for a right side (unknown + 1,)."""
+        alone = self._held(right[:-1][self.place])
+        reduced = np.asarray(self.solver.right)
+        reduced[:-1] = self._other(alone)
+        reduced[-1] = right[-1] - np.vdot(self.row[:-1][self.place], alone)
+        self.solver.solve()
+        y = reduced[:-1].reshape(self.parts, self.ports.size)
+        found = np.empty_like(right)
+        x = alone - self._answered(y, self.on_forces, self.shapes) - reduced[-1] * self.by
+        found[self.place], found[-1] = x, reduced[-1]
+        return found
+
+    def _held(self, x: FloatArray) -> FloatArray:
+        """What displacements (part, port) become where the springs act against them."""
+        force = x * self.K
+        force[0] = x[0] * self.K_mean
+        held: FloatArray = x - self._answered(force, self.shapes, self.shapes)
+        return held
+
+    def _other(self, x: FloatArray) -> FloatArray:
+        """The forces (part force,) that displacements (part, port) cause beside those of the springs."""
+        around = x[:, self.beside].transpose(1, 0, 2)[self.number]  # (force, part, port)
+        y = np.matmul(
+            self.D.reshape(self.ports.size, self.parts, self.parts * self.each),
+            around.reshape(self.ports.size, self.parts * self.each, 1),
+        )
+        return np.ascontiguousarray(y[:, :, 0].T).ravel()
+
+    def _answered(self, force: FloatArray, on: FloatArray, at: FloatArray, way: float = 1.0) -> FloatArray:
+        """Displacements (part, port) at shapes (mode, port) under forces on others; with the way -1 of the
+        transposed system."""
+        q = force @ on.T
+        answer = np.empty_like(q)
+        answer[0] = self.mean @ q[0] if way > 0.0 else q[0] @ self.mean
+        re, im, turn = q[1::2], q[2::2], way * self.c_im
+        answer[1::2] = self.c_re * re - turn * im
+        answer[2::2] = turn * re + self.c_re * im
+        moved: FloatArray = answer @ at
+        return moved

@@ -1,0 +1,58 @@
+"""What is reported along a path: displacements, amplitudes, contact forces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.continuation import Path
+from fcm.harmonic_balance.points import Points
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray
+
+ComplexArray = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Reported:
+    """What is reported along a path, as of a `Record`; growth (point, dof) of the amplitude along the path's
+    direction; linear (point,) where no contact slips or separates."""
+
+    X: ComplexArray
+    mean: FloatArray
+    amplitude: FloatArray
+    force: FloatArray
+    growth: FloatArray
+    linear: npt.NDArray[np.bool_]
+
+    def with_rows(self, after: npt.NDArray[np.intp], other: Reported) -> Reported:
+        """With the points of another inserted after some points."""
+        rows = zip(vars(self).values(), vars(other).values(), strict=True)
+        return Reported(*(np.insert(mine, after + 1, its, axis=0) for mine, its in rows))
+
+    def part(self, rows: slice) -> Reported:
+        """Of some points."""
+        return Reported(*(mine[rows] for mine in vars(self).values()))
+
+
+def reported(system: System, path: Path) -> Reported:
+    """What is reported along a path."""
+    return reported_at(system, path.z, path.direction)
+
+
+def reported_at(system: System, z: FloatArray, direction: FloatArray) -> Reported:
+    """The same of points z with directions there, both (point, unknown + 1)."""
+    points = Points(system.looking, len(z))
+    points.take(z, direction, np.ones(len(z)))
+    X = np.empty(np.shape(points.re), dtype=np.complex128)
+    X.real, X.imag = points.re, points.im
+    return Reported(
+        X=X,
+        mean=np.asarray(points.mean),
+        amplitude=np.asarray(points.amplitude),
+        force=np.asarray(points.force),
+        growth=np.asarray(points.growth),
+        linear=np.asarray(points.linear) > 0,
+    )

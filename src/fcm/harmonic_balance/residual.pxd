@@ -1,0 +1,32 @@
+from fcm.continuation.problem cimport Problem
+from fcm.harmonic_balance.displacement cimport Displacements
+from fcm.harmonic_balance.contact_law cimport Law
+from fcm.structure.receptance cimport Receptance
+
+cdef class Balance(Problem):
+    cdef public Receptance seen
+    cdef public Displacements shown
+    cdef public list laws
+    cdef public object condensed
+    cdef public object layout
+    cdef public int contacts
+    cdef public int directions
+    cdef public int ports
+    cdef public int width
+    cdef public double span
+    cdef public double load
+    cdef public double share
+    cdef public double[::1] rest
+    cdef public double[::1] counted
+    cdef public double[::1] force
+    cdef public double[:, :, ::1] tangent
+    cdef public double[::1] largest
+    cdef double[::1] size
+    cdef public double[::1] evaluated
+    cdef double[::1] now
+    cdef double[::1] rate
+    cdef double[::1] by_frequency
+    cdef int forces_at(self, double[::1] z, double[::1] direction) except -1
+    cdef int pushed(self, double[::1] z, bint tangents) except -1
+    cdef int slopes(self) except -1
+    cdef int contact_forces(self, double[::1] z, bint tangents) except -1

@@ -1,0 +1,263 @@
+r"""Harmonic balance of means and any harmonics, condensed to the contacts, as a problem to be followed.
+
+The modes are summed into the receptance G(h omega) between the contacts' ports, so that the unknowns are the
+relative displacements of the contacts alone, whatever the number of modes:
+
+    X_h = X_external,h - G(h omega) F_h,    x_0 = x_rest - G(0) f_0
+
+with x_rest the answer to static loads alone, of which `share` is applied. The residual has the unit of a
+displacement and the Jacobian is 1 + G dF/dX. The parameter is the frequency.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+import numpy.typing as npt
+from cython.cimports.libc.math import sqrt
+
+from fcm.harmonic_balance.displacement import Displacements
+from fcm.harmonic_balance.modal_condensation import Condensed
+from fcm.structure.layout import Layout
+from fcm.structure.receptance import Receptance
+
+if cython.compiled:
+    from cython.cimports.fcm.continuation.problem import NONE, Problem
+    from cython.cimports.fcm.harmonic_balance.compliance import (
+        less_external,
+        less_external_slopes,
+        slope,
+        times_forces,
+        times_tangents,
+    )
+    from cython.cimports.fcm.harmonic_balance.contact_law import KINDS, Law
+else:
+    from fcm.continuation.problem import NONE, Problem
+    from fcm.harmonic_balance.compliance import (
+        less_external,
+        less_external_slopes,
+        slope,
+        times_forces,
+        times_tangents,
+    )
+    from fcm.harmonic_balance.contact_law import KINDS, Law
+
+OWN_FLOOR = cython.declare(cython.double, 0.1)  # a unit is at least this much of its own maximum,
+OTHER_FLOOR = cython.declare(cython.double, 1e-6)  # and of the greatest
+
+
+@cython.cclass
+class Balance(Problem):
+    """The balance of laws (contact,) on a structure; unknowns laid out as in `fcm.structure.layout`."""
+
+    def __init__(
+        self,
+        seen: Receptance,
+        layout: Layout,
+        laws: list[Law],
+        shown: Displacements,
+        counted: npt.NDArray[np.float64],
+        span: cython.double,
+        rank: cython.int = 0,
+    ) -> None:
+        width: cython.int = layout.width
+        Problem.__init__(self, layout.unknowns, sum(law.margins for law in laws), shown.dofs, rank)
+        self.seen, self.shown, self.laws, self.contacts, self.width = seen, shown, laws, len(laws), width
+        self.layout, self.directions, self.ports = layout, layout.directions, layout.ports
+        self.group = laws[0].margins if laws else 0  # all contacts have as many
+        self.rooted = layout.directions > 2  # in a plane a circle begins to slip all around at once
+        self.counted, self.span, self.load, self.share = np.array(counted), span, 1.0, 1.0
+        self.rest = np.zeros(layout.ports)
+        self.force, self.now, self.rate, self.by_frequency = np.zeros((4, self.unknowns))
+        self.evaluated = np.zeros(self.unknowns + 1)
+        self.tangent = np.zeros((len(laws), width, width))
+        self.condensed: Condensed | None = None  # of the rank, whoever gives that
+        self.largest, self.size = np.zeros(layout.ports), np.zeros(layout.ports)
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def evaluate(self, z: cython.double[::1]) -> cython.int:
+        i: cython.Py_ssize_t
+        self.pushed(z, True)
+        self.slopes()
+        for i in range(self.unknowns):
+            self.jacobian[i, 0 if self.rank else self.unknowns] = self.by_frequency[i]
+        if not self.rank:
+            times_tangents(self.seen, self.tangent, self.jacobian)
+            for i in range(self.unknowns):
+                self.jacobian[i, i] += 1.0
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def probe(self, z: cython.double[::1]) -> cython.int:
+        return self.pushed(z, False)
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def pushed(self, z: cython.double[::1], tangents: cython.bint) -> cython.int:
+        """The residual and the contacts' forces at z, and their tangents; which else stay as they were."""
+        i: cython.Py_ssize_t
+        p: cython.Py_ssize_t
+        self.seen.at(z[self.unknowns])
+        self.contact_forces(z, tangents)
+        if self.condensed is None:
+            times_forces(self.seen, self.force, self.residual)
+        else:
+            np.asarray(self.residual)[:] = self.condensed.answer.to(np.asarray(self.force))
+        for p in range(self.ports):
+            self.residual[self.seen.mean_at[p]] -= self.share * self.rest[p]
+        less_external(self.seen, self.load, self.residual)
+        for i in range(self.unknowns):
+            self.residual[i] += z[i]
+        for i in range(self.unknowns + 1):
+            self.evaluated[i] = z[i]
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def slopes(self) -> cython.int:
+        """Derivatives by the frequency."""
+        if self.condensed is None:
+            slope(self.seen, self.force, self.load, self.by_frequency)
+            return 0
+        np.asarray(self.by_frequency)[:] = self.condensed.answer.rate(np.asarray(self.force))
+        less_external_slopes(self.seen, self.load, self.by_frequency)
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def contact_forces(self, z: cython.double[::1], tangents: cython.bint) -> cython.int:
+        """Forces of the contacts, and tangents, without those counted to the structure."""
+        c: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        first: cython.Py_ssize_t
+        normal: cython.Py_ssize_t = self.directions - 1
+        for c in range(self.contacts):
+            law: Law = self.laws[c]
+            first = c * self.width
+            if not tangents:
+                law.probe(z, first)
+            else:
+                law.evaluate(z, first)
+                for i in range(self.width):
+                    for k in range(self.width):
+                        self.tangent[c, i, k] = law.tangent[i, k]
+                self.tangent[c, normal, normal] -= self.counted[c]
+            for i in range(self.width):
+                self.force[first + i] = law.force[i]
+            self.force[first + normal] -= self.counted[c] * z[first + normal]
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def measure(self, z: cython.double[::1]) -> cython.int:
+        """Displacements by their present size, in each direction of a contact; the frequency by its range."""
+        p: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        overall: cython.double = 0.0
+        for p in range(self.ports):
+            k = self.seen.mean_at[p]
+            total: cython.double = z[k] * z[k]
+            for i in range(self.seen.count):
+                k = self.seen.wave_at[p] + self.seen.stride * i
+                total += z[k] * z[k] + z[k + 1] * z[k + 1]
+            self.size[p] = sqrt(total)
+            self.largest[p] = max(self.largest[p], self.size[p])
+            overall = max(overall, self.largest[p])
+        many: cython.double = sqrt(cython.cast(cython.double, self.ports))
+        for p in range(self.ports):
+            unit: cython.double = max(self.size[p], max(OWN_FLOOR * self.largest[p], OTHER_FLOOR * overall))
+            unit = unit * many if unit > 0.0 else many
+            self.scale[self.seen.mean_at[p]] = unit
+            for i in range(self.seen.count):
+                k = self.seen.wave_at[p] + self.seen.stride * i
+                self.scale[k] = self.scale[k + 1] = unit
+        self.scale[self.unknowns] = self.span
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def bound(self, z: cython.double[::1]) -> cython.int:
+        """The margins of the contacts, one after the other."""
+        c: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        at: cython.Py_ssize_t = 0
+        for c in range(self.contacts):
+            law: Law = self.laws[c]
+            law.bound(z, c * self.width)
+            for i in range(law.margins):
+                self.margin[at], self.angle[at] = law.margin[i], law.angle[i]
+                self.kind[at] = law.kind[i] + c * KINDS if law.kind[i] != NONE else NONE
+                at += 1
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def report(self, z: cython.double[::1], direction: cython.double[::1]) -> cython.int:
+        """Amplitudes of the degrees of freedom shown, and their growth."""
+        self.seen.at(z[self.unknowns])
+        self.forces_at(z, direction)
+        self.shown.at(self.load, self.now, self.rate, z, direction)
+        i: cython.Py_ssize_t
+        for i in range(self.outputs):
+            self.output[i], self.growth[i] = self.shown.amplitude[i], self.shown.growth[i]
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def forces_at(self, z: cython.double[::1], direction: cython.double[::1]) -> cython.int:
+        """Forces at z, a last Newton step from where they were evaluated, and their rates."""
+        c: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        first: cython.Py_ssize_t
+        for c in range(self.contacts):
+            first = c * self.width
+            for i in range(self.width):
+                change: cython.double = 0.0
+                rate: cython.double = 0.0
+                for k in range(self.width):
+                    change += self.tangent[c, i, k] * (z[first + k] - self.evaluated[first + k])
+                    rate += self.tangent[c, i, k] * direction[first + k]
+                self.now[first + i] = self.force[first + i] + change
+                self.rate[first + i] = rate
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def refine(self, exact: cython.bint) -> cython.int:
+        """All contacts with their exact laws, or with what they have in the place of them."""
+        c: cython.Py_ssize_t
+        for c in range(self.contacts):
+            law: Law = self.laws[c]
+            law.refine(exact)
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def differs(self) -> cython.bint:
+        """Whether a contact slips or separates: coefficients are of these alone."""
+        c: cython.Py_ssize_t
+        for c in range(self.contacts):
+            law: Law = self.laws[c]
+            if law.mixed:
+                return True
+        return False
+
+    @cython.ccall
+    @cython.exceptval(-2.0, check=False)
+    def factor(self, row: cython.double[::1], scale: cython.double[::1]) -> cython.double:
+        by = np.asarray(self.jacobian)[:, 0]
+        assert self.condensed is not None
+        sign: cython.double = self.condensed.factor(np.asarray(row), by, np.asarray(scale))
+        return sign
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def solve(self, right: cython.double[::1]) -> cython.int:
+        assert self.condensed is not None
+        self.condensed.solve(np.asarray(right))
+        return 0

@@ -1,0 +1,183 @@
+"""What is reported of the points of traced paths: displacements, loops, states, energies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.contact.loop import sequences
+from fcm.continuation import Path
+from fcm.harmonic_balance.points import Points, cycles_of
+from fcm.harmonic_balance.reported_quantities import Reported, reported
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import Contact, FloatArray
+
+SMALLEST = 1e-150  # amplitudes below this count as this in a division
+NONE = 3  # beside the states of a cycle: no state
+OPEN = 2  # of these, by its place in the letters
+LETTERS = np.array(["E", "P", "S", "", "N"])  # of the states; that of a negative slip is -1
+
+IntArray = npt.NDArray[np.intp]
+ComplexArray = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Record:
+    """Points of paths one after the other; x(theta) = mean + Re sum_j X_j exp(i h_j theta)."""
+
+    path: IntArray  # (point,) number of the path
+    z: FloatArray  # (point, unknown + 1)
+    mark: npt.NDArray[np.int64]  # (point,)
+    X: ComplexArray  # (point, harmonic, dof)
+    mean: FloatArray  # (point, dof)
+    amplitude: FloatArray  # (point, dof) half the peak-to-peak
+    force: FloatArray  # (point, unknown) of the contacts, laid out as the unknowns
+    tangent: FloatArray  # (point, unknown + 1) along the path
+    orientation: FloatArray  # (point,)
+    shift: FloatArray  # (point,) from the table to the closed form, relative to the unknowns' size
+
+
+def recorded(system: System, paths: Sequence[Path], shown: Sequence[Reported] | None = None) -> Record:
+    """The points of paths; shown is what is reported along each, if it is known."""
+    z = np.concatenate([path.z for path in paths])
+    if shown is None:
+        shown = [reported(system, path) for path in paths]
+    X, mean, amplitude, force = (
+        _joined([getattr(one, name) for one in shown]) for name in ("X", "mean", "amplitude", "force")
+    )
+    number = np.repeat(np.arange(len(paths)), [path.z.shape[0] for path in paths])
+    names = ("mark", "direction", "orientation", "shift")
+    mark, tangent, orientation, shift = (np.concatenate([getattr(p, name) for p in paths]) for name in names)
+    # a unit of the unknowns is their size times the root of their number
+    shift = shift * np.sqrt(system.layout.ports)
+    return Record(number, z, mark, X, mean, amplitude, force, tangent, orientation, shift)
+
+
+def _joined(parts: list[npt.NDArray[Any]]) -> npt.NDArray[Any]:
+    """One after the other; one alone is not copied."""
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)
+
+
+def amplitudes_at(system: System, z: FloatArray) -> tuple[ComplexArray, FloatArray]:
+    """Amplitudes (point, harmonic, dof) and means (point, dof) at points z (point, unknown + 1)."""
+    X, mean, _ = recorded_at_levels(system, z, np.ones(z.shape[0]))
+    return X, mean
+
+
+def recorded_at_levels(
+    system: System, z: FloatArray, level: FloatArray
+) -> tuple[ComplexArray, FloatArray, FloatArray]:
+    """X, mean and amplitude, as of a `Record`, at points z with all forces times level (point,)."""
+    points = Points(system.looking, z.shape[0])
+    points.take(np.ascontiguousarray(z), np.zeros_like(z), np.ascontiguousarray(level))
+    X = np.asarray(points.re) + 1j * np.asarray(points.im)
+    return X, np.asarray(points.mean), np.asarray(points.amplitude)
+
+
+def loops(system: System, z: FloatArray) -> FloatArray:
+    """(point, contact, 5): n0_bar, b_bar, phi of the fundamental's loop, its a, and the force k_u a."""
+    layout, j = system.layout, system.harmonics.index(1)
+    normal = layout.directions - 1
+    first = layout.directions + layout.stride * j
+    out = np.zeros((z.shape[0], len(system.scene.contacts), 5))
+    for i, (contact, x) in enumerate(zip(system.scene.contacts, _blocks(system, z), strict=True)):
+        if contact.law is not None:  # nothing is known of a loop
+            out[:, i] = np.nan
+            continue
+        V = x[:, first + 2 * normal] + 1j * x[:, first + 2 * normal + 1]
+        if contact.second is not None:  # no loop; the greatest displacement of the ellipse
+            out[:, i, :3] = np.nan
+            out[:, i, 3] = _greatest(*(x[:, first + p] + 1j * x[:, first + p + 1] for p in (0, 2)))
+            out[:, i, 4] = contact.k_u * out[:, i, 3]
+            continue
+        U = x[:, first] + 1j * x[:, first + 1]
+        a = np.abs(U)
+        stiffness = contact.k_u if contact.k_u > 0.0 else 1.0
+        ratio = contact.mu / (stiffness * np.maximum(a, SMALLEST))
+        out[:, i, 0] = ratio * (contact.n_0 + contact.k_v * x[:, normal])
+        out[:, i, 1] = ratio * contact.k_v * np.abs(V)
+        out[:, i, 2] = np.angle(V * np.conj(U))
+        out[:, i, 3], out[:, i, 4] = a, contact.k_u * a
+    return out
+
+
+def cycles(system: System, z: FloatArray, loop: FloatArray) -> tuple[npt.NDArray[np.str_], FloatArray]:
+    """What each contact does over a cycle, such as "SPEN", (point, contact), and bears, (point, contact, 4).
+
+    A contact without friction has no loop: it is closed, "E", open, "S", or one after the other, "SE". What
+    it bears are the greatest normal and friction force, the way of the slip, and the energy that friction
+    takes. loop: theirs, as of `loops`.
+    """
+    words, harmonics = [], system.harmonics
+    borne = np.zeros((len(system.scene.contacts), z.shape[0], 4))
+    for i, (c, state) in enumerate(_solved(system, z, borne)):
+        if c.law is not None:
+            words.append(np.full(z.shape[0], "", dtype="<U1"))
+        elif c.mu * c.k_u == 0.0:
+            words.append(_without_friction(state))
+        elif harmonics != (1,) or system.scene.planar:
+            words.append(_spelt(state))
+        else:
+            words.append(sequences(*loop[:, i, :3].T))
+    each = np.stack(words, axis=1) if words else np.empty((z.shape[0], 0), dtype="<U6")
+    return each, borne.swapaxes(0, 1)
+
+
+def borne_along(system: System, z: FloatArray) -> FloatArray:
+    """What the contacts bear, (point, contact, 4), as of `cycles`."""
+    borne = np.zeros((len(system.scene.contacts), z.shape[0], 4))
+    for _ in _solved(system, z, borne):
+        pass
+    return np.ascontiguousarray(borne.swapaxes(0, 1))
+
+
+def _solved(
+    system: System, z: FloatArray, borne: FloatArray
+) -> Iterator[tuple[Contact, npt.NDArray[np.intc]]]:
+    """Each contact and the states of its cycle (point, piece), which the next replaces; borne
+    (contact, point, 4) is filled.
+
+    Without friction nothing is known of a slider, and its way is 0.
+    """
+    laws, z = system.exact_laws(system.harmonics), np.ascontiguousarray(z)
+    most = max((law.state.shape[0] for law in laws), default=0)
+    state = np.empty((z.shape[0], most), dtype=np.intc)
+    for i, c in enumerate(system.scene.contacts):
+        state[:] = NONE
+        cycles_of(laws[i], z, i * system.layout.width, state, borne[i])
+        if c.mu * c.k_u == 0.0 and c.law is None:
+            borne[i, :, 2] = 0.0
+        yield c, state
+
+
+def _greatest(U: ComplexArray, V: ComplexArray) -> FloatArray:
+    """The greater half-axis of the ellipse of two displacements at right angles.
+
+    >>> _greatest(np.array([3.0, 1.0 + 0j]), np.array([4.0j, 1.0]))
+    array([4.        , 1.41421356])
+    """
+    return 0.5 * (np.abs(U + 1j * V) + np.abs(U - 1j * V))
+
+
+def _spelt(state: npt.NDArray[np.intc]) -> npt.NDArray[np.str_]:
+    """Words (point,) of states (point, piece)."""
+    longest = int((state != NONE).sum(axis=1).max(initial=1))
+    letters = np.ascontiguousarray(LETTERS[state[:, :longest]])
+    words: npt.NDArray[np.str_] = letters.view(f"<U{longest}")[:, 0]
+    return words
+
+
+def _without_friction(state: npt.NDArray[np.intc]) -> npt.NDArray[np.str_]:
+    """Words (point,) of states (point, piece) of a contact that has no loop."""
+    opens = (state == OPEN).any(axis=1)
+    closes = ((state != OPEN) & (state != NONE)).any(axis=1)
+    return np.where(opens & closes, "SE", np.where(closes, "E", "S"))
+
+
+def _blocks(system: System, z: FloatArray) -> FloatArray:
+    """Unknowns of each contact, (contact, point, width)."""
+    return system.layout.blocks(z).swapaxes(0, 1)

@@ -1,0 +1,258 @@
+r"""Digits of displacements where contacts are much stiffer than the structure.
+
+The balance x = X - G F of displacements subtracts nearly equal numbers where a contact hardly moves: as many
+digits are lost as k |G| has before its point, in a displacement that is small beside others even all of them.
+Where every contact only sticks or is open, the same motion is
+
+    (H + k) x = f,    H = G^-1,    f = H X,
+
+the sum of stiffnesses and of forces on the contacts. Nothing cancels in it, provided that f is known as it is
+given: what acts along a contact's own direction is. Elsewhere it is told what digits are lost: the balance's
+own rounding, through the inverse of its Jacobian across the curve.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.harmonic_balance.dense_jacobian import jacobian_of
+from fcm.harmonic_balance.residual import Balance
+from fcm.harmonic_balance.response_quantities import Record
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray, Force
+from fcm.structure.linear import Linear, amplitudes, linear_of
+from fcm.structure.receptance import Receptance
+from fcm.structure.ring import RingLinear, Wave
+from fcm.structure.travelling import TravellingReceptance
+
+STIFF = 1e4  # k |G| of a contact from which digits are counted
+EPS = 2.2e-16  # of float64
+ROUNDINGS = 4.0  # that come together in a sum
+POINTS = 16  # of a curve of many contacts that are looked at
+SIGNS = 8  # of errors that are looked at together, where contacts are many
+DEPENDENT = 1e10  # condition number of G from which its inverse is no good
+
+ComplexArray = npt.NDArray[np.complex128]
+
+
+class Digits(NamedTuple):
+    """The fundamental where contacts are stiff: z (unknown + 1,) with it; X (dof,) of the degrees of freedom,
+    of use for those that are no combination of contacts' displacements, None where they are as the balance
+    has them; and how far the displacements (port,) and (dof,) are off by rounding."""
+
+    z: FloatArray
+    X: ComplexArray | None
+    ports: FloatArray
+    dofs: FloatArray
+
+
+def with_digits(system: System, points: Record) -> tuple[Record, FloatArray]:
+    """Points with the digits that can be kept, and the relative rounding of the amplitudes (point, dof).
+
+    Points of a structure whose contacts are not stiff stay as they are; their rounding is not looked at: 0.
+    Of a sector of a ring it is told what digits are lost. Many contacts are looked at in some points; those
+    between two of these have the greater rounding of both.
+    """
+    rounding = np.zeros_like(points.amplitude)
+    springs = system.springs(stuck=True)
+    stiff = np.flatnonzero(_stiffness(system, points.z[:, -1], springs) > STIFF)
+    if not stiff.size:
+        return points, rounding
+    balance = system.balance()
+    made = replace(
+        points, X=points.X.copy(), mean=points.mean.copy(), force=points.force.copy(), z=points.z.copy(),
+        amplitude=points.amplitude.copy(),
+    )  # fmt: skip
+    shown, forces = balance.shown, _Forces(system)
+    apart = np.asarray(shown.apart) != 0
+    looked = stiff
+    if balance.rank and stiff.size > POINTS:
+        looked = stiff[np.linspace(0, stiff.size - 1, POINTS).round().astype(np.intp)]
+    for i in looked:
+        found = _point(balance, made.z[i].copy(), points.tangent[i], springs, forces)
+        made.z[i] = found.z
+        balance.evaluate(found.z)
+        balance.report(found.z, np.zeros(found.z.size))
+        made.X[i].real, made.X[i].imag, made.mean[i] = shown.re, shown.im, shown.mean
+        made.amplitude[i], made.force[i] = shown.amplitude, balance.force
+        if found.X is not None:
+            made.X[i, balance.seen.first, apart] = found.X[apart]
+            made.amplitude[i, apart] = np.abs(found.X[apart])
+        size = np.where(made.amplitude[i] > 0.0, made.amplitude[i], np.inf)
+        rounding[i] = np.where(apart, found.dofs, found.ports @ np.abs(shown.attached)) / size
+    behind = np.searchsorted(looked, stiff)
+    before = np.where(looked[behind] == stiff, behind, behind - 1)
+    rounding[stiff] = np.maximum(rounding[looked[before]], rounding[looked[behind]])
+    return made, rounding
+
+
+def _stiffness(system: System, omega: FloatArray, springs: FloatArray) -> FloatArray:
+    """The greatest k |G| of the contacts at frequencies (point,); 0 where all are less than STIFF."""
+    linear = system.linear
+    if not springs.size:
+        return np.zeros(omega.size)
+    if isinstance(linear, RingLinear):
+        balance = system.balance()
+        return np.array([_stiffest(balance, w, springs) for w in omega])
+    # a mode is nowhere softer than at its resonance: most structures need not be looked at point by point
+    least = np.minimum(np.sqrt(2.0) * linear.damping, 1.0) * linear.natural**2
+    if least.all() and (springs * ((1.0 / least) @ linear.ports**2)).max() < STIFF:
+        return np.zeros(omega.size)
+    force = np.ones((omega.size, 1, linear.natural.size), dtype=np.complex128)
+    compliance = amplitudes(linear.natural, linear.damping, omega, np.ones(1), force)[:, 0]
+    found: FloatArray = (np.abs(compliance @ linear.ports**2) * springs).max(axis=1)
+    return found
+
+
+def _stiffest(balance: Balance, omega: float, springs: FloatArray) -> float:
+    """The greatest k |G| at a frequency."""
+    balance.seen.at(omega)
+    return float((np.abs(_receptance(balance).diagonal()) * springs).max())
+
+
+def _receptance(balance: Balance) -> ComplexArray:
+    return balance.seen.between(balance.seen.first)
+
+
+class _Forces:
+    """The forces of a scene: those along contacts' directions, by port, and the others on the modes."""
+
+    def __init__(self, system: System) -> None:
+        scene = system.scene
+        ports = scene.directions_of_contacts()
+        self.along: list[tuple[int, float, Force]] = []
+        others: list[Force] = []
+        for force in scene.forces:
+            shares = ((p, _share(force.direction, port)) for p, port in enumerate(ports))
+            first = next(((p, share, force) for p, share in shares if share), None)
+            if first is None:
+                others.append(force)
+            else:
+                self.along.append(first)
+        self.linear = system.linear
+        self.others = linear_of(replace(scene, forces=tuple(others))) if others else None
+
+    def on_ports(self, omega: float) -> ComplexArray:
+        """Those along ports (port,)."""
+        f = np.zeros(self.linear.ports.shape[1], dtype=np.complex128)
+        for port, share, force in self.along:
+            f[port] += -1j * share * force.amplitude * omega**force.power * np.exp(1j * force.phase)
+        return f
+
+    def on_modes(self, omega: float) -> ComplexArray:
+        """The others (mode,)."""
+        if self.others is None:
+            return np.zeros(self.linear.natural.size, dtype=np.complex128)
+        force: ComplexArray = self.others.force[0] + omega**2 * self.others.square[0]
+        return force
+
+
+def _share(direction: FloatArray, port: FloatArray) -> float:
+    """How much of a port's direction a direction is; 0 if it is another."""
+    most = int(np.abs(port).argmax())
+    same = port[most] != 0.0 and np.array_equal(direction * port[most], port * direction[most])
+    return float(direction[most] / port[most]) if same else 0.0
+
+
+def _point(
+    balance: Balance, z: FloatArray, tangent: FloatArray, springs: FloatArray, forces: _Forces
+) -> Digits:
+    """A point with the digits that can be kept."""
+    balance.evaluate(z)
+    G, held = _receptance(balance), _held(balance, springs)
+    seen, linear, at, omega = balance.seen, forces.linear, _places(balance), float(z[-1])
+    other = len(linear.driven) > 1  # whose answer is no fundamental
+    if held is None or other or isinstance(linear, RingLinear) or not np.linalg.cond(G) < DEPENDENT:
+        return _as_balanced(balance, linear, G, springs, tangent)
+    compliance = np.asarray(seen.c_re)[seen.first] + 1j * np.asarray(seen.c_im)[seen.first]
+    H, others = np.linalg.inv(G), forces.on_modes(omega)
+    computed = H @ (linear.ports.T @ (compliance * others))
+    x = np.linalg.solve(H + np.diag(held), forces.on_ports(omega) + computed)
+    z[at], z[at + 1] = x.real, x.imag
+    # the contacts take f - H x: what is left on the modes is P H x, and the others' forces without their f
+    left = linear.ports @ (H @ x - computed) + others
+    size = np.abs(H) @ np.abs(x) + np.abs(computed).max(initial=0.0)
+    wrong = EPS * np.linalg.cond(G) * size
+    ports = np.abs(np.linalg.inv(H + np.diag(held))) @ wrong + ROUNDINGS * EPS * np.abs(x)
+    on_modes = np.abs(linear.ports) @ wrong + EPS * np.abs(others)
+    return Digits(
+        z, (compliance * left) @ linear.dofs, ports, (np.abs(compliance) * on_modes) @ np.abs(linear.dofs)
+    )
+
+
+def _as_balanced(
+    balance: Balance, linear: Linear, G: ComplexArray, springs: FloatArray, tangent: FloatArray
+) -> Digits:
+    """The point evaluated last as it is; its rounding from what its equations are summed of."""
+    seen, n, at = balance.seen, balance.unknowns, _places(balance)
+    force, x = np.asarray(balance.force), np.asarray(balance.evaluated)
+    size, on_ports = np.hypot(x[at], x[at + 1]), np.hypot(force[at], force[at + 1])
+    terms = np.zeros(n)
+    terms[at] = np.abs(G) @ on_ports + np.hypot(seen.X_re[0], seen.X_im[0]) + size
+    terms[at + 1] = terms[at]
+    off = _moved(balance, x, tangent, ROUNDINGS * EPS * terms)
+    ports = np.hypot(off[at], off[at + 1])
+    modes: Receptance = seen
+    met: Linear | Wave = linear
+    j = seen.first
+    if isinstance(seen, TravellingReceptance) and isinstance(linear, RingLinear):
+        modes, j, met = seen.waves[j], 0, linear.wave(1)
+    compliance = np.hypot(np.asarray(modes.c_re)[j], np.asarray(modes.c_im)[j])
+    shapes, external = np.abs(met.ports), np.hypot(modes.force_re[0], modes.force_im[0])
+    on_modes = ROUNDINGS * EPS * (external + shapes @ on_ports) + shapes @ (springs * ports)
+    return Digits(x.copy(), None, ports, (compliance * on_modes) @ np.abs(met.dofs))
+
+
+def _moved(balance: Balance, z: FloatArray, tangent: FloatArray, wrong: FloatArray) -> FloatArray:
+    """By how much errors of the equations (unknown,) move a point across the curve.
+
+    nan in a corner that the curve does not leave in the direction given. Of many contacts it is no bound but
+    three times the root of the mean square, over errors of random signs: no inverse is made of so many.
+    """
+    balance.measure(z)
+    scale = np.array(balance.scale)
+    row = tangent / scale
+    row /= np.linalg.norm(row)
+    if balance.condensed is not None:
+        signs = np.random.default_rng(0).choice((-1.0, 1.0), (SIGNS, wrong.size))
+        if not balance.factor(row, scale):
+            return np.full(wrong.size, np.nan)
+        ways = np.hstack((signs * wrong / scale[:-1], np.zeros((SIGNS, 1))))
+        for way in ways:
+            balance.solve(way)
+        typical: FloatArray = scale[:-1] * np.sqrt(np.square(ways[:, :-1]).mean(axis=0))
+        return 3.0 * typical
+    matrix = np.vstack((jacobian_of(balance) * scale, row))
+    try:
+        inverse = np.linalg.inv(matrix)[:-1, :-1]
+    except np.linalg.LinAlgError:
+        return np.full(wrong.size, np.nan)
+    moved: FloatArray = scale[:-1] * (np.abs(inverse) @ wrong)
+    return moved
+
+
+def _places(balance: Balance) -> npt.NDArray[np.intp]:
+    """Of the real part of each port's fundamental among the unknowns."""
+    places: npt.NDArray[np.intp] = balance.layout.waves_at[balance.seen.first]
+    return places
+
+
+def _held(balance: Balance, springs: FloatArray) -> FloatArray | None:
+    """The stiffness of each port (port,), where no contact does anything but stick or stay open."""
+    d, stride = balance.directions, balance.seen.stride
+    j = d + stride * balance.seen.first
+    held = np.empty(springs.size)
+    for c, tangent in enumerate(np.asarray(balance.tangent)):
+        own, here = tangent[j : j + stride, d:].copy(), slice(c * d, (c + 1) * d)
+        pairs = own.diagonal(j - d)
+        held[here] = pairs[::2]
+        whole = (pairs[::2] == springs[here]) | (pairs[::2] == 0.0)
+        equal = np.array_equal(pairs[::2], pairs[1::2])
+        own[np.arange(stride), j - d + np.arange(stride)] = 0.0
+        if own.any() or not whole.all() or not equal:
+            return None
+    return held

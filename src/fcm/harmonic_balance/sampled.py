@@ -1,0 +1,128 @@
+"""A contact with a law of one's own, as the balance sees it: its forces sampled over a cycle.
+
+    x(theta_s) = x_0 + Re sum_j X_j exp(i h_j theta_s),    F_h = 2/S sum_s f(theta_s) exp(-i h theta_s)
+
+so that what the law does beyond the harmonic S/2 folds back (alternating frequency and time; Cameron and
+Griffin, Journal of Applied Mechanics 56, 1989).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from fcm.contact.contact_law import ContactLawError
+from fcm.harmonic_balance.contact_law import Law
+from fcm.model.scene import Contact, FloatArray, Scene
+from fcm.structure.layout import Layout
+
+PER_CYCLE = 8  # samples at least of the highest harmonic
+
+
+class SampledLaw(Law):
+    """Forces of the harmonics `outputs` of a motion with others, and their tangent.
+
+    It has as many margins as the other contacts, and none of them is one: where the law is not smooth is not
+    known. What it bears is sampled; of the way of a slip nothing is known, which is 0 here.
+    """
+
+    def __init__(
+        self,
+        contact: Contact,
+        harmonics: Sequence[int],
+        outputs: Sequence[int],
+        directions: int,
+        margins: int,
+    ) -> None:
+        assert contact.law is not None
+        motion, answer = (Layout(1, directions, len(one)) for one in (harmonics, outputs))
+        super().__init__(motion.width, directions, margins, contact.mu, contact.k_u, contact.k_v, contact.n_0)
+        self.own, self.name = contact.law, contact.name
+        self.without_margins()
+        count = max(int(contact.law.samples), PER_CYCLE * max((*harmonics, *outputs)))
+        angle: FloatArray = 2.0 * np.pi / count * np.arange(count, dtype=np.float64)
+        self.variation = _waves(motion, harmonics, angle)
+        self.rate = np.zeros_like(self.variation)  # by the angle
+        for j, h in enumerate(harmonics):
+            re = slice(directions + motion.stride * j, directions + motion.stride * (j + 1), 2)
+            im = slice(re.start + 1, re.stop + 1, 2)
+            self.rate[..., re], self.rate[..., im] = h * self.variation[..., im], -h * self.variation[..., re]
+        self.projection = _waves(answer, outputs, angle) * (2.0 / count)
+        self.projection[..., answer.mean_at] *= 0.5
+        self.rest = np.zeros((directions, count))
+        self.rest = self._sampled(np.zeros((directions, count)), self.variation)[0]
+        self.force, self.tangent = np.zeros(answer.width), np.zeros((answer.width, motion.width))
+
+    def put(self, mu: float, k_u: float, k_v: float, n_0: float) -> None:
+        """Take the numbers of the same contact, which the law has not."""
+
+    def evaluate(self, x: FloatArray, first: int) -> int:
+        """Forces and tangent."""
+        force, change = self._sampled(self._motion(x, first), self.variation)
+        self.force[:] = np.einsum("dso,ds->o", self.projection, force)
+        self.tangent[:, :] = np.einsum("dso,dsk->ok", self.projection, change)
+        self.mixed = True
+        return 0
+
+    def probe(self, x: FloatArray, first: int) -> int:
+        """The forces alone."""
+        force, _ = self._sampled(self._motion(x, first), self.variation[:, :, :1])
+        self.force[:] = np.einsum("dso,ds->o", self.projection, force)
+        self.mixed = True
+        return 0
+
+    def resist(self) -> int:
+        """By the tangent of the means."""
+        self.resistance[:, :] = np.asarray(self.tangent)[: self.directions, : self.directions]
+        return 0
+
+    def cycle(self, x: FloatArray, first: int) -> int:
+        """No states; the greatest forces and the energy, of the samples."""
+        motion = self._motion(x, first)
+        force = self._sampled(motion, self.variation[:, :, :1])[0] + self.rest
+        power = force * (self.rate @ np.asarray(x)[first : first + self.width])
+        self.pieces = 0
+        self.borne[0] = force[-1].max()
+        self.borne[1] = np.sqrt((force[:-1] ** 2).sum(axis=0)).max()
+        self.borne[2], self.borne[3] = 0.0, 2.0 * np.pi * float(power.sum()) / motion.shape[1]
+        return 0
+
+    def _motion(self, x: FloatArray, first: int) -> FloatArray:
+        block: FloatArray = np.asarray(x)[first : first + self.width]
+        return np.asarray(self.variation @ block)
+
+    def _sampled(self, motion: FloatArray, variation: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """What the law says, beyond rest, if it is of use."""
+        force, change = (np.asarray(one, dtype=np.float64) for one in self.own.forces(motion, variation))
+        if force.shape != motion.shape or change.shape != variation.shape:
+            raise ContactLawError(
+                f"{self._said}: forces of shape {force.shape} and changes of shape {change.shape}; they are "
+                f"to have the shapes of x and dx, {motion.shape} and {variation.shape}"
+            )
+        if not (np.isfinite(force).all() and np.isfinite(change).all()):
+            raise ContactLawError(f"{self._said}: a force or its change is not a finite number")
+        return force - self.rest, change
+
+    @property
+    def _said(self) -> str:
+        return f"the law {type(self.own).__name__} of the contact {self.name!r}"
+
+
+def check_own_laws(scene: Scene) -> None:
+    """Raise ContactLawError where a contact's own law gives no forces of a motion, or no changes."""
+    for contact in scene.contacts:
+        if contact.law is not None:
+            law = SampledLaw(contact, (1,), (1,), scene.directions_of_contact, 1)
+            law.evaluate(np.ones(law.width), 0)
+
+
+def _waves(layout: Layout, harmonics: Sequence[int], angle: FloatArray) -> FloatArray:
+    """What each unknown of a contact is over the cycle, in its direction: (direction, sample, unknown)."""
+    found = np.zeros((layout.directions, angle.size, layout.width))
+    for d in range(layout.directions):
+        found[d, :, d] = 1.0
+        for j, h in enumerate(harmonics):
+            at = layout.directions + layout.stride * j + 2 * d
+            found[d, :, at], found[d, :, at + 1] = np.cos(h * angle), -np.sin(h * angle)
+    return found

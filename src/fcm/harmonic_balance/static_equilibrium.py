@@ -1,0 +1,164 @@
+"""Rest under static loads: the equilibrium to which they bring the structure and its contacts.
+
+The loads grow from nothing, all in proportion, with no harmonic force beside them. A closed contact resists
+with k_u (u - 0) as far as mu n allows, for it is unstressed without them, and with its k_v; what is a preload
+without the loads is one still. The harmonic balance has this equilibrium as the limit of small forces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from fcm.continuation import FollowOptions, Status, follow
+from fcm.continuation.corrector import Newton
+from fcm.continuation.problem import Problem
+from fcm.harmonic_balance.residual import Balance
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray, Scene
+from fcm.structure.linear import Linear
+from fcm.structure.rigid import HELD
+
+LEAST = 1e-3  # share of the loads to begin with
+BY_SHARE = FollowOptions(0.2)  # along the curve of the share
+SMALL = 0.1  # shares are measured by themselves, and below this by this
+ADRIFT = (
+    "the static loads push the structure along a rigid-body mode that no contact holds along its normal, so "
+    "it does not come to rest; hold it by a contact along its normal, or by a small frequency of that mode"
+)
+NONE = "no equilibrium with the static loads was found: the contacts may not be able to hold them"
+
+
+class RestError(ValueError):
+    """There is no equilibrium; the message says why."""
+
+
+class Share(Problem):
+    """The balance without harmonic forces, followed in the share of the static loads."""
+
+    def __init__(self, balance: Balance, omega: float) -> None:
+        Problem.__init__(self, balance.unknowns, balance.margins, 0, balance.rank)
+        self.rooted = balance.rooted
+        self.balance, self.at_omega = balance, np.full(balance.unknowns + 1, omega)
+        self.by_share = np.zeros(balance.unknowns)
+        self.by_share[balance.layout.mean_at] = -np.asarray(balance.rest)
+        balance.load = 0.0
+
+    def evaluate(self, z: FloatArray) -> int:
+        """Residual and derivatives."""
+        self.balance.evaluate(self._placed(z))
+        self.residual[:] = self.balance.residual
+        if not self.rank:
+            np.asarray(self.jacobian)[:] = self.balance.jacobian
+        np.asarray(self.jacobian)[:, -1] = self.by_share
+        return 0
+
+    def measure(self, z: FloatArray) -> int:
+        """Scale."""
+        self.balance.measure(self._placed(z))
+        self.scale[:] = self.balance.scale
+        self.scale[self.unknowns] = max(abs(z[-1]), SMALL)
+        return 0
+
+    def bound(self, z: FloatArray) -> int:
+        """Margins."""
+        self.balance.bound(self._placed(z))
+        self.margin[:] = self.balance.margin
+        self.kind[:], self.angle[:] = self.balance.kind, self.balance.angle
+        return 0
+
+    def factor(self, row: FloatArray, scale: FloatArray) -> float:
+        """The system closed by a row."""
+        self.balance.jacobian[:, :] = self.jacobian
+        return float(self.balance.factor(row, scale))
+
+    def solve(self, right: FloatArray) -> int:
+        """Its solution for a right side."""
+        return int(self.balance.solve(right))
+
+    def _placed(self, z: FloatArray) -> FloatArray:
+        self.at_omega[:-1] = np.asarray(z)[:-1]
+        self.balance.share = float(z[-1])
+        return self.at_omega
+
+
+def at_rest(system: System) -> FloatArray:
+    """Displacements (port,) at rest under the static loads of a system; zeros without any.
+
+    Raises
+    ------
+    RestError
+        If there is no equilibrium.
+    """
+    linear, ports = system.linear, system.layout.ports
+    if pushed_adrift(linear):
+        raise RestError(ADRIFT)
+    if not linear.load.any() or not ports:
+        return np.zeros(ports)
+    single = System(system.scene)
+    omega = max(float(linear.natural.max(initial=0.0)), 1.0)  # any: nothing moves
+    for guess in _linear(single, LEAST):
+        problem = Share(single.balance(), omega)
+        path = follow(problem, np.append(guess, LEAST), (LEAST, 1.0), options=BY_SHARE)
+        if path.status is Status.COMPLETE and path.z.shape[0] and path.parameter[-1] == 1.0:
+            return path.z[-1][single.layout.mean_at]  # type: ignore[no-any-return]
+    for guess in _linear(single, 1.0):
+        newton = Newton(Share(single.balance(), omega))
+        z = np.append(guess, 1.0)
+        newton.problem.measure(z)
+        newton.scale[:], newton.z[:] = newton.problem.scale, z
+        newton.row[:] = np.eye(z.size)[-1]
+        if newton.correct(1.0):
+            return np.asarray(newton.z)[single.layout.mean_at]
+    raise RestError(NONE)
+
+
+def pushed_adrift(linear: Linear) -> bool:
+    """Whether static loads push along a rigid-body mode that nothing holds."""
+    size = np.abs(linear.load)
+    return bool((size[linear.adrift] > HELD * size.max(initial=0.0)).any())
+
+
+def _linear(system: System, share: float) -> Iterator[FloatArray]:
+    """Unknowns with the contacts as they are without the loads, then all stuck, then all open."""
+    contacts, balance, layout = system.scene.contacts, system.balance(), system.layout
+    d = layout.directions
+    n_0 = np.array([c.n_0 for c in contacts])
+    static, rest = np.asarray(balance.seen.static), share * np.asarray(balance.rest)
+    for closed in (n_0 > 0.0, np.ones(n_0.size, dtype=bool), np.zeros(n_0.size, dtype=bool)):
+        stiffness = system.springs(stuck=True) * np.repeat(closed, d)
+        stiffness[d - 1 :: d] -= system.linear.counted
+        force = np.zeros(rest.size)  # of the normal springs where v = 0
+        force[d - 1 :: d] = np.where(closed, np.minimum(n_0, 0.0), -np.maximum(n_0, 0.0))
+        try:
+            ports = np.linalg.solve(np.eye(rest.size) + static * stiffness, rest - static @ force)
+        except np.linalg.LinAlgError:  # nothing holds a rigid-body mode
+            continue
+        x = np.zeros(layout.unknowns)
+        x[layout.mean_at] = ports
+        yield x
+
+
+def rest_of(scene: Scene) -> tuple[FloatArray, FloatArray]:
+    """Modal displacements (mode,) and friction forces (contact,) at rest under the static loads of a scene.
+
+    Raises
+    ------
+    RestError
+        If there is no equilibrium.
+    """
+    system = System(scene)
+    ports = system.rest
+    balance, linear, modal = system.balance(), system.linear, scene.modal
+    balance.load = 0.0
+    z = np.zeros(balance.unknowns + 1)
+    z[balance.layout.mean_at], z[-1] = ports, 1.0
+    balance.evaluate(z)
+    force = np.asarray(balance.force)[balance.layout.mean_at]
+    q = linear.flexibility @ (linear.load - linear.ports @ force)  # of mass 1, rigid ones turned
+    moved, rigid = q / np.sqrt(modal.mass), linear.natural == 0.0
+    if rigid.any():
+        shown = linear.dofs[rigid].T @ q[rigid]
+        moved[rigid] = np.linalg.lstsq(modal.shapes[rigid].T, shown, rcond=None)[0]
+    return moved, force[:: balance.directions].copy()

@@ -1,0 +1,57 @@
+"""Contacts so much stiffer than the structure that rounding decides what they do: what to take instead.
+
+A contact's force is its stiffness times a difference of displacements, of which one rounding stays. Beside
+the force that the structure bears this is k |G| roundings, and where the force changes from stick to slip no
+curve is followed through more than some 1e-9 of it. Long before, the contact is nearly rigid: what its
+spring adds falls with the root of the stiffness at the latest, as where a mass is turned round by it. How
+nearly is the structure's to say, where a resonance or a bounce makes much of that.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray
+
+TOO_STIFF = 1e7  # k |G|, from which on curves were seen to stop
+ENOUGH = 1e6  # k |G|, at which a contact is nearly rigid: the root of its inverse is a thousandth
+TOO_QUICK, SLOW = 1e6, 1e5  # and both of the motion in time, of which a curve then takes long, and seconds
+
+
+def too_stiff(system: System, moves: bool = False) -> str:
+    """Which contact's stiffness leaves no digits, and what to take instead; empty if none does.
+
+    moves: whether what is said is of the motion in time, which has the digits, but of which every vibration
+    on a contact that sticks is followed.
+    """
+    springs = system.springs(stuck=True)
+    if not springs.size:
+        return ""
+    receptance = _least_receptance(system)
+    worst = int((springs * receptance).argmax())
+    ratio = springs[worst] * receptance[worst]
+    most, enough = (TOO_QUICK, SLOW) if moves else (TOO_STIFF, ENOUGH)
+    if not ratio > most:
+        return ""
+    at, along = divmod(worst, system.layout.directions)
+    contact, key = system.scene.contacts[at], "k_v" if along == system.layout.directions - 1 else "k_u"
+    instead = enough / receptance[worst]
+    why = "rounding decides when it slips or opens"
+    if moves:
+        why = f"a period may have {np.sqrt(ratio):.0e} vibrations on it, each with slip of its own"
+    return (
+        f"; the {key} of contact {contact.name} is {ratio:.0e} times as stiff as the structure there, so "
+        f"that {why}: try {instead:.0e}, nearly rigid; "
+        "half of that tells how nearly"
+    )
+
+
+def _least_receptance(system: System) -> FloatArray:
+    """|G| of each port in its own direction, the least at the ends of the range."""
+    seen, found = system.looking.seen, []
+    for omega in system.scene.frequency_range:
+        seen.at(omega)
+        found.append(np.abs(seen.between(seen.first).diagonal()))
+    least: FloatArray = np.min(found, axis=0)
+    return least

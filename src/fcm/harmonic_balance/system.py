@@ -1,0 +1,294 @@
+"""A scene (of one curve) as a balance of some harmonics."""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from fcm.contact.closed_form import ClosedForm
+from fcm.contact.coefficient_law import CoefficientLaw
+from fcm.contact.periodic.workspace import periodic_contact
+from fcm.contact.plane.workspace import planar_contact
+from fcm.continuation.stepper import Stepper
+from fcm.harmonic_balance.contact_law import Law
+from fcm.harmonic_balance.displacement import Displacements
+from fcm.harmonic_balance.force_level import Level
+from fcm.harmonic_balance.line_contact import Periodic
+from fcm.harmonic_balance.modal_condensation import (
+    OPTIONS,
+    Condensed,
+    CondensedOptions,
+    condensed_size,
+    yielding,
+)
+from fcm.harmonic_balance.planar_contact import Planar
+from fcm.harmonic_balance.residual import Balance
+from fcm.harmonic_balance.sampled import SampledLaw
+from fcm.harmonic_balance.single_harmonic_contact import SingleHarmonic
+from fcm.harmonic_balance.travelling_wave import TravellingDisplacements
+from fcm.harmonic_balance.work_budget import Work
+from fcm.model.scene import FloatArray, Scene
+from fcm.structure.layout import Layout, layout_of
+from fcm.structure.linear import ComplexArray, Linear, linear_of
+from fcm.structure.receptance import Receptance
+from fcm.structure.ring import RingLinear
+from fcm.structure.travelling import TravellingReceptance
+from fcm.table.lookup import Table
+
+SMALL = 20  # contacts times harmonics, up to which workspaces are kept for the next system
+MOST = 4  # of them
+
+
+@dataclass(frozen=True)
+class System:
+    """What is balanced: a scene with its linear structure, and the harmonics, the first of which is 1.
+
+    The harmonics of its forces are balanced whatever harmonics are asked for.
+
+    With one harmonic the curves can be followed by a table: each point is then corrected with the closed
+    form, unless that is left out. condensing says when the linear systems of many contacts are condensed.
+    """
+
+    scene: Scene
+    harmonics: tuple[int, ...] = (1,)
+    table: Table | None = None
+    corrected: bool = True
+    condensing: CondensedOptions = OPTIONS
+    linear: Linear = field(init=False)
+    coarse: CoefficientLaw = field(init=False)  # the table's
+    on_ports: dict[float, ComplexArray] = field(init=False, default_factory=dict)  # see `linear_contacts`
+    kept: dict[object, object] = field(init=False, default_factory=dict)  # known of its contacts' states
+    work: Work = field(init=False, default_factory=Work, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "linear", linear_of(self.scene))
+        object.__setattr__(self, "harmonics", self._with_driven(self.harmonics))
+        object.__setattr__(self, "coarse", ClosedForm() if self.table is None else self.table.law())
+
+    def with_harmonics(self, harmonics: tuple[int, ...]) -> System:
+        """The same with other harmonics."""
+        return self._with(harmonics=self._with_driven(harmonics))
+
+    def _with_driven(self, harmonics: tuple[int, ...]) -> tuple[int, ...]:
+        driven = self.linear.driven
+        return harmonics if set(driven) <= {*harmonics} else tuple(sorted({*harmonics, *driven}))
+
+    @property
+    def own_laws(self) -> bool:
+        """Whether a contact has a law of its own."""
+        return any(one.law is not None for one in self.scene.contacts)
+
+    @cached_property
+    def unit(self) -> float:
+        """The greatest preload, where the other curves of a sweep may be the same but for that; else 0."""
+        scene = self.scene
+        swept = [key.startswith("contact.") and key.endswith(".n_0") for key in scene.parameters]
+        plain = type(self.linear) is Linear and self.corrected and not scene.loads and not self.own_laws
+        preloads = [abs(one.n_0) for one in scene.contacts]
+        return max(preloads, default=0.0) if plain and swept and all(swept) and all(preloads) else 0.0
+
+    @cached_property
+    def normal(self) -> System:
+        """The same with all preloads divided by the greatest."""
+        contacts = tuple(replace(one, n_0=one.n_0 / self.unit) for one in self.scene.contacts)
+        return self._with(scene=replace(self.scene, contacts=contacts), work=Work())
+
+    def _with(self, **other: object) -> System:
+        found = object.__new__(type(self))
+        found.__dict__.update(vars(self), **other)
+        for made in ("_workspace", "unit", "normal", "yields", "layout"):
+            found.__dict__.pop(made, None)
+        return found
+
+    @cached_property
+    def layout(self) -> Layout:
+        """Where the contacts' displacements are among the unknowns."""
+        return self.layout_of(self.harmonics)
+
+    def layout_of(self, harmonics: tuple[int, ...]) -> Layout:
+        """The same with other harmonics."""
+        return layout_of(len(self.scene.contacts), self.scene.directions_of_contact, len(harmonics))
+
+    def extended(self, z: FloatArray, harmonics: tuple[int, ...]) -> FloatArray:
+        """Unknowns (..., unknown + any) with other harmonics, and what follows them, as those of this: what
+        these lack is zero."""
+        return self.layout_of(harmonics).with_harmonics(z, harmonics, self.harmonics)
+
+    @cached_property
+    def rest(self) -> FloatArray:
+        """Displacements (port,) at rest under the static loads; see `harmonic_balance.static_equilibrium`."""
+        from fcm.harmonic_balance.static_equilibrium import at_rest  # which balances a system
+
+        return at_rest(self)
+
+    @property
+    def looking(self) -> Balance:
+        """A balance for what looks at points or follows curves, one after the other."""
+        return self._workspace.taken_by(self).balance
+
+    @property
+    def stepper(self) -> Stepper:
+        """Of `looking`, for whoever follows it."""
+        return self._workspace.taken_by(self).stepper
+
+    @property
+    def raised(self) -> tuple[Level, Stepper]:
+        """`looking` in the level of its forces."""
+        return self._workspace.taken_by(self).raised
+
+    @cached_property
+    def _workspace(self) -> _Workspace:
+        return _workspace_of(self)
+
+    @contextmanager
+    def alone(self) -> Iterator[None]:
+        """While a curve is followed no other system takes its balance, as one of a progress would.
+
+        Nor does one after an error, in the middle of which it was left.
+        """
+        kept, mine = _KEPT.of, self._workspace
+        shared = kept.get(mine.key) is mine
+        if shared:
+            del kept[mine.key]
+        yield
+        if shared:
+            kept[mine.key] = mine
+
+    def afresh(self) -> Balance:
+        """`looking` at the level 1, as if nothing had been followed yet."""
+        balance = self.looking
+        balance.largest[:] = 0.0
+        balance.load = 1.0
+        return balance
+
+    def balance(self) -> Balance:
+        """A problem of its own, to be followed in the frequency."""
+        low, high = self.scene.frequency_range
+        linear, yields = self.linear, self.yields
+        rank = condensed_size(yields, linear.ports.shape[1], len(self.harmonics), self.condensing)
+        seen = linear.receptance(np.array(self.harmonics, dtype=np.float64), not rank)
+        shown = _displacements(linear, seen)
+        balance = Balance(seen, self.layout, self.laws(), shown, linear.counted, high - low, rank)
+        if rank:
+            tangent, options = np.asarray(balance.tangent), self.condensing
+            stuck, counted = self.springs(stuck=True), linear.counted
+            balance.condensed = Condensed(seen, linear.flexibility, tangent, yields, stuck, counted, options)
+        if self.scene.loads:
+            balance.rest[:] = linear.ports.T @ linear.flexibility @ linear.load
+            shown.rest[:] = linear.dofs.T @ linear.flexibility @ linear.load
+        # where solving takes the time the closed form costs no more than the table
+        tabled = self.table is not None and not rank
+        balance.coarse = tabled and self.corrected and self.harmonics == (1,) and self._of_one_harmonic
+        return balance
+
+    @cached_property
+    def yields(self) -> FloatArray:
+        """How much each mode (mode,) yields beside the contacts; none of a ring's."""
+        linear, highest = self.linear, max(self.harmonics) * self.scene.frequency_range[1]
+        if type(linear) is not Linear:
+            return np.zeros(0)
+        springs = self.springs(stuck=True)
+        return yielding(linear.natural, linear.ports, linear.flexibility, springs, highest)
+
+    @property
+    def _of_one_harmonic(self) -> bool:
+        """Whether all contacts have a law of one harmonic."""
+        return not self.scene.planar and not self.own_laws
+
+    def laws(self) -> list[Law]:
+        """The contacts; those on a line with one harmonic in closed form, or by the table."""
+        if self.harmonics != (1,) or not self._of_one_harmonic:
+            return self.exact_laws(self.harmonics)
+        exact = ClosedForm() if self.corrected else self.coarse
+        contacts = self.scene.contacts
+        return [SingleHarmonic(exact, self.coarse, c.mu, c.k_u, c.k_v, c.n_0) for c in contacts]
+
+    def exact_laws(self, outputs: tuple[int, ...]) -> list[Law]:
+        """The contacts with the exact forces of the motion, of which some harmonics are asked for."""
+        return self.exact_laws_of(self.harmonics, outputs)
+
+    def exact_laws_of(self, harmonics: tuple[int, ...], outputs: tuple[int, ...]) -> list[Law]:
+        """The same of a motion with other harmonics."""
+        found: list[Law] = []
+        if self.scene.planar:  # one on a line is one in whose second direction nothing moves
+            in_plane = planar_contact(harmonics, outputs)
+            found += [Planar(in_plane, c.mu, c.k_u, c.k_v, c.n_0) for c in self.scene.contacts]
+        else:
+            kernel = periodic_contact(harmonics, outputs)
+            found += [Periodic(kernel, c.mu, c.k_u, c.k_v, c.n_0) for c in self.scene.contacts]
+        directions = self.scene.directions_of_contact
+        for i, c in enumerate(self.scene.contacts):
+            if c.law is not None:
+                found[i] = SampledLaw(c, harmonics, outputs, directions, found[i].margins)
+        return found
+
+    def springs(self, stuck: bool) -> FloatArray:
+        """Stiffnesses of all contacts, (port,): all stuck, or all open."""
+        along = self.scene.directions_of_contact - 1
+        each = [(*[c.k_u if c.mu > 0.0 else 0.0] * along, c.k_v) for c in self.scene.contacts]
+        return np.array(each).ravel() * float(stuck)
+
+
+class _Workspace:
+    """A balance and its fronts, for one after the other of the systems whose contacts alone are others.
+
+    Those have the same key.
+    """
+
+    def __init__(self, system: System, key: tuple[object, ...] = ()) -> None:
+        self.system, self.balance, self.key = system, system.balance(), key
+
+    def taken_by(self, system: System) -> _Workspace:
+        """As if it were new."""
+        if self.system is not system:
+            self.system, self.balance.laws = system, system.laws()
+            system.afresh()
+        return self
+
+    @cached_property
+    def stepper(self) -> Stepper:
+        return Stepper(self.balance)
+
+    @cached_property
+    def raised(self) -> tuple[Level, Stepper]:
+        level = Level(self.balance)
+        return level, Stepper(level)
+
+
+class _Kept(threading.local):
+    """The workspaces that each thread used last, by what they are for."""
+
+    def __init__(self) -> None:
+        self.of: OrderedDict[tuple[object, ...], _Workspace] = OrderedDict()
+
+
+_KEPT = _Kept()
+
+
+def _workspace_of(system: System) -> _Workspace:
+    """For a system: if it is small, that of one before it, as in a sweep."""
+    scene, kept = system.scene, _KEPT.of
+    large = len(scene.contacts) * len(system.harmonics) > SMALL
+    if scene.ring is not None or scene.loads or system.own_laws or large:
+        return _Workspace(system)
+    approximate = system.table is not None, system.corrected
+    key = (*system.linear.numbers, scene.frequency_range, system.harmonics, *approximate)
+    if key not in kept:
+        kept[key] = _Workspace(system, key)
+        if len(kept) > MOST:
+            kept.popitem(last=False)
+    kept.move_to_end(key)
+    return kept[key]
+
+
+def _displacements(linear: Linear, seen: Receptance) -> Displacements:
+    """What is reported of the structure that a receptance is of."""
+    if not (isinstance(linear, RingLinear) and isinstance(seen, TravellingReceptance)):
+        return Displacements(seen, linear)
+    return TravellingDisplacements(seen, linear, [linear.wave(int(h)).dofs for h in seen.harmonics])

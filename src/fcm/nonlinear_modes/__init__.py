@@ -1,0 +1,1 @@
+"""Nonlinear modes: the extended periodic motion, backbones, response near a resonance."""

@@ -1,0 +1,236 @@
+"""Nonlinear modes: frequency and damping of a mode of a structure with its contacts, against amplitude."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.continuation import FollowOptions, Path
+from fcm.continuation.corrector import Newton
+from fcm.harmonic_balance.response_quantities import borne_along
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray
+from fcm.nonlinear_modes.extended_periodic_motion import Autonomous, ComplexArray, Guess
+from fcm.nonlinear_modes.restart import follow_past_corners
+from fcm.scene.rules import MOST_HARMONICS
+
+RIGID = 1e-12  # of the greatest square of a frequency: rigid-body modes are below
+HALVES = (0.5, 0.0, 1.0)  # shares of its springs that a contact has in the mean which just touches
+NEAR = 1.25  # modes this near, by the ratio of the frequencies, to what the motion may come to are unknowns
+
+SAMPLES = 12  # for each period of the highest harmonic, among which extremes are sought
+REFINED = 4  # Newton steps from the greatest sample to the extreme
+SMALL = 1e-6  # damping ratio: errors of a smaller one are relative to this
+
+
+class ModeError(ValueError):
+    """There is no such mode; the message says which there are."""
+
+
+@dataclass(frozen=True)
+class RoundingOptions:
+    """last_digits : units of the last digit of float64 that a sum of forces may be off."""
+
+    last_digits: float = 100.0
+
+
+@dataclass(frozen=True)
+class Mode:
+    """Points of a nonlinear mode: modal amplitude, frequency, damping ratio, and the modes' motion over a."""
+
+    system: System
+    problem: Autonomous
+    path: Path
+    amplitude: FloatArray  # (point,) a, the root of sum_i |a Q_i|^2 over the modes, of mass 1
+    omega: FloatArray  # (point,)
+    damping: FloatArray  # (point,)
+    mean: FloatArray  # (point, mode)
+    Q: ComplexArray  # (point, harmonic, mode)
+
+    @property
+    def contacts(self) -> FloatArray:
+        """Unknowns of the contacts as in `law`, and the frequency, (point, unknown + 1)."""
+        z = self.path.z[:, : self.problem.contact_unknowns] * self.amplitude[:, None]
+        return np.column_stack((z, self.omega))
+
+    def displacements(self) -> tuple[ComplexArray, FloatArray]:
+        """Amplitudes (point, harmonic, dof) and means (point, dof) of the degrees of freedom."""
+        shapes, a = self.system.linear.dofs, self.amplitude
+        return a[:, None, None] * (self.Q @ shapes), a[:, None] * (self.mean @ shapes)
+
+
+def nonlinear_mode(system: System, number: int, span: tuple[float, float], max_step: float) -> Mode:
+    """The mode with a number, from the linear one at the least amplitude of the span.
+
+    Modes are counted from 1, the lowest, as those of the structure with its contacts as they are at rest:
+    stuck where there is a preload, else open; without rigid-body modes.
+
+    Raises
+    ------
+    ModeError
+        If there are fewer modes.
+    """
+    guesses, followed = linear_modes(system, number), without_even(system)
+    low, high = (float(np.log(a)) for a in span)
+    for guess in guesses:
+        problem, new_problem = Autonomous(system, guess), partial(Autonomous, followed, guess)
+        path = follow_past_corners(
+            new_problem, new_problem().start(low), (low, high), FollowOptions(max_step)
+        )
+        if path.z.shape[0]:
+            break
+    if followed is not system:
+        fewer = new_problem()
+        z, direction = (
+            np.array([problem.carried(one, fewer) for one in points]).reshape(-1, problem.n + 1)
+            for points in (path.z, path.direction)
+        )
+        path = replace(path, z=z, direction=direction)
+    return mode_at(system, problem, path)
+
+
+def without_even(system: System) -> System:
+    """The system without harmonics that the mode has not: those of a motion whose halves are opposite.
+
+    Where no contact's load varies, opposite motions have opposite forces, and from the linear mode on all
+    even harmonics are 0. Other motions with the same friction branch off, where steps would come to nothing.
+    """
+    odd = tuple(h for h in system.harmonics if h % 2)
+    symmetric = all(contact.k_v == 0.0 for contact in system.scene.contacts)
+    return system.with_harmonics(odd) if symmetric and odd != system.harmonics else system
+
+
+def mode_at(system: System, problem: Autonomous, path: Path) -> Mode:
+    """The mode at the points of a path."""
+    found = [problem.motion(z) for z in path.z]
+    modes = system.linear.natural.size
+    omega, damping = (np.array([getattr(one, name) for one in found]) for name in ("omega", "damping"))
+    Q = np.array([one.Q for one in found], dtype=np.complex128).reshape(-1, len(system.harmonics), modes)
+    return Mode(
+        system,
+        problem,
+        path,
+        np.array([one.amplitude for one in found]),
+        omega,
+        np.where(np.abs(damping) <= damping_rounding(system, omega, Q), 0.0, damping),
+        np.array([one.mean for one in found]).reshape(-1, modes),
+        Q,
+    )
+
+
+def damping_rounding(
+    system: System, omega: FloatArray, Q: ComplexArray, options: RoundingOptions | None = None
+) -> FloatArray:
+    """Up to which damping ratio there is none, beside rounding, (point,).
+
+    The work of a cycle is what is left of forces of the stiffness, omega^2, and of the contacts' springs:
+    of their sum so many last digits, over 2 omega^2.
+    """
+    springs = system.springs(stuck=True)
+    stretched = (np.abs(Q @ system.linear.ports) ** 2 @ springs).sum(axis=1)
+    units = (options or RoundingOptions()).last_digits * np.finfo(np.float64).eps
+    found: FloatArray = units * (omega**2 + stretched) / (2.0 * omega**2)
+    return found
+
+
+def linear_modes(system: System, number: int) -> list[Guess]:
+    """The mode at very small amplitude; where a contact just touches, and may open, three guesses."""
+    linear, contacts = system.linear, system.scene.contacts
+    touching = any(contact.n_0 == 0.0 for contact in contacts)
+    d = system.layout.directions
+    shares = [np.repeat([_closed(c.n_0, half) for c in contacts], d) for half in HALVES[: 1 + 2 * touching]]
+    squares, _ = _squares(system, shares[0])
+    elastic = np.flatnonzero(squares > RIGID * squares.max(initial=0.0))
+    if not 1 <= number <= elastic.size:
+        raise ModeError(f"there is no mode {number}; the structure has the modes 1 to {elastic.size}")
+    i = elastic[number - 1]
+    low, high = (np.sqrt(max(_squares(system, share)[0][i], 0.0)) for share in (False, True))
+    kept = np.flatnonzero((linear.natural >= low / NEAR) & (linear.natural <= NEAR * high))
+    guesses = []
+    for share in shares:
+        squares, shapes = _squares(system, share)
+        omega, Q = float(np.sqrt(squares[i])), shapes[:, i]
+        damping = float((linear.damping * linear.natural) @ Q**2) / omega
+        guesses.append(Guess(Q, omega, damping, kept))
+    return guesses
+
+
+def _closed(n_0: float, half: float) -> float:
+    """The share of its springs that a contact has at rest."""
+    return half if n_0 == 0.0 else float(n_0 > 0.0)
+
+
+def _squares(system: System, share: FloatArray | bool) -> tuple[FloatArray, FloatArray]:
+    """Squares of the frequencies and shapes (mode, mode) with the springs of some contacts."""
+    linear = system.linear
+    stiffness = np.diag(linear.natural**2)
+    stiffness = stiffness + (linear.ports * (system.springs(stuck=True) * share)) @ linear.ports.T
+    squares, shapes = np.linalg.eigh(stiffness)
+    return squares, shapes
+
+
+def truncation(mode: Mode) -> tuple[FloatArray, FloatArray]:
+    """Error by the harmonics left out, (point,): the change of frequency or damping by twice as many; and
+    what the contacts bear with these, (point, contact, 4).
+
+    Relative, of the damping to the greatest of the mode; NaN where there is no such motion.
+    """
+    system, old = mode.system, mode.problem
+    highest = min(2 * system.harmonics[-1] + 1, MOST_HARMONICS)
+    larger = without_even(system.with_harmonics(tuple(range(1, highest + 1))))
+    finer = Autonomous(larger, old.guess)
+    newton = Newton(finer)
+    newton.row[-1] = 1.0
+    error = np.full(mode.omega.size, np.nan)
+    contacts = np.zeros((mode.omega.size, finer.contact_unknowns + 1))
+    for i, z in enumerate(mode.path.z):
+        start = finer.carried(z, old)
+        finer.measure(start)
+        newton.scale[:], newton.z[:] = finer.scale, start
+        if newton.correct(1.0):
+            omega, damping = np.asarray(newton.z)[-3:-1]
+            of_damping = abs(damping - mode.damping[i]) / max(mode.damping.max(), SMALL)
+            error[i] = max(abs(omega - mode.omega[i]) / mode.omega[i], of_damping)
+            contacts[i] = *(mode.amplitude[i] * np.asarray(newton.z)[: finer.contact_unknowns]), omega
+    borne = borne_along(larger, contacts)
+    borne[np.isnan(error)] = np.nan
+    return error, borne
+
+
+def half_peak_to_peak(X: ComplexArray, harmonics: tuple[int, ...]) -> FloatArray:
+    """Of x = Re sum X_h exp(i h theta), X (point, harmonic, dof): (point, dof)."""
+    if harmonics == (1,):
+        return np.abs(X[:, 0])
+    h = np.array(harmonics)
+    return 0.5 * (_greatest(X, h) + _greatest(-X, h))
+
+
+def _greatest(X: ComplexArray, h: npt.NDArray[np.intp]) -> FloatArray:
+    """The greatest displacement (point, dof): of all extremes next to samples that may be as high.
+
+    Between samples it rises by the curvature times the square of half their distance over 2, at most.
+    """
+    step = 2.0 * np.pi / (SAMPLES * h[-1])
+    waves = np.exp(1j * np.outer(h, step * np.arange(SAMPLES * h[-1])))
+    x = np.einsum("ht,phd->tpd", waves, X).real
+    between = np.einsum("h,phd->pd", 0.125 * (h * step) ** 2, np.abs(X))
+    beside = np.maximum(np.roll(x, 1, axis=0), np.roll(x, -1, axis=0))
+    k, p, d = np.nonzero((x >= beside) & (x + between >= x.max(axis=0)))
+    found: FloatArray = x.max(axis=0)
+    np.maximum.at(found, (p, d), _extreme(X[p, :, d], h, step * k, step))
+    return found
+
+
+def _extreme(X: ComplexArray, h: npt.NDArray[np.intp], start: FloatArray, step: float) -> FloatArray:
+    """The displacements (n,) of motions X (n, harmonic) at extremes next to angles, by Newton's method."""
+    theta = start
+    for _ in range(REFINED):
+        turns = X * np.exp(1j * h * theta[:, None])
+        slope, bend = (np.sum((1j * h) ** k * turns, axis=1).real for k in (1, 2))
+        theta = theta - slope / np.where(bend != 0.0, bend, 1.0)
+        theta = np.where(np.abs(theta - start) < step, theta, start)
+    found: FloatArray = np.sum(X * np.exp(1j * h * theta[:, None]), axis=1).real
+    return found

@@ -1,0 +1,224 @@
+r"""Periodic motion of the structure without forces, a nonlinear mode: the extended periodic motion concept.
+
+Friction takes energy, so that a free motion decays. Negative damping in proportion to the mass, which gives
+back in each cycle what the cycle takes, makes it periodic (Krack, "Nonlinear modal analysis of
+nonconservative systems: extension of the periodic motion concept"):
+
+    M x'' + (C - 2 D omega M) x' + K x + f(x) = 0
+
+omega is the mode's frequency and D its damping ratio at the amplitude of the motion: of a linear mode its
+own. With modes of mass 1 the receptance at the harmonic h has the denominators
+
+    e_i = w_i^2 - (h omega)^2 + 2 i h omega (zeta_i w_i - D omega)
+
+All amplitudes are divided by that of the mode, a: sum_i |Q_i|^2 = 1 for the fundamental's modal amplitudes
+a Q_i, so that a linear motion is the same at all a. The parameter is ln a. The modes whose frequency the
+motion may come to have no receptance there; their Q are unknowns beside the displacements of the contacts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import exp
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.continuation import Problem
+from fcm.harmonic_balance.contact_law import kind_of
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray
+from fcm.nonlinear_modes.scaled_contacts import ScaledContacts
+
+ComplexArray = npt.NDArray[np.complex128]
+
+OWN_FLOOR, OTHER_FLOOR = 0.1, 1e-3  # a unit is at least this much of its own, and of the greatest, maximum
+DAMPING = 0.1  # unit of the damping ratio
+DECADE = float(np.log(10.0))  # unit of the parameter
+FAR = 300.0  # ln a, beyond which nothing is calculated
+LITTLE = 0.05  # added to the damping ratio where its change is judged: that of nearly nothing is rounding
+
+
+@dataclass(frozen=True)
+class Guess:
+    """Where a mode is sought: modal amplitudes (mode,), frequency, damping, modes that it may come near."""
+
+    Q: FloatArray
+    omega: float
+    damping: float
+    kept: npt.NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Of a point: a, omega, D, and modal amplitudes over a: mean (mode,), harmonics (harmonic, mode)."""
+
+    amplitude: float
+    omega: float
+    damping: float
+    mean: FloatArray
+    Q: ComplexArray
+
+
+class Autonomous(Problem):
+    """The unknowns: those of the contacts as in `law`, over a; Re and Im of the kept Q; omega; D."""
+
+    def __init__(self, system: System, guess: Guess) -> None:
+        self.contacts, self.linear, self.guess = ScaledContacts(system), system.linear, guess
+        self.h = np.array(system.harmonics, dtype=np.float64)
+        self.driven = system.harmonics.index(1)
+        self.mean_rows, self.rows = self.contacts.mean_rows, self.contacts.rows
+        self.ports = self.mean_rows.size
+        self.contact_unknowns, self.kept = self.contacts.unknowns, guess.kept.size
+        count = self.contact_unknowns + 2 * self.kept + 2
+        super().__init__(count, sum(law.margins for law in self.contacts.laws), 2)
+        self.n, self.rooted = count, any(law.directions > 2 for law in self.contacts.laws)
+        self.static = self.linear.ports.T @ self.linear.flexibility @ self.linear.ports
+        self.largest = np.zeros(self.ports)
+        self.views = {name: np.asarray(getattr(self, name)) for name in ("residual", "jacobian", "scale")}
+
+    def start(self, log_amplitude: float) -> FloatArray:
+        """The guess as unknowns and parameter."""
+        z = np.zeros(self.n + 1)
+        z[self.rows[self.driven]] = self.linear.ports.T @ self.guess.Q
+        z[self.contact_unknowns : self.n - 2 : 2] = self.guess.Q[self.guess.kept]
+        z[self.n - 2 :] = self.guess.omega, self.guess.damping, log_amplitude
+        return z
+
+    def carried(self, z: FloatArray, other: Autonomous) -> FloatArray:
+        """A point of the same mode with other harmonics, or a direction there: what both have, else 0."""
+        found = np.zeros(self.n + 1)
+        found[self.contact_unknowns :] = z[other.contact_unknowns :]
+        found[self.mean_rows] = z[other.mean_rows]
+        _, mine, others = np.intersect1d(self.h, other.h, return_indices=True)
+        rows, from_rows = self.rows[mine], other.rows[others]
+        found[rows], found[rows + 1] = z[from_rows], z[from_rows + 1]
+        return found
+
+    def modal_amplitude(self, z: FloatArray) -> float:
+        """a; where a step leads astray, what can still be calculated with."""
+        return exp(min(max(z[self.n], -FAR), FAR))
+
+    def evaluate(self, z: Any) -> int:
+        z = np.asarray(z)
+        m, n = self.contact_unknowns, self.n
+        J, residual = self.views["jacobian"], self.views["residual"]
+        J[:], residual[:] = 0.0, 0.0
+        self.contacts.evaluate(z[:m], self.modal_amplitude(z))
+        force, tangent = self.contacts.force, self.contacts.tangent
+        grows = tangent @ z[:m] - force  # by ln a
+        J[self.mean_rows, :m] = self.static @ tangent[self.mean_rows]
+        J[self.mean_rows, n] = self.static @ grows[self.mean_rows]
+        residual[self.mean_rows] = self.static @ force[self.mean_rows]
+        for j, h in enumerate(self.h):
+            self.harmonic(j, h, z, grows)
+        residual[:m] += z[:m]
+        J[range(m), range(m)] += 1.0
+        return 0
+
+    def denominators(self, h: float, z: FloatArray) -> tuple[ComplexArray, ComplexArray, complex]:
+        """e (mode,), and its derivatives by omega (mode,) and D."""
+        omega, D, natural = z[self.n - 2], z[self.n - 1], self.linear.natural
+        rate = 2.0 * self.linear.damping * natural
+        e = (natural - h * omega) * (natural + h * omega) + 1j * h * omega * (rate - 2.0 * D * omega)
+        by_omega = -2.0 * h * h * omega + 1j * h * (rate - 4.0 * D * omega)
+        return e, by_omega, -2j * h * omega * omega
+
+    def harmonic(self, j: int, h: float, z: FloatArray, grows: FloatArray) -> None:
+        """Rows of one harmonic: X + G F, without the modes kept, which have rows of their own."""
+        m, n, P, rows = self.contact_unknowns, self.n, self.linear.ports, self.rows[j]
+        e, by_omega, by_damping = self.denominators(h, z)
+        push, d_push = P @ _complex(self.contacts.force, rows), P @ _complex(self.contacts.tangent, rows)
+        derivative = np.zeros((e.size, n + 1), dtype=np.complex128)
+        kept = self.guess.kept if j == self.driven else self.guess.kept[:0]
+        c = 1.0 / np.where(np.isin(np.arange(e.size), kept), 1.0, e)
+        Q = -c * push
+        derivative[:, :m] = -c[:, None] * d_push
+        derivative[:, n] = -c * (P @ _complex(grows, rows))
+        derivative[:, n - 2], derivative[:, n - 1] = -c * by_omega * Q, -c * by_damping * Q
+        if j == self.driven:
+            self.own_rows(z, Q, derivative, (e, by_omega, by_damping))
+        self.add(rows, -P.T @ Q, -P.T @ derivative)
+
+    def own_rows(
+        self,
+        z: FloatArray,
+        Q: ComplexArray,
+        derivative: ComplexArray,
+        denominators: tuple[ComplexArray, ComplexArray, complex],
+    ) -> None:
+        """Rows of the kept modes, whose Q and derivative are set, and of amplitude and phase."""
+        m, n, kept = self.contact_unknowns, self.n, self.guess.kept
+        J, residual = self.views["jacobian"], self.views["residual"]
+        unit = self.guess.omega**2
+        e, by_omega, by_damping = (np.broadcast_to(one, Q.shape)[kept] for one in denominators)
+        at = m + 2 * np.arange(self.kept)
+        push, d_push = -Q[kept], -derivative[kept]  # with c = 1
+        own = z[at] + 1j * z[at + 1]
+        d_push[:, n - 2], d_push[:, n - 1] = by_omega * own, by_damping * own
+        d_push[range(self.kept), at], d_push[range(self.kept), at + 1] = e, 1j * e
+        self.add(at, (e * own + push) / unit, d_push / unit)
+        Q[kept], derivative[kept] = own, 0.0
+        derivative[kept, at], derivative[kept, at + 1] = 1.0, 1j
+        residual[n - 2] = 0.5 * self.guess.omega * (np.sum(np.abs(Q) ** 2) - 1.0)
+        J[n - 2] = self.guess.omega * (Q.conj() @ derivative).real
+        residual[n - 1] = DAMPING * (self.guess.Q @ Q).imag
+        J[n - 1] = DAMPING * (self.guess.Q @ derivative).imag
+
+    def add(self, rows: npt.NDArray[np.intp], value: ComplexArray, derivative: ComplexArray) -> None:
+        """Complex equations as their real and imaginary parts."""
+        J, residual = self.views["jacobian"], self.views["residual"]
+        residual[rows], residual[rows + 1] = value.real, value.imag
+        J[rows], J[rows + 1] = derivative.real, derivative.imag
+
+    def measure(self, z: Any) -> int:
+        """Displacements by their present size, tangential and normal of each contact."""
+        z, scale = np.asarray(z), self.views["scale"]
+        size = np.sqrt(z[self.mean_rows] ** 2 + (z[self.rows] ** 2 + z[self.rows + 1] ** 2).sum(axis=0))
+        self.largest = np.maximum(self.largest, size)
+        floor = np.maximum(OWN_FLOOR * self.largest, OTHER_FLOOR * self.largest.max(initial=0.0))
+        unit = np.maximum(size, floor)
+        unit = np.where(unit > 0.0, unit, 1.0) * np.sqrt(max(self.ports, 1))
+        scale[:] = 1.0
+        scale[self.mean_rows] = scale[self.rows] = scale[self.rows + 1] = unit
+        scale[self.n - 2 :] = self.guess.omega, DAMPING, DECADE
+        return 0
+
+    def bound(self, z: Any) -> int:
+        """The margins of the contacts, one after the other."""
+        z = np.asarray(z)
+        x, at = self.modal_amplitude(z) * z[: self.contact_unknowns], 0
+        for c, law in enumerate(self.contacts.laws):
+            law.bound(x, c * self.contacts.width)
+            for i in range(law.margins):
+                self.margin[at], self.angle[at] = law.margin[i], law.angle[i]
+                self.kind[at] = kind_of(law, i, c)
+                at += 1
+        return 0
+
+    def report(self, z: Any, direction: Any) -> int:
+        """Damping and frequency."""
+        omega = self.guess.omega
+        self.output[0], self.growth[0] = LITTLE + abs(z[self.n - 1]), direction[self.n - 1]
+        self.output[1], self.growth[1] = z[self.n - 2] / omega, direction[self.n - 2] / omega
+        return 0
+
+    def motion(self, z: FloatArray) -> Motion:
+        """The modes' motion at a point."""
+        self.contacts.evaluate(z[: self.contact_unknowns], self.modal_amplitude(z))
+        P, force = self.linear.ports, self.contacts.force
+        Q = np.array([-(P @ _complex(force, rows)) for rows in self.rows])
+        for j, h in enumerate(self.h):
+            e = self.denominators(h, z)[0]
+            e[self.guess.kept] = 1.0 if j == self.driven else e[self.guess.kept]
+            Q[j] /= e
+        own = z[self.contact_unknowns : self.n - 2].reshape(-1, 2)
+        Q[self.driven, self.guess.kept] = own[:, 0] + 1j * own[:, 1]
+        mean = -self.linear.flexibility @ (P @ force[self.mean_rows])
+        return Motion(self.modal_amplitude(z), float(z[self.n - 2]), float(z[self.n - 1]), mean, Q)
+
+
+def _complex(values: FloatArray, rows: npt.NDArray[np.intp]) -> ComplexArray:
+    found: ComplexArray = values[rows] + 1j * values[rows + 1]
+    return found

@@ -1,0 +1,87 @@
+r"""Response near a resonance from a nonlinear mode (single nonlinear mode theory).
+
+Near a resonance the motion is that of the mode, with the frequency omega and damping ratio D that it has at
+its amplitude a. Forces at the frequency W that do the modal force p = |sum_i conj(Q_i) F_i| on it give
+
+    |omega^2 - W^2 + 2 i D omega W| a = p
+
+exact for a linear structure with one mode, and good where no other mode is near.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import brentq
+
+from fcm.continuation import Path, Segment
+from fcm.model.scene import FloatArray
+from fcm.nonlinear_modes.backbone import Mode, mode_at
+
+NEARLY = 1e-9  # of a step along the mode, to which a resonance is found
+
+
+def modal_force(mode: Mode) -> FloatArray:
+    """What the scene's forces do on the mode, p at level 1, (point,); with the mode's own omega."""
+    first, dofs = mode.system.harmonics.index(1), mode.system.linear.dofs
+    total = np.zeros(mode.omega.size, dtype=np.complex128)
+    for force in mode.system.scene.forces:
+        on_mode = mode.Q[:, first].conj() @ (dofs @ force.direction)
+        total += on_mode * force.amplitude * mode.omega**force.power * np.exp(1j * force.phase)
+    return np.abs(total)
+
+
+def resonant_level(mode: Mode) -> FloatArray:
+    """Level of the scene's forces at which the resonance, greatest in a, has the amplitude of the point.
+
+    (point,) 2 D omega^2 sqrt(1 - D^2) a / p; infinite where the forces do nothing on the mode.
+    """
+    D = np.clip(mode.damping, 0.0, 1.0)
+    need = 2.0 * D * mode.omega**2 * np.sqrt(1.0 - D * D) * mode.amplitude
+    force = modal_force(mode)
+    return np.where(force > 0.0, need / np.where(force > 0.0, force, 1.0), np.inf)
+
+
+def flanks(mode: Mode, level: float = 1.0) -> FloatArray:
+    """Frequencies W (point, 2) below and above resonance at which forces of a level give the amplitude.
+
+    NaN where they give it at none.
+    """
+    square, D = mode.omega**2, mode.damping
+    middle = square * (1.0 - 2.0 * D * D)
+    under = (level * modal_force(mode) / mode.amplitude) ** 2 - (2.0 * D * square) ** 2 * (1.0 - D * D)
+    half = np.sqrt(np.where(under >= 0.0, under, np.nan))
+    both = np.stack((middle - half, middle + half), axis=1)
+    found: FloatArray = np.sqrt(np.where(both > 0.0, both, np.nan))
+    return found
+
+
+def resonances(mode: Mode, level: float = 1.0) -> Mode | None:
+    """The points of the mode at which it is in resonance with forces of a level; None if there are none."""
+    above = resonant_level(mode) > level
+    found = [_between(mode, int(i), level) for i in np.flatnonzero(above[1:] != above[:-1])]
+    z = [one for one in found if one is not None]
+    return _points(mode, np.array(z)) if z else None
+
+
+def _between(mode: Mode, i: int, level: float) -> FloatArray | None:
+    """The resonance between a point and the next."""
+    curve = Segment(mode.problem, mode.path, i)
+
+    def off(part: float) -> float:
+        if not 0.0 < part < 1.0:
+            return float(resonant_level(mode)[i + round(part)] - level)
+        if not curve.put(part):
+            raise ArithmeticError
+        return float(resonant_level(_points(mode, curve.z[None]))[0] - level)
+
+    try:
+        curve.put(float(brentq(off, 0.0, 1.0, xtol=NEARLY)))
+    except ArithmeticError:  # no such point of the curve
+        return None
+    return curve.z
+
+
+def _points(mode: Mode, z: FloatArray) -> Mode:
+    none = np.zeros(len(z))
+    path = Path(z, np.zeros_like(z), none.astype(np.int64), none, none, mode.path.status, 0)
+    return mode_at(mode.system, mode.problem, path)

@@ -1,0 +1,49 @@
+"""The contacts of a free motion, whose displacements and forces are divided by the amplitude of its mode."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray
+
+
+class ScaledContacts:
+    """Unknowns laid out as in `fcm.structure.layout`; mean_rows (port,) and rows (harmonic, port) say
+    which they are of each displacement, the latter that of its Re, before that of its Im."""
+
+    def __init__(self, system: System) -> None:
+        self.laws, self._contacts, self._counted = system.laws(), system.scene.contacts, system.linear.counted
+        layout = system.layout
+        self.width, self.unknowns, self.directions = layout.width, layout.unknowns, layout.directions
+        self.mean_rows, self.rows = layout.mean_at, layout.waves_at
+        self._springs = np.zeros(self.unknowns)  # of each unknown's displacement, where all stick
+        self._springs[self.mean_rows] = system.springs(stuck=True)
+        self._springs[self.rows] = self._springs[self.rows + 1] = system.springs(stuck=True)
+        self.force = np.zeros(self.unknowns)
+        self.tangent = np.zeros((self.unknowns, self.unknowns))
+
+    def evaluate(self, x: FloatArray, a: float) -> None:
+        """Forces over a and their tangents at displacements a x, without those counted to the structure."""
+        w, normal = self.width, self.directions - 1
+        for c, law in enumerate(self.laws):
+            here = slice(c * w, (c + 1) * w)
+            if self._held(c, a * x[here]):
+                self.force[here] = self._springs[here] * x[here]
+                self.tangent[here, here] = np.diag(self._springs[here])
+            else:
+                law.evaluate(a * x, c * w)
+                self.force[here] = np.asarray(law.force) / a
+                self.tangent[here, here] = law.tangent
+            at = c * w + normal
+            self.force[at] -= self._counted[c] * x[at]
+            self.tangent[at, at] -= self._counted[c]
+
+    def _held(self, c: int, x: FloatArray) -> bool:
+        """Whether a contact surely neither slips nor opens: then two springs, without rounding by n_0."""
+        contact, d = self._contacts[c], self.directions
+        size = np.hypot(x[d::2], x[d + 1 :: 2]).reshape(-1, d)
+        *along, v = (np.abs(x[:d]) + size.sum(axis=0)).tolist()
+        u = float(np.linalg.norm(along))
+        least = contact.n_0 - contact.k_v * v
+        return bool(least > 0.0 and (contact.mu == 0.0 or contact.k_u * u < contact.mu * least))

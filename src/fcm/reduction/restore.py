@@ -1,0 +1,136 @@
+"""What was left out of a calculation put back into its results, and its effect on them measured."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.continuation.corrector import Newton
+from fcm.harmonic_balance.planar_quantities import in_plane
+from fcm.harmonic_balance.response_quantities import amplitudes_at, cycles, loops
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray, Scene
+from fcm.reduction.negligible_parts import Lighter
+from fcm.results.contact_maxima import greatest_of
+from fcm.results.result import Curve, Response
+from fcm.structure.layout import Layout
+
+IntArray = npt.NDArray[np.intp]
+MOST_CHECKED = 200  # points at which the response is compared with that of all modes
+EACH_CHECKED = 8  # points of one curve, besides its peaks
+
+
+def restored(response: Response, lighter: Lighter) -> Response:
+    """The response with all contacts in it."""
+    full = lighter.full
+    if len(lighter.contacts) < len(full[0].contacts):
+        response.contacts = tuple(c.name for c in full[0].contacts)
+        for curve, scene in zip(response.curves, full, strict=True):
+            _put_back(curve, scene, list(lighter.contacts))
+    return response
+
+
+def checked(response: Response, lighter: Lighter) -> float:
+    """Shift of the response, relative, when points of the curves are corrected with all modes."""
+    per_curve = max(min(EACH_CHECKED, MOST_CHECKED // len(response.curves)), 1)
+    shifts = []
+    for number in _spread(len(response.curves), MOST_CHECKED):
+        curve, scene = response.curves[number], lighter.exact[number]
+        at = _sample(curve, per_curve)
+        if at.size and scene.contacts:
+            shifts.append(_shift(curve, scene, at))
+    return max(shifts, default=0.0)
+
+
+def _put_back(curve: Curve, scene: Scene, traced: list[int]) -> None:
+    """Give a curve the loops and states of the contacts that were not traced, which carry nothing."""
+    if curve.points == 0:
+        traced = []
+        curve.loop, curve.regime, curve.cycle = curve.loop[:, :0], curve.regime[:, :0], curve.cycle[:, :0]
+        curve.cycle_error = curve.cycle_error[:, :0]
+    at = np.flatnonzero(np.isfinite(curve.frequency))
+    loop = np.full((curve.frequency.size, len(scene.contacts), curve.loop.shape[-1]), np.nan)
+    regime = np.full(loop.shape[:2], "", dtype=np.result_type("<U6", curve.regime))
+    system = System(scene)
+    z = unknowns(curve, scene, at, system.harmonics)
+    cycle = np.full((*regime.shape, curve.cycle.shape[-1]), np.nan)
+    loop[at] = loops(system, z)
+    if scene.planar:
+        plane = in_plane(
+            System(scene, curve.harmonics or (1,)), unknowns(curve, scene, at, curve.harmonics or (1,))
+        )
+        rows = np.full(curve.frequency.size, -1)
+        rows[at] = np.arange(at.size)
+        curve.in_plane = None if plane is None else plane.at(rows)
+    regime[at], cycle[at] = cycles(system, z, loop[at])
+    loop[:, traced], regime[:, traced], cycle[:, traced] = curve.loop, curve.regime, curve.cycle
+    error, of_greatest = np.full(cycle.shape, np.nan), np.full(cycle.shape[1:], np.nan)
+    error[:, traced] = curve.cycle_error
+    if curve.greatest is not None and traced:
+        of_greatest[traced] = curve.greatest.error
+    curve.loop, curve.regime, curve.cycle, curve.cycle_error = loop, regime, cycle, error
+    curve.greatest = greatest_of(curve, of_greatest)
+
+
+def _amplitudes(curve: Curve, at: IntArray) -> npt.NDArray[np.complex128]:
+    """(point, harmonic, dof) of x = mean + Re sum X exp(i h theta)."""
+    if curve.harmonic is not None:
+        return curve.harmonic[at] / 1j
+    X: npt.NDArray[np.complex128] = curve.fundamental[at] * np.exp(1j * curve.phase[at]) / 1j
+    return X[:, None, :]
+
+
+def unknowns(curve: Curve, scene: Scene, at: IntArray, harmonics: tuple[int, ...]) -> FloatArray:
+    """z (point, unknown + 1) of all contacts at points of a curve, from its displacements."""
+    places = [curve.harmonics.index(h) for h in harmonics] if curve.harmonics else slice(len(harmonics))
+    X = _amplitudes(curve, at)[:, places]
+    layout = Layout(len(scene.contacts), scene.directions_of_contact, len(harmonics))
+    x = np.empty((at.size, layout.unknowns))
+    for port, direction in enumerate(scene.directions_of_contacts()):
+        amplitude, rows = X @ direction, layout.waves_at[:, port]
+        x[:, layout.mean_at[port]] = curve.mean[at] @ direction
+        x[:, rows], x[:, rows + 1] = amplitude.real, amplitude.imag
+    return np.column_stack((x, curve.frequency[at]))
+
+
+def _sample(curve: Curve, count: int) -> IntArray:
+    """Points of a curve: those of the greatest amplitudes, and others spread evenly."""
+    there = np.flatnonzero(np.isfinite(curve.frequency))
+    if there.size == 0:
+        return there
+    highest = there[curve.amplitude[there].argmax(axis=0)]
+    highest = highest[_spread(highest.size, count)]
+    return np.union1d(highest, there[_spread(there.size, count)]).astype(np.intp)
+
+
+def _spread(count: int, most: int) -> IntArray:
+    return np.unique(np.linspace(0, count - 1, min(count, most)).astype(np.intp))
+
+
+def _shift(curve: Curve, scene: Scene, at: IntArray) -> float:
+    """Greatest relative shift of points by a correction with all modes, along the normal of the curve."""
+    system = System(scene, curve.harmonics)
+    newton = Newton(system.balance())
+    low, high = scene.frequency_range
+    worst = 0.0
+    for z, before in zip(unknowns(curve, scene, at, curve.harmonics), _amplitudes(curve, at), strict=True):
+        moved = _corrected(newton, z)
+        if moved is None:
+            return np.inf
+        X = amplitudes_at(system, moved[None])[0][0]
+        change = np.abs(X - before).max() / np.abs(X).max()
+        # what the correction moved along the frequency counts as well, relative to the range
+        worst = max(worst, float(change + abs(moved[-1] - z[-1]) / (high - low)))
+    return worst
+
+
+def _corrected(newton: Newton, z: FloatArray) -> FloatArray | None:
+    """The point of the curve in the plane through z normal to it."""
+    newton.problem.measure(z)
+    newton.scale[:] = newton.problem.scale
+    newton.z[:] = z
+    newton.row[:] = np.eye(z.size)[-1]
+    if newton.poll():
+        newton.row[:] = newton.tangent
+    newton.z[:] = z
+    return np.array(newton.z) if newton.correct(1.0) else None

@@ -1,0 +1,156 @@
+"""Stable motions at the frequencies that are visited, to which neither of the sweeps comes.
+
+A sweep is on one motion at a time, so of several stable ones at a frequency two are met at most, and at a
+single frequency one. All solutions of the balance lead to others: those reached from rest by the
+level of the forces, and those of its branches over the range of the scene, if it has one. So do the motions
+in which contacts stick as the scene starts, and the one from rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fcm.model.scene import FloatArray, Scene
+from fcm.run import Report
+from fcm.shooting.harmonic_balance_branches import states_across
+from fcm.shooting.harmonic_balance_state import balance_solutions
+from fcm.shooting.initial_orbits import first_point
+from fcm.shooting.linear_orbits import started_states
+from fcm.shooting.orbit_record import Sample, sampled, settled
+from fcm.shooting.periodic import Orbit, Poll, shoot, unloaded
+from fcm.shooting.problem import OrbitProblem
+from fcm.shooting.steady_state import NEAR, Steady, steady
+from fcm.shooting.trace import shown
+from fcm.shooting.work_budget import Doubts
+from fcm.time_domain.errors import SimulationError
+from fcm.time_domain.state import State
+from fcm.time_domain.system import System
+
+SAME = 1e-5  # difference of two periodic motions, relative to them, below which they are one
+
+
+@dataclass(frozen=True)
+class Unreached:
+    """What was found at one frequency."""
+
+    frequency: float  # [rad/s]
+    samples: tuple[Sample, ...]
+    whole: bool = True  # whether the level of the forces was followed to its end there
+
+
+def unreached(
+    scene: Scene,
+    frequencies: Sequence[float],
+    visited: Sequence[Sample],
+    report: Report,
+    poll: Poll,
+    doubts: Doubts,
+) -> Iterator[Sample]:
+    """The stable motions at each of some frequencies [rad/s] that are none of those visited; each saved.
+
+    doubts take the frequencies at which there may be more.
+
+    poll is called now and then.
+    """
+    saved = {one.frequency: one for one in report.saved if isinstance(one, Unreached)}
+    problem = OrbitProblem(replace(scene, frequency_range=(0.0, frequencies[-1])))
+    left = [omega for omega in frequencies if omega not in saved]
+    across = states_across(scene, left, poll)
+    for omega in frequencies:
+        found = saved.get(omega)
+        if found is None:
+            poll()
+            report(1.0, f"other motions, {shown(scene, omega)}")
+            here = [one for one in visited if one.frequency == omega]
+            known, whole = balance_solutions(scene, omega, poll)
+            guesses = [*known, *across.get(omega, ()), *started_states(scene, omega)]
+            found = Unreached(omega, tuple(_beside(problem, omega, guesses, here, poll)), whole)
+            report.save(found)
+        doubts.levels += [] if found.whole else [omega]
+        yield from found.samples
+
+
+def _beside(
+    problem: OrbitProblem, omega: float, guesses: Sequence[State], known: list[Sample], poll: Poll
+) -> list[Sample]:
+    """Those at one frequency that are not known.
+
+    Where no periodic motion is near a guess, or one that is left by turns, the motion is simulated from
+    there, and from rest: unless one that repeats after several periods, or not at all, is known, as that may
+    lead to it, or a mode has no damping, so that what it begins with may stay.
+    """
+    found, damped = list[Sample](), bool((problem.scene.modal.damping > 0.0).all())
+    for guess in (*guesses, None):
+        there = [*known, *found]
+        simulate = damped and all(one.repeats == 1 for one in there)
+        try:
+            one = _orbit_from(problem, omega, guess, simulate, there, poll)
+        except SimulationError:  # it cannot be computed, or is not determined
+            continue
+        if one is not None and not any(_same(one, other) for other in there):
+            found.append(one)
+    return found
+
+
+def _orbit_from(
+    problem: OrbitProblem,
+    omega: float,
+    guess: State | None,
+    simulate: bool,
+    known: Sequence[Sample],
+    poll: Poll,
+) -> Sample | None:
+    """The stable motion that a guess, or rest, leads to, if it does and that is not known."""
+    if guess is None:
+        return _simulated(problem, omega, unloaded(problem.scene), known, poll) if simulate else None
+    orbit = shoot(System(problem.scene, omega), guess, poll)
+    if simulate and (orbit is None or (not orbit.stable and _left_by_turns(orbit))):
+        return _simulated(problem, omega, guess, known, poll)
+    return _stable(problem, orbit, known, poll)
+
+
+def _stable(problem: OrbitProblem, orbit: Orbit | None, known: Sequence[Sample], poll: Poll) -> Sample | None:
+    """The point of a motion that is stable and not known."""
+    if orbit is None or not orbit.stable or any(_as_large(orbit, one, SAME) for one in known):
+        return None
+    z = first_point(problem, orbit, poll)
+    sample = sampled(problem, z, np.zeros(z.size))
+    return sample if sample.stable else None
+
+
+def _left_by_turns(orbit: Orbit) -> bool:
+    """Whether disturbances grow from side to side, or around; beside others two motions lie, each near."""
+    greatest = complex(orbit.multipliers[0])
+    return greatest.real < 0.0 or greatest.imag != 0.0
+
+
+def _simulated(
+    problem: OrbitProblem, omega: float, guess: State, known: Sequence[Sample], poll: Poll
+) -> Sample | None:
+    """The steady motion that one from a guess comes to; if it repeats after each period, one not known."""
+    system = System(problem.scene, omega)
+    found = steady(system, guess, poll)
+    if not isinstance(found, Steady):
+        return None
+    if found.periods != 1:
+        return settled(omega, found)
+    return _stable(problem, shoot(system, found.state, poll), known, poll)
+
+
+def _same(one: Sample, other: Sample) -> bool:
+    """Whether two motions are one; of those that do not repeat, whether they are as large."""
+    return _as_large(one, other, NEAR if 0 in (one.repeats, other.repeats) else SAME)
+
+
+def _as_large(one: Sample | Orbit, other: Sample, near: float) -> bool:
+    """Whether the greatest and least displacements of two motions are the same."""
+    apart = np.abs(_reach(one) - _reach(other)).max(initial=0.0)
+    return bool(apart <= near * np.abs(_reach(one)).max(initial=0.0))
+
+
+def _reach(one: Sample | Orbit) -> FloatArray:
+    """The greatest and least displacements of a motion: (2, dof)."""
+    return np.stack((one.measure.greatest, one.measure.least))

@@ -1,0 +1,83 @@
+"""The search for other motions beside the points of exact curves; what it has found is kept."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.model.scene import FloatArray
+from fcm.response.resumable_branches import TimeOver
+from fcm.results.orbits import Stuck
+from fcm.run import Report
+from fcm.shooting.periodic import Poll, without_end
+
+
+@dataclass(frozen=True)
+class Extents:
+    """What is found at one frequency: of its points the extent over residual friction; and what is beside."""
+
+    frequency: float
+    amplitude: FloatArray  # (point, dof)
+    least: FloatArray  # (point, dof) nan where the amplitude is unique
+    greatest: FloatArray  # (point, dof)
+    whole: FloatArray  # (point,) 1 if it is that of all residual friction, 0 if not, nan where there is none
+    beside: list[Stuck]  # motions that no extent holds
+
+    @classmethod
+    def unknown(cls, frequency: float, amplitude: FloatArray) -> Extents:
+        """To be filled in."""
+        least, greatest = np.full_like(amplitude, np.nan), np.full_like(amplitude, np.nan)
+        return cls(frequency, amplitude, least, greatest, np.full(len(amplitude), np.nan), [])
+
+
+FOUND = (Extents, Stuck)  # what is saved consists of these
+
+
+class Search:
+    """A search that is ended when it is to look no further; what it has found until then stays known.
+
+    A run that is resumed knows what was found before it was interrupted.
+
+    poll : raises `TimeOver` where no more is to be found out.
+    """
+
+    def __init__(self, poll: Poll, report: Report) -> None:
+        self._poll, self._report, self.over = poll, report, False
+        self._known = {_key(one): one for one in report.saved if isinstance(one, Extents)}
+
+    @classmethod
+    def none(cls) -> Search:
+        """One in which nothing is looked for."""
+        search = cls(without_end, Report(lambda _fraction, _text: None))
+        search.end()
+        return search
+
+    def poll(self) -> None:
+        """To be called now and then: raises `TimeOver` if the search is over."""
+        if not self.over:
+            self._report(1.0, "looking for other motions")
+            try:
+                self._poll()
+            except TimeOver:
+                self.over = True
+        if self.over:
+            raise TimeOver
+
+    def end(self) -> None:
+        """Look for nothing more."""
+        self.over = True
+
+    def known(self, frequency: float, amplitude: FloatArray) -> Extents | None:
+        """What was found at the points of a frequency."""
+        return self._known.get((frequency, amplitude.tobytes()))
+
+    def keep(self, found: Extents) -> None:
+        """Know, and save, what was found, unless the search was ended while it was."""
+        if not self.over:
+            self._known[_key(found)] = found
+            self._report.save(found)
+
+
+def _key(found: Extents) -> tuple[float, bytes]:
+    return found.frequency, found.amplitude.tobytes()

@@ -1,0 +1,50 @@
+"""Motions beside those of a curve: contacts stick all through them, and no branch that was found has them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.model.scene import FloatArray, Scene
+from fcm.response.friction_extent import NotUnique
+from fcm.results.orbits import Stuck
+from fcm.shooting.linear_orbits import linear_motions
+
+SAME = 1e-3  # relative difference of amplitudes up to which a motion is within an extent
+
+
+def stuck_beside(
+    scene: Scene,
+    rows: Iterable[int],
+    frequency: FloatArray,
+    regime: npt.NDArray[np.str_],
+    others: NotUnique,
+) -> list[Stuck]:
+    """Those at the frequencies of some points that are not of a point there, nor in the extent of a family.
+
+    frequency, regime : of all points, (point,) and (point, contact).
+    others : of which families are known there.
+    """
+    found = []
+    for omega in np.unique([frequency[k] for k in rows]).tolist():
+        here = frequency == omega
+        across = (frequency[:-1] - omega) * (frequency[1:] - omega) < 0.0
+        near = here | np.append(across, False) | np.append(False, across)
+        known = {tuple(states) for states in regime[near].tolist()}
+        beside = [one for one in others.beside if one.frequency == omega]
+        least = np.array([*others.least[here], *(one.least for one in beside)])
+        greatest = np.array([*others.greatest[here], *(one.greatest for one in beside)])
+        for one in linear_motions(scene, omega):
+            amplitude = np.abs(scene.modal.shapes.T @ one.wave)
+            if one.states not in known and not _within(amplitude, least, greatest):
+                found.append(Stuck(omega, one.states, 0.0 - one.residual, amplitude, amplitude))
+    return found
+
+
+def _within(amplitude: FloatArray, least: FloatArray, greatest: FloatArray) -> bool:
+    """Whether amplitudes lie in one of some extents."""
+    room = SAME * greatest
+    inside = (amplitude >= least - room) & (amplitude <= greatest + room)
+    return bool(inside.all(axis=1).any())

@@ -1,0 +1,246 @@
+"""How each curve of exact periodic solutions is made: followed in its range, or visited at frequencies."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import partial
+
+from fcm.harmonic_balance.stiff_contacts import too_stiff
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray, Held, Scene
+from fcm.reduction.constant_state_contacts import NotKeptError, check, expected_constant
+from fcm.response.coexisting_orbits import unreached
+from fcm.response.coexisting_search import Search
+from fcm.response.groups import Group, lost_curve
+from fcm.response.only_peaks import Alone, peaks_alone, peaks_curve, peaks_of
+from fcm.response.orbit_branches import OrbitBranches
+from fcm.response.orbit_curve import orbit_curve, visited_curve
+from fcm.response.reinstated_contacts import Released
+from fcm.response.resumable_branches import Clock, Legs, TimeOver
+from fcm.response.stepped_sweep import Visitor
+from fcm.results.cause import Cause
+from fcm.results.result import INTERRUPTED, Curve
+from fcm.run import Interrupted, Report
+from fcm.scene.errors import counted
+from fcm.shooting.orbit_record import Sample
+from fcm.shooting.period_doubling import Doubled, doubled_paths
+from fcm.shooting.problem import OrbitProblem
+from fcm.shooting.trace import explore, incomplete, reached, shown
+from fcm.shooting.work_budget import Doubts
+from fcm.time_domain.errors import SimulationError
+
+FEWEST = 2  # contacts of a scene of which some may be foreseen to keep their state
+ENOUGH = 10.0  # [s] of processor time for a curve that a stiff contact may keep from ever being finished
+BESIDE = 0.5  # of the time for a curve, that the search for what leads to further branches may take
+AT_END = f"{INTERRUPTED} at its end, while other motions beside its points were sought"
+
+
+@dataclass(frozen=True)
+class ExactWork:
+    """How each curve is made: traced, or visited at frequencies."""
+
+    at: tuple[float, ...] | None  # [rad/s]
+    limit: float | None = None  # [s] of processor time for a curve
+    only_peaks: bool = False
+    whole: bool = False  # nothing is to be left out
+    periods: int = 1  # up to which motions are followed, from where the period doubles
+
+    def __call__(self, group: Group, report: Report) -> list[Curve]:
+        return [self._curve(scene, report) for scene in group]
+
+    def _curve(self, scene: Scene, report: Report) -> Curve:
+        begin = time.perf_counter()
+        try:
+            curve = self._made(scene, report)
+        except SimulationError as error:  # there is no rest to begin with
+            curve = lost_curve(scene, str(error))
+        curve = replace(curve, seconds=time.perf_counter() - begin)
+        if not curve.complete and curve.cause is Cause.INTERRUPTED:
+            raise Interrupted([curve])
+        return curve
+
+    def _made(self, scene: Scene, report: Report) -> Curve:
+        if self.at is not None:
+            return _visited(scene, self.at, report, self.limit)
+        stiff, limit = _too_stiff(scene, self.limit)
+        clock = Clock(limit, report)
+        try:
+            return self._in_time(scene, report, clock, stiff)
+        except TimeOver as stop:  # before the first point was looked for
+            return lost_curve(scene, f"{_cut_off(stop, limit)}the start{stiff}")
+
+    def _in_time(self, scene: Scene, report: Report, clock: Clock, stiff: str) -> Curve:
+        followed = _Followed(report, clock, stiff, self.periods)
+        if self.only_peaks:
+            return followed.peaks(scene)
+        if self.whole or len(scene.contacts) < FEWEST:
+            return followed.curve(scene)
+        return followed.lightly(scene)
+
+
+@dataclass(frozen=True)
+class _Followed:
+    """Curves that are followed in the range of a scene."""
+
+    report: Report
+    clock: Clock
+    stiff: str  # what is said of a contact that is too stiff, where a curve is not complete
+    periods: int
+    before: list[tuple[OrbitProblem, Legs]] = field(default_factory=list)  # the last that were followed
+    doubts: Doubts = field(default_factory=Doubts)  # of the balance that these began near
+
+    def lightly(self, scene: Scene) -> Curve:
+        """The curve, followed without the contacts that keep their state all along it."""
+        held = expected_constant(scene, self.clock.poll)
+        while True:
+            lost: tuple[int, ...] = ()
+            try:
+                curve = self._held_or_lost(scene, held)
+            except NotKeptError as found:
+                curve, lost = lost_curve(scene, found.reason), found.places
+            if not (held and (lost or not curve.points)):
+                return curve
+            if curve.cause is Cause.INTERRUPTED or self.clock.over:
+                return lost_curve(
+                    scene, curve.reason, curve.cause
+                )  # what there is is not the motion of these contacts
+            held = tuple(one for one in held if lost and one.place not in lost)
+
+    def _held_or_lost(self, scene: Scene, held: tuple[Held, ...]) -> Curve:
+        """The curve with contacts held; without a point, if it cannot be begun."""
+        if not held:
+            return self.curve(scene)
+        try:
+            return self.curve(scene.holding(held))
+        except SimulationError as error:
+            return lost_curve(scene, str(error))
+
+    def curve(self, scene: Scene) -> Curve:
+        """The curve with all contacts that the scene computes."""
+        groups, reason, cause = self.branches(scene)
+        search = Search(self.clock.poll, self.report)
+        return _doubted(_finished(partial(orbit_curve, groups), reason, search, cause), self.doubts)
+
+    def peaks(self, scene: Scene) -> Curve:
+        """The peaks, folds and jumps alone."""
+        known, search = list[Sample](), Search(self.clock.poll, self.report)
+        try:
+            alone = peaks_alone(scene, known, self.report, self.clock.poll)
+        except (KeyboardInterrupt, TimeOver) as stop:
+            where = shown(scene, known[-1].frequency) if known else "the start"
+            reason = _cut_off(stop, self.clock.limit) + where + self.stiff
+            found = Alone(sorted(known, key=lambda one: one.frequency))
+            return _finished(partial(peaks_curve, scene, found), reason, search, _cause(stop))
+        if alone is not None:
+            return _doubted(_finished(partial(peaks_curve, scene, alone), "", search), alone.doubts)
+        groups, reason, cause = self.branches(scene)
+        return _doubted(_finished(partial(peaks_of, groups), reason, search, cause), self.doubts)
+
+    def branches(self, scene: Scene) -> tuple[list[OrbitBranches], str, Cause]:
+        """All branches, and why they are not complete, else ''; what is stiff is said then, too; the cause.
+
+        Raises
+        ------
+        NotKeptError
+            If a contact that is held would not have kept its state.
+        """
+        legs = Legs(scene.frequency_range, self.report, self.clock.poll, _watched if scene.held else None)
+        problems, groups, cause = [OrbitProblem(scene)], list[OrbitBranches](), Cause.CALCULATION
+        try:
+            for problem, found in self.before:
+                legs.take(Released(problem, problems[0]).legs(found.found(problem)))
+            self.before[:] = [(problems[0], legs)]
+            paths, without = explore(problems[0], legs, legs.poll, self.clock.share(BESIDE), self.doubts)
+            reason = incomplete(scene, paths, without)
+            groups.append(OrbitBranches(problems[0], paths))
+            while 2 * problems[-1].repeats <= self.periods and not reason:
+                problem = Doubled(problems[-1])
+                problems.append(problem)
+                paths, lost = doubled_paths(problem, groups[-1].points, legs, legs.poll)
+                reason = incomplete(scene, paths, "") if paths else ""
+                reason = reason or (_without(problem, lost) if lost else "")
+                groups.append(OrbitBranches(problem, paths, groups[-1]))
+        except (KeyboardInterrupt, TimeOver) as stop:
+            legs.keep()
+            while legs.paths(further := Doubled(problems[-1])):  # an earlier run had come to them
+                problems.append(further)
+            groups = [OrbitBranches(one, legs.paths(one), cut_off=True) for one in problems]
+            paths = [path for group in groups for path in group.paths]
+            reason, cause = _cut_off(stop, self.clock.limit) + reached(scene, paths), _cause(stop)
+        return groups, reason + self.stiff if reason else "", cause
+
+
+def _finished(
+    made: Callable[[str, Search], Curve], reason: str, search: Search, cause: Cause = Cause.CALCULATION
+) -> Curve:
+    """A curve of what was found; once it is interrupted, no other motions are looked for beside that."""
+    if cause is Cause.INTERRUPTED:
+        search.end()
+    try:
+        return replace(made(reason, search), cause=cause)
+    except KeyboardInterrupt:
+        search.end()
+        curve = made(f"{AT_END}; {reason}" if reason else AT_END, search)
+        return replace(curve, cause=Cause.INTERRUPTED)
+
+
+def _doubted(curve: Curve, doubts: Doubts) -> Curve:
+    """With where the balance that it began near may lack branches."""
+    curve.unsure, curve.folds_unsure = list(doubts.levels), list(doubts.folds)
+    return curve
+
+
+def _without(problem: OrbitProblem, lost: int) -> str:
+    """Why the curves of motions that repeat after so many periods are not complete."""
+    return f"of {counted(lost, 'flip')} no motion was found that repeats after {problem.repeats} periods"
+
+
+def _watched(problem: OrbitProblem, z: FloatArray) -> None:
+    """`NotKeptError` if a contact that is held would not have kept its state in the motion at z."""
+    shot = problem.shot(z)
+    if shot is not None:
+        check(shot)
+
+
+def _cut_off(stop: BaseException, limit: float | None) -> str:
+    """How the reason of a curve begins that has been stopped."""
+    over = isinstance(stop, TimeOver)
+    return f"not finished in {limit:g} s of processor time, at " if over else f"{INTERRUPTED} at "
+
+
+def _cause(stop: BaseException) -> Cause:
+    """Why it is not complete then."""
+    return Cause.CALCULATION if isinstance(stop, TimeOver) else Cause.INTERRUPTED
+
+
+def _too_stiff(scene: Scene, limit: float | None) -> tuple[str, float | None]:
+    """Which contact is too stiff for its motion to be followed, and what to take instead; else ''.
+
+    And the limit of time: where that never ends it is said after so long, if there is none of one's own.
+    """
+    whole = scene.whole()
+    resists = whole.contacts and whole.modal.frequency.all()
+    stiff = too_stiff(System(whole, (1,)), moves=True) if resists else ""
+    return stiff, ENOUGH if stiff and limit is None else limit
+
+
+def _visited(scene: Scene, at: tuple[float, ...], report: Report, limit: float | None) -> Curve:
+    around = replace(scene, frequency_range=(0.0, at[-1]))
+    stiff, limit = _too_stiff(replace(scene, frequency_range=(at[0], at[-1])), limit)
+    poll = Clock(limit, report).poll
+    visitor, others, reason, doubts = Visitor(around, poll), list[Sample](), "", Doubts()
+    cause = Cause.CALCULATION
+    try:
+        visitor.run(at, report)
+        others.extend(unreached(scene, at, visitor.points, report, poll, doubts))
+    except (KeyboardInterrupt, TimeOver) as stop:
+        where = shown(scene, visitor.points[-1].frequency) if visitor.points else "the start"
+        reason, cause = _cut_off(stop, limit) + where, _cause(stop)
+    except SimulationError as error:
+        reason = str(error)
+    reason = reason or visitor.reason
+    reason = reason + stiff if reason else ""
+    found = _finished(partial(visited_curve, scene, visitor, others), reason, Search(poll, report), cause)
+    return _doubted(found, doubts)

@@ -1,0 +1,96 @@
+"""What other motions residual friction allows at some points of a curve, where a contact never slips."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fcm.at_rest import RestOptions
+from fcm.model.scene import FloatArray, Scene
+from fcm.response.coexisting_search import Extents, Search
+from fcm.response.resumable_branches import TimeOver
+from fcm.results.orbits import Stuck
+from fcm.shooting.orbit_record import Sample
+from fcm.shooting.partly_sticking_orbits import partly_stuck_motions
+from fcm.shooting.periodic import Poll
+from fcm.shooting.traction_families import Family, family
+from fcm.time_domain.equations import has_friction
+from fcm.time_domain.errors import SimulationError
+
+REST = RestOptions()
+UNIQUE = 1e-6  # relative range of amplitudes below which they are the same
+
+
+@dataclass
+class NotUnique:
+    """The extent over residual friction at points, nan where the amplitude is unique; and what is beside."""
+
+    least: FloatArray  # (point, dof)
+    greatest: FloatArray  # (point, dof)
+    whole: FloatArray  # (point,) 1 if it is that of all residual friction, 0 if not, nan where there is one
+    beside: list[Stuck] = field(default_factory=list)  # motions that no extent holds
+
+
+def not_unique(
+    scene: Scene, points: Sequence[Sample | None], amplitude: FloatArray, rows: Sequence[int], search: Search
+) -> NotUnique:
+    """What is found at some of the points; amplitude : of all, (point, dof)."""
+    least, greatest = np.full_like(amplitude, np.nan), np.full_like(amplitude, np.nan)
+    out = NotUnique(least, greatest, np.full(len(points), np.nan))
+    told = [(k, point) for k in rows if (point := points[k]) is not None]
+    for omega in sorted({point.frequency for _, point in told}):
+        here = [k for k, point in told if point.frequency == omega]
+        found = search.known(omega, amplitude[here])
+        if found is None:
+            samples = [point for _, point in told if point.frequency == omega]
+            found = _told(scene, samples, Extents.unknown(omega, amplitude[here]), search)
+            search.keep(found)
+        out.least[here], out.greatest[here], out.whole[here] = found.least, found.greatest, found.whole
+        out.beside += found.beside
+    return out
+
+
+def _told(scene: Scene, points: list[Sample], out: Extents, search: Search) -> Extents:
+    """What is found at the points of one frequency."""
+    families, amplitude = dict[int, Family](), out.amplitude
+    for k, point in enumerate(points):
+        same = [one for one in families if np.allclose(amplitude[one], amplitude[k], rtol=UNIQUE, atol=0.0)]
+        found = families[same[0]] if same else _family(scene, point, out.whole, k, search.poll)
+        if found is not None:
+            families[k] = found
+    known = list(families.values())
+    try:
+        others = partly_stuck_motions(scene, out.frequency, known, search.poll)
+    except TimeOver:
+        others = []
+    for k, found in families.items():
+        those = [one for one in others if not set(one.family.contacts).isdisjoint(found.contacts)]
+        least = np.min([found.least, *(one.family.least for one in those)], axis=0)
+        greatest = np.max([found.greatest, *(one.family.greatest for one in those)], axis=0)
+        whole = found.complete and not search.over
+        if (greatest - least > UNIQUE * greatest + REST.displacement * greatest.max(initial=0.0)).any():
+            out.least[k], out.greatest[k], out.whole[k] = least, greatest, whole
+        elif not whole:
+            out.whole[k] = 0.0
+    for one in others:
+        if all(set(one.family.contacts).isdisjoint(found.contacts) for found in families.values()):
+            extent = one.family.least, one.family.greatest
+            out.beside.append(Stuck(out.frequency, one.states, 0.0 - one.residual, *extent))
+    return out
+
+
+def _family(scene: Scene, point: Sample, whole: FloatArray, k: int, poll: Poll) -> Family | None:
+    """The family of a point; None if it has none, or, with 0 for the whole, if it cannot be told."""
+    alone = len(scene.contacts) == 1 and has_friction(scene.contacts[0])
+    if "E" not in point.states or (alone and set(point.states) == {"E"}):  # of several another may slip
+        return None
+    try:
+        if point.repeats:
+            return family(scene, point.frequency, point.state, point.repeats, poll)
+        if point.steady is not None and (point.steady.shares[:, 0] == 1.0).any():
+            whole[k] = 0.0
+    except (SimulationError, TimeOver):  # its neighbourhood cannot be computed, or not any more
+        whole[k] = 0.0
+    return None

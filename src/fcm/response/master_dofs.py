@@ -1,0 +1,65 @@
+"""The degrees of freedom that a curve is followed by, where many are reported; and all of them afterwards.
+
+All displacements are sums over the same modes, and whatever moves a mode acts at a contact or a force. So a
+curve that is resolved there, and where each mode moves most, is resolved for all others: they are calculated
+from its points when these are known, and their peaks are found between them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from fcm.accuracy.outline import Outline
+from fcm.accuracy.refinement import Accurate, judged
+from fcm.harmonic_balance.reported_quantities import reported
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray, Scene
+from fcm.results.peak import Peak
+from fcm.sensitivity.between_points import tops_between
+from fcm.structure.linear import Linear, linear_of
+from fcm.structure.ring import RingLinear
+
+FEW = 50  # degrees of freedom, up to which a curve is followed by all: their peaks are points of it
+
+
+def leading(scene: Scene) -> Scene:
+    """The scene at the degrees of freedom that lead in its first curve; itself if there are few."""
+    dofs = scene.modal.dofs
+    if len(dofs) <= FEW:
+        return scene
+    natural, shapes = _modes(linear_of(scene.each_curve()[0]))
+    order = np.argsort(natural)
+    within = 1 + int(np.count_nonzero(natural <= scene.frequency_range[1]))
+    chosen = np.zeros(len(dofs), dtype=np.bool_)
+    chosen[np.abs(shapes[order[: min(within, FEW)]]).argmax(axis=1)] = True
+    return scene.at_attached_and(chosen)
+
+
+def _modes(linear: Linear) -> tuple[FloatArray, FloatArray]:
+    """Natural frequencies (mode,) and sizes of shapes (mode, dof) as the excitation meets them."""
+    if isinstance(linear, RingLinear):
+        wave = linear.wave(1)
+        return wave.natural, np.abs(wave.dofs)
+    return linear.natural, linear.dofs
+
+
+def of_all(found: Accurate, scene: Scene, accuracy: float) -> Accurate:
+    """What was found of a scene that leads, of all degrees of freedom of another."""
+    system = System(scene, found.system.harmonics, found.system.table, found.system.corrected)
+    shown = tuple(reported(system, path) for path in found.traced.branches.paths)
+    every = judged(Outline(system, found.traced, shown, found.seconds), accuracy)
+    return replace(every, further=found.further, begun=found.begun)
+
+
+def with_tops(peaks: Mapping[str, Peak], found: Accurate) -> dict[str, Peak]:
+    """Peaks (by dof) with what is higher between the points."""
+    raised = dict(peaks)
+    for path, shown in zip(found.traced.branches.paths, found.shown, strict=True):
+        height, omega = tops_between(found.system, path, shown)
+        for dof, value, at in zip(peaks, height.tolist(), omega.tolist(), strict=True):
+            if value > raised[dof].amplitude:
+                raised[dof] = raised[dof]._replace(amplitude=value, frequency=at)
+    return raised

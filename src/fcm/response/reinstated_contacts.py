@@ -1,0 +1,141 @@
+"""Curves of a scene with contacts held, taken over where some of these have to be computed after all.
+
+As long as a contact keeps its state, a motion in which it is held is one in which it is computed. So what
+there is of a curve need not be followed again, up to the last point before a contact that was held loses its
+state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from fcm.continuation import Checkpoint, Path
+from fcm.continuation.checkpoint import state_of
+from fcm.continuation.point_store import Points, Stored
+from fcm.continuation.stepper import Stepper
+from fcm.model.scene import FloatArray
+from fcm.response.resumable_branches import Leg, kind_of
+from fcm.shooting.problem import OrbitProblem
+from fcm.time_domain.equations import has_friction
+
+CLOSE = 1e-8  # distance, in the problem's scale, that rounding may put between the same point of two problems
+
+
+class Released:
+    """From points of a problem with contacts held to those of one with fewer: linear in the unknowns.
+
+    The friction force of a contact that sticks is k_u (u - rest), with u the displacement along it.
+    """
+
+    def __init__(self, before: OrbitProblem, now: OrbitProblem) -> None:
+        self.before, self.now = before, now
+        rows, columns = _places(now), _places(before)
+        self._linear = (rows[:, None] == columns).astype(np.float64)
+        self._rest = np.zeros(rows.size)
+        modal, computed = before.scene.modal, now.scene.computed()
+        self._released = [i for i, one in enumerate(before.scene.held) if one.place in computed]
+        for one in (before.scene.held[i] for i in self._released):
+            if has_friction(one.contact) and not one.open:
+                row = rows == 2 * modal.mass.size + one.place
+                self._linear[row, : modal.mass.size] = one.contact.k_u * (
+                    modal.shapes @ one.contact.tangential
+                )
+                self._rest[row] = -one.contact.k_u * one.rest
+
+    def legs(self, legs: Iterable[Leg]) -> Iterator[Leg]:
+        """Those of a number of legs that are also of the other problem."""
+        for leg in legs:
+            path = None if leg.path is None else self._path(leg.path)
+            checkpoint = (
+                None if leg.checkpoint is None or leg.path is not None else self._checkpoint(leg.checkpoint)
+            )
+            if path is not None or checkpoint is not None:
+                yield Leg(leg.number, *kind_of(self.now), path, checkpoint)
+
+    def keeps(self, points: Iterable[FloatArray]) -> bool:
+        """Whether the contacts that are released have kept their state in motions z."""
+        shots = [self.before.shot(z) for z in points]
+        return all(shot is not None and (shot.kept[self._released] > 0.0).all() for shot in shots)
+
+    def point(self, z: FloatArray) -> FloatArray:
+        """The same motion in the other unknowns."""
+        there: FloatArray = self._linear @ z + self._rest
+        return there
+
+    def way(self, direction: FloatArray) -> FloatArray:
+        """The same direction in the other unknowns."""
+        there: FloatArray = self._linear @ direction
+        return there
+
+    def _path(self, path: Path) -> Path | None:
+        if not (len(path.z) and self.keeps(path.z)):
+            return None
+        stepper = self._stepper(path.z[-1], path.direction[-1])
+        if stepper is None:
+            return None
+        sense = stepper.here.orientation * path.orientation[-1]
+        z, direction = _each(self.point, path.z), _each(self.way, path.direction)
+        return replace(path, z=z, direction=direction, orientation=sense * path.orientation)
+
+    def _checkpoint(self, checkpoint: Checkpoint) -> Checkpoint | None:
+        """A checkpoint of the other problem, whose stepper is where that of this is."""
+        before, last = checkpoint.kept
+        if not self.keeps([*before.z, last[0], checkpoint.z]):
+            return None
+        stepper = self._stepper(checkpoint.z, checkpoint.scale * checkpoint.tangent)
+        if stepper is None:
+            return None
+        sense = stepper.here.orientation * checkpoint.orientation
+        points = Points(
+            _each(self.point, before.z),
+            _each(self.way, before.direction),
+            before.mark,
+            before.rest * [sense, 1.0],
+        )
+        end = self.point(last[0]), self.way(last[1]), last[2], sense * last[3], last[4]
+        return checkpoint._replace(
+            kept=Stored(points, end),
+            start=self.point(checkpoint.start),
+            heading=self._heading(checkpoint),
+            **(state_of(stepper) | {"z": self.point(checkpoint.z)}),
+        )
+
+    def _stepper(self, z: FloatArray, direction: FloatArray) -> Stepper | None:
+        """One of the other problem at a point; None where its curve is not found there, in that direction."""
+        there, stepper = self.point(z), Stepper(self.now)
+        row = _unit(self.now, there, self.way(direction))
+        if not stepper.begin(there, row):
+            return None
+        off = (np.asarray(stepper.here.z) - there) / np.asarray(stepper.newton.scale)
+        same = np.linalg.norm(off) < CLOSE and np.asarray(stepper.here.tangent) @ row > 1.0 - CLOSE
+        return stepper if same else None
+
+    def _heading(self, checkpoint: Checkpoint) -> FloatArray:
+        """The direction at the start, in units of the scale there."""
+        self.before.measure(checkpoint.start)
+        direction = checkpoint.heading * np.asarray(self.before.scale)
+        return _unit(self.now, self.point(checkpoint.start), self.way(direction))
+
+
+def _each(change: Callable[[FloatArray], FloatArray], rows: FloatArray) -> FloatArray:
+    """Rows one by one, so that the same one is the same afterwards to its last digit."""
+    return np.array([change(row) for row in rows]).reshape(len(rows), -1)
+
+
+def _places(problem: OrbitProblem) -> FloatArray:
+    """What each unknown of a point is, among those of the whole scene; the frequency is -1."""
+    scene = problem.scene
+    modes = 2 * scene.modal.mass.size
+    every: Sequence[int] = [*range(modes), *(modes + i for i in scene.computed())]
+    return np.append(np.array(every)[problem.free], -1)
+
+
+def _unit(problem: OrbitProblem, z: FloatArray, direction: FloatArray) -> FloatArray:
+    """A direction at z in units of the scale there, of length 1."""
+    problem.measure(z)
+    scaled = direction / np.asarray(problem.scale)
+    unit: FloatArray = scaled / np.linalg.norm(scaled)
+    return unit

@@ -1,0 +1,69 @@
+"""What is asked of a curve: some harmonics, or an accuracy that chooses them; the error of asking amiss."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from numbers import Integral, Real
+from typing import Any
+
+import numpy as np
+
+from fcm.model.scene import Scene
+from fcm.scene.rules import harmonics_fault, harmonics_up_to
+from fcm.table import Table
+
+ACCURACY = 1e-2  # of peaks and folds, where nothing else is said
+
+
+class ResponseError(ValueError):
+    """The calculation cannot be begun; the message says why."""
+
+
+@dataclass(frozen=True)
+class Request:
+    """How a curve is traced: with given harmonics, or with as many as an accuracy takes.
+
+    With one harmonic it is followed with the coefficients of a table, if there is one; unless they are not to
+    be corrected, its points are solutions with the closed form.
+    """
+
+    harmonics: tuple[int, ...] | None = (1,)
+    accuracy: float = ACCURACY
+    table: Table | None = None
+    corrected: bool = True
+
+
+ONE_HARMONIC = Request()
+
+
+def request_of(scene: Scene, harmonics: int | Sequence[int] | None, accuracy: float | None) -> Request:
+    """What was asked for: by a caller, else by the scene, else the default accuracy.
+
+    Raises
+    ------
+    ResponseError
+        If both are given, or they are out of range.
+    """
+    if harmonics is not None and accuracy is not None:
+        raise ResponseError("harmonics and accuracy exclude one another: the second chooses the first")
+    if harmonics is None and accuracy is None:
+        harmonics, accuracy = scene.harmonics, scene.accuracy
+    if harmonics is None:
+        accuracy = ACCURACY if accuracy is None else accuracy
+        if not isinstance(accuracy, Real) or not 0.0 < accuracy < 1.0:
+            value = f"{accuracy:g}" if isinstance(accuracy, Real) else repr(accuracy)
+            raise ResponseError(f"accuracy is {value}, but it is a relative error between 0 and 1")
+        return Request(None, accuracy)
+    chosen = _numbers(harmonics)
+    if fault := harmonics_fault(chosen):
+        raise ResponseError(f"harmonics must be {fault}")
+    return Request(chosen)
+
+
+def _numbers(harmonics: object) -> tuple[Any, ...]:
+    """Harmonics up to a number, or some; integers of numpy are as good as those of Python."""
+    if isinstance(harmonics, Integral) and not isinstance(harmonics, bool):
+        return harmonics_up_to(int(harmonics))
+    some = harmonics if isinstance(harmonics, Iterable) else (harmonics,)
+    return tuple(int(h) if isinstance(h, np.integer) else h for h in some)

@@ -1,0 +1,244 @@
+"""The curves of a scene as they are followed: what is finished of them is kept, and need not be again."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from fcm.continuation import Checkpoint, Events, FollowOptions, Path, Status, follow
+from fcm.continuation.all_branches import SAME
+from fcm.continuation.point_store import Points, Stored
+from fcm.model.scene import FloatArray
+from fcm.run import Report
+from fcm.shooting.orbit_record import recorded
+from fcm.shooting.period_doubling import Doubled
+from fcm.shooting.periodic import without_end
+from fcm.shooting.problem import OrbitProblem
+
+OFTEN = 0.5  # [s] between two savings of a curve that is being followed
+SHARE = 0.05  # of the time, that saving may take
+SELDOM = 0.05  # [s] between two looks at the processor time, which takes long to tell on some machines
+
+
+@dataclass(frozen=True)
+class Leg:
+    """A curve from one start in one direction: whole, or as far as it has come."""
+
+    number: int  # in the order in which they are followed
+    held: tuple[int, ...]  # the contacts that were held
+    repeats: int  # periods after which the motions repeat
+    path: Path | None
+    checkpoint: Checkpoint | None
+
+    def there(self) -> Path:
+        """The points that there are, as those of a curve that is cut off."""
+        if self.path is not None:
+            return replace(self.path, status=Status.INTERRUPTED)
+        assert self.checkpoint is not None
+        return self.checkpoint.path(Status.INTERRUPTED)
+
+
+LEGS = (Leg, Path, Checkpoint, Status, Stored, Points)  # what is saved consists of these
+
+
+class _Ended(Exception):  # noqa: N818
+    """A curve has come to its end within the range."""
+
+
+class TimeOver(Exception):  # noqa: N818
+    """A curve has taken as long as it may."""
+
+
+class Clock:
+    """Of the processor time that a curve may take [s], from the beginning; without end if that is None.
+
+    Each look is reported as a step.
+    """
+
+    def __init__(self, limit: float | None, report: Report) -> None:
+        self.limit, self.report, self._ask = limit, report, 0.0
+        self._end = None if limit is None else time.process_time() + limit
+
+    def share(self, part: float) -> float:
+        """So much of it [s]."""
+        return np.inf if self.limit is None else part * self.limit
+
+    @property
+    def over(self) -> bool:
+        """Whether it is taken."""
+        return self._end is not None and time.process_time() > self._end
+
+    def poll(self) -> None:
+        """Raise `TimeOver` when it is."""
+        self.report.again()
+        if self._end is not None and time.monotonic() > self._ask:
+            if self.over:
+                raise TimeOver
+            self._ask = time.monotonic() + SELDOM
+
+
+class Legs:
+    """Follows curves as `fcm.continuation.follow` does, one after the other.
+
+    The same curves in the same order after an interruption: those that were finished are not followed again,
+    and the one that was begun goes on from its last point.
+
+    poll : called before every step, as a `Clock` looks.
+    passing : called with the problem and every point from which a step is made.
+    """
+
+    def __init__(
+        self,
+        span: tuple[float, float],
+        report: Report,
+        poll: Callable[[], None] = without_end,
+        passing: Callable[[OrbitProblem, FloatArray], None] | None = None,
+    ) -> None:
+        self.report, self.low, self.high = report, *span
+        self.poll, self.passing = poll, passing
+        self.number = 0  # of the next one
+        self._recorded = 0  # points of the one that is followed
+        self._begun: tuple[OrbitProblem, Checkpoint] | None = None
+        self._passed: Leg | None = None  # the last one of which nothing was wrong
+        self._given = dict[int, Leg]()  # of another scene, with the same motions
+        self._seen, self._took = time.monotonic(), 0.0
+        saved = (leg for leg in report.saved if isinstance(leg, Leg))
+        self._known = {_key(leg): leg for leg in saved}  # the latest of each
+
+    def __call__(
+        self,
+        problem: OrbitProblem,
+        start: FloatArray,
+        span: tuple[float, float],
+        wanted: Events,
+        options: FollowOptions,
+        *,
+        forward: bool,
+        progress: object = None,
+    ) -> Path:
+        """See `follow`; of motions of twice the periods of others up to where the curve comes to those."""
+        saved = self._known.get(_key(self._leg(problem))) or self._taken(problem, start, forward)
+        if saved is None or saved.path is None:
+            checkpoint = None if saved is None else saved.checkpoint
+            path = self._followed(problem, start, span, forward, wanted, options, checkpoint)
+            saved = self._leg(problem, path)
+            self._save(saved)
+        self._begun = None
+        self.number += 1
+        assert saved.path is not None
+        return saved.path
+
+    def _followed(
+        self,
+        problem: OrbitProblem,
+        start: FloatArray,
+        span: tuple[float, float],
+        forward: bool,
+        wanted: Events,
+        options: FollowOptions,
+        checkpoint: Checkpoint | None,
+    ) -> Path:
+        """The curve from its start, or from a checkpoint of it on."""
+        self._recorded = 0
+        watch = partial(self._watch, problem, float(start[-1]))
+        if isinstance(problem, Doubled):
+            problem.begins()
+        try:
+            return follow(
+                problem, start, span, wanted, options, forward=forward, watch=watch, checkpoint=checkpoint
+            )
+        except _Ended:
+            assert self._begun is not None
+            return self._begun[1].path(Status.COMPLETE)
+
+    def _watch(self, problem: OrbitProblem, begin: float, checkpoint: Checkpoint) -> None:
+        if isinstance(problem, Doubled) and problem.ended(checkpoint.z):
+            raise _Ended
+        self._begun = problem, checkpoint
+        self._record(problem, checkpoint)
+        covered = abs(float(checkpoint.z[-1]) - begin) / (self.high - self.low)
+        if time.monotonic() - self._seen > max(OFTEN, self._took / SHARE):
+            self.keep()
+        self.report(covered, f"{checkpoint.kept.number} points")
+        if self.passing is not None:
+            self.passing(problem, checkpoint.z)
+            self._passed = self._leg(problem, checkpoint=checkpoint)
+        self.poll()
+
+    def _record(self, problem: OrbitProblem, checkpoint: Checkpoint) -> None:
+        """Record the points that are new before their periods are forgotten: then a curve that is stopped is
+        there at once. Many together: after each step it would make the following a tenth slower."""
+        if problem.full:
+            for z in (*checkpoint.kept.before.z[self._recorded :], checkpoint.kept.last[0]):
+                recorded(problem, z)
+            self._recorded = checkpoint.kept.number - 1
+            problem.forget()
+
+    def found(self, problem: OrbitProblem) -> list[Leg]:
+        """The legs of a problem as far as all their points were passed."""
+        legs = {_key(leg): leg for leg in self._known.values() if leg.path is not None}
+        if self._passed is not None and _key(self._passed) not in legs:
+            legs[_key(self._passed)] = self._passed
+        held, repeats = kind_of(problem)
+        return [leg for leg in legs.values() if (leg.held, leg.repeats) == (held, repeats)]
+
+    def take(self, legs: Iterable[Leg]) -> None:
+        """Go on with legs that begin where one is to be followed."""
+        self._given = {leg.number: leg for leg in legs}
+
+    def _taken(self, problem: OrbitProblem, start: FloatArray, forward: bool) -> Leg | None:
+        """The one with the next number, if it begins there."""
+        leg = self._given.get(self.number)
+        known = leg is not None and _key(leg) == _key(self._leg(problem))
+        return leg if leg is not None and known and _begins_at(leg, problem, start, forward) else None
+
+    def keep(self) -> None:
+        """Save the curve that is being followed as far as it is there."""
+        if self._begun is None:
+            return
+        begin = time.monotonic()
+        self._save(self._leg(self._begun[0], checkpoint=self._begun[1]))
+        self._seen = time.monotonic()
+        self._took = self._seen - begin
+
+    def paths(self, problem: OrbitProblem) -> list[Path]:
+        """What is saved of the curves of a problem, those that an earlier run came to among them."""
+        held, repeats = kind_of(problem)
+        legs = [leg for leg in self._known.values() if (leg.held, leg.repeats) == (held, repeats)]
+        found = [leg.there() for leg in sorted(legs, key=lambda leg: leg.number)]
+        return [path for path in found if path.z.shape[0]]
+
+    def _leg(
+        self, problem: OrbitProblem, path: Path | None = None, checkpoint: Checkpoint | None = None
+    ) -> Leg:
+        """The one that is followed now."""
+        return Leg(self.number, *kind_of(problem), path, checkpoint)
+
+    def _save(self, leg: Leg) -> None:
+        self._known[_key(leg)] = leg
+        self.report.save(leg)
+
+
+def _begins_at(leg: Leg, problem: OrbitProblem, start: FloatArray, forward: bool) -> bool:
+    """Whether a leg is that from a start in a direction."""
+    if leg.path is not None:
+        first, rise = leg.path.z[0], float(leg.path.direction[0, -1])
+    else:
+        assert leg.checkpoint is not None
+        first, rise = leg.checkpoint.start, float(leg.checkpoint.heading[-1])
+    problem.measure(first)
+    off = np.linalg.norm((first - start) / np.asarray(problem.scale))
+    return bool(off < SAME) and (rise > 0.0) == forward
+
+
+def _key(leg: Leg) -> tuple[int, tuple[int, ...], int]:
+    return leg.number, leg.held, leg.repeats
+
+
+def kind_of(problem: OrbitProblem) -> tuple[tuple[int, ...], int]:
+    """The contacts that are held, and the periods: with others it is another curve."""
+    return tuple(one.place for one in problem.scene.held), problem.repeats

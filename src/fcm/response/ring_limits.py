@@ -1,0 +1,96 @@
+"""What a response of a ring's sector cannot know, and what it is asked that needs the whole ring."""
+
+from __future__ import annotations
+
+from fcm.harmonic_balance.residual_spectrum import HIGHEST
+from fcm.model.scene import Scene
+from fcm.response.request import Request, ResponseError
+from fcm.scene.cyclic import WHOLE_RING, lacks
+from fcm.scene.errors import quoted
+from fcm.structure.loads import driven_harmonics
+
+MOST_NAMED = 6  # harmonics in a sentence
+PLANE = (
+    "is computed of contacts on a line alone, between whose events the structure is linear; while one slips "
+    "in a plane its direction turns with the motion: more harmonics (--harmonics, --accuracy) come as near"
+)
+
+
+def refuse_ring(scene: Scene, what: str) -> None:
+    """Raise ResponseError where something is asked of a sector that needs the whole ring."""
+    if scene.ring is not None:
+        raise ResponseError(f"{scene.name}: {what} {WHOLE_RING}")
+
+
+def refuse_other_harmonics(scene: Scene, what: str) -> None:
+    """Raise ResponseError where something knows forces of harmonic 1 alone, and there are others."""
+    others = driven_harmonics(scene)[1:]
+    if others:
+        named = " and ".join(map(str, others))
+        raise ResponseError(
+            f"{scene.name}: {what} knows forces of harmonic 1 alone, and there are some of harmonic {named}; "
+            "curves of the balance have them (--method closed-form)"
+        )
+
+
+def check_no_ring(scene: Scene, what: str) -> None:
+    """Raise ResponseError for a sector of a ring, of which this is not computed."""
+    if scene.ring is not None:
+        raise ResponseError(f"{scene.name}: cyclic: {what} of a ring of sectors are not computed")
+
+
+def refuse_plane(scene: Scene, what: str) -> None:
+    """Raise ResponseError where the motion in time is asked for of contacts that slide in a plane."""
+    if scene.planar:
+        names = [quoted(one.name) for one in scene.contacts if one.second is not None]
+        raise ResponseError(f"{scene.name}: contact {names[0]}: {what} {PLANE}")
+
+
+def refuse_own_laws(scene: Scene, what: str) -> None:
+    """Raise ResponseError where more is asked of a contact's own law than its forces over a cycle."""
+    if scene.with_own_laws:
+        names = [quoted(one.name) for one in scene.contacts if one.law is not None]
+        raise ResponseError(
+            f"{scene.name}: contact {names[0]}: {what} needs more than the forces over a cycle that its own "
+            "law gives; response curves of the balance do not (method 'closed-form')"
+        )
+
+
+def check_modes(scene: Scene, wanted: Request) -> None:
+    """Raise ResponseError where harmonics are asked for that meet a nodal diameter without modes."""
+    for curve in scene.each_curve():
+        if curve.ring is None:
+            return
+        driven = driven_harmonics(curve)
+        harmonics = range(HIGHEST + 1) if wanted.harmonics is None else (0, *wanted.harmonics, *driven)
+        for harmonic, diameter in curve.ring.lacking(harmonics).items():
+            what = f"{scene.name}: {lacks(curve.ring, harmonic, diameter)}"
+            hint = "; give its modes, or the harmonics (--harmonics 1)" if wanted.harmonics is None else ""
+            raise ResponseError(f"{what}{hint}")
+
+
+def unknown(scene: Scene, wanted: Request) -> list[str]:
+    """Sentences on what is not known of the curves of a scene, for want of modes or of time."""
+    found: dict[str, None] = {}
+    orders = {one.ring.engine_order: one for one in scene.each_curve() if one.ring is not None}
+    if not orders:
+        return []
+    from fcm.harmonic_balance.system import System
+    from fcm.stability.ring_multipliers import stability_unknown
+
+    for curve in orders.values():
+        assert curve.ring is not None
+        lacking = curve.ring.lacking(range(1, HIGHEST + 1))
+        if lacking:
+            named = ", ".join(map(str, list(lacking)[:MOST_NAMED])) + (
+                ", ..." if len(lacking) > MOST_NAMED else ""
+            )
+            diameters = ", ".join(map(str, sorted(set(lacking.values()))))
+            found[
+                f"the answer to the harmonics {named}: there are no modes of nodal diameter {diameters} "
+                "(errors are estimated without them)"
+            ] = None
+        system = System(curve, wanted.harmonics or (1,))
+        if why := stability_unknown(system, curve.frequency_range[1]):
+            found[f"stability: {why}"] = None
+    return list(found)

@@ -1,0 +1,245 @@
+"""The steady motion at given frequencies, visited by a slow upward and then a slow downward sweep.
+
+Between two frequencies the periodic solution is continued in steps as short as it takes to stay on its
+branch, while it is stable. Where it is lost the motion is simulated from there, just beyond, until it is
+steady again: so it jumps where a slow sweep of the structure itself does, and to where that does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import takewhile
+from typing import Any
+
+import numpy as np
+
+from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray, Scene
+from fcm.results.jumps import Jump
+from fcm.run import Report
+from fcm.shooting.fixed_frequency import held
+from fcm.shooting.initial_orbits import first_point, solution_at
+from fcm.shooting.orbit_record import Sample, sampled, settled
+from fcm.shooting.periodic import Poll, shoot, without_end
+from fcm.shooting.problem import OrbitProblem
+from fcm.shooting.steady_state import FREE_CYCLES, Steady, steady
+from fcm.shooting.trace import shown
+from fcm.time_domain.cycle_measures import Measure
+from fcm.time_domain.errors import CycleError, SimulationError
+from fcm.time_domain.simulation import cycles_from
+from fcm.time_domain.state import State
+from fcm.time_domain.system import System
+
+FAR = 0.5  # distance along the curve, in units of the motion, that is not continued at once
+ASTRAY = 0.6  # distance from what the direction foretells, relative to the way, beyond which a solution
+CLOSE = 0.05  # is another branch; but never within this distance
+SMALLEST = 1e-6  # part of the way between two frequencies that is not divided further: jumps are known to it
+BEYOND = 0.1  # part of it, past the end of a branch, where the motion is simulated: nearer it would linger
+LEAP = 0.005  # part of the frequency by which a motion that repeats after no single period is taken at once,
+ON_THE_WAY = 10  # and the cycles for which it is simulated after each leap
+MOST_NAMED = 5  # frequencies in a sentence
+JUMP = 0.01  # relative change of an amplitude that is one
+
+
+@dataclass(frozen=True)
+class Visit:
+    """What there was at one frequency, and what the next one goes on from."""
+
+    number: int  # in the order of the sweeps, from 0
+    sample: Sample | None  # the motion, if it was steady
+    state: State
+    went_on: bool  # whether the sample is a periodic solution that is continued
+    jumps: tuple[Jump, ...]  # on the way to it
+    restless: tuple[str, ...]  # all until then
+    refused: tuple[tuple[str, str], ...]
+
+
+STATES = (Visit, Sample, State, Measure, Steady)  # what is saved consists of these
+
+
+class Visitor:
+    """Sweeps of one scene; what they have found is there whenever they are interrupted, as by `poll`."""
+
+    def __init__(self, scene: Scene, poll: Poll = without_end) -> None:
+        self.scene, self.problem, self.poll = scene, OrbitProblem(scene), poll
+        self.newton = Newton(self.problem)
+        self.points: list[Sample] = []
+        self.sweep: list[str] = []
+        self.jumps: list[Jump] = []
+        self.restless: dict[str, None] = {}  # frequencies without steady motion, in order
+        self.refused: dict[str, str] = {}  # frequencies at which no cycle can be computed, and why
+        self._here: Sample | None = None  # the periodic solution that is continued
+        self._state = State.rest(scene)  # the motion, where there is none
+        self._sample: Sample | None = None  # what is steady now
+
+    def run(self, frequencies: Sequence[float], report: Report | None = None) -> None:
+        """Visit increasing frequencies [rad/s] upwards, then downwards; every visit is saved."""
+        ways = (("up", omega) for omega in frequencies), (("down", omega) for omega in reversed(frequencies))
+        visits = [pair for way in ways for pair in way]
+        report = report or Report(lambda _fraction, _text: None)
+        done = self._go_on(report.saved, visits)
+        for number, (sweep, omega) in enumerate(visits[done:], done):
+            jumps = len(self.jumps)
+            report.begins(f"{sweep}, {shown(self.scene, omega)}")
+            self._go(omega, sweep)
+            self._note(sweep)
+            known = tuple(self.restless), tuple(self.refused.items())
+            went_on = self._here is not None
+            new = tuple(self.jumps[jumps:])
+            report.save(Visit(number, self._sample, self._state, went_on, new, *known))
+            report((number + 1) / len(visits), f"{sweep}, {shown(self.scene, omega)}")
+
+    def _note(self, sweep: str) -> None:
+        """The motion at a frequency that was visited, if it is steady."""
+        if self._sample is not None:
+            self.points.append(self._sample)
+            self.sweep.append(sweep)
+
+    def _go_on(self, saved: Sequence[Any], visits: Sequence[tuple[str, float]]) -> int:
+        """Be where an interrupted run was; the number of visits that it has made."""
+        by_number = {visit.number: visit for visit in saved if isinstance(visit, Visit)}
+        made = [by_number[number] for number in takewhile(by_number.__contains__, range(len(visits)))]
+        for visit, (sweep, _) in zip(made, visits, strict=False):
+            self._sample, self._state = visit.sample, visit.state
+            self.jumps += visit.jumps
+            self.restless, self.refused = dict.fromkeys(visit.restless), dict(visit.refused)
+            self._note(sweep)
+        if made and made[-1].went_on:
+            self._here = self._sample
+        return len(made)
+
+    @property
+    def reason(self) -> str:
+        """Which frequencies have no steady motion, or none that can be computed, else ''."""
+        refused = next(iter(self.refused.values()), "")
+        if not self.restless:
+            return refused
+        first = list(self.restless)[:MOST_NAMED]
+        more = f" and {len(self.restless) - MOST_NAMED} more" if len(self.restless) > MOST_NAMED else ""
+        cycles = sum(FREE_CYCLES)
+        restless = f"at {', '.join(first)}{more} the motion does not become steady within {cycles} cycles"
+        return f"{restless}; {refused}" if refused else restless
+
+    def _go(self, omega: float, sweep: str) -> None:
+        """Bring the motion to a frequency."""
+        while self._here is not None and not self._continue(omega):
+            lost, before = float(self._here.z[-1]), self._sample
+            self._settle(self._here.state, lost + BEYOND * (omega - lost))
+            after = self._sample
+            if self._here is None:
+                self._settle(self._state, omega)
+            self._note_jump(sweep, lost, before, after or self._sample)
+        if self._sample is None:
+            self._begin(omega)
+        elif self._sample.frequency != omega:
+            self._sweep(self._sample.frequency, omega)
+            self._settle(self._state, omega)
+        if self._sample is None and shown(self.scene, omega) not in self.refused:
+            self.restless[shown(self.scene, omega)] = None
+
+    def _begin(self, omega: float) -> None:
+        """Where there is nothing to continue: a stable periodic solution, or the motion from rest."""
+        try:
+            orbit = solution_at(self.scene, omega, self.poll)
+        except CycleError as error:
+            self.refused[shown(self.scene, omega)] = str(error)
+            return
+        except SimulationError:  # none near harmonic balance, nor near the motion from rest
+            return
+        try:
+            z = first_point(self.problem, orbit, self.poll)
+        except SimulationError as error:  # the motion is not determined, or not with this start
+            self.refused[shown(self.scene, omega)] = str(error)
+            return
+        if not (orbit.stable and self._take(z)):
+            self._settle(State.rest(self.scene), omega)
+
+    def _take(self, z: FloatArray) -> bool:
+        """Continue with a periodic solution near z at its frequency, if it is stable."""
+        if not held(self.newton, z):
+            return False
+        direction = np.asarray(self.newton.tangent) * np.asarray(self.newton.scale)
+        sample = sampled(self.problem, np.array(self.newton.z), direction)
+        if sample.stable:
+            self._here, self._sample, self._state = sample, sample, sample.state
+        return sample.stable
+
+    def _note_jump(self, sweep: str, at: float, before: Sample | None, after: Sample | None) -> None:
+        if before is not None and after is not None:
+            old, new = before.measure.amplitude, self._brought_back(after, at).measure.amplitude
+            if (np.abs(new - old) > JUMP * np.maximum(new, old)).any():
+                self.jumps.append(Jump(sweep, at, old, new))
+
+    def _brought_back(self, after: Sample, at: float) -> Sample:
+        """The motion beyond the end of a branch at the frequency of the end itself, or as near as it goes.
+
+        It is the one before where there was no jump: where the period doubles, or a corner was in the way.
+        """
+        kept = self._here, self._sample, self._state
+        if after.steady is None:
+            self._here = self._sample = after
+            self._continue(at)
+        else:
+            self._settle(after.state, at)
+        there = self._sample or after
+        self._here, self._sample, self._state = kept
+        return there
+
+    def _continue(self, omega: float) -> bool:
+        """Follow the periodic solution to a frequency, or as near as it is stable."""
+        assert self._here is not None
+        step = omega - float(self._here.z[-1])
+        smallest = SMALLEST * abs(step)
+        while (left := omega - float(self._here.z[-1])) != 0.0:
+            self.poll()
+            if self._near(omega if abs(step) >= abs(left) else omega - left + step):
+                step *= 2.0
+                continue
+            step *= 0.25
+            if abs(step) < smallest:
+                return False
+        return True
+
+    def _near(self, omega: float) -> bool:
+        """Go to the stable periodic solution of the same branch at a frequency nearby, if there is one."""
+        here = self._here
+        assert here is not None
+        self.problem.measure(here.z)
+        scale = np.array(self.problem.scale)
+        rate = here.direction[-1]
+        way = here.direction * ((omega - here.z[-1]) / rate) if rate else np.full(here.z.size, np.inf)
+        length = float(np.linalg.norm(way / scale))  # of arc
+        if not length <= FAR:
+            return False
+        guess = here.z + way
+        guess[-1] = omega
+        if not held(self.newton, guess, length):
+            return False
+        astray = float(np.linalg.norm((np.asarray(self.newton.z) - guess) / scale))
+        return astray <= max(ASTRAY * length, CLOSE) and self._take(np.array(self.newton.z))
+
+    def _sweep(self, begin: float, omega: float) -> None:
+        """Simulate the way from one frequency to another: a leap may end in another motion than a sweep."""
+        count = int(np.ceil(abs(omega - begin) / (LEAP * min(omega, begin))))
+        for between in np.linspace(begin, omega, count + 1)[1:-1].tolist():
+            for _, end in cycles_from(System(self.scene, between), ON_THE_WAY, self._state):
+                self.poll()
+                self._state = end
+
+    def _settle(self, state: State, omega: float) -> None:
+        """Simulate from a state until the motion is steady."""
+        self._here, self._sample, system = None, None, System(self.scene, omega)
+        found = steady(system, state, self.poll)
+        if isinstance(found, State):
+            self._state = found
+            return
+        self._state = found.state
+        if found.periods != 1:
+            self._sample = settled(omega, found)
+            return
+        orbit = shoot(system, found.state, self.poll)
+        if orbit is not None:
+            with suppress(SimulationError):  # resonant but for rounding: no motion is determined
+                self._take(first_point(self.problem, orbit, self.poll))

@@ -1,0 +1,1 @@
+"""Derivatives of the peaks of a response by the numbers of its scene."""

@@ -1,0 +1,219 @@
+"""One peak of a curve: the point, whether it is smooth or a corner, and its derivatives by a number."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+from scipy.optimize import brentq
+
+from fcm.continuation.corrector import Newton
+from fcm.harmonic_balance.dense_jacobian import jacobian_of
+from fcm.harmonic_balance.residual import Balance
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray, Scene
+from fcm.scene.draft import Number
+from fcm.sensitivity.parameter_derivatives import Rates, growth_of
+
+STEP = 1e-4  # of a difference: of a number, and of a length along the curve in its own units
+NEAR = 1e-6  # length along the curve to both sides of a peak, where its slope has the one sign and the other
+FLAT = 1e-5  # slope over size at a distance NEAR, below which a peak is smooth
+STENCIL = ((1, 2.0 / 3.0), (2, -1.0 / 12.0))  # of the first derivative, of the fourth order
+ONE_SIDED = ((0, -25.0 / 12.0), (1, 4.0), (2, -3.0), (3, 4.0 / 3.0), (4, -0.25))  # for numbers at a limit
+LOOKS = 8  # Newton steps from where a peak is said to be to where it is
+REACH, LANDED = 1e-2, 1e-14  # lengths along the curve: within which a corner moves, and to which it is found
+FOUND = 1e-10  # length of the last of them
+
+
+class Kind(Enum):
+    """What a peak is, on which its derivatives depend."""
+
+    SMOOTH = "smooth"
+    CORNER = "corner"
+    EDGE = "end of range"
+    UNKNOWN = "unknown"
+
+
+@dataclass(frozen=True)
+class Moved:
+    """The balance with other values of a number: weights of a derivative, with the balances."""
+
+    terms: list[tuple[float, Newton]]
+
+
+def moved_by(scene: Scene, number: Number, harmonics: tuple[int, ...]) -> Moved:
+    each = number.each(scene)
+    size = max(abs(value) for _, value, _ in each)
+    step = STEP * (size or 1.0)
+    inside = all(not number.rule.fault(value - 2.0 * step) for _, value, _ in each)
+    terms = [(sign * k, sign * w) for k, w in STENCIL for sign in (1, -1)] if inside else list(ONE_SIDED)
+    draft = scene.draft
+    assert draft is not None
+    found = []
+    for k, weight in terms:
+        values = {one.addresses[0]: value + k * step * share for one, value, share in each}
+        moved = replace(draft.curve(scene, {}, values), draft=None)
+        found.append((weight / step, Newton(System(moved, harmonics).balance())))
+    return Moved(found)
+
+
+class Peak:
+    """One peak: the point, the direction of the curve, and what it is."""
+
+    def __init__(self, system: System, dof: int, z: FloatArray, edge: bool) -> None:
+        self.dof, self.newton, self.edge = dof, Newton(system.balance()), edge
+        self.kind, self.margin, self.curvature = Kind.UNKNOWN, -1, np.nan
+        balance = self.newton.problem
+        balance.measure(z)
+        self.scale = np.array(balance.scale)
+        self.unit = np.eye(z.size)[-1]  # the curve is met across this, in scaled coordinates
+        self.z = np.array(z)
+        if not edge:
+            self.newton.scale[:], self.newton.z[:], self.newton.row[:] = self.scale, z, self.unit
+            if not self.newton.poll():
+                return
+            self.unit = np.array(self.newton.tangent)
+        point = self.solved(self.newton, z)
+        if point is None:
+            return
+        self.z = point
+        self.kind = Kind.EDGE if edge else self._kind()
+
+    def solved(self, newton: Newton, guess: FloatArray) -> FloatArray | None:
+        """The point of a curve in the plane across the direction through the guess; tangent is that there."""
+        newton.scale[:], newton.z[:], newton.row[:] = self.scale, guess, self.unit
+        if not newton.correct(1.0):
+            return None
+        point = np.array(newton.z)
+        return point if newton.poll() else None
+
+    def slope(self, newton: Newton, z: FloatArray) -> float:
+        """Growth of the amplitude along the curve, over a unit of length, at a point just solved."""
+        newton.problem.evaluate(z)
+        newton.problem.report(z, np.ascontiguousarray(np.asarray(newton.tangent) * self.scale))
+        return float(newton.problem.growth[self.dof])
+
+    def along(self, length: float) -> FloatArray:
+        """A guess at a length along the curve."""
+        guess: FloatArray = self.z + length * self.scale * self.unit
+        return guess
+
+    def _kind(self) -> Kind:
+        """Find the peak next to where it is said to be, and what it is."""
+        before, after = self._beside(-NEAR), self._beside(NEAR)
+        size = self._height(self.newton, self.z)
+        if before is None or after is None:
+            return Kind.UNKNOWN
+        if abs(before[0]) < FLAT * size and abs(after[0]) < FLAT * size:
+            return Kind.SMOOTH if self._climb() else Kind.UNKNOWN
+        changed = np.flatnonzero(before[1] * after[1] < 0.0)
+        if changed.size != 1:
+            return Kind.UNKNOWN
+        self.margin = int(changed[0])
+        return Kind.CORNER
+
+    def _beside(self, length: float) -> tuple[float, FloatArray] | None:
+        """Slope and margins at a length along the curve."""
+        point = self.solved(self.newton, self.along(length))
+        if point is None:
+            return None
+        self.newton.problem.bound(point)
+        return self.slope(self.newton, point), np.array(self.newton.problem.margin)
+
+    def _climb(self) -> bool:
+        """Newton's method along the curve to where the slope is 0."""
+        for _ in range(LOOKS):
+            self.curvature = bend = self.bend()
+            point = self.solved(self.newton, self.z)
+            if point is None or not bend < 0.0:
+                return False
+            step = -self.slope(self.newton, point) / bend
+            if abs(step) < FOUND:
+                self.z = point
+                self.unit = np.array(self.newton.tangent)
+                return True
+            if abs(step) > STEP:
+                return False
+            moved = self.solved(self.newton, self.along(step))
+            if moved is None:
+                return False
+            self.z = moved
+        return False
+
+    def bend(self) -> float:
+        """Derivative of the slope along the curve."""
+        terms = ((sign * k, sign * w) for k, w in STENCIL for sign in (1, -1))
+        total = 0.0
+        for k, weight in terms:
+            point = self.solved(self.newton, self.along(k * STEP))
+            total += np.nan if point is None else weight / STEP * self.slope(self.newton, point)
+        return total
+
+    def derivatives(self, rates: Rates, moved: Moved) -> tuple[float, float]:
+        """Of the height and the frequency of the peak by a number."""
+        if self.kind is Kind.UNKNOWN:
+            return np.nan, np.nan
+        if self.solved(self.newton, self.z) is None:
+            return np.nan, np.nan
+        balance = self.newton.problem
+        assert isinstance(balance, Balance)
+        if self.kind is Kind.CORNER:
+            return self._of_corner(moved)
+        across = self._across(rates, balance)
+        height = self._growth(rates, balance, across)
+        if self.kind is Kind.EDGE:
+            return height, 0.0
+        alpha = -self._slope_by_number(moved) / self.curvature
+        return height, float(across[-1] + alpha * self.unit[-1] * self.scale[-1])
+
+    def _across(self, rates: Rates, balance: Balance) -> FloatArray:
+        """w: how the point in the plane across the curve moves."""
+        R_p = rates.at(balance, self.z)[0]
+        inner = jacobian_of(balance) * self.scale
+        matrix = np.vstack((inner / self.scale[:-1, None], self.unit))
+        found: FloatArray = np.linalg.solve(matrix, np.append(-R_p / self.scale[:-1], 0.0)) * self.scale
+        return found
+
+    def _growth(self, rates: Rates, balance: Balance, direction: FloatArray) -> float:
+        """Rate of the amplitude along a direction, and by a number."""
+        X = rates.at(balance, self.z)[1]
+        balance.report(self.z, np.ascontiguousarray(direction))
+        return float(growth_of(balance, X)[self.dof] + balance.growth[self.dof])
+
+    def _slope_by_number(self, moved: Moved) -> float:
+        """c_p: derivative of the slope by the number, in the plane across the curve."""
+        total = 0.0
+        for weight, newton in moved.terms:
+            point = self.solved(newton, self.z)
+            total += np.nan if point is None else weight * self.slope(newton, point)
+        return total
+
+    def _of_corner(self, moved: Moved) -> tuple[float, float]:
+        """Derivatives of the height and the frequency of a corner by the number."""
+        total = np.zeros(2)
+        for weight, newton in moved.terms:
+            point = self._landed(newton)
+            total += np.nan if point is None else weight * np.array([self._height(newton, point), point[-1]])
+        return float(total[0]), float(total[1])
+
+    def _landed(self, newton: Newton) -> FloatArray | None:
+        """The corner of a curve next to the peak."""
+
+        def margin(length: float) -> float:
+            point = self.solved(newton, self.along(length))
+            if point is None:
+                raise ArithmeticError
+            newton.problem.bound(point)
+            return float(newton.problem.margin[self.margin])
+
+        try:
+            at = brentq(margin, -REACH, REACH, xtol=LANDED)
+            return self.solved(newton, self.along(at))
+        except (ArithmeticError, ValueError):  # no curve there, or no such corner
+            return None
+
+    def _height(self, newton: Newton, z: FloatArray) -> float:
+        newton.problem.evaluate(z)
+        newton.problem.report(z, np.zeros(z.size))
+        return float(newton.problem.output[self.dof])

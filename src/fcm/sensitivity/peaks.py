@@ -1,0 +1,109 @@
+r"""Sensitivities: the derivatives of a peak, its height and its frequency, by the numbers of a scene.
+
+With the balance R(z, p) = 0, z the unknowns and the frequency, and t the direction of the curve, solutions
+move with a number p by w, for which R_z w = -R_p and t . w = 0, and along the curve by alpha t. The peak of
+an amplitude A has A_z . t = 0: the derivative of its height is A_p + A_z . w, exact from the Jacobian. Where
+it goes along the curve is decided by the slope c = A_z . t / |t|, which stays 0: alpha = -c_p / c_s, with c
+at solutions at p +- delta, and at s +- delta along the curve.
+
+A peak at a corner of the curve, where a margin of the problem is 0, is landed on with the number at p +-
+delta: its derivatives are differences of the fourth order, and hold as long as the peak is at the corner.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray, Scene
+from fcm.scene.address import Addresses
+from fcm.scene.draft import Draft, Number, number_of
+from fcm.sensitivity.parameter_derivatives import rates_of
+from fcm.sensitivity.peak import Kind, Peak, moved_by
+
+
+@dataclass(frozen=True)
+class Sensitivities:
+    """Of the peaks of one curve; NaN where they cannot be told."""
+
+    numbers: tuple[str, ...]  # key paths
+    values: FloatArray  # (number,)
+    height: FloatArray  # (dof, number) derivative of the peak's height
+    frequency: FloatArray  # (dof, number) and of its frequency [rad/s]
+    kind: tuple[Kind, ...]  # (dof,)
+
+
+def numbers_of(scene: Scene) -> list[Number]:
+    """The numbers of a scene by which peaks have derivatives: contacts, forces, loads, modes.
+
+    Contacts of one group are moved together. The scene is that of one curve, `settled`.
+    """
+    assert scene.draft is not None
+    parts = scene.draft.parts
+    contacts = [draft.get("group") or draft["name"] or str(i) for i, draft in enumerate(parts["contact"])]
+    load = {
+        name: "gap" if "gap" in draft else "n_0"
+        for name, draft in zip(contacts, parts["contact"], strict=True)
+    }
+    keys = [f"contact.{name}.{key}" for name in load for key in ("mu", "k_u", "k_v", load[name])]
+    forces, bases = _names(parts["force"]), len(parts["base"])
+    keys += [f"force.{name}.amplitude" for name in forces]
+    phases = ["base.phase"] * bases + [f"force.{name}.phase" for name in forces]
+    keys += phases if len(phases) > 1 else []  # that of one alone shifts the time
+    keys += ["base.acceleration"] * bases + [f"load.{name}.force" for name in _names(parts["load"])]
+    own = scene.modal.mass.size - scene.modal.added  # not the flexibility of the modes left out
+    keys += [f"modal.{key}.{i}" for key in ("frequency", "damping") for i in range(own)]
+    known = Addresses(parts)
+    found = (number_of(scene, key) for key in keys if known.numbers.get(key) or key.startswith("contact."))
+    return [number for number in found if number is not None]
+
+
+def _names(drafts: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Of forces or loads, as in key paths: by number where a name is not the only one."""
+    names = [draft["name"] for draft in drafts]
+    return [name if name and names.count(name) == 1 else str(i) for i, name in enumerate(names)]
+
+
+def settled(scene: Scene) -> Scene:
+    """The scene of one curve as if nothing had been swept: its values are those of the curve."""
+    draft = scene.draft
+    if not isinstance(draft, Draft):
+        raise ValueError(f"the scene {scene.name!r} was not read from a file or a dict")
+    return replace(scene, draft=draft.fixed(scene), parameters={})
+
+
+def sensitivities(
+    scene: Scene, harmonics: tuple[int, ...], peaks: Sequence[tuple[int, FloatArray, bool]], dofs: int
+) -> Sensitivities:
+    """Derivatives of peaks by every number of a scene (of one curve).
+
+    Parameters
+    ----------
+    peaks : sequence of (dof, z, edge)
+        The degree of freedom by its place, a point (unknown + 1,) at or very near its peak, and whether the
+        peak is where the range ends.
+    dofs : int
+        How many degrees of freedom there are.
+    """
+    scene = settled(scene)
+    system = System(scene, harmonics)
+    points = [Peak(system, d, z, edge) for d, z, edge in peaks]
+    numbers = numbers_of(scene)
+    height, frequency = (np.full((dofs, len(numbers)), np.nan) for _ in range(2))
+    for k, number in enumerate(numbers):
+        try:
+            rates = rates_of(system, number.key)
+        except ValueError:  # it changes what rigid-body motions there are
+            continue
+        moved = moved_by(scene, number, harmonics)
+        for point in points:
+            height[point.dof, k], frequency[point.dof, k] = point.derivatives(rates, moved)
+    kind = [Kind.UNKNOWN] * dofs
+    for point in points:
+        kind[point.dof] = point.kind
+    values = np.array([number.value(scene) for number in numbers])
+    return Sensitivities(tuple(number.key for number in numbers), values, height, frequency, tuple(kind))

@@ -1,0 +1,61 @@
+"""A periodic motion that is reached from one with more damping, which is taken away in steps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray, Scene
+from fcm.shooting.fixed_frequency import held
+from fcm.shooting.problem import OrbitProblem
+
+DAMPED = 0.03  # ratio of the least damped mode from which motions are found from afar
+SHORTEST = 0.999  # factor of the damping from step to step, nearer to which it leads no further
+FIRST, LONGEST = 0.5, 0.2  # factors of the first step, of the longest
+
+
+def more_damped(scene: Scene) -> tuple[Scene, float] | None:
+    """The scene with all damping larger, and by what factor; None if it has enough, or none at all."""
+    least = float(scene.modal.damping.min())
+    if not 0.0 < least < DAMPED:
+        return None
+    return damped(scene, DAMPED / least), DAMPED / least
+
+
+def damped(scene: Scene, factor: float) -> Scene:
+    """The scene with all damping times a factor."""
+    return replace(scene, modal=replace(scene.modal, damping=scene.modal.damping * factor))
+
+
+def less_damped(scene: Scene, z: FloatArray, factor: float) -> FloatArray | None:
+    """The motion of a scene from z, one with damping larger by a factor; None where the way ends before."""
+    points = [(np.log(factor), z)]
+    ratio = FIRST
+    while factor > 1.0 and ratio < SHORTEST:
+        new = max(1.0, factor * ratio)
+        found = next(_held(OrbitProblem(damped(scene, new)), _guesses(points, np.log(new))), None)
+        if found is None:
+            ratio = np.sqrt(ratio)
+            continue
+        factor, ratio = new, max(ratio**1.5, LONGEST)
+        points = [points[-1], (np.log(new), found)]
+    return points[-1][1] if factor == 1.0 else None
+
+
+def _guesses(points: list[tuple[float, FloatArray]], at: float) -> Iterator[FloatArray]:
+    """Along the chord through the last two points, and the last one."""
+    if len(points) > 1:
+        (before, one), (last, other) = points
+        yield other + (other - one) * (at - last) / (last - before)
+    yield points[-1][1]
+
+
+def _held(problem: OrbitProblem, guesses: Iterator[FloatArray]) -> Iterator[FloatArray]:
+    """The motions that Newton's method comes to at the frequency of each guess."""
+    newton = Newton(problem)
+    for guess in guesses:
+        if held(newton, guess):
+            yield np.array(newton.z)

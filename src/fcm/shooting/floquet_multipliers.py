@@ -1,0 +1,58 @@
+"""Floquet's multipliers of a motion in time, by the monodromy matrix of its sequence of states."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.stability.eigenvalues import eigenvalues
+from fcm.stability.many_monodromy import ManyMonodromy
+from fcm.stability.monodromy import Monodromy
+from fcm.stability.multipliers import MANY_CONTACTS
+from fcm.stability.stiffness import Stiffness
+from fcm.time_domain.segment_sequence import SegmentSequence
+from fcm.time_domain.segments import Segments
+from fcm.time_domain.system import System
+
+ComplexArray = npt.NDArray[np.complex128]
+
+
+class Floquet:
+    """`multipliers` of motions of a scene at any frequency; a workspace."""
+
+    def __init__(self, system: System) -> None:
+        scene, unit = system.scene, 1.0 / np.sqrt(system.scene.modal.mass)
+        held = [one.contact for one in scene.held if not one.open]
+        contacts = (*scene.contacts, *held)
+        law = np.array([[c.mu, c.k_u, c.k_v, c.n_0] for c in contacts], dtype=np.float64).reshape(-1, 4)
+        directions = np.array([way for c in contacts for way in (c.tangential, c.normal)])
+        modal = scene.modal
+        ports = (modal.shapes * unit[:, None]) @ directions.reshape(-1, modal.shapes.shape[1]).T
+        self.states = SegmentSequence(law, len(held), system.tangential, system.normal)
+        self.monodromy: Monodromy | ManyMonodromy
+        if len(law) < MANY_CONTACTS:
+            stiffness = Stiffness(ports, modal.frequency, modal.damping, None, law)
+            self.monodromy = Monodromy(stiffness, self.states)
+        else:
+            none = np.zeros(modal.frequency.size, dtype=bool)
+            self.monodromy = ManyMonodromy(ports, modal.frequency, modal.damping, none, law, self.states)
+
+    def multipliers(self, segments: Segments, duration: float) -> ComplexArray:
+        """Of segments that last for a duration [s], after which the motion repeats.
+
+        Of the modal displacements and velocities, and of the sliders that remember where they rest when the
+        period begins; infinite where a disturbance grows beyond all numbers.
+        """
+        self.states.take(segments, duration)
+        self.monodromy.follow(2.0 * np.pi / duration)
+        matrix = self.monodromy.matrix()
+        found = eigenvalues(matrix)
+        return np.full(len(matrix), np.inf, dtype=complex) if found is None else np.array(found)
+
+
+def floquet_of(system: System) -> Floquet:
+    """The workspace of a system, one for all frequencies."""
+    if "floquet" not in system.made:
+        system.made["floquet"] = Floquet(system)
+    found: Floquet = system.made["floquet"]
+    return found

@@ -1,0 +1,194 @@
+"""Motions found by raising the level of the forces from rest, with the exact motion itself.
+
+At the frequencies at which a balance follows it (`branches.force_level`), the level is followed from nearly
+nothing, where the motion is linear, until it is well beyond where that of a few harmonics comes back to 1.
+Every passing of the level 1 is a motion, and an exact one straight away. From motions that are known there
+and that this curve does not pass, or where it stalls does not come to, it is followed as well, both ways.
+Where it turns back below 1 the window of several motions may be at other frequencies (`level_turns`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fcm.continuation import Checkpoint, Events, FollowOptions, Path, Status, all_branches, follow
+from fcm.continuation.all_branches import Follow
+from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray, Scene
+from fcm.shooting.fixed_frequency import held
+from fcm.shooting.force_level_problem import AtLevel, LevelProblem
+from fcm.shooting.harmonic_balance_state import FEW
+from fcm.shooting.linear_orbits import about_rest
+from fcm.shooting.periodic import Poll, within_unit_circle
+from fcm.shooting.work_budget import Bounded
+
+if TYPE_CHECKING:
+    from fcm.branches.level_turns import Turn
+    from fcm.harmonic_balance.system import System
+
+Known = Callable[[float], Sequence[FloatArray]]
+
+STEP = 0.2  # longest, along the curve of a level,
+SHORTER = 0.25  # and of that, where the curve has come back
+BELOW = 0.5  # part of the level up to which contacts are linear, down to which others are followed
+
+
+@dataclass(frozen=True)
+class Raised:
+    """The motions (unknown + 1,) that the level leads to from a frequency [rad/s], the frequency last, and
+    whether it was followed to its end; if not, whether because the time for that was over."""
+
+    omega: float
+    motions: tuple[FloatArray, ...]
+    complete: bool
+    over: bool = False
+
+
+def raised(scene: Scene, known: Known, bounded: Bounded) -> Iterator[Raised]:
+    """What the level leads to from each frequency at which it is followed, in an equal share of the time; and
+    once more, to the end, where that was too short and others leave more than it.
+
+    known : the motions (unknown + 1,) that are known at a frequency.
+    """
+    from fcm.branches.force_level import looked_at
+    from fcm.harmonic_balance.system import System
+
+    whole = scene.whole()
+    if not (whole.modal.frequency.all() and whole.contacts):
+        return
+    one = System(whole, (1,))
+    one.work.poll = bounded.poll
+    waiting = [(omega, 0.0) for omega in looked_at(one)]
+    while waiting:
+        (omega, before), *waiting = waiting
+        if (share := bounded.share(1 + len(waiting))) > before:
+            found = raised_at(scene, one, omega, known(omega), bounded.poll)
+            waiting += [(omega, share)] * found.over
+            yield found
+
+
+def raised_at(scene: Scene, one: System, omega: float, known: Sequence[FloatArray], poll: Poll) -> Raised:
+    """The same at one frequency; one is the balance of one harmonic. What was found is there, too, where look
+    raises `TooLongError`."""
+    from fcm.harmonic_balance.work_budget import TooLongError
+
+    found = list[FloatArray]()
+    try:
+        complete = _followed(scene, one, omega, known, poll, found)
+    except TooLongError:
+        return Raised(omega, tuple(found), False, over=True)
+    return Raised(omega, tuple(found), complete)
+
+
+def _followed(
+    scene: Scene, one: System, omega: float, known: Sequence[FloatArray], poll: Poll, found: list[FloatArray]
+) -> bool:
+    """Whether the level was followed to its end; what it leads to is added to what is found."""
+    from fcm.branches.force_level import BEFORE, WEAK
+    from fcm.branches.level_turns import turns_of
+    from fcm.branches.linear_limits import least
+
+    def passes(path: Path) -> None:
+        found.extend(np.append(z[:-1], omega) for z in path.z[path.parameter == 1.0])
+
+    linear, top = BEFORE * least(one, omega), _top(one, omega)
+    if linear >= top:
+        return True
+    linear, problem = min(linear, 1.0), LevelProblem(scene, omega)
+    span, along = (BELOW * max(linear, WEAK[0]), top), partial(_along, poll, passes)
+    rest = _from_rest(problem, linear, span, along)
+    if rest is None:
+        return False
+    there = [np.append(z[:-1], 1.0) for z in known]
+    curves = all_branches(lambda: problem, there, span, FollowOptions(STEP), None, along, rest)
+    found.extend(_beside(scene, [turn for path in curves.paths for turn in turns_of(path, omega)], poll))
+    return curves.status is Status.COMPLETE
+
+
+def _along(
+    poll: Poll,
+    passes: Callable[[Path], None],
+    problem: LevelProblem,
+    start: FloatArray,
+    span: tuple[float, float],
+    wanted: Events,
+    options: FollowOptions,
+    *,
+    forward: bool,
+    progress: object = None,
+) -> Path:
+    """As `follow`; passes is told of the path also where poll raises `TooLongError`."""
+    from fcm.harmonic_balance.work_budget import TooLongError
+
+    checkpoints = list[Checkpoint]()
+
+    def watch(checkpoint: Checkpoint) -> None:
+        checkpoints[:] = [checkpoint]
+        poll()
+
+    try:
+        path = follow(problem, start, span, wanted, options, forward=forward, watch=watch)
+    except TooLongError:
+        for checkpoint in checkpoints:
+            passes(checkpoint.path(Status.INTERRUPTED))
+        raise
+    passes(path)
+    return path
+
+
+def _from_rest(
+    problem: LevelProblem, linear: float, span: tuple[float, float], along: Follow
+) -> tuple[Path] | None:
+    """The curve from where contacts are linear to the end of the span; None if it cannot be followed.
+
+    One that stalls is as far as it goes: from there on it would not be followed by other steps either.
+    """
+    for step in (STEP, SHORTER * STEP):
+        for z in _begun(problem, linear):
+            path = along(problem, z, (0.0, span[1]), Events((1.0,)), FollowOptions(step), forward=True)
+            whole = path.status is Status.COMPLETE and path.parameter[-1] == span[1]
+            if whole or (path.status is Status.STALLED and path.z.shape[0]):
+                return (path,)
+    return None
+
+
+def _beside(scene: Scene, turns: Sequence[Turn], poll: Poll) -> Iterator[FloatArray]:
+    """Stable motions (unknown + 1,) beside turns below the level 1, at frequencies within the range."""
+    from fcm.branches.level_turns import beside, came
+
+    problem, (low, high) = AtLevel(scene), scene.frequency_range
+    newton = Newton(problem)
+    for turn in turns:
+        poll()
+        if turn.may_come and came(problem, newton, turn):
+            for z in (one for one in beside(newton) if low <= one[-1] <= high):
+                shot = problem.shot(z)
+                if shot is not None and within_unit_circle(shot.multipliers):
+                    yield z
+
+
+def _begun(problem: LevelProblem, linear: float) -> Iterator[FloatArray]:
+    """The motions (unknown + 1,) at levels at which contacts are linear, or nearly so."""
+    from fcm.branches.force_level import WEAK
+
+    newton = Newton(problem)
+    for level in dict.fromkeys(max(weak, linear) for weak in WEAK):
+        for state in about_rest(problem.scene, problem.omega, level):
+            z = np.append(problem.shooting.unknowns(state), level)
+            if held(newton, z):
+                yield np.array(newton.z)
+                break
+
+
+def _top(one: System, omega: float) -> float:
+    """Up to which level the curve is followed: as that of a few harmonics comes back."""
+    from fcm.branches.force_level import FURTHER, NEAR, solutions
+    from fcm.branches.linear_limits import highest
+
+    reach = solutions(one.with_harmonics(FEW), omega).reach
+    return min(highest(one, omega), reach if np.isfinite(reach) else FURTHER * NEAR)

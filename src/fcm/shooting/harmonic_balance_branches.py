@@ -1,0 +1,177 @@
+"""Branches of the exact motion beside others: what branches of the balance over the range lead to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.continuation import Path
+from fcm.continuation.all_branches import SAME
+from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray, Scene
+from fcm.shooting.fixed_frequency import held
+from fcm.shooting.harmonic_balance_state import MANY, computed_state
+from fcm.shooting.periodic import Poll
+from fcm.shooting.problem import OrbitProblem
+from fcm.time_domain.state import State
+
+if TYPE_CHECKING:
+    from fcm.accuracy.outline import Outline
+    from fcm.harmonic_balance.system import System
+
+ACCURACY = 1e-2  # of the balance that exact motions begin near
+TOGETHER = 8  # points, within which one top speaks for those of other degrees of freedom
+AROUND = (1, 2, 3, 4, 6, 8, 11, 16, 23, 32)  # points from a top, where one may lead to the same motion
+SOME = (1, 2, 3, 4, 5)  # harmonics: with three a closed branch may be as far off as another one is
+Place = tuple[float, State]  # frequency [rad/s], and a guess there
+
+
+def passes(path: Path, z: FloatArray, problem: OrbitProblem) -> bool:
+    """Whether a path passes the motion z, which need not be one of its points."""
+    before, after = path.z[:-1], path.z[1:]
+    rise, ahead = after[:, -1] - before[:, -1], z[-1] - before[:, -1]
+    across = np.flatnonzero(ahead * (z[-1] - after[:, -1]) <= 0.0)
+    if not across.size:
+        return False
+    problem.measure(z)
+    scale, newton = np.array(problem.scale), Newton(problem)
+    share = np.divide(ahead, rise, out=np.zeros_like(rise), where=rise != 0.0)[across, None]
+    guesses = before[across] + share * (after[across] - before[across])
+    width = np.linalg.norm((after[across] - before[across]) / scale, axis=1)
+    off = np.linalg.norm((guesses - z) / scale, axis=1)
+    return any(_leads_to(newton, guess, z, scale) for guess in guesses[off <= width + SAME])
+
+
+def _leads_to(newton: Newton, guess: FloatArray, z: FloatArray, scale: FloatArray) -> bool:
+    """Whether Newton's method leads from a guess to the motion z, at its frequency."""
+    there = held(newton, np.append(guess[:-1], z[-1]))
+    return there and bool(np.linalg.norm((np.asarray(newton.z) - z) / scale) < SAME)
+
+
+def is_stable(found: Outline, z: FloatArray) -> bool:
+    """Whether small disturbances of a solution (unknown + 1,) of a balance die out."""
+    from fcm.stability.floquet import multipliers_of
+
+    of = multipliers_of(found.system, found.system.scene.frequency_range[1])
+    return bool(of.verdict(z, enough=(1.0,)).stable == 1.0)
+
+
+def states_along(scene: Scene, found: Outline) -> Iterator[tuple[float, FloatArray, Iterator[Place]]]:
+    """The height of each end and top of a balance's branches, itself, and guesses beside it, the nearest
+    first."""
+    for path, shown in zip(found.traced.branches.paths, found.shown, strict=True):
+        beside = [(top, _around(even, top)) for top, even in _tops(path, shown.amplitude)]
+        for top, points in [(0, iter([0])), (-1, iter([-1])), *beside]:
+            guesses = (path.z[i] for i in points)
+            yield (
+                float(shown.amplitude[top].max()),
+                path.z[top],
+                _places(scene, found.system.harmonics, guesses),
+            )
+
+
+def _tops(path: Path, amplitude: FloatArray) -> Iterator[tuple[int, npt.NDArray[np.bool_]]]:
+    """Where degrees of freedom are highest, of points inside the range with an even number of real
+    multipliers above 1; and which points (point,) have that.
+    """
+    even = path.orientation * np.sign(path.direction[:, -1]) > 0.0
+    inside = (path.parameter > path.parameter.min()) & (path.parameter < path.parameter.max())
+    places = np.flatnonzero(even & inside)
+    if not places.size:
+        return
+    highest = np.unique(places[amplitude[places].argmax(axis=0)])
+    apart = np.append(True, np.diff(highest) > TOGETHER)
+    for top in highest[apart].tolist():
+        yield top, even
+
+
+def _around(even: npt.NDArray[np.bool_], top: int) -> Iterator[int]:
+    """A top and the points around it that no fold is between, the nearest first."""
+    for i in (top, *(top + way * step for step in AROUND for way in (-1, 1))):
+        if 0 <= i < len(even) and even[min(i, top) : max(i, top) + 1].all():
+            yield i
+
+
+def _places(scene: Scene, harmonics: tuple[int, ...], points: Iterator[FloatArray]) -> Iterator[Place]:
+    """Guesses from points of a balance."""
+    for z in points:
+        yield float(z[-1]), computed_state(scene, harmonics, z)
+
+
+def converged_balance(scene: Scene, apart: bool, poll: Poll) -> Iterator[Outline]:
+    """The response of the balance with every branch, whose ends and tops lead to those of the exact motion.
+
+    Of many contacts, for which that has one harmonic, only where branches are known to be apart.
+    """
+    from fcm.harmonic_balance.static_equilibrium import RestError
+
+    whole = scene.whole()
+    if not (whole.modal.frequency.all() and whole.contacts) or (len(whole.contacts) >= MANY and not apart):
+        return
+    with suppress(RestError):
+        yield every_balance(whole, poll)
+
+
+def every_balance(whole: Scene, poll: Poll) -> Outline:
+    """The response of the balance with as many harmonics as it takes, and every branch; of many contacts
+    with one harmonic."""
+    from fcm.accuracy.outline import Outline, outlined
+    from fcm.accuracy.refinement import accurate
+    from fcm.branches.search import with_branching, with_isolas
+    from fcm.harmonic_balance.reported_quantities import reported
+
+    if len(whole.contacts) >= MANY:
+        return outlined(_single(whole, poll))
+    found = accurate(_single(whole, poll), ACCURACY)
+    system = found.system
+    traced = with_branching(system, with_isolas(system, found.traced))
+    shown = (reported(system, path) for path in traced.branches.paths[len(found.shown) :])
+    return Outline(system, traced, (*found.shown, *shown), found.seconds)
+
+
+def states_across(scene: Scene, frequencies: Sequence[float], poll: Poll) -> dict[float, list[State]]:
+    """Guesses where branches of the balance pass frequencies [rad/s] that are within the scene's range."""
+    from fcm.harmonic_balance.static_equilibrium import RestError
+
+    whole, (low, high) = scene.whole(), scene.frequency_range
+    inside = [omega for omega in frequencies if low <= omega <= high]  # none where there is no range
+    if not (inside and whole.contacts and whole.modal.frequency.all()):
+        return {}
+    try:
+        found = _outlined(_single(whole, poll))
+    except RestError:
+        return {}
+    harmonics, paths = found.system.harmonics, found.traced.branches.paths
+    return {
+        omega: [computed_state(scene, harmonics, z) for z in _crossings(paths, omega)] for omega in inside
+    }
+
+
+def _crossings(paths: Sequence[Path], omega: float) -> Iterator[FloatArray]:
+    """Places of paths at a frequency, between their points."""
+    for path in paths:
+        before, after = path.z[:-1], path.z[1:]
+        ahead, rise = omega - before[:, -1], after[:, -1] - before[:, -1]
+        for k in np.flatnonzero(ahead * (omega - after[:, -1]) <= 0.0):
+            share = ahead[k] / rise[k] if rise[k] else 0.0
+            yield np.append((before[k] + share * (after[k] - before[k]))[:-1], omega)
+
+
+def _single(whole: Scene, poll: Poll) -> System:
+    """The balance of one harmonic."""
+    from fcm.harmonic_balance.system import System
+
+    one = System(whole, (1,))
+    one.work.poll = poll
+    return one
+
+
+def _outlined(one: System) -> Outline:
+    """The branches of `SOME` harmonics, or of one where there are many contacts."""
+    from fcm.accuracy.outline import outlined
+
+    return outlined(one if len(one.scene.contacts) >= MANY else one.with_harmonics(SOME))

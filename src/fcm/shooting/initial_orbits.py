@@ -1,0 +1,256 @@
+"""Periodic motions from which the curves of a scene are followed: near its harmonic balance, or from rest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from itertools import islice
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray, Scene
+from fcm.shooting.damping_homotopy import less_damped, more_damped
+from fcm.shooting.fixed_frequency import held
+from fcm.shooting.harmonic_balance_branches import Place, is_stable, states_along
+from fcm.shooting.harmonic_balance_state import balanced_states, computed_state
+from fcm.shooting.linear_orbits import started_states
+from fcm.shooting.partly_sticking_orbits import partly_stuck_as_started
+from fcm.shooting.periodic import Orbit, Poll, approached, shoot, without_end
+from fcm.shooting.problem import OrbitProblem
+from fcm.shooting.traction_families import chosen
+from fcm.shooting.undetermined import not_determined, rests_elsewhere
+from fcm.time_domain.errors import SimulationError
+from fcm.time_domain.state import State
+from fcm.time_domain.system import System
+
+if TYPE_CHECKING:
+    from fcm.accuracy.outline import Outline
+
+TRIED = 16  # guesses around a top of the balance, of whose motions the highest is followed,
+AS_HIGH = 0.9  # of the top's height: or the first that is so high, as the balance of one harmonic may be off
+PLACES = 24  # between which the range is looked at with more harmonics, where nothing else was found
+FEWER = 12  # between which it is looked at with more damping, where nothing was found so either
+ONE, MORE = (1,), tuple(range(1, 8))  # harmonics that are looked for, and then corrected
+DISTINCT = 1e-6  # solutions further apart than this, relative to their size, are different
+
+
+class Starts(NamedTuple):
+    """What there is to begin with."""
+
+    points: list[FloatArray]  # z, from which branches are followed
+    missed: dict[float, str]  # of ends of the range why there is none
+    sought: bool  # whether they are from anywhere in the range, as nothing led to one that was looked at
+    apart: bool  # whether the balance has more solutions than there are points: see `converged_balance`
+
+
+def starts(problem: OrbitProblem, poll: Poll = without_end) -> Starts:
+    """Points from which branches are followed.
+
+    At both ends, and at the resonances inside, near every solution of the balance, and from motions in which
+    contacts stick as the scene starts; where that leads to no stable motion at an end, also the one that a
+    motion from rest comes to. Where there is none at all, near the first solution of the balance of one
+    harmonic that leads to a motion, anywhere in the range; else from the first motion with more damping that
+    leads to one without.
+    poll is called now and then.
+    """
+    scene, found, missed = problem.scene, list[FloatArray](), dict[float, str]()
+    inside, apart = inner_resonances(scene), False
+    for omega in (*scene.frequency_range, *inside):
+        guesses, before = balanced_states(scene, omega, poll), len(found)
+        orbits = [
+            *_shot(scene, omega, guesses, poll),
+            *_shot(scene, omega, started_states(scene, omega), poll),
+        ]
+        if scene.start is not None:
+            orbits += _shot(scene, omega, partly_stuck_as_started(scene, omega, poll), poll)
+        try:
+            if omega not in inside and not any(orbit.stable for orbit in orbits):
+                orbits += _from_rest(scene, omega, bool(orbits), poll)
+        except SimulationError as error:
+            missed[omega] = str(error)
+        for orbit in orbits:
+            try:
+                _add(problem, found, first_point(problem, orbit, poll))
+            except SimulationError as error:
+                missed[omega] = str(error)
+        apart = apart or len(found) - before < len(guesses)
+    at_ends = {omega: missed[omega] for omega in missed if omega not in inside}
+    return Starts(found or _anywhere(problem, poll), at_ends, not found, apart)
+
+
+class Along(NamedTuple):
+    """What the branches of a balance lead to: points, whether each is as high as there, and the frequencies
+    [rad/s] and heights of tops at which the balance is stable and nothing as high was found."""
+
+    points: list[FloatArray]
+    alike: bool
+    lacking: list[tuple[float, float]]
+
+
+def along_balance(problem: OrbitProblem, found: Outline, poll: Poll = without_end) -> Along:
+    """Points beside the ends and tops of a balance's branches.
+
+    What `starts` has, at its frequencies, need not lead there: some branches are closed, or are so for the
+    exact motion alone.
+    poll is called now and then.
+    """
+    points, alike, lacking = list[FloatArray](), True, list[tuple[float, float]]()
+    for height, top, places in states_along(problem.scene, found):
+        there, high = list[tuple[float, FloatArray]](), False
+        for place in islice(places, TRIED):
+            there += [(height_of(problem, z), z) for z in _points(problem, place, poll)]
+            high = bool(there) and there[-1][0] >= AS_HIGH * height
+            if high:
+                break
+        if there:  # some may lead to a lower branch
+            _add(problem, points, max(there, key=lambda one: one[0])[1])
+        alike = alike and high
+        if not high and is_stable(found, top):
+            lacking.append((float(top[-1]), height))
+    return Along(points, alike, lacking)
+
+
+def height_of(problem: OrbitProblem, z: FloatArray) -> float:
+    """The greatest amplitude of any degree of freedom."""
+    shot = problem.shot(z)
+    return 0.0 if shot is None else float(shot.amplitude.max())
+
+
+def _points(problem: OrbitProblem, place: Place, poll: Poll) -> Iterator[FloatArray]:
+    """The motion near a guess."""
+    omega, guess = place
+    for orbit in _shot(problem.scene, omega, [guess], poll):
+        with suppress(SimulationError):
+            yield first_point(problem, orbit, poll)
+
+
+def _anywhere(problem: OrbitProblem, poll: Poll) -> list[FloatArray]:
+    """The first point that the balance leads to, at frequencies across the range."""
+    scene = problem.scene
+    for omega in np.linspace(*scene.frequency_range, PLACES + 1)[::-1].tolist():
+        for orbit in _shot(scene, omega, _corrected_states(scene, omega, poll), poll):
+            try:
+                return [first_point(problem, orbit, poll)]
+            except SimulationError:
+                continue
+    return next(_by_damping(problem, poll), [])
+
+
+def _by_damping(problem: OrbitProblem, poll: Poll) -> Iterator[list[FloatArray]]:
+    """The points that motions with more damping lead to, at frequencies across the range."""
+    scene = problem.scene
+    more = more_damped(scene)
+    if more is None:
+        return
+    easier, factor = more
+    for omega in np.linspace(*scene.frequency_range, FEWER + 1).tolist():
+        for orbit in near_balance(easier, omega, poll):
+            poll()
+            with suppress(SimulationError):
+                z = less_damped(scene, first_point(OrbitProblem(easier), orbit, poll), factor)
+                if z is not None:
+                    yield [z]
+
+
+def _corrected_states(scene: Scene, omega: float, poll: Poll) -> Iterator[State]:
+    """Guesses from the balance of one harmonic, with more of them where Newton's method leads to that.
+
+    To follow the level of the forces with as many takes a hundred times as long.
+    """
+    whole = scene.whole()
+    if not (whole.modal.frequency.all() and whole.contacts):
+        return
+    from fcm.branches.force_level import solutions
+    from fcm.harmonic_balance.system import System as Balanced
+
+    one, more = Balanced(whole, ONE), Balanced(whole, MORE)
+    newton = Newton(more.balance())
+    one.work.poll = poll
+    for solution in solutions(one, omega).solutions:
+        z = more.extended(solution, ONE)
+        yield computed_state(scene, MORE, np.array(newton.z) if held(newton, z) else z)
+
+
+def solution_at(scene: Scene, omega: float, poll: Poll = without_end) -> Orbit:
+    """A stable solution near harmonic balance, or the one that a motion from rest comes near to, or any.
+
+    Where the scene says from which friction it starts, rather one in which contacts stick with just that.
+    poll is called now and then.
+
+    Raises
+    ------
+    SimulationError
+        If there is none.
+    """
+    near = list[Orbit]()
+    if scene.start is not None:
+        near += _shot(scene, omega, started_states(scene, omega), poll)
+        near += _shot(scene, omega, partly_stuck_as_started(scene, omega, poll), poll)
+    near += near_balance(scene, omega, poll)
+    stable = [orbit for orbit in near if orbit.stable]
+    return (stable or _from_rest(scene, omega, bool(near), poll) or near)[0]
+
+
+def near_balance(scene: Scene, omega: float, poll: Poll = without_end) -> Iterator[Orbit]:
+    """The motions that shooting finds from the solutions of the balance."""
+    return _shot(scene, omega, balanced_states(scene, omega, poll), poll)
+
+
+def _shot(scene: Scene, omega: float, guesses: Iterable[State], poll: Poll = without_end) -> Iterator[Orbit]:
+    """The motions that shooting finds from guesses."""
+    for guess in guesses:
+        try:
+            orbit = shoot(System(scene, omega), guess, poll)
+        except SimulationError:
+            continue
+        if orbit is not None:
+            yield orbit
+
+
+def _from_rest(scene: Scene, omega: float, others: bool, poll: Poll = without_end) -> list[Orbit]:
+    """The motion that one from rest comes to; none if there are others and this cannot be had."""
+    try:
+        return [approached(System(scene, omega), poll)]
+    except SimulationError:
+        if others:
+            return []
+        raise
+
+
+def inner_resonances(scene: Scene) -> list[float]:
+    """Natural frequencies inside the range, contacts all stuck and all open; none without a balance."""
+    from fcm.branches.force_level import resonances
+    from fcm.harmonic_balance.system import System as Balanced
+
+    scene = scene.whole()
+    return resonances(Balanced(scene)) if scene.modal.frequency.all() and scene.contacts else []
+
+
+def _add(problem: OrbitProblem, found: list[FloatArray], z: FloatArray) -> None:
+    problem.measure(z)
+    scale = np.asarray(problem.scale)
+    if all(np.linalg.norm((z - other) / scale) > DISTINCT for other in found):
+        found.append(z)
+
+
+def first_point(problem: OrbitProblem, orbit: Orbit, poll: Poll = without_end) -> FloatArray:
+    """The point z of a solution, its stuck contacts as little stressed as can be, or as the scene starts.
+
+    Raises
+    ------
+    SimulationError
+        If it is not determined.
+    """
+    z = problem.z(orbit.state, orbit.frequency)
+    near = problem.shot(z)
+    member = None if near is None else chosen(near, problem.shooting.resting, poll)
+    if member is not None:
+        z = np.append(member.x[problem.free], orbit.frequency)
+    newton = Newton(problem)
+    if not held(newton, z):
+        if near is not None and member is None and any(choice.gap for choice in near.chosen):
+            raise SimulationError(rests_elsewhere(problem.scene, orbit, near))
+        raise SimulationError(not_determined(orbit))
+    return np.array(newton.z)

@@ -1,0 +1,59 @@
+"""Points of exact curves at the frequencies at which other stretches end: there a swept motion may land."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from fcm.continuation import Mark
+from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray
+from fcm.shooting.fixed_frequency import held
+from fcm.shooting.orbit_record import Sample, sampled
+from fcm.shooting.problem import OrbitProblem
+
+
+def with_landings(problem: OrbitProblem, branches: list[list[Sample]]) -> list[list[Sample]]:
+    """The points of branches, and one more wherever a stable stretch passes the end of another.
+
+    A stable stretch ends at a fold or where stability changes. Between two points of a curve amplitudes are
+    known to the square of their distance only; what a sweep jumps to is known like what it jumps from.
+
+    Parameters
+    ----------
+    branches : list of list of Sample
+        Each in the order along its curve.
+    """
+    ends = {p.frequency for points in branches for p in points if p.stable and p.mark & _ENDS}
+    newton = Newton(problem)
+    return [_landed(problem, newton, points, np.array(sorted(ends))) for points in branches]
+
+
+_ENDS = Mark.FOLD | Mark.CROSSING
+
+
+def _landed(problem: OrbitProblem, newton: Newton, points: list[Sample], ends: FloatArray) -> list[Sample]:
+    out = points[:1]
+    for one, other in pairwise(points):
+        if one.stable and other.stable:
+            low, high = sorted((one.frequency, other.frequency))
+            inside = ends[(ends > low) & (ends < high)].tolist()
+            found = [_at(problem, newton, one, other, omega) for omega in inside]
+            found = found if one.frequency < other.frequency else found[::-1]
+            out += [sample for sample in found if sample is not None]
+        out.append(other)
+    return out
+
+
+def _at(problem: OrbitProblem, newton: Newton, one: Sample, other: Sample, omega: float) -> Sample | None:
+    """The point of the curve at a frequency between those of two neighbours; None if it is not found."""
+    share = (omega - one.frequency) / (other.frequency - one.frequency)
+    guess = one.z + share * (other.z - one.z)
+    guess[-1] = omega
+    if not held(newton, guess) or newton.moved > np.linalg.norm((other.z - one.z) / np.asarray(newton.scale)):
+        return None
+    direction = np.asarray(newton.tangent) * np.asarray(newton.scale)
+    if direction @ (other.z - one.z) < 0.0:
+        direction = -direction
+    return sampled(problem, np.array(newton.z), direction, Mark.STATION)

@@ -1,0 +1,188 @@
+"""Periodic motions in which no contact changes its state: linear, and found without a search.
+
+A contact that sticks may hold itself closed by its own residual friction, wedged between the structure's
+strains: such a motion may be far from every other, and no branch need lead to it. All that the residual
+friction of the sticking contacts changes is the mean, and linearly; so whether any of it keeps them all from
+slipping and opening, and the open ones open, is a linear programme.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.model.scene import FloatArray, Scene
+from fcm.shooting.periodic import unloaded
+from fcm.shooting.residual_traction import resting
+from fcm.signals import undisturbed
+from fcm.time_domain.equations import has_friction
+from fcm.time_domain.state import State
+from fcm.time_domain.system import System
+
+MOST = 3  # contacts of which all combinations of closed and open are tried; of more, all closed
+KEPT = 0.01  # of the forces, by which a motion keeps away from its limits if it can
+LEAST = 1e-6  # of them by which it does so at least; one on its limit belongs to others
+
+
+@dataclass(frozen=True)
+class Linear:
+    """A motion in which no contact changes its state."""
+
+    states: tuple[str, ...]  # of each contact: E sticks, or is closed without friction; S is open
+    residual: FloatArray  # (contact,) k_u w of the slip motions w
+    mean: FloatArray  # (mode,)
+    wave: npt.NDArray[np.complex128]  # (mode,) of Im(wave exp(i omega t))
+    state: State  # at the forces' angle 0
+
+
+def linear_motions(scene: Scene, omega: float, as_started: bool = False) -> list[Linear]:
+    """Those in which a contact with friction sticks, at a frequency [rad/s]; of the scene with what is held.
+
+    Their residual friction is the nearest to that of the scene's start, or just that.
+    """
+    whole = scene.whole()
+    system, count = System(whole, omega), len(whole.contacts)
+    wanted = system.k_u * resting(whole)
+    closed = product((True, False), repeat=count) if count <= MOST else [(True,) * count]
+    found = (_motion(system, np.array(one, dtype=bool), wanted, as_started) for one in closed)
+    return [one for one in found if one is not None]
+
+
+def started_states(scene: Scene, omega: float) -> list[State]:
+    """Guesses from those motions whose contacts rest where the scene starts."""
+    computed = scene.computed()
+    found = linear_motions(scene, omega, as_started=True)
+    return [replace(one.state, friction=one.state.friction[computed]) for one in found]
+
+
+def about_rest(scene: Scene, omega: float, level: float) -> Iterator[State]:
+    """Guesses at a level of the forces: about rest with the contacts as they are there, then all stuck, then
+    all open."""
+    whole, computed = scene.whole(), scene.computed()
+    system, rest = System(whole, omega).at_level(level), unloaded(whole)
+    at_rest = system.preload + system.stiffness * (system.normal @ rest.q) > 0.0
+    for closed in (at_rest, np.ones_like(at_rest), np.zeros_like(at_rest)):
+        stuck = [j for j in np.flatnonzero(closed).tolist() if has_friction(whole.contacts[j])]
+        wave = linear_answer(system, closed, stuck)[0]
+        friction = np.where(closed, rest.friction, 0.0)
+        friction[stuck] += system.k_u[stuck] * (system.tangential[stuck] @ wave.imag)
+        yield State(rest.q + wave.imag, omega * wave.real, friction[computed])
+
+
+def _motion(
+    system: System, closed: npt.NDArray[np.bool_], wanted: FloatArray, as_started: bool
+) -> Linear | None:
+    """The motion with these contacts closed, if any residual friction admits it."""
+    stuck = [j for j in np.flatnonzero(closed).tolist() if has_friction(system.scene.contacts[j])]
+    if not stuck:
+        return None
+    try:
+        wave, mean, by_residual = linear_answer(system, closed, stuck)
+    except np.linalg.LinAlgError:  # a mode is free to drift, or resonates without damping
+        return None
+    limits = list(_limits(system, closed, stuck, wave, mean, by_residual))
+    rows, least = np.array([row for row, _ in limits]), np.array([least for _, least in limits])
+    inside = _inside(rows, least, wanted[stuck], as_started)
+    if inside is None:
+        return None
+    mean = mean + by_residual @ inside
+    q, residual, friction = mean + wave.imag, np.zeros(closed.size), np.zeros(closed.size)
+    residual[stuck] = inside
+    friction[stuck] = system.k_u[stuck] * (system.tangential[stuck] @ q) - inside
+    state = State(q, system.omega * wave.real, friction)
+    return Linear(tuple("E" if one else "S" for one in closed), residual, mean, wave, state)
+
+
+def linear_answer(
+    system: System, closed: npt.NDArray[np.bool_], stuck: list[int]
+) -> tuple[npt.NDArray[np.complex128], FloatArray, FloatArray]:
+    """The modes' harmonic answer, their mean without residual friction, and what that adds to it."""
+    modal, across, along = system.scene.modal, system.normal, system.tangential
+    stiffness, steady = np.diag(modal.mass * modal.frequency**2), np.array(system.static, dtype=np.float64)
+    for contact, row, shut in zip(system.scene.contacts, across, closed, strict=True):
+        load = contact.n_0 if shut else 0.0
+        stiffness += shut * contact.k_v * np.outer(row, row)
+        steady -= (load - max(contact.n_0, 0.0)) * row
+    for j in stuck:
+        stiffness += system.k_u[j] * np.outer(along[j], along[j])
+    damping = 2.0 * modal.mass * modal.damping * modal.frequency
+    dynamic = stiffness + np.diag(system.omega * (1j * damping - modal.mass * system.omega))
+    wave = np.linalg.solve(dynamic, system.wave).astype(np.complex128)
+    still = np.linalg.solve(stiffness, np.column_stack((steady, along[stuck].T))).astype(np.float64)
+    return wave, still[:, 0], still[:, 1:]
+
+
+def _limits(
+    system: System,
+    closed: npt.NDArray[np.bool_],
+    stuck: list[int],
+    wave: npt.NDArray[np.complex128],
+    mean: FloatArray,
+    by_residual: FloatArray,
+) -> Iterator[tuple[FloatArray, float]]:
+    """What keeps every contact as it is: rows of which row @ residual is to be no less than a number."""
+    for j, contact in enumerate(system.scene.contacts):
+        if j not in stuck:
+            press, sign = contact.k_v * system.normal[j], 1.0 if closed[j] else -1.0
+            yield sign * (press @ by_residual), abs(press @ wave) - sign * (contact.n_0 + press @ mean)
+        else:
+            yield from sticking(system, j, np.array(stuck) == j, wave, mean, by_residual)
+
+
+def sticking(
+    system: System,
+    j: int,
+    own: npt.NDArray[np.bool_],
+    wave: npt.NDArray[np.complex128],
+    mean: FloatArray,
+    by_residual: FloatArray,
+) -> Iterator[tuple[FloatArray, float]]:
+    """What keeps contact j from slipping either way; own: which of the residual friction is its own."""
+    contact = system.scene.contacts[j]
+    press, pull = contact.k_v * system.normal[j], contact.k_u * system.tangential[j]
+    load = press @ by_residual, contact.n_0 + press @ mean, press @ wave
+    force = pull @ by_residual - own, pull @ mean, pull @ wave
+    for sign in (1.0, -1.0):
+        row, constant, swing = (contact.mu * n - sign * f for n, f in zip(load, force, strict=True))
+        yield row, abs(swing) - constant
+
+
+def _inside(rows: FloatArray, least: FloatArray, wanted: FloatArray, just_that: bool) -> FloatArray | None:
+    """The residual friction nearest to what is wanted with rows @ residual >= least, if there is any."""
+    size = float(np.abs(least).max()) or 1.0
+    if (rows @ wanted >= least + LEAST * size).all():
+        return wanted
+    if just_that:
+        return None
+    nearest = _nearest_number if wanted.size == 1 else _nearest
+    tried = (nearest(rows, least + kept * size, wanted) for kept in (KEPT, LEAST))
+    return next((one for one in tried if one is not None), None)
+
+
+def _nearest_number(rows: FloatArray, least: FloatArray, wanted: FloatArray) -> FloatArray | None:
+    """The same of a single contact that sticks."""
+    row = rows[:, 0]
+    if (least[row == 0.0] > 0.0).any():
+        return None
+    low = (least[row > 0.0] / row[row > 0.0]).max(initial=-np.inf)
+    high = (least[row < 0.0] / row[row < 0.0]).min(initial=np.inf)
+    return np.clip(wanted, low, high) if low <= high else None
+
+
+def _nearest(rows: FloatArray, least: FloatArray, wanted: FloatArray) -> FloatArray | None:
+    """By the sum of the distances, which are unknowns besides."""
+    with undisturbed():  # a library that is interrupted while it is loaded cannot be loaded again
+        from scipy.optimize import linprog  # takes a tenth of a second to load
+
+    count = wanted.size
+    one, none = np.eye(count), np.zeros((len(rows), count))
+    upper = np.block([[-rows, none], [one, -one], [-one, -one]])
+    bounds = [(None, None)] * count + [(0.0, None)] * count
+    found = linprog(
+        np.repeat((0.0, 1.0), count), upper, np.concatenate((-least, wanted, -wanted)), bounds=bounds
+    )
+    return found.x[:count] if found.status == 0 else None

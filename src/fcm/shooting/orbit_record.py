@@ -1,0 +1,133 @@
+"""What is kept of a periodic solution on a curve: everything that is reported, without its motion in time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.continuation import Mark, Path
+from fcm.model.scene import FloatArray
+from fcm.shooting.periodic import within_unit_circle
+from fcm.shooting.problem import OrbitProblem
+from fcm.shooting.residual import Shot
+from fcm.shooting.stability_changes import crossing
+from fcm.shooting.stability_windows import with_windows
+from fcm.shooting.steady_state import Steady, several
+from fcm.time_domain.contact_loads import borne
+from fcm.time_domain.cycle_measures import Measure, measure
+from fcm.time_domain.errors import SimulationError
+from fcm.time_domain.state import State
+from fcm.units import spoken
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A periodic solution, and where on its curve it is."""
+
+    frequency: float  # [rad/s]
+    state: State  # at the forces' angle 0
+    states: tuple[str, ...]  # of each contact over the period
+    measure: Measure
+    borne: FloatArray  # (contact, 4) as of `borne`
+    multipliers: npt.NDArray[np.complex128]  # Floquet's, the greatest first
+    residual: float  # by which the period fails to close, relative to the motion
+    stable: bool  # whether small disturbances die out, or at least do not grow
+    z: FloatArray  # (unknown + 1,), the frequency last
+    direction: FloatArray  # (unknown + 1,) of the curve, in the units of z
+    mark: int = 0  # of `Mark`, joined
+    held: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))  # (held, 3): see `_held`
+    steady: Steady | None = None  # how it repeats or ranges, where it does not after every period
+
+    @property
+    def repeats(self) -> int:
+        """Periods of the force after which the motion repeats, 0 if it does not."""
+        return 1 if self.steady is None else self.steady.periods
+
+
+def sampled(problem: OrbitProblem, z: FloatArray, direction: FloatArray, mark: int = 0) -> Sample:
+    """What is kept of a point."""
+    return replace(recorded(problem, z), direction=direction, mark=mark)
+
+
+def recorded(problem: OrbitProblem, z: FloatArray) -> Sample:
+    """The same without its place on a curve, found once for each z: while its period is still known, if it is
+    asked for when the curve comes there."""
+    key = z.tobytes()
+    if key not in problem.samples:
+        problem.samples[key] = _made(_shot(problem, z), z)
+    return problem.samples[key]
+
+
+def _made(shot: Shot, z: FloatArray) -> Sample:
+    """What is kept of a period from z."""
+    multipliers, found = shot.multipliers, shot.scanned
+    return Sample(
+        float(z[-1]), shot.state, shot.cycle.states, measure(shot.cycle, found.displaced),
+        borne([shot.cycle], found), multipliers, shot.residual, within_unit_circle(multipliers),
+        z, np.zeros(z.size), held=_held(shot), steady=several(shot),
+    )  # fmt: skip
+
+
+def _held(shot: Shot) -> FloatArray:
+    """What each contact that is held keeps of its limit or gap; its greatest normal and friction force."""
+    least, greatest = (one.reshape(2, -1) for one in shot.scanned.part(shot.system.parts.held))
+    return np.column_stack((shot.kept, greatest[0], np.maximum(greatest[1], -least[1])))
+
+
+def _shot(problem: OrbitProblem, z: FloatArray) -> Shot:
+    """The period from a point of a curve."""
+    shot = problem.shot(z)
+    if shot is None:
+        raise SimulationError(
+            f"the period at {spoken(z[-1], problem.scene.frequency_unit)} cannot be computed"
+        )
+    return shot
+
+
+def settled(omega: float, motion: Steady) -> Sample:
+    """What is kept of a motion that a simulation has come to."""
+    none = np.zeros(0)
+    return Sample(
+        omega, motion.state, motion.states, motion.measure, motion.borne, motion.multipliers,
+        motion.error, True, none, none, steady=motion,
+    )  # fmt: skip
+
+
+def samples(problem: OrbitProblem, path: Path, located: bool = True) -> list[Sample]:
+    """The points of a path, with those added at which stability changes between folds, and changes back.
+
+    A fold belongs to the stable side, and so does a point at which stability changes.
+    located : whether to add those; to find them takes three times as long as the rest.
+    """
+    points = [
+        sampled(problem, path.z[k], path.direction[k], int(path.mark[k])) for k in range(path.z.shape[0])
+    ]
+    turns = [k for k in range(1, len(points) - 1) if points[k].mark & Mark.FOLD]
+    for k in turns:
+        points[k] = replace(points[k], stable=points[k - 1].stable or points[k + 1].stable)
+    if not located:
+        return points
+    whole, inside = with_windows(problem, path, points)
+    for k in inside:
+        points.insert(k, sampled(problem, whole.z[k], whole.direction[k]))
+    return _with_crossings(problem, whole, points)
+
+
+def _with_crossings(problem: OrbitProblem, path: Path, points: Sequence[Sample]) -> list[Sample]:
+    """A point of its own for each change of stability, but where that is at one already."""
+    out = list(points[:1])
+    for k, point in enumerate(points[1:]):
+        before = points[k]
+        if before.stable != point.stable and not (before.mark | point.mark) & Mark.FOLD:
+            place = crossing(problem, path, k)
+            if place is not None and 0.0 < place.part < 1.0:
+                out.append(sampled(problem, place.z, place.direction, Mark.CROSSING))
+            elif place is not None and before.stable:
+                out[-1] = replace(out[-1], mark=before.mark | Mark.CROSSING)
+            elif place is not None:
+                point = replace(point, mark=point.mark | Mark.CROSSING)
+        out.append(point)
+    return out

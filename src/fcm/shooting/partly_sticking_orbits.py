@@ -1,0 +1,209 @@
+"""Motions in which some contacts stick all through, on residual friction of their own, while others slip.
+
+Like those of `linear_motion` they may be far from every motion that a curve has: with other residual friction
+the contacts that stick would open or slip. Residual friction that may hold them is found as if the others
+stuck, slid without friction or were open; with it held, the others are simulated from there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations, product
+
+import numpy as np
+
+from fcm.model.scene import FloatArray, Held, Scene
+from fcm.shooting.linear_orbits import MOST, linear_answer, sticking
+from fcm.shooting.periodic import Orbit, Poll, closed, converged, shoot, within_unit_circle, without_end
+from fcm.shooting.residual import Shot
+from fcm.shooting.residual_traction import always_stuck, resting, resting_at
+from fcm.shooting.traction_families import Family, family
+from fcm.time_domain.equations import has_friction
+from fcm.time_domain.errors import SimulationError
+from fcm.time_domain.simulation import cycles_from
+from fcm.time_domain.state import State
+from fcm.time_domain.system import System
+
+KEPT = (0.01, 1.0)  # of the forces, by which residual friction keeps away from two limits at a time
+APART = 0.2  # of the distance of the furthest two: residual friction nearer to another is not tried as well
+TRIED = 6  # at most for the same contacts
+SAME = 1e-3  # relative difference of amplitudes up to which a motion is within an extent
+CLOSED = 1e-6  # by which a motion that was found with contacts held may fail to close without
+CYCLES = (10, 40)  # simulated before each look whether the motion has become periodic
+Choices = list[FloatArray]
+
+
+@dataclass(frozen=True)
+class Partly:
+    """A stable motion in which some contacts stick all through, and its family over residual friction."""
+
+    states: tuple[str, ...]  # of each contact over the period
+    residual: FloatArray  # (contact,) k_u w of the slip motions w; 0 of those that do not stick
+    family: Family
+
+
+def partly_stuck_motions(
+    scene: Scene, omega: float, known: list[Family], poll: Poll = without_end
+) -> list[Partly]:
+    """Those that belong to no family that is known, at a frequency [rad/s]; of the scene with what is held.
+
+    Of more contacts than `MOST` none.
+    """
+    whole, found, families = scene.whole(), list[Partly](), list(known)
+    system = System(whole, omega)
+    for stuck, residual in _tried(system, poll):
+        if any(_has(one, stuck, residual) for one in families):
+            continue
+        poll()
+        orbit = _with_held(system, stuck, residual, poll)
+        if orbit is None or any(_holds(one, orbit) for one in families):
+            continue
+        one = _partly(orbit, poll)
+        if one is not None:
+            found.append(one)
+            families.append(one.family)
+    return found
+
+
+def partly_stuck_as_started(scene: Scene, omega: float, poll: Poll = without_end) -> list[State]:
+    """Guesses from those motions whose contacts rest where the scene starts."""
+    whole, computed = scene.whole(), scene.computed()
+    system = System(whole, omega)
+    wanted = system.k_u * resting(whole)
+    return [
+        State(orbit.state.q, orbit.state.velocity, orbit.state.friction[computed])
+        for stuck in _sets(whole)
+        if _choices(system, stuck, wanted[list(stuck)])
+        and (orbit := _with_held(system, stuck, wanted[list(stuck)], poll)) is not None
+    ]
+
+
+def _sets(scene: Scene) -> Iterator[tuple[int, ...]]:
+    """The contacts that may stick while others do not."""
+    rough = [j for j, contact in enumerate(scene.contacts) if has_friction(contact)]
+    count = len(scene.contacts)
+    for size in range(1, count if count <= MOST else 1):
+        yield from combinations(rough, size)
+
+
+def _tried(system: System, poll: Poll) -> Iterator[tuple[tuple[int, ...], FloatArray]]:
+    """Contacts, and residual friction of them with which they may stick."""
+    for stuck in _sets(system.scene):
+        poll()
+        for residual in _thinned(_choices(system, stuck)):
+            yield stuck, residual
+
+
+def _choices(system: System, stuck: tuple[int, ...], just: FloatArray | None = None) -> Choices:
+    """Residual friction that keeps contacts stuck whatever the others do, as far as that is linear."""
+    scene, found = system.scene, Choices()
+    others = [j for j in range(len(scene.contacts)) if j not in stuck]
+    for letters in product("EFS", repeat=len(others)):  # stuck, without friction, open
+        pairs = list(zip(others, letters, strict=True))
+        closed = np.array([dict(pairs).get(j) != "S" for j in range(len(scene.contacts))])
+        springs = [*stuck, *(j for j, letter in pairs if letter == "E" and has_friction(scene.contacts[j]))]
+        try:
+            wave, mean, by_residual = linear_answer(system, closed, springs)
+        except np.linalg.LinAlgError:  # a mode is free to drift, or resonates without damping
+            continue
+        free = by_residual[:, : len(stuck)]
+        limits = [one for j in stuck for one in sticking(system, j, np.array(stuck) == j, wave, mean, free)]
+        rows, least = np.array([row for row, _ in limits]), np.array([number for _, number in limits])
+        if just is None:
+            found += _inside(rows, least)
+        elif (rows @ just >= least).all():
+            found.append(just)
+    return found
+
+
+def _inside(rows: FloatArray, least: FloatArray) -> Choices:
+    """Places near the corners of where rows @ x >= least, and the middle of them."""
+    size, count, found = float(np.abs(least).max()) or 1.0, rows.shape[1], Choices()
+    for kept in KEPT:
+        beyond = least + kept * size
+        for pair in combinations(range(len(rows)), count):
+            one = rows[list(pair)]
+            if np.linalg.cond(one) < 1.0 / np.finfo(float).eps:
+                corner: FloatArray = np.linalg.solve(one, beyond[list(pair)]).astype(np.float64)
+                if (rows @ corner >= beyond - 1e-9 * size).all():
+                    found.append(corner)
+    return [np.mean(found, axis=0), *found] if found else found
+
+
+def _thinned(choices: Choices) -> Choices:
+    """Some of them, not near to one another, those first that came first."""
+    kept, size = Choices(), float(np.ptp(choices, axis=0).max(initial=0.0)) if choices else 0.0
+    for one in choices:
+        if all(np.abs(one - other).max() > APART * size for other in kept):
+            kept.append(one)
+    return kept[:TRIED]
+
+
+def _has(known: Family, stuck: tuple[int, ...], residual: FloatArray) -> bool:
+    """Whether a whole family of just these contacts has this residual friction in its bounds."""
+    if not known.complete or known.contacts != stuck:
+        return False
+    return bool(((-known.friction[:, 1] <= residual) & (residual <= -known.friction[:, 0])).all())
+
+
+def _holds(known: Family, orbit: Orbit) -> bool:
+    """Whether a motion has a contact that sticks in a family, and its amplitudes are within that."""
+    room = SAME * known.greatest
+    amplitude = orbit.measure.amplitude
+    inside = (amplitude >= known.least - room) & (amplitude <= known.greatest + room)
+    stuck = always_stuck(orbit.cycle.system, orbit.cycle.segments)
+    return bool(inside.all()) and not set(stuck).isdisjoint(known.contacts)
+
+
+def _with_held(system: System, stuck: tuple[int, ...], residual: FloatArray, poll: Poll) -> Orbit | None:
+    """The stable motion with contacts held on residual friction, if they stick in it by themselves."""
+    contacts = system.scene.contacts
+    rest = {j: float(force) / contacts[j].k_u for j, force in zip(stuck, residual, strict=True)}
+    held = system.scene.holding([Held(j, contacts[j], False, w) for j, w in rest.items()])
+    try:
+        orbit = _approached(System(held, system.omega), poll)
+        return None if orbit is None else _released(system, orbit.state, rest, poll)
+    except SimulationError:  # it cannot be computed
+        return None
+
+
+def _approached(system: System, poll: Poll) -> Orbit | None:
+    """The stable motion that one from no displacement comes to soon."""
+    state = State.unloaded(system.scene)
+    for count in CYCLES:
+        for _, end in cycles_from(system, count, state):
+            poll()
+            state = end
+        orbit = shoot(system, state, poll)
+        if orbit is not None and orbit.stable:
+            return orbit
+    return None
+
+
+def _released(system: System, state: State, rest: dict[int, float], poll: Poll) -> Orbit | None:
+    """The same motion with no contact held, if those stick all through it."""
+    contacts, displacement = system.scene.contacts, system.scene.modal.shapes.T @ state.q
+    friction = np.zeros(len(contacts))
+    friction[[j for j in range(friction.size) if j not in rest]] = state.friction
+    for j, w in rest.items():
+        friction[j] = contacts[j].k_u * (contacts[j].tangential @ displacement - w)
+    shot = Shot(system, np.concatenate((state.q, state.velocity, friction)))
+    sticks = set(rest) <= set(always_stuck(system, shot.segments))
+    found = converged(shot, poll=poll) if sticks and shot.residual < CLOSED else None
+    return closed(*found) if found is not None and within_unit_circle(found[0].multipliers) else None
+
+
+def _partly(orbit: Orbit, poll: Poll) -> Partly | None:
+    """The motion with its family; None if that cannot be told."""
+    system, state = System(orbit.scene, orbit.frequency), orbit.state
+    x = np.concatenate((state.q, state.velocity, state.friction))
+    try:
+        found = family(orbit.scene, orbit.frequency, state, poll=poll)
+    except SimulationError:
+        return None
+    if found is None:
+        return None
+    residual, stuck = np.zeros(len(orbit.states)), list(found.contacts)
+    residual[stuck] = (system.k_u * resting_at(system, x))[stuck]
+    return Partly(orbit.states, residual, found)

@@ -1,0 +1,137 @@
+"""Peaks and folds of exact curves alone: each on a short piece of the curve, begun at a guess beside it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.continuation import FollowOptions, Mark, Path, follow
+from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray
+from fcm.shooting.fixed_frequency import held
+from fcm.shooting.orbit_record import Sample, sampled
+from fcm.shooting.problem import OrbitProblem
+from fcm.time_domain.state import State
+
+WINDOWS = (0.005, 0.02, 0.08)  # of the frequency, to either side of a guess: the next where one has nothing
+ASTRAY = 0.5  # distance of the curve from a guess, in its own size, beyond which it is another
+LEVEL = 1e-7  # growth of an amplitude over its size, along a unit of arc, that paths take no notice of
+SAME = 1e-7  # of the frequency: what is found twice
+
+
+Summits = npt.NDArray[np.bool_]  # (dof,)
+
+
+@dataclass(frozen=True)
+class Guess:
+    """Somewhere near a peak or a fold, with the direction of the curve there as a second state nearby."""
+
+    frequency: float  # [rad/s]
+    state: State
+    beside: tuple[float, State]
+    dof: int | None  # whose peak is sought; a fold if None
+
+
+def located(problem: OrbitProblem, guess: Guess, known: list[Sample]) -> Sample | None:
+    """The peak or fold near a guess; None where there is none.
+
+    known : pieces' peaks and folds that were found before, to which those of this piece are added.
+    """
+    z = _on_curve(problem, guess)
+    if z is None:
+        return None
+    low, high = problem.scene.frequency_range
+    for window in WINDOWS:
+        span = (max(z[-1] * (1.0 - window), low), min(z[-1] * (1.0 + window), high))
+        found = _within(problem, z, span)
+        known += [one for one, _ in found if all(_differ(one, other) for other in known)]
+        wanted = [one for one, highest in found if _is_wanted(one, highest, guess.dof)]
+        if wanted:
+            return min(wanted, key=lambda one: _away(one, guess))
+    return None
+
+
+def _on_curve(problem: OrbitProblem, guess: Guess) -> FloatArray | None:
+    """The point of the curve in the plane through a guess, across the curve; else at its frequency."""
+    z = problem.z(guess.state, guess.frequency)
+    other = problem.z(guess.beside[1], guess.beside[0])
+    newton = Newton(problem)
+    problem.measure(z)
+    scale = np.array(problem.scale)
+    row = (other - z) / scale
+    size = float(np.linalg.norm(row))
+    np.asarray(newton.scale)[:], np.asarray(newton.z)[:] = scale, z
+    np.asarray(newton.row)[:] = row / size if size > 0.0 else np.eye(z.size)[-1]
+    if (newton.correct(1.0) or held(newton, z)) and newton.moved < ASTRAY:
+        return np.array(newton.z)
+    return None
+
+
+def _within(problem: OrbitProblem, z: FloatArray, span: tuple[float, float]) -> list[tuple[Sample, Summits]]:
+    """The peaks, folds and ends of the range on the piece of the curve through z within a span."""
+    found: list[tuple[Sample, Summits]] = []
+    options = FollowOptions(problem.scene.max_step)
+    paths = [follow(problem, z, span, options=options, forward=forward) for forward in (True, False)]
+    for path in paths:
+        for k in np.flatnonzero(path.mark & (Mark.PEAK | Mark.FOLD | Mark.END)):
+            mark = int(path.mark[k])
+            if mark & Mark.END and path.parameter[k] not in problem.scene.frequency_range:
+                continue
+            here = sampled(problem, path.z[k], path.direction[k], mark)
+            here = _with_stable_side(problem, path.z, path.direction, int(k), here)
+            found.append((here, _summits(problem, path, int(k))))
+    return found + _begun_at_a_peak(problem, *paths)
+
+
+def _begun_at_a_peak(problem: OrbitProblem, ahead: Path, behind: Path) -> list[tuple[Sample, Summits]]:
+    """The common start of two paths if it is a peak, which is then within no step of either."""
+    if min(len(ahead.z), len(behind.z)) < 2:
+        return []
+    here = _amplitudes(problem, ahead, 0)
+    level = np.abs(np.asarray(problem.growth)) <= LEVEL * here
+    highest = level & _summits(problem, ahead, 0) & (here >= _amplitudes(problem, behind, 1))
+    if not highest.any():
+        return []
+    return [(sampled(problem, ahead.z[0], ahead.direction[0], Mark.PEAK), highest)]
+
+
+def _summits(problem: OrbitProblem, path: Path, k: int) -> Summits:
+    """Whose amplitude is no less than at the points beside it: a mark does not say whose peak it is."""
+    here, *sides = (_amplitudes(problem, path, i) for i in (k, k - 1, k + 1) if 0 <= i < len(path.z))
+    highest: Summits = np.logical_and.reduce([here > 0.0, *(here >= side for side in sides)])
+    return highest
+
+
+def _amplitudes(problem: OrbitProblem, path: Path, k: int) -> FloatArray:
+    problem.report(path.z[k], path.direction[k])
+    return np.array(problem.output)
+
+
+def _with_stable_side(
+    problem: OrbitProblem, z: FloatArray, direction: FloatArray, k: int, here: Sample
+) -> Sample:
+    """A fold belongs to the stable side, if it has one."""
+    if not here.mark & Mark.FOLD or here.stable:
+        return here
+    sides = [i for i in (k - 1, k + 1) if 0 <= i < len(z)]
+    return replace(here, stable=any(sampled(problem, z[i], direction[i]).stable for i in sides))
+
+
+def _is_wanted(one: Sample, highest: Summits, dof: int | None) -> bool:
+    return bool(one.mark & Mark.FOLD if dof is None else highest[dof])
+
+
+def _differ(one: Sample, other: Sample) -> bool:
+    if abs(one.frequency - other.frequency) > SAME * one.frequency:
+        return True
+    size = np.abs(one.measure.amplitude).max()
+    return bool(np.abs(one.measure.amplitude - other.measure.amplitude).max() > SAME * size)
+
+
+def _away(one: Sample, guess: Guess) -> float:
+    """How little it is what was sought: the highest is the peak, the nearest the fold."""
+    if guess.dof is not None:
+        return -float(one.measure.amplitude[guess.dof])
+    return abs(one.frequency - guess.frequency)

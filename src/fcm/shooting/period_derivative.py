@@ -1,0 +1,62 @@
+"""The derivative of a motion by its start, and by the frequency or the level of the forces, as arrays."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fcm.model.scene import FloatArray
+from fcm.time_domain.segments import Segments
+from fcm.time_domain.system import System
+
+
+class Along(NamedTuple):
+    """The derivative at an instant."""
+
+    columns: FloatArray  # (unknown + 2, d): by each of x = (q, q', f), by the parameter; last the state
+    rate: FloatArray  # (d,) of the state [1/s]
+
+
+def derivative_at(system: System, segments: Segments, last: int, position: float) -> Along:
+    """At a position (in steps) in a segment."""
+    kernel = system.derivative()
+    kernel.begins(segments, system.by_level)
+    while (missing := kernel.go(segments, last, position)) >= 0:
+        system.make(np.asarray(segments.states)[missing])
+    return Along(np.array(kernel.columns), np.array(kernel.rate))
+
+
+def period_derivative(system: System, segments: Segments, duration: float) -> tuple[FloatArray, FloatArray]:
+    """Derivatives of x = (q, q', f) after periods of a duration T by x at their start, and by the frequency
+    or by the level, whichever is the parameter.
+
+    The periods shorten as the frequency grows: dT / d omega = -T / omega.
+    """
+    kernel, u = system.derivative(), system.unknowns
+    by_state, by_parameter = np.empty((u, u)), np.empty(u)
+    kernel.begins(segments, system.by_level)
+    while (missing := kernel.closes(segments, duration, by_state, by_parameter)) >= 0:
+        system.make(np.asarray(segments.states)[missing])
+    return by_state, by_parameter
+
+
+def along(system: System, segments: Segments, places: FloatArray, way: FloatArray, rate: float) -> FloatArray:
+    """The derivative of the modal displacements along a way of x and the frequency, at places: (place, mode).
+
+    Parameters
+    ----------
+    places : (place, 2)
+        Segments, and positions in them in steps.
+    way : (unknown,)
+        Change of x = (q, q', f) at the start of the segments.
+    rate : float
+        Change of the frequency.
+    """
+    kernel, order = system.derivative_along(), np.lexsort(places.T[::-1])
+    kernel.begins_along(segments, way, rate)
+    sought, (found, out) = places[order], np.empty((2, order.size, system.modes))
+    while (missing := kernel.at_places(segments, sought, found)) >= 0:
+        system.make(np.asarray(segments.states)[missing])
+    out[order] = found
+    return out

@@ -1,0 +1,180 @@
+"""Curves of motions that repeat after twice as many periods, from where the period doubles.
+
+Where a multiplier passes -1 a motion loses its stability to one of twice its periods. The curve of those
+passes through the flip and comes back by the same motions, a period later: it is followed to there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+
+from fcm.continuation import Events, FollowOptions, Mark, Path
+from fcm.continuation.all_branches import Follow, contains, through
+from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray
+from fcm.shooting.fixed_frequency import held
+from fcm.shooting.orbit_record import Sample
+from fcm.shooting.periodic import Poll, converged, without_end
+from fcm.shooting.problem import OrbitProblem
+from fcm.shooting.residual import Shot
+from fcm.shooting.steady_state import Steady, steady
+from fcm.stability.verdict import Bifurcation, bifurcation_of
+from fcm.time_domain.errors import SimulationError
+from fcm.time_domain.state import State
+
+REACHES = (0.03, 0.1, 0.3)  # distances from a motion, relative to it, at which one of twice its periods is
+BESIDE = 4  # points to either side of a flip from which that is sought; further ones are beyond bends
+NEAR = 0.2  # distance of the last point of a curve from the flip at which it ends, at most
+AGAIN = 1e-6  # by which a motion fails to close after fewer periods, relative to it, if it does not
+
+
+class Doubled(OrbitProblem):
+    """Motions of twice the periods of others; a curve of them has ended where it comes to those."""
+
+    def __init__(self, once: OrbitProblem) -> None:
+        super().__init__(once.scene, 2 * once.repeats)
+        self.once, self._way = once, np.zeros(0)
+
+    def begins(self) -> None:
+        """To be called before another curve is followed."""
+        self._way = np.zeros(0)
+
+    def ended(self, z: FloatArray) -> bool:
+        """Whether the curve has passed a flip since it was asked before: what half the periods lack turns."""
+        shot = self.once.shot(z)
+        if shot is None:
+            return False
+        before, self._way = self._way, shot.gap / shot.scale
+        return shot.residual < AGAIN or bool(before.size and before @ self._way < 0.0)
+
+    def later(self, z: FloatArray) -> FloatArray:
+        """The same motion, begun after half of its periods."""
+        shot = self.once.shot(z)
+        return z if shot is None else z + np.append(shot.gap[self.free], 0.0)
+
+
+def doubled_paths(
+    problem: Doubled, branches: list[list[Sample]], along: Follow, poll: Poll = without_end
+) -> tuple[list[Path], int]:
+    """The curves that begin at the flips of branches, and how many flips none was found from."""
+    starts, lost = doubled_starts(problem, branches, poll)
+    span, options = problem.scene.frequency_range, FollowOptions(problem.scene.max_step)
+    wanted = Events(sorted({float(z[-1]) for z in starts}))
+    paths = list[Path]()
+    for z in starts:
+        if not any(contains(path, one, problem) for path in paths for one in (z, problem.later(z))):
+            path = through(lambda: problem, z, span, wanted, options, progress=None, along=along)
+            if path.z.shape[0]:
+                paths.append(path)
+            else:
+                lost += 1
+    return paths, lost
+
+
+def to_flips(problem: Doubled, points: list[Sample], branches: list[list[Sample]]) -> list[Sample]:
+    """The points of a curve, with the flips of others at which it ends within the range."""
+    ends = [flip(branch, k) for branch in branches for k in flips(branch)]
+    for end in (0, -1):
+        last = points[end]
+        problem.measure(last.z)
+        scale = np.array(problem.scale)
+        near = [one for one in ends if np.linalg.norm((one.z - last.z) / scale) < NEAR]
+        if near and last.frequency not in problem.scene.frequency_range:
+            nearest = min(near, key=lambda one: float(np.linalg.norm((one.z - last.z) / scale)))
+            points = [nearest, *points] if end == 0 else [*points, nearest]
+    return points
+
+
+def bifurcations(points: list[Sample]) -> Iterator[tuple[int, Bifurcation]]:
+    """The places k in a branch where stability changes between the points k and k + 1, but at no fold."""
+    for k, (one, other) in enumerate(pairwise(points)):
+        if one.stable != other.stable and not (one.mark | other.mark) & Mark.FOLD:
+            yield k, bifurcation_of((other if one.stable else one).multipliers.tolist())
+
+
+def flips(points: list[Sample]) -> Iterator[int]:
+    """Those where the period doubles."""
+    return (k for k, kind in bifurcations(points) if kind is Bifurcation.PERIOD_DOUBLING)
+
+
+def flip(points: list[Sample], k: int) -> Sample:
+    """The point at a bifurcation, which belongs to the stable side."""
+    return points[k] if points[k].stable else points[k + 1]
+
+
+def doubled_starts(
+    problem: Doubled, branches: list[list[Sample]], poll: Poll = without_end
+) -> tuple[list[FloatArray], int]:
+    """Motions of twice the periods beside the flips of branches, and how many flips lead to none."""
+    found, lost = list[FloatArray](), 0
+    for points in branches:
+        for k in flips(points):
+            z = next(_beside(problem, points, k, poll), None)
+            if z is None:
+                lost += 1
+            else:
+                found.append(z)
+    return found, lost
+
+
+def _beside(problem: Doubled, points: list[Sample], k: int, poll: Poll) -> Iterator[FloatArray]:
+    """Motions of twice the periods at the frequencies of points beside a flip, the unstable ones first.
+
+    Not at flips themselves, beside which a motion hardly changes that does not repeat. Where none is near an
+    unstable motion, that which a disturbance of it comes to may be one.
+    """
+    ends = [id(flip(points, j)) for j in flips(points)]
+    after, before = points[k + 1 : k + 1 + BESIDE], points[k : max(k - BESIDE, -1) : -1]
+    sides = (after, before) if points[k].stable else (before, after)
+    near = [point for side in sides for point in side if id(point) not in ends]
+    for point in near:
+        poll()
+        shot = problem.once.shot(point.z)
+        if shot is not None:
+            yield from _doubled(problem, point, shot)
+    for point in near[:1]:
+        shot = problem.once.shot(point.z)
+        if shot is not None:
+            yield from _approached(problem, point, shot, poll)
+
+
+def _doubled(problem: Doubled, point: Sample, once: Shot) -> Iterator[FloatArray]:
+    """The motion in the direction in which a disturbance changes its sign after each period."""
+    for reach in REACHES:
+        try:
+            guess = Shot(once.system, _disturbed(once, reach), problem.shooting.resting, problem.repeats)
+            found = converged(guess)
+        except SimulationError:
+            continue
+        if found is not None:
+            yield from _held(problem, point, found[0])
+
+
+def _approached(problem: Doubled, point: Sample, once: Shot, poll: Poll) -> Iterator[FloatArray]:
+    """The motion that a simulation comes to from a disturbed one."""
+    x, system = _disturbed(once, REACHES[0]), once.system
+    found = steady(system, State(x[system.q], x[system.p], x[system.f]), poll)
+    if isinstance(found, Steady) and found.periods == problem.repeats:
+        state = found.state
+        x = np.concatenate((state.q, state.velocity, state.friction))
+        yield from _held(problem, point, Shot(system, x, problem.shooting.resting, problem.repeats))
+
+
+def _disturbed(once: Shot, reach: float) -> FloatArray:
+    """The start of a motion, moved by reach, relative to it, on the way that turns with each period."""
+    values, vectors = np.linalg.eig(once.derivative * (once.scale / once.scale[:, None]))
+    way = vectors[:, values.real.argmin()].real
+    x: FloatArray = once.x + reach * way / np.abs(way).max() * once.scale
+    return x
+
+
+def _held(problem: Doubled, point: Sample, shot: Shot) -> Iterator[FloatArray]:
+    """The solution of the problem that a motion is, unless that repeats before."""
+    if Shot(shot.system, shot.x, periods=problem.once.repeats).residual < AGAIN:
+        return
+    newton = Newton(problem)
+    if held(newton, np.append(shot.x[problem.free], point.frequency)):
+        yield np.array(newton.z)

@@ -1,0 +1,225 @@
+"""Periodic solutions by shooting: the fixed points of the motion over one period, and their stability."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.model.scene import FloatArray, Scene
+from fcm.shooting.residual import Shot
+from fcm.shooting.residual_traction import resting
+from fcm.time_domain.cycle import Cycle
+from fcm.time_domain.cycle_measures import Measure, measure
+from fcm.time_domain.errors import SimulationError
+from fcm.time_domain.simulation import cycles_from
+from fcm.time_domain.state import State
+from fcm.time_domain.system import System
+from fcm.time_domain.trajectory import Motion
+from fcm.units import spoken
+
+TOLERANCE = 1e-11  # of the closure of the orbit, relative to its size
+MOST_ITERATIONS = 25  # of Newton's method
+SHORTEST = 1e-3  # part of one of its steps, below which it leads nowhere
+RANK = 1e-10  # singular values below are directions in which nothing changes: a contact that never slips
+STABLE = 1e-7  # by which a multiplier may exceed 1
+DRIFT = 0.2  # part of the range of cycle amplitudes by which their mean may differ from half to half
+LEFT = 0.01  # part of a disturbance that damping leaves of it, when it has settled
+Poll = Callable[[], None]  # called now and then; raises what ends the search
+FREE_CYCLES = (10, 20, 40, 80, 160)  # run before each attempt when there is no guess
+
+
+def without_end() -> None:
+    """A `Look` that lets the search take as long as it does."""
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """A periodic solution, one period from the instant at which the forces' angle is 0."""
+
+    scene: Scene
+    frequency: float  # [rad/s]
+    state: State  # at its start
+    cycle: Cycle
+    multipliers: npt.NDArray[np.complex128]  # Floquet's, the greatest first
+    residual: float  # by which it fails to close, relative to its size
+    iterations: int
+
+    @property
+    def stable(self) -> bool:
+        """Whether small disturbances die out, or at least do not grow."""
+        return within_unit_circle(self.multipliers)
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """For each contact the sequence of its states over the period, such as 'EPEN'."""
+        return self.cycle.states
+
+    @cached_property
+    def measure(self) -> Measure:
+        """Amplitudes (half the peak-to-peak, and the fundamental), phase and mean."""
+        return measure(self.cycle)
+
+    @property
+    def motion(self) -> Motion:
+        """The period as a motion."""
+        return Motion(self.scene, (self.cycle,), self.state)
+
+
+def within_unit_circle(multipliers: npt.NDArray[np.complex128]) -> bool:
+    """Whether no disturbance grows, but for rounding."""
+    return bool(np.abs(multipliers).max(initial=0.0) <= 1.0 + STABLE)
+
+
+def periodic(scene: Scene, frequency: float, guess: State | None = None) -> Orbit:
+    """A periodic solution of a scene, stable or not, at one frequency.
+
+    Newton's method on the closure of one period of the exact motion (shooting), with the exact derivative.
+
+    Parameters
+    ----------
+    scene : Scene
+        From `fcm.load_scene`.
+    frequency : float
+        Of the external forces [rad/s].
+    guess : State, optional
+        At the forces' angle 0, from `Motion.end`, from a neighbouring `Orbit.state`, or from
+        `harmonic_state`. By default the solution is the one that a simulation from rest approaches, or
+        goes around when that one is not stable; its residual friction is that of the scene's [start].
+
+    Raises
+    ------
+    SimulationError
+        If no periodic solution is found from there.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> orbit = periodic(fcm.load_scene("yang1998-n5"), 1.3)
+    >>> orbit.stable, orbit.states
+    (True, ('SPEN',))
+    """
+    system = System(scene, frequency)
+    if guess is not None:
+        orbit = shoot(system, guess)
+        if orbit is None:
+            at = spoken(frequency, scene.frequency_unit)
+            raise SimulationError(
+                f"no periodic solution is found at {at} from this state; "
+                "simulate some cycles and start from their end, or from a solution at a frequency nearby"
+            )
+        return orbit
+    return approached(system)
+
+
+def unloaded(scene: Scene) -> State:
+    """At rest, with the residual friction of the scene's [start]."""
+    rest = State.rest(scene)
+    displacement = scene.modal.shapes.T @ rest.q
+    pairs = zip(scene.contacts, resting(scene), strict=True)
+    friction = np.array([contact.k_u * (contact.tangential @ displacement - w) for contact, w in pairs])
+    return State(rest.q, rest.velocity, friction)
+
+
+def approached(system: System, poll: Poll = without_end) -> Orbit:
+    """The periodic solution that a simulation from rest comes near to.
+
+    Raises
+    ------
+    SimulationError
+        If there is none.
+    """
+    state, unstable = unloaded(system.scene), 0
+    for cycles in FREE_CYCLES:
+        amplitudes = list[float]()
+        for cycle, end in cycles_from(system, cycles, state):
+            poll()
+            amplitudes.append(float(measure(cycle).amplitude.max(initial=0.0)))
+            state = end
+        orbit = shoot(system, state, poll)
+        unstable += orbit is not None and not orbit.stable
+        # near an unstable one twice: the motion goes around it, in a multiple of its period or in none
+        if orbit is not None and (orbit.stable or unstable > 1):
+            return orbit
+    at = spoken(system.omega, system.scene.frequency_unit)
+    raise SimulationError(
+        f"the motion from rest at {at} has not become periodic "
+        f"in {sum(FREE_CYCLES)} cycles; {_neither(system, np.array(amplitudes))}"
+    )
+
+
+def _neither(system: System, amplitude: FloatArray) -> str:
+    """What a motion does that has not become periodic, by the greatest amplitudes of its last cycles."""
+    first, second = np.array_split(amplitude, 2)
+    if abs(second.mean() - first.mean()) > DRIFT * np.ptp(amplitude):
+        return "it may grow without end, repeat only after several periods, or need a guess"
+    modal = system.scene.modal
+    rate = float((modal.damping * modal.frequency).min())
+    last = -np.log(LEFT) / rate / system.period if rate > 0.0 else np.inf
+    slow = f", or settles only in some {last:.1g} cycles" if last > sum(FREE_CYCLES) else ""
+    return (
+        f"the amplitude of its last {amplitude.size} lies between {amplitude.min():.4g} and "
+        f"{amplitude.max():.4g}, and neither grows nor decays: it is irregular, or repeats only after "
+        f"several periods{slow}; --at has the extent of such a motion"
+    )
+
+
+def shoot(system: System, guess: State, poll: Poll = without_end) -> Orbit | None:
+    """Newton's method from a state at the forces' angle 0; None when it does not converge."""
+    x = np.concatenate((guess.q, guess.velocity, guess.friction))
+    found = converged(Shot(system, x), poll=poll)
+    return None if found is None else closed(*found)
+
+
+def converged(
+    shot: Shot, most: int = MOST_ITERATIONS, poll: Poll = without_end, shortest: float = SHORTEST
+) -> tuple[Shot, int] | None:
+    """The shot that closes, by Newton's method from one that does not, and the number of steps it took.
+
+    None after the most steps, or where only a shorter part of one than the shortest brings it nearer.
+    """
+    for iteration in range(most):
+        poll()
+        if shot.residual <= TOLERANCE:
+            return shot, iteration
+        better = _improved(shot, shortest)
+        if better is None:
+            return (shot, iteration) if shot.residual <= 100.0 * TOLERANCE else None
+        shot = better
+    return None
+
+
+def closed(shot: Shot, iterations: int = 0) -> Orbit:
+    """The orbit of a shot that closes."""
+    system = shot.system
+    return Orbit(
+        system.scene, system.omega, shot.state, shot.cycle, shot.multipliers, shot.residual, iterations
+    )
+
+
+def _step(shot: Shot) -> FloatArray:
+    """Newton's step; along directions in which nothing changes, none."""
+    matrix = shot.by_state * shot.scale / shot.scale[:, None]
+    solution = np.linalg.lstsq(matrix, -shot.gap / shot.scale, rcond=RANK)[0]
+    with np.errstate(over="ignore"):  # what is not finite is refused when it is tried
+        step: FloatArray = solution * shot.scale
+    return step
+
+
+def _improved(shot: Shot, shortest: float) -> Shot | None:
+    """The shot after Newton's step, shortened until the orbit closes better; None if it never does."""
+    step, size = _step(shot), 1.0
+    while size > shortest:
+        try:
+            new = Shot(shot.system, shot.x + size * step, shot.resting, shot.periods)
+        except SimulationError:  # too far away to be computed
+            size *= 0.5
+            continue
+        # across corners of the map the residual may grow for one step
+        if new.residual < shot.residual * (1.0 if size < 1.0 else 2.0 if shot.residual > 1e-6 else 1.0):
+            return new
+        size *= 0.5
+    return None

@@ -1,0 +1,167 @@
+"""Periodic motions as a problem of the continuation: one period of the exact motion closes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+from zlib import crc32
+
+import numpy as np
+
+from fcm.continuation.problem import Problem
+from fcm.model.scene import FloatArray, Scene
+from fcm.shooting.period_derivative import along
+from fcm.shooting.residual import Shooting, Shot
+from fcm.time_domain.errors import SimulationError
+from fcm.time_domain.state import State
+
+if TYPE_CHECKING:
+    from fcm.shooting.orbit_record import Sample
+
+KEPT = 1_000_000  # numbers of periods that are remembered: a place is asked for more than once
+INSTANT = 1e-9  # of a period: what lasts less is no state of its own
+STILL = 1e-9  # of the greatest amplitude: what moves less is not reported
+
+
+class OrbitProblem(Problem):
+    """The closure of one period, z = (q, q', f, omega) at the forces' angle 0, without f that are always 0.
+
+    The residual is that of `Shooting`: continuous, and smooth while the sequence of states over the period
+    stays, which is the label of a point. Most changes of the sequence hardly show in the curve; where a slip
+    is new it may have a corner.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its `frequency_range` is the unit of frequencies.
+    repeats : int
+        Periods of the force after which the motion closes.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import fcm
+    >>> from fcm.shooting import periodic
+    >>> scene = fcm.load_scene("yang1998-n5")
+    >>> problem, orbit = OrbitProblem(scene), periodic(scene, 1.3)
+    >>> problem.evaluate(problem.z(orbit.state, 1.3))
+    0
+    >>> bool(abs(np.asarray(problem.residual)).max() < 1e-9), problem.jacobian.shape
+    (True, (5, 6))
+    """
+
+    def __init__(self, scene: Scene, repeats: int = 1) -> None:
+        self.scene, self.shooting, self.repeats = scene, Shooting(scene, repeats), repeats
+        self.free = self.shooting.free
+        super().__init__(self.free.size, 1, len(scene.modal.dofs))
+        self.labelled = True
+        self.span = scene.frequency_range[1] - scene.frequency_range[0]
+        self.periods = 0  # that have been computed
+        self._block, self._all = np.ix_(self.free, self.free), self.free.size == self.shooting.size
+        self._residual, self._jacobian = np.asarray(self.residual), np.asarray(self.jacobian)
+        self._output, self._growth = np.asarray(self.output), np.asarray(self.growth)
+        self._scale, self._root = np.asarray(self.scale), float(np.sqrt(self.free.size))
+        self._shots: dict[bytes, Shot | None] = {}
+        self._numbers = 0  # in them
+        self.samples: dict[bytes, Sample] = {}  # what is kept of points, see `recorded`
+        self._rates = scene.modal.frequency
+
+    def z(self, state: State, omega: float) -> FloatArray:
+        """The unknowns of a state at the forces' angle 0, and the frequency [rad/s]."""
+        return np.append(self.shooting.unknowns(state), omega)
+
+    def shot(self, z: FloatArray) -> Shot | None:
+        """The period from z; None where there is none."""
+        z = np.asarray(z)
+        key = z.tobytes()
+        shot = self._shots.get(key)
+        if shot is None and key not in self._shots:
+            shot = self._made(z)
+            if self._numbers > KEPT:
+                self.forget()
+            self._numbers += 0 if shot is None else int(shot.segments.y.size) + 3 * shot.x.size**2
+            self._shots[key] = shot
+        return shot
+
+    @property
+    def full(self) -> bool:
+        """Whether so much is remembered that it may be forgotten with the next step."""
+        return 2 * self._numbers > KEPT
+
+    def forget(self) -> None:
+        """Forget all periods."""
+        self._shots, self._numbers = {}, 0
+
+    def _made(self, z: FloatArray) -> Shot | None:
+        self.periods += self.repeats
+        try:
+            return self.shooting.residual(z[:-1], float(z[-1]))
+        except SimulationError:
+            return None
+
+    def evaluate(self, z: FloatArray) -> int:
+        """See `Problem`; not a number where there is no motion, so that no solution is sought there."""
+        shot, jacobian = self.shot(z), self._jacobian
+        if shot is None:
+            jacobian[:] = self._residual[:] = np.nan
+        elif self._all:
+            self._residual[:], jacobian[:, :-1], jacobian[:, -1] = shot.gap, shot.by_state, shot.by_parameter
+        else:
+            self._residual[:], jacobian[:, :-1] = shot.gap[self.free], shot.by_state[self._block]
+            jacobian[:, -1] = shot.by_parameter[self.free]
+        return 0
+
+    def probe(self, z: FloatArray) -> int:
+        """See `Problem`."""
+        shot = self.shot(z)
+        self._residual[:] = np.nan if shot is None else shot.gap[self.free]
+        return 0
+
+    def measure(self, z: FloatArray) -> int:
+        """The size of the motion; velocities are displacements times the modes' own frequencies.
+
+        So the higher harmonics count by their displacements.
+        """
+        shot = self.shot(z)
+        if shot is None:
+            return 0
+        system, scale = shot.system, shot.scale.copy()
+        rates = np.maximum(self._rates, system.omega)
+        length = shot.segments.length_by(rates)
+        scale[system.q], scale[system.p] = length, length * rates
+        self._scale[:-1], self._scale[-1] = scale[self.free] * self._root, self.span
+        return 0
+
+    def bound(self, z: FloatArray) -> int:
+        """See the class; as they were where there is no motion."""
+        shot = self.shot(z)
+        if shot is not None:
+            self.margin[0] = _label(shot)
+        return 0
+
+    def report(self, z: FloatArray, direction: FloatArray) -> int:
+        """Half the peak-to-peak of the degrees of freedom: an extreme grows as the motion at its instant."""
+        shot = self.shot(z)
+        output, growth = self._output, self._growth
+        output[:] = growth[:] = 0.0
+        if shot is None:
+            return 0
+        shapes = self.scene.modal.shapes
+        least, greatest, places = shot.scanned.displaced
+        amplitude = 0.5 * (greatest - least)
+        moves = amplitude > STILL * amplitude.max(initial=0.0)
+        way = np.zeros(self.shooting.size)
+        way[self.free] = np.asarray(direction)[:-1]
+        rates = along(shot.system, shot.segments, places, way, float(direction[-1]))
+        change = 0.5 * ((rates[least.size :] - rates[: least.size]) * shapes.T).sum(axis=1)
+        output[:], growth[:] = np.where(moves, amplitude, 0.0), np.where(moves, change, 0.0)
+        return 0
+
+
+def _label(shot: Shot) -> float:
+    """A number for the states over the period, from its start, and for the contacts that are at a limit.
+
+    A transition that passes the start is a corner of the friction force there, though of nothing else.
+    """
+    states = shot.segments.lasting(shot.duration, INSTANT * shot.duration)
+    limited = bytes([choice.contact for choice in shot.chosen if choice.limited])
+    return float(crc32(states + limited))

@@ -1,0 +1,204 @@
+"""Shooting: how the motion over one period fails to close, with the derivatives of that."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.model.scene import FloatArray, Scene
+from fcm.shooting.floquet_multipliers import floquet_of
+from fcm.shooting.period_derivative import period_derivative
+from fcm.shooting.residual_traction import Choice, choices, overshoots, resting, stuck_of
+from fcm.time_domain.cycle import Cycle
+from fcm.time_domain.cycle_measures import Displaced, Scanned, displaced, scanned
+from fcm.time_domain.equations import has_friction
+from fcm.time_domain.flow_cache import STICKING
+from fcm.time_domain.simulation import march_from
+from fcm.time_domain.state import State
+from fcm.time_domain.system import System
+
+
+class Shot:
+    """The motion over some periods from x = (q, q', f), and how it fails to close.
+
+    Parameters
+    ----------
+    system : System
+    x : (unknown,)
+    resting : (contact,), optional
+        The slip motions w that contacts which always stick are to have; any will do by default.
+    periods : int
+        Of the force, after which the motion is to repeat.
+    """
+
+    def __init__(
+        self, system: System, x: FloatArray, resting: FloatArray | None = None, periods: int = 1
+    ) -> None:
+        self.system, self.x, self.resting, self.periods = system, x, resting, periods
+        self.duration = periods * system.period  # [s]
+        self.segments, end = march_from(system, x, self.duration)
+        self.gap, self.chosen = end[: system.unknowns] - x, list[Choice]()
+        self._derivatives: tuple[FloatArray, FloatArray, FloatArray] | None = None
+        if resting is not None:
+            self._choose(resting)
+
+    def _choose(self, resting: FloatArray) -> None:
+        """Let the gap of the contacts that always stick be that of their slip motions."""
+        first, seen = self.system.f.start, self.segments.seen()
+        self.chosen = choices(self.system, self.segments, resting, stuck_of(self.system, seen))
+        for choice in self.chosen:
+            self.gap[first + choice.contact] = choice.gap
+        for contact, missing in overshoots(self.system, self.segments, seen):
+            self.gap[first + contact] -= missing
+
+    @cached_property
+    def scale(self) -> FloatArray:
+        """The size of x: (unknown,)."""
+        scale: FloatArray = self.segments.scale(self.system.per_unit, self.system.tuned())
+        return scale
+
+    @cached_property
+    def residual(self) -> float:
+        """By how much it fails to close, relative to its size."""
+        return float(np.abs(self.gap / self.scale).max(initial=0.0))
+
+    @property
+    def state(self) -> State:
+        """The state at its start."""
+        system = self.system
+        return State(self.x[system.q], self.x[system.p], self.x[system.f])
+
+    @property
+    def cycle(self) -> Cycle:
+        """The motion over the periods."""
+        return Cycle(self.system, 0.0, self.duration, 0.0, self.segments)
+
+    @cached_property
+    def sequence(self) -> bytes:
+        """The states of the contacts from segment to segment: while it stays, the gap is smooth."""
+        return np.asarray(self.segments.states).tobytes()
+
+    @property
+    def derivative(self) -> FloatArray:
+        """Of the state after the period by x: (unknown, unknown)."""
+        return self._differentiated()[0]
+
+    @property
+    def by_state(self) -> FloatArray:
+        """Derivative of the gap by x: (unknown, unknown)."""
+        return self._differentiated()[1]
+
+    @property
+    def by_parameter(self) -> FloatArray:
+        """Derivative of the gap by the frequency or by the level of the forces: (unknown,)."""
+        return self._differentiated()[2]
+
+    def _differentiated(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """The derivatives, which are computed once."""
+        if self._derivatives is None:
+            end, rate = period_derivative(self.system, self.segments, self.duration)
+            gap, first = end.copy(), self.system.f.start
+            gap.reshape(-1)[:: self.x.size + 1] -= 1.0
+            for choice in self.chosen:
+                gap[first + choice.contact], rate[first + choice.contact] = choice.row, choice.rate
+            self._derivatives = end, gap, rate
+        return self._derivatives
+
+    @cached_property
+    def scanned(self) -> Scanned:
+        """The extremes of all that is reported."""
+        return scanned(self.system, self.segments)
+
+    @cached_property
+    def extremes(self) -> Displaced:
+        """The least and the greatest displacement of each degree of freedom."""
+        return displaced(self.system, self.segments)
+
+    @property
+    def amplitude(self) -> FloatArray:
+        """Half the peak-to-peak of each degree of freedom: (dof,)."""
+        half: FloatArray = 0.5 * (self.extremes.greatest - self.extremes.least)
+        return half
+
+    @cached_property
+    def kept(self) -> FloatArray:
+        """What each contact that is held keeps of its limit, or of its gap: (held,); negative, nothing."""
+        least, greatest = self.scanned.part(self.system.parts.limits)
+        most = greatest[::3]
+        share: FloatArray = least.reshape(-1, 3).min(axis=1) / np.where(most > 0.0, most, 1.0)
+        return share
+
+    @cached_property
+    def others(self) -> npt.NDArray[np.complex128]:
+        """Floquet's multipliers but the 1 of each contact that always sticks, whose slip motion w stays, and
+        of each that stays closed without friction, whose f = 0 does; nor the 0 of a slider that forgets.
+        """
+        return floquet_of(self.system).multipliers(self.segments, self.duration)
+
+    @cached_property
+    def multipliers(self) -> npt.NDArray[np.complex128]:
+        """Floquet's, the greatest first; 1 for each contact that always sticks, or stays closed smooth."""
+        values = np.zeros(self.x.size, dtype=np.complex128)
+        ones = sum(states == 1 << STICKING for states in self.segments.seen())
+        values[: self.others.size] = self.others
+        values[self.others.size : self.others.size + ones] = 1.0
+        return values[np.argsort(-np.abs(values), kind="stable")]
+
+
+class Shooting:
+    """Periodic motions of a scene as the roots of a residual, over all frequencies.
+
+    With more than one period these are the motions that repeat after so many, and also those that do before.
+
+    The unknowns are (q, q', f) at the forces' angle 0 without the friction forces that are always zero:
+    `free` has their places. The residual is continuous, and smooth while the sequence of states stays.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> from fcm.shooting import periodic
+    >>> scene = fcm.load_scene("yang1998-n5")
+    >>> problem, orbit = Shooting(scene), periodic(scene, 1.3)
+    >>> shot = problem.residual(problem.unknowns(orbit.state), 1.3)
+    >>> shot.by_state.shape, shot.by_parameter.shape, bool(shot.residual < 1e-11)
+    ((5, 5), (5,), True)
+    """
+
+    def __init__(self, scene: Scene, periods: int = 1) -> None:
+        self.scene, self.resting, self.each = scene, resting(scene), periods
+        carries = np.array([has_friction(contact) for contact in scene.contacts], dtype=bool)
+        self.free = np.flatnonzero(np.concatenate((np.ones(2 * scene.modal.mass.size, dtype=bool), carries)))
+        self.size = 2 * scene.modal.mass.size + len(scene.contacts)
+        self.periods = 0  # that have been computed
+        self._system: System | None = None
+
+    def system(self, omega: float) -> System:
+        """The scene at a frequency [rad/s]."""
+        if self._system is None or self._system.omega != omega:
+            self._system = System(self.scene, omega) if self._system is None else self._system.at(omega)
+        return self._system
+
+    def unknowns(self, state: State) -> FloatArray:
+        """The unknowns of a state at the forces' angle 0."""
+        whole: FloatArray = np.concatenate((state.q, state.velocity, state.friction))
+        return whole[self.free]
+
+    def residual(
+        self, unknowns: FloatArray, omega: float, level: float = 1.0, by_level: bool = False
+    ) -> Shot:
+        """The period from a state at a frequency and a level of the forces, which may be the parameter.
+
+        Raises
+        ------
+        SimulationError
+            If the period cannot be computed.
+        """
+        x = np.zeros(self.size)
+        x[self.free] = unknowns
+        self.periods += self.each
+        system = self.system(omega)
+        if level != 1.0 or by_level:
+            system = system.at_level(level, by_level)
+        return Shot(system, x, self.resting, self.each)

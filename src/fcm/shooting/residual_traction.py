@@ -1,0 +1,143 @@
+"""The friction force of a contact that sticks all through the period.
+
+Its slip motion w can have any value between the greatest lower and the least upper slip limit, and the
+solution is one of a family. A contact that starts with some w ends with the w nearest to it: that one is
+chosen, so that the solutions over the frequency are one curve. It starts unstressed, w = 0, unless static
+loads have made it slip, or the scene's [start] says otherwise.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fcm.model.scene import Contact, FloatArray, Scene
+from fcm.shooting.period_derivative import derivative_at
+from fcm.time_domain.cycle_measures import Extreme, extremes_by
+from fcm.time_domain.flow_cache import NEGATIVE_SLIP, POSITIVE_SLIP, SEPARATED, STICKING
+from fcm.time_domain.segments import Segments
+from fcm.time_domain.state import State
+from fcm.time_domain.system import System
+
+MARGIN = 1e-9  # distance from the slip limit, relative to the forces
+BOTH = 1 << POSITIVE_SLIP | 1 << NEGATIVE_SLIP  # of what has been seen of a contact: slip in both directions
+ROUNDING = 1e-3  # of that: a contact this near to what is wanted has it, whatever its limits
+
+
+class Choice(NamedTuple):
+    """How far a stuck contact's friction force is from the one that is chosen."""
+
+    contact: int
+    gap: float  # to be added to the force
+    row: FloatArray  # (2 modes + contacts,) derivative of the gap by x = (q, q', f)
+    rate: float  # and by the frequency
+    limited: bool  # whether it is a limit of slip, and not the w that is wanted
+
+
+def resting(scene: Scene) -> FloatArray:
+    """The slip motions w of the contacts where the scene starts: (contact,)."""
+    start = State.start(scene)
+    return _resting(scene.contacts, scene.modal.shapes.T @ start.q, start.friction)
+
+
+def resting_at(system: System, x: FloatArray) -> FloatArray:
+    """The slip motions w of the contacts at x = (q, q', f): (contact,)."""
+    displacement = system.scene.modal.shapes.T @ x[system.q]
+    return _resting(system.contacts, displacement, x[system.f])
+
+
+def _resting(contacts: tuple[Contact, ...], displacement: FloatArray, friction: FloatArray) -> FloatArray:
+    w = np.zeros(len(contacts))
+    for j, contact in enumerate(contacts):
+        if contact.k_u > 0.0:
+            w[j] = contact.tangential @ displacement - friction[j] / contact.k_u
+    return w
+
+
+def always_stuck(system: System, segments: Segments) -> list[int]:
+    """The contacts that stick all through the segments."""
+    return stuck_of(system, segments.seen())
+
+
+def stuck_of(system: System, seen: list[int]) -> list[int]:
+    """The same of what each contact has been in: see `Segments.seen`."""
+    return [j for j, states in enumerate(seen) if states == 1 << STICKING and system.rough[j]]
+
+
+def choices(system: System, segments: Segments, wanted: FloatArray, stuck: list[int]) -> list[Choice]:
+    """The choices for the contacts that stick all through the segments; wanted: the w of all, (contact,)."""
+    if not stuck:
+        return []
+    y = np.asarray(segments.y)[0]
+    gaps = (system.sticking @ y[: system.unknowns] - system.k_u * wanted).tolist()
+    far = [j for j in stuck if abs(gaps[j]) > _known_room(system, segments, y, j)]
+    room = rooms(system, segments, far) if far else {}
+    return [
+        _choice(system, segments, j, gaps[j], *room[j])
+        if j in room
+        else Choice(j, gaps[j], system.sticking[j], 0.0, False)
+        for j in stuck
+    ]
+
+
+def _known_room(system: System, segments: Segments, y: FloatArray, j: int) -> float:
+    """Gaps up to this need no search: within a bound of the limits, or of no size."""
+    margin = _margin(system, y, j)
+    return max(ROUNDING * margin, segments.held(j) - margin)
+
+
+def _choice(system: System, segments: Segments, j: int, gap: float, above: Extreme, below: Extreme) -> Choice:
+    """The force for the w that is wanted, or the nearest to it that keeps |f| <= mu n for all of the period.
+
+    It keeps a little away from the limit, so that rounding does not decide between stick and slip. Above and
+    below are the least of mu n - f and of mu n + f.
+    """
+    margin, sign = _margin(system, np.asarray(segments.y)[0], j), 1.0 if gap > 0.0 else -1.0
+    ahead, behind = (above, below) if gap > 0.0 else (below, above)
+    room, other = ahead.value, behind.value
+    if abs(gap) <= room - margin:
+        return Choice(j, gap, system.sticking[j], 0.0, False)
+    there, rate = _room_derivative(system, segments, j, sign, ahead)
+    if room + other > 2.0 * margin:
+        return Choice(j, sign * (room - margin), sign * there, sign * rate, True)
+    elsewhere, other_rate = _room_derivative(system, segments, j, -sign, behind)
+    return Choice(
+        j, 0.5 * sign * (room - other), 0.5 * sign * (there - elsewhere),
+        0.5 * sign * (rate - other_rate), True,
+    )  # fmt: skip
+
+
+def _margin(system: System, y: FloatArray, j: int) -> float:
+    contact = system.contacts[j]
+    limit = contact.mu * (abs(contact.n_0) + abs(y[system.n.start + j]))
+    return MARGIN * float(abs(y[system.f.start + j]) + limit)
+
+
+def overshoots(system: System, segments: Segments, seen: list[int]) -> list[tuple[int, float]]:
+    """Contacts that slip in one direction only, with what their gap lacks to continue that of a `Choice`.
+
+    None of these is periodic: the slip takes the force to its limit, where the contact sticks.
+    """
+    found = []
+    for j, states in enumerate(seen):
+        ways = states & BOTH
+        if ways not in (0, BOTH) and not states & 1 << SEPARATED and system.rough[j]:
+            sign = 1.0 if ways == 1 << POSITIVE_SLIP else -1.0
+            found.append((j, sign * _margin(system, np.asarray(segments.y)[0], j)))
+    return found
+
+
+def rooms(system: System, segments: Segments, contacts: list[int]) -> dict[int, tuple[Extreme, Extreme]]:
+    """Of each contact the least of mu n - f and of mu n + f over the segments."""
+    found, _ = extremes_by(system.limits, system, segments)
+    return {j: (found[2 * j], found[2 * j + 1]) for j in contacts}
+
+
+def _room_derivative(
+    system: System, segments: Segments, j: int, sign: float, place: Extreme
+) -> tuple[FloatArray, float]:
+    """The derivatives of the least of mu n - sign f by x and by the frequency."""
+    columns = derivative_at(system, segments, place.segment, place.position).columns
+    rates = columns[:-1, :-2] @ system.limit_rows[2 * j + (sign < 0.0)]
+    return rates[:-1], float(rates[-1])

@@ -1,0 +1,66 @@
+"""Where stability changes between two points of an exact curve.
+
+While the sequence of states stays, the multipliers change smoothly; where it changes they may jump, as where
+a contact begins to slip. A contact that always sticks has a multiplier 1 on either side and tells nothing.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fcm.continuation import Path, Segment
+from fcm.continuation.options import FOLLOW
+from fcm.continuation.root_finding import Secants
+from fcm.model.scene import FloatArray
+from fcm.shooting.periodic import STABLE
+from fcm.shooting.problem import OrbitProblem
+
+LOOKS = 60  # at most
+SURE = 0.01 * STABLE  # by which a multiplier may differ from where stability ends, to be there
+
+
+class Place(NamedTuple):
+    """A place between two points of a path."""
+
+    part: float  # of the way: 0 and 1 are the points
+    excess: float  # of the greatest multiplier over where stability ends, on a logarithmic scale
+    z: FloatArray
+    direction: FloatArray
+
+    @property
+    def there(self) -> bool:
+        """Whether stability ends there, as far as can be told."""
+        return abs(self.excess) <= 0.5 * SURE
+
+
+def crossing(problem: OrbitProblem, path: Path, first: int) -> Place | None:
+    """The last place of the stable side between a point of a path and the next; None if it is not found.
+
+    By secants, and in the middle where one does not come nearer. What jumps is located as closely as a
+    change of label is.
+    """
+    ends = [_place(problem, float(i), path.z[first + i], path.direction[first + i]) for i in (0, 1)]
+    sides = Secants(0.0, 1.0, ends[0].excess, ends[1].excess, may_jump=True)
+    between, stable = Segment(problem, path, first), min(ends, key=lambda place: place.excess)
+    for _ in range(LOOKS):
+        if stable.there or sides.width * between.length < FOLLOW.switching.touched:
+            return stable
+        tried = sides.at, 0.5 * (sides.low + sides.high)
+        part = next((at for at in tried if between.put(at)), None)
+        if part is None:
+            break
+        new = _place(problem, part, between.z, between.direction)
+        sides.saw(part, new.excess)
+        if new.excess < 0.0 or new.there:
+            stable = new
+    return stable if 0.0 < stable.part < 1.0 else None
+
+
+def _place(problem: OrbitProblem, part: float, z: FloatArray, direction: FloatArray) -> Place:
+    """Its excess is counted from half of what is sure below the limit, so that what is there is stable."""
+    shot = problem.shot(z)
+    others = np.zeros(0) if shot is None else np.abs(shot.others)
+    excess = np.log(others.max(initial=1e-300)) - np.log1p(STABLE) + 0.5 * SURE
+    return Place(part, float(excess), z, direction)

@@ -1,0 +1,172 @@
+"""Windows of stability, or of its loss, between two points of an exact curve that agree.
+
+What tells of them are functions of the multipliers that vary smoothly where those do not; see
+`fcm.stability.bifurcation_functions`. Where the states of the contacts change on the way, multipliers may
+jump, and nothing tells of it: there the middle is looked at.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import NamedTuple, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.continuation import Path, Segment
+from fcm.model.scene import FloatArray
+from fcm.shooting.periodic import within_unit_circle
+from fcm.shooting.problem import OrbitProblem
+from fcm.stability.bifurcation_functions import LEAST, MANY, Seen, dip, foretold, products, seen
+from fcm.stability.verdict import Bifurcation, Verdict
+
+ComplexArray = npt.NDArray[np.complex128]
+
+DIPS = 4  # times that a way between two points is divided in search of a window
+SAFE = -0.3  # logarithm of the greatest multiplier of both, below which none is looked for
+
+
+class Point(Protocol):
+    """What is known of a point of a path."""
+
+    @property
+    def multipliers(self) -> ComplexArray: ...
+    @property
+    def stable(self) -> bool: ...
+    @property
+    def states(self) -> tuple[str, ...]: ...
+
+
+class Window(NamedTuple):
+    """A place at which stability is another than at the two points that it lies between."""
+
+    first: int  # of these
+    z: FloatArray
+    direction: FloatArray
+    orientation: float
+
+
+class _Known(NamedTuple):
+    """What is known of the points of a path, (point,) each: see `Seen`."""
+
+    length: FloatArray
+    stable: npt.NDArray[np.bool_]
+    growth: FloatArray
+    flip: FloatArray
+    pair: FloatArray
+
+    def places(self, first: int, end: int) -> list[Seen]:
+        """Those from the first to before the end."""
+        rows = zip(*(values[first:end].tolist() for values in self), strict=True)
+        return [Seen(*row) for row in rows]
+
+    def suspected(self, jumps: npt.NDArray[np.bool_]) -> list[int]:
+        """The points after which there may be a window: where a dip is foretold, or multipliers may jump."""
+        low, high = self.stable[:-1], self.stable[1:]
+        dips = np.where(low, self._dips(self.flip, self.pair), self._dips(self.growth))
+        near = np.maximum(self.growth[:-1], self.growth[1:]) >= SAFE
+        found: list[int] = np.flatnonzero((low == high) & near & (jumps | dips)).tolist()
+        return found
+
+    def _dips(self, *functions: FloatArray) -> npt.NDArray[np.bool_]:
+        """Whether a dip of any of them is foretold after each point but the last."""
+        s, before = self.length, self.stable[:-2] == self.stable[1:-1]
+        alike = before & (self.stable[1:-1] == self.stable[2:])
+        found = np.zeros(max(s.size - 1, 0), dtype=bool)
+        for values in functions:
+            sides = foretold(s, values, logarithms=len(functions) > 1)
+            for k, side in enumerate(sides):  # between the first two of three points, and the last two
+                found[k : found.size - 1 + k] |= side & alike
+        return found
+
+
+def with_windows(problem: OrbitProblem, path: Path, points: Sequence[Point]) -> tuple[Path, list[int]]:
+    """A path with a point inside each window, and the numbers of these points.
+
+    points : of the path, in its order.
+    """
+    if not points:
+        return path, []
+    known = _known(path, points)
+    jumps = np.array([one.states != other.states for one, other in pairwise(points)], dtype=bool)
+    looked = (_window(problem, path, known, k, bool(jumps[k])) for k in known.suspected(jumps))
+    found = [one for one in looked if one is not None]
+    if not found:
+        return path, []
+    behind = [one.first + 1 for one in found]
+
+    def filled(values: FloatArray, rows: list[FloatArray] | list[float]) -> FloatArray:
+        return np.asarray(np.insert(values, behind, np.array(rows), axis=0))
+
+    whole = replace(
+        path,
+        z=filled(path.z, [one.z for one in found]),
+        direction=filled(path.direction, [one.direction for one in found]),
+        orientation=filled(path.orientation, [one.orientation for one in found]),
+        mark=np.insert(path.mark, behind, np.zeros(len(found), dtype=np.int64)),
+        shift=filled(path.shift, [0.0] * len(found)),
+    )
+    return whole, [k + i for i, k in enumerate(behind)]
+
+
+def _window(problem: OrbitProblem, path: Path, known: _Known, k: int, jumps: bool) -> Window | None:
+    """A place in a window between a point and the next, if what is known of the points tells of one.
+
+    jumps : whether multipliers may jump there.
+    """
+    first, (low, high) = max(k - 1, 0), known.places(k, k + 2)
+    between: Segment | None = None
+
+    def inside(before: Sequence[Seen], low: Seen, high: Seen, after: Sequence[Seen], times: int) -> bool:
+        """Whether one is found, the way divided so often already; `between` is there then."""
+        nonlocal between
+        alike = [one for one in (*before, low, high, *after) if one.stable == low.stable]
+        length = dip(low, high, alike, times) if times < DIPS else None
+        if length is None and jumps and times == 0:
+            length = 0.5 * (low.length + high.length)
+        if length is None:
+            return False
+        between = between or Segment(problem, path, k)
+        if not between.put((length - start) / width):
+            return False
+        shot = problem.shot(between.z)
+        if shot is None:
+            return False
+        there = _seen(length, shot.multipliers, within_unit_circle(shot.multipliers))
+        return (
+            there.stable != low.stable
+            or inside(before, low, there, [high], times + 1)
+            or inside([low], there, high, after, times + 1)
+        )
+
+    start, width = low.length, high.length - low.length
+    if not inside(known.places(first, k), low, high, known.places(k + 2, k + 3), 0) or between is None:
+        return None
+    return Window(k, between.z, between.direction, between.orientation)
+
+
+def _seen(length: float, multipliers: ComplexArray, stable: bool) -> Seen:
+    """A point; of contacts that always stick, or stay closed smooth, multipliers are 1 and tell nothing."""
+    values = tuple(multipliers[multipliers != 1.0].tolist()[:MANY])
+    growth = math.log(max((abs(value) for value in values), default=0.0) + 1e-300)
+    return seen(length, Verdict(float(stable), growth, Bifurcation.NEIMARK_SACKER, values=values))
+
+
+def _known(path: Path, points: Sequence[Point]) -> _Known:
+    """The points of a path, all at once."""
+    values = np.array([point.multipliers for point in points])
+    kept = (values != 1.0) & (np.cumsum(values != 1.0, axis=1) <= MANY)
+    growth = np.log(np.where(kept, np.abs(values), 0.0).max(axis=1, initial=0.0) + LEAST)
+    stable = np.array([point.stable for point in points])
+    flip, pair = (np.where(stable, each, 0.0) for each in products(np.where(kept, values, 0.0)))
+    return _Known(_lengths(path), stable, growth, flip, pair)
+
+
+def _lengths(path: Path) -> FloatArray:
+    """Way along the path up to each point, in the greatest sizes of its unknowns."""
+    size = np.maximum(np.abs(path.z).max(axis=0), np.finfo(float).tiny)
+    steps = np.linalg.norm(np.diff(path.z, axis=0) / size, axis=1)
+    return np.concatenate(([0.0], np.cumsum(steps)))

@@ -1,0 +1,217 @@
+"""The steady motion that a simulation comes to: after how many periods it repeats, or how far it ranges.
+
+A motion repeats if Newton's method on the closure of so many periods finds a stable motion beside the
+simulated one. One that does not, and whose amplitudes neither grow nor decay any more, is quasi-periodic or
+irregular.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.model.scene import FloatArray
+from fcm.shooting.periodic import Poll, converged, within_unit_circle, without_end
+from fcm.shooting.residual import Shot
+from fcm.shooting.residual_traction import resting_at
+from fcm.time_domain.contact_loads import borne
+from fcm.time_domain.cycle import Cycle
+from fcm.time_domain.cycle_measures import Measure, measure
+from fcm.time_domain.errors import SimulationError
+from fcm.time_domain.simulation import cycles_from
+from fcm.time_domain.state import State
+from fcm.time_domain.system import System
+
+FREE_CYCLES = (20, 40, 80, 160, 320, 640, 640, 640)  # simulated before each look whether it is steady
+MANY = 640  # from so many on they tell how far a motion ranges, all together: it may linger, and burst out
+MOST_PERIODS = 8  # of the force, after which a steady motion may repeat
+NEAR = 0.1  # distance, relative to the motion, of a simulated state from the steady one that it belongs to
+NEARER = 0.5  # part of its distance after fewer periods to which the motion comes back after more
+AGAIN = 1e-6  # difference of two states, relative to the motion, below which they are the same
+DRIFT = 0.2  # part of the range of cycle amplitudes by which their mean may differ from half to half
+LASTING = 0.5  # part of the spread of cycle amplitudes in the one half that the other must have
+REACHES = (
+    0.03,
+    0.1,
+    0.3,
+)  # distances from a motion, relative to it, at which one of twice its periods is sought
+FAR = 1.0  # distance from it at which it is another
+
+
+class Steady(NamedTuple):
+    """A steady motion; amplitudes are half the peak-to-peak."""
+
+    periods: int  # after which it repeats; 0 if it is quasi-periodic or irregular
+    state: State  # at its start
+    states: tuple[str, ...]  # of each contact over the periods, or over the last cycle
+    measure: Measure  # over the periods, or over the cycles that were looked at
+    least: FloatArray  # (dof,) amplitude of a cycle
+    greatest: FloatArray  # (dof,)
+    shares: FloatArray  # (contact, 3) of the time in stick, in slip, open
+    multipliers: npt.NDArray[np.complex128]  # Floquet's over the periods; none of periods 0
+    error: float  # by which it fails to repeat, relative to the motion; nan of periods 0
+    borne: FloatArray  # (contact, 4) as of `borne`
+
+
+def steady(system: System, state: State, poll: Poll = without_end) -> Steady | State:
+    """The steady motion that a simulation from a state comes to; where there is none, the state at its end.
+
+    poll is called after every cycle.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> scene = fcm.load_scene("yang1998-n5")
+    >>> found = steady(System(scene, 1.3), State.rest(scene))
+    >>> found.periods, found.states, found.measure.amplitude.round(4)
+    (1, ('SPEN',), array([7.1681, 7.1663]))
+    """
+    ranging: Steady | None = None
+    seen = list[Cycle]()
+    for count in FREE_CYCLES:
+        ends, cycles = deque([state], MOST_PERIODS + 1), list[Cycle]()
+        for cycle, end in cycles_from(system, count, state):
+            poll()
+            ends.append(end)
+            cycles.append(cycle)
+        state = ends[-1]
+        near = np.inf if _linear(cycles) else NEAR
+        for periods in _candidates(ends):
+            found = _repeating(system, state, periods, near)
+            if found is not None:
+                return found
+        if count >= MANY:
+            of_all = _ranging([*seen, *cycles])
+            seen = cycles if of_all is None else [*seen, *cycles]
+            ranging = of_all or _ranging(cycles) or ranging
+    return state if ranging is None else ranging
+
+
+def _candidates(ends: Sequence[State]) -> list[int]:
+    """Numbers of periods after which the motion may repeat, by the states at the ends of its last cycles."""
+    past = np.array([np.concatenate((end.q, end.velocity)) for end in ends])
+    size = np.maximum(np.abs(past).max(axis=0), 1e-300)
+    apart = np.abs((past[-1] - past[-2::-1]) / size).max(axis=1)
+    return [1, *(k + 1 for k in range(1, apart.size) if apart[k] < min(NEAR, NEARER * apart[:k].min()))]
+
+
+def _linear(cycles: Sequence[Cycle]) -> bool:
+    """Whether no contact changes its state: what is left of the start then decays, however slowly."""
+    return all(bool((np.ptp(np.asarray(cycle.segments.states), axis=0) == 0).all()) for cycle in cycles)
+
+
+def _repeating(system: System, state: State, periods: int, near: float) -> Steady | None:
+    """The stable motion near a state that repeats after so many periods and not before."""
+    x = np.concatenate((state.q, state.velocity, state.friction))
+    shot = _closed(system, x, x, periods)
+    if shot is None or np.abs((shot.x - x) / shot.scale)[: 2 * system.modes].max() > near:
+        return None
+    if periods > 1 and (before := _shorter(shot)) is not None:
+        shot = _flipped(before, x, periods)
+        if shot is None:
+            return None
+    return _of_shot(shot) if within_unit_circle(shot.multipliers) else None
+
+
+def several(shot: Shot) -> Steady | None:
+    """How a motion of several periods, stable or not, ranges over them; None of one."""
+    return _of_shot(shot) if shot.periods > 1 else None
+
+
+def _of_shot(shot: Shot) -> Steady:
+    """A motion that closes after its periods."""
+    parts = [measure(cycle) for cycle, _ in cycles_from(shot.system, shot.periods, shot.state)]
+    amplitude = np.array([part.amplitude for part in parts])
+    return Steady(
+        shot.periods, shot.state, shot.cycle.states, measure(shot.cycle), amplitude.min(axis=0),
+        amplitude.max(axis=0), shares([shot.cycle]), shot.multipliers, shot.residual,
+        borne([shot.cycle]),
+    )  # fmt: skip
+
+
+def _closed(system: System, x: FloatArray, member: FloatArray, periods: int) -> Shot | None:
+    """The motion of so many periods near x; contacts that never slip rest where they do in the member."""
+    try:
+        found = converged(Shot(system, x, resting_at(system, member), periods))
+    except SimulationError:
+        return None
+    return None if found is None else found[0]
+
+
+def _shorter(shot: Shot) -> Shot | None:
+    """The same motion over fewer periods, if it repeats before."""
+    for k in range(1, shot.periods):
+        if shot.periods % k == 0:
+            part = Shot(shot.system, shot.x, periods=k)
+            if part.residual < AGAIN:
+                return part
+    return None
+
+
+def _flipped(once: Shot, x: FloatArray, periods: int) -> Shot | None:
+    """The motion of twice the periods of another, which a simulated state at x is leaving by turns.
+
+    Just beyond a flip the simulation leaves so slowly that Newton's method goes back; from further off on the
+    same way it does not.
+    """
+    if periods != 2 * once.periods or once.multipliers[0].real >= -1.0:
+        return None
+    way = (x - once.x) / once.scale
+    size = float(np.abs(way).max())
+    for reach in REACHES:
+        found = _closed(once.system, once.x + reach / max(size, 1e-300) * way * once.scale, x, periods)
+        if found is not None and _shorter(found) is None:
+            away = np.abs((found.x - once.x) / found.scale)[: 2 * once.system.modes].max()
+            return found if away < FAR else None
+    return None
+
+
+def _ranging(cycles: Sequence[Cycle]) -> Steady | None:
+    """The motion over cycles that do not repeat, unless their amplitudes still grow or decay."""
+    measures = [measure(cycle) for cycle in cycles]
+    amplitude = np.array([one.amplitude for one in measures])
+    first, second = np.array_split(amplitude, 2)
+    drift = np.abs(second.mean(axis=0) - first.mean(axis=0))
+    if (drift > DRIFT * np.ptp(amplitude, axis=0)).any():
+        return None
+    spreads = first.std(axis=0), second.std(axis=0)
+    if (np.minimum(*spreads) < LASTING * np.maximum(*spreads)).any():
+        return None
+    start, none = cycles[0], np.zeros(0, dtype=np.complex128)
+    system, y = start.system, np.asarray(start.segments.y)[0]
+    state = State(y[system.q].copy(), y[system.p].copy(), y[system.f].copy(), start.angle)
+    return Steady(
+        0, state, cycles[-1].states, together(measures), amplitude.min(axis=0), amplitude.max(axis=0),
+        shares(cycles), none, np.nan, borne(cycles),
+    )  # fmt: skip
+
+
+def together(measures: Sequence[Measure]) -> Measure:
+    """Measures of successive cycles as of one motion: its extremes, its mean, its fundamental.
+
+    >>> import numpy as np
+    >>> one, other = (Measure(*np.full((6, 1), x)) for x in (1.0, 3.0))
+    >>> together([one, other]).mean, together([one, other]).amplitude
+    (array([2.]), array([1.]))
+    """
+    greatest = np.max([m.greatest for m in measures], axis=0)
+    least = np.min([m.least for m in measures], axis=0)
+    wave = np.mean([m.fundamental * np.exp(1j * m.phase) for m in measures], axis=0)
+    mean = np.mean([m.mean for m in measures], axis=0)
+    return Measure(0.5 * (greatest - least), np.abs(wave), np.angle(wave), mean, greatest, least)
+
+
+def shares(cycles: Sequence[Cycle]) -> FloatArray:
+    """Parts of the time that each contact sticks, slips and is open: (contact, 3)."""
+    total = np.zeros((len(cycles[0].system.contacts), 4))
+    for cycle in cycles:
+        lasts = np.diff(np.append(np.asarray(cycle.segments.start), cycle.duration))
+        for code in range(4):
+            total[:, code] += lasts @ (np.asarray(cycle.segments.states) == code)
+    total /= sum(cycle.duration for cycle in cycles)
+    part: FloatArray = np.stack((total[:, 1], total[:, 2] + total[:, 3], total[:, 0]), axis=1)
+    return part

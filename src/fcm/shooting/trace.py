@@ -1,0 +1,246 @@
+"""The curves of periodic solutions of a scene over its frequencies."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+
+from fcm.continuation import FollowOptions, Mark, Path, Status, all_branches, follow
+from fcm.continuation.all_branches import Branches, Follow
+from fcm.model.scene import FloatArray, Scene
+from fcm.scene.modal import UNITS
+from fcm.shooting.force_level import Raised, raised
+from fcm.shooting.harmonic_balance_branches import ACCURACY, converged_balance, passes
+from fcm.shooting.initial_orbits import AS_HIGH, along_balance, first_point, height_of, starts
+from fcm.shooting.orbit_record import Sample, samples
+from fcm.shooting.periodic import Orbit, Poll, periodic, without_end
+from fcm.shooting.problem import OrbitProblem
+from fcm.shooting.unstable_range_search import orbits_in_unstable_ranges
+from fcm.shooting.work_budget import Bounded, Doubts
+from fcm.time_domain.errors import SimulationError
+
+Progress = Callable[[float, str], None]
+SPREAD = 7  # motions of a branch that are looked for on the others
+ENDED = (Status.COMPLETE, Status.RETURNED, Status.CLOSED)
+BROKEN = 3  # branches that break off, after which no others are looked for: where contacts rattle, with ten
+# impacts a period and more, unstable motions are countless, and the search for their branches has no end
+
+
+@dataclass
+class Branch:
+    """Periodic solutions along one curve."""
+
+    orbits: list[Sample] = field(default_factory=list)  # in the order along the curve
+    status: Status = Status.COMPLETE
+    periods: int = 0  # of the motion that were computed
+
+    @property
+    def folds(self) -> list[Sample]:
+        """Those of the solutions at which the curve turns back in frequency."""
+        return [orbit for orbit in self.orbits if orbit.mark & Mark.FOLD]
+
+    @property
+    def complete(self) -> bool:
+        """Whether it goes from one end of the range to the other."""
+        return self.status is Status.COMPLETE
+
+
+def trace_orbits(
+    scene: Scene,
+    max_step: float | None = None,
+    start: Orbit | None = None,
+    progress: Progress | None = None,
+) -> Branch:
+    """Follow the periodic solutions of a scene over its frequency range, stable or not.
+
+    Pseudo-arclength continuation of the exact motion: the same points as `periodic` finds, in order, through
+    folds and through the corners at which regimes begin.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its `frequency_range` is traced.
+    max_step : float, optional
+        Longest step along the curve, relative to the range and to the size of the motion; by default the
+        scene's.
+    start : Orbit, optional
+        Where to start, at an end of the range; at its lower end, from rest, by default.
+    progress : optional
+        Called now and then with the fraction of the range that is covered and a text.
+
+    Raises
+    ------
+    SimulationError
+        If no periodic solution is found to start from.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> from dataclasses import replace
+    >>> scene = replace(fcm.load_scene("yang1998-n5"), frequency_range=(1.1, 1.3))
+    >>> [round(fold.frequency, 4) for fold in trace_orbits(scene).folds]
+    [1.2398, 1.1936]
+    """
+    longest = scene.max_step if max_step is None else max_step
+    if not longest > 0.0:
+        raise SimulationError(f"max_step is {longest:g}; it must be positive")
+    problem, span = OrbitProblem(scene), scene.frequency_range
+    begin = periodic(scene, span[0]) if start is None else start
+    z = first_point(problem, begin)
+    said = None if progress is None else lambda fraction: progress(fraction, "")
+    forward = z[-1] - span[0] <= span[1] - z[-1]
+    return branch_of(
+        problem, follow(problem, z, span, options=FollowOptions(longest), forward=forward, progress=said)
+    )
+
+
+def explore(
+    problem: OrbitProblem,
+    along: Follow = follow,
+    poll: Poll = without_end,
+    most: float = np.inf,
+    doubts: Doubts | None = None,
+) -> tuple[list[Path], str]:
+    """All branches of a scene as paths, and what is missing, else ''; doubts take those of the balance that
+    leads to them.
+
+    That is why there is no solution at an end of the range, and why the search for further branches was given
+    up: what leads to them may take so many seconds of processor time.
+    """
+    scene = problem.scene
+    found, missed, sought, apart = starts(problem, poll)
+    branches = partial(
+        all_branches,
+        lambda: problem,
+        span=scene.frequency_range,
+        options=FollowOptions(scene.max_step),
+        along=along,
+    )
+    paths = branches(found).paths
+    bounded, lacking, lost = Bounded(poll, most), list[tuple[float, float]](), list[float]()
+    if not sought:
+        paths = _with_others(problem, paths, apart, branches, bounded, lacking, doubts or Doubts())
+    if _broken(paths) >= BROKEN:
+        bounded.note(f"{BROKEN} that were followed break off")
+    if not bounded.given_up:
+        paths = _with(problem, paths, orbits_in_unstable_ranges(problem, paths, poll), branches)
+    ends = (end for end in missed if not any((path.parameter == end).any() for path in paths))
+    if not bounded.given_up:  # else that is said
+        lost = [omega for omega, height in lacking if not _reaches(problem, paths, omega, height)]
+    told = [
+        f"no exact motion was found from the stable branch of the balance at {shown(scene, one)}"
+        for one in dict.fromkeys(lost)
+    ]
+    return list(paths), "; ".join([*(missed[end] for end in ends), *told, *bounded.given_up])
+
+
+def _reaches(problem: OrbitProblem, paths: Sequence[Path], omega: float, height: float) -> bool:
+    """Whether a path has motions as high as that beside a frequency [rad/s], which is the balance's."""
+    for path in paths:
+        near = path.z[np.abs(path.parameter / omega - 1.0) < ACCURACY]
+        if any(height_of(problem, z) >= AS_HIGH * height for z in near):
+            return True
+    return False
+
+
+def _with_others(
+    problem: OrbitProblem,
+    paths: tuple[Path, ...],
+    apart: bool,
+    branches: Callable[..., Branches],
+    bounded: Bounded,
+    lacking: list[tuple[float, float]],
+    doubts: Doubts,
+) -> tuple[Path, ...]:
+    """Paths, and those of others that the converged balance and the level of the forces lead to.
+
+    The level is not followed where each end and top of that balance leads to a motion as high. What led to
+    none is added to lacking, see `Along`. apart as of `converged_balance`.
+    """
+    scene, poll = problem.scene, bounded.poll
+    high = True
+    for balance in bounded.each(converged_balance(scene, apart, poll)):
+        doubts.take(balance.traced)
+        along = along_balance(problem, balance, bounded.outside)
+        paths, high = _with(problem, paths, along.points, branches), along.alike
+        lacking += along.lacking
+    if high:
+        return paths
+
+    def there(omega: float) -> list[FloatArray]:
+        return [z for path in paths for z in path.z[path.parameter == omega]]
+
+    last = dict[float, Raised]()
+    for one in bounded.each(raised(scene, there, bounded)):
+        paths = _with(problem, paths, one.motions, branches)
+        last[one.omega] = one
+        if _broken(paths) >= BROKEN:
+            return paths
+    for one in (each for each in last.values() if not each.complete):
+        failed = f"takes more than its share of {bounded.most:.3g} s" if one.over else "cannot be followed"
+        bounded.note(f"the level of the forces {failed} at {shown(scene, one.omega)}")
+    return paths
+
+
+def _with(
+    problem: OrbitProblem,
+    paths: tuple[Path, ...],
+    motions: Iterable[FloatArray],
+    branches: Callable[..., Branches],
+) -> tuple[Path, ...]:
+    """Paths, and those through motions that none of them passes, unless too many break off."""
+    for z in motions:  # what is passed already is known without being followed again
+        if _broken(paths) >= BROKEN:
+            break
+        if not known(paths, [z], problem):
+            more = branches([z], known=paths).paths[len(paths) :]
+            paths += tuple(path for path in more if not known(paths, spread(path), problem))
+    return paths
+
+
+def _broken(paths: Sequence[Path]) -> int:
+    """How many paths have come to no end."""
+    return sum(path.status not in ENDED for path in paths)
+
+
+def known(paths: Sequence[Path], motions: Sequence[FloatArray], problem: OrbitProblem) -> bool:
+    """Whether any of some motions is passed by a path."""
+    return any(passes(path, z, problem) for path in paths for z in motions)
+
+
+def spread(path: Path) -> list[FloatArray]:
+    """Motions of a path far from one another: at a fold one may not be found on another path that has it."""
+    return list(path.z[np.linspace(0.0, len(path.z) - 1.0, SPREAD).astype(np.intp)]) if len(path.z) else []
+
+
+def branch_of(problem: OrbitProblem, path: Path) -> Branch:
+    """The solutions of a path."""
+    orbits = samples(problem, path)
+    return Branch(orbits, path.status, problem.periods)
+
+
+def incomplete(scene: Scene, paths: Sequence[Path], problem: str) -> str:
+    """Why the curve of these paths is not complete, else ''."""
+    broken = [path for path in paths if path.status not in ENDED]
+    reasons = dict.fromkeys(
+        f"stopped at {shown(scene, path.parameter[-1])}: {path.status.value}" for path in broken
+    )
+    missing = [*reasons, *filter(None, [problem])]
+    return "; ".join(missing) or ("" if paths else "no solution was found to start from")
+
+
+def reached(scene: Scene, paths: Sequence[Path]) -> str:
+    """Where a curve was stopped, and how often it had turned back: with light damping, very often."""
+    if not paths:
+        return "the start"
+    folds = sum(path.where(Mark.FOLD).size for path in paths)
+    turns = f", after {folds} fold{'s' if folds > 1 else ''}" if folds else ""
+    return shown(scene, paths[-1].parameter[-1]) + turns
+
+
+def shown(scene: Scene, omega: float) -> str:
+    """A frequency [rad/s] in the scene's unit."""
+    return f"{omega / UNITS[scene.frequency_unit]:.8g} {scene.frequency_unit}"

@@ -1,0 +1,246 @@
+"""The family of periodic motions of a scene with contacts that always stick, over their residual friction.
+
+The slider of such a contact may rest anywhere between its limits, and every place gives a steady motion. The
+family is followed from the motion that is chosen to the limits of one contact after the other, in both
+directions, and of all together. Where the other contacts do not feel it, the amplitudes stay the same; where
+one begins to slip, or to stick, the family goes on from there with those that stick then.
+
+Of a stable motion the extent is that of the stable members, which a structure shows; of another that of all.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise, product
+
+import numpy as np
+
+from fcm.model.scene import FloatArray, Scene
+from fcm.shooting.periodic import Poll, converged, within_unit_circle, without_end
+from fcm.shooting.residual import Shot
+from fcm.shooting.residual_traction import resting_at
+from fcm.shooting.traction_continuation import SHORTEST, Way, between, moved, residual_of, stuck_in
+from fcm.time_domain.errors import SimulationError
+from fcm.time_domain.state import State
+from fcm.time_domain.system import System
+from fcm.units import spoken
+
+MOST_TOGETHER = 3  # contacts of which all combinations of directions are followed
+WITHIN = (1e-6, 0.25)  # part of bounds, by which a motion may be beyond: of one contact, of several by lines
+NEAREST = 12  # halvings of the way between two motions of which one is stable
+HALVINGS = 4  # of the way between motions, about the one with the greatest or the least amplitude
+SAME = 1e-6  # relative range of amplitudes below which they are the same
+MOST_TRIED = 500  # motions that are looked for: some contacts have hundreds of sets of those that stick
+
+
+@dataclass(frozen=True)
+class Family:
+    """The extent of the periodic motions at one frequency."""
+
+    contacts: tuple[int, ...]  # that always stick
+    friction: FloatArray  # (contact, 2) least and greatest friction force k_u w from which they are reached
+    least: FloatArray  # (dof,) amplitude, half the peak-to-peak, of the stable members if it is sought from
+    greatest: FloatArray  # (dof,) one, else of all
+    complete: bool  # whether every way was followed to its end
+
+    @property
+    def spread(self) -> FloatArray:
+        """By how much the amplitude is not determined, relative to its greatest value: (dof,)."""
+        size = np.where(self.greatest > 0.0, self.greatest, 1.0)
+        return (self.greatest - self.least) / size
+
+
+def family(
+    scene: Scene, frequency: float, state: State, periods: int = 1, poll: Poll = without_end
+) -> Family | None:
+    """The family that a periodic motion belongs to; None if no contact of it always sticks.
+
+    Parameters
+    ----------
+    scene : Scene
+    frequency : float
+        Of the external forces [rad/s].
+    state : State
+        Of a periodic motion at the forces' angle 0.
+    periods : int
+        Of the force, after which it repeats.
+    poll : callable, optional
+        Called now and then; raises what ends the search.
+
+    Raises
+    ------
+    SimulationError
+        If the state is not that of a periodic motion.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> from dataclasses import replace
+    >>> from fcm.shooting import periodic
+    >>> scene = fcm.load_scene("yang1998-n5")
+    >>> stuck = replace(scene, contacts=(replace(scene.contacts[0], n_0=100.0),))
+    >>> found = family(stuck, 1.3, periodic(stuck, 1.3).state)
+    >>> bool(found.spread.max() < 1e-9)  # nothing else feels it
+    True
+    """
+    system = System(scene, frequency)
+    x = np.concatenate((state.q, state.velocity, state.friction))
+    found = converged(Shot(system, x, resting_at(system, x), periods), poll=poll)
+    if found is None:
+        at = spoken(frequency, scene.frequency_unit)
+        raise SimulationError(f"no periodic motion is found at {at} from this state")
+    begun = found[0]
+    contacts = stuck_in(begun)
+    if not contacts:
+        return None
+    shots, complete = _members(begun, poll)
+    shown = [shot for shot in shots if _stable(shot)] if _stable(begun) else shots
+    amplitude = np.array([shot.amplitude for shot in shown])
+    friction = np.array([residual_of(shot)[contacts] for shot in shots if contacts == stuck_in(shot)])
+    return Family(
+        tuple(contacts), np.stack((friction.min(axis=0), friction.max(axis=0)), axis=1),
+        amplitude.min(axis=0), amplitude.max(axis=0), complete,
+    )  # fmt: skip
+
+
+def _members(begun: Shot, poll: Poll) -> tuple[list[Shot], bool]:
+    """Motions of the family up to its ends, and whether these were reached on every way."""
+    shots, waiting, seen, complete = [begun], [begun], list[_Seen](), True
+    left = MOST_TRIED
+    while waiting:
+        first = waiting.pop(0)
+        contacts = stuck_in(first)
+        if not contacts or any(one.has(contacts, first) for one in seen):
+            continue
+        found = [first]
+        for direction in _directions(len(contacts)):
+            ways = [Way(first, contacts, sign * direction, poll) for sign in (-1.0, 1.0)]
+            behind, ahead = (list(way.shots(min(left, MOST_TRIED // 5))) for way in ways)
+            left -= sum(way.tried for way in ways)
+            complete &= all(way.ended for way in ways)
+            line = [*reversed(behind), first, *ahead]
+            found += [*line, *_finer(line, poll), *_last_stable(line, poll)]
+            beyond = [way.beyond for way in ways if way.beyond is not None]
+            shots += beyond
+            waiting += beyond
+        seen.append(_Seen(contacts, np.array([residual_of(shot) for shot in found])))
+        shots += found
+    return shots, complete
+
+
+class _Seen:
+    """What has been followed with the same contacts that stick, by their residual friction."""
+
+    def __init__(self, contacts: list[int], residual: FloatArray) -> None:
+        self.contacts = contacts
+        self.low, self.high = residual[:, contacts].min(axis=0), residual[:, contacts].max(axis=0)
+
+    def has(self, contacts: list[int], shot: Shot) -> bool:
+        """Whether a motion lies within; another part may be beyond a gap in which other contacts stick."""
+        if contacts != self.contacts:
+            return False
+        residual, room = residual_of(shot)[contacts], WITHIN[len(contacts) > 1] * (self.high - self.low)
+        return bool(((residual >= self.low - room) & (residual <= self.high + room)).all())
+
+
+def _finer(line: list[Shot], poll: Poll) -> list[Shot]:
+    """More motions beside those, within a line, at which an amplitude is greatest or least.
+
+    Where it is so at an end, it may be more so beside that.
+    """
+    amplitude = np.array([shot.amplitude for shot in line])
+    flat = np.ptp(amplitude, axis=0) <= SAME * amplitude.max(axis=0)
+    middles, last = _Middles(poll), len(line) - 1
+    for sense in (1.0, -1.0):
+        for dof in np.flatnonzero(~flat).tolist():
+            k = int(np.argmax(sense * amplitude[:, dof]))
+            if 0 < k < last:
+                _about(line[k - 1 : k + 2], sense, dof, middles)
+                continue
+            one, other = line[k], line[1] if k == 0 else line[-2]
+            middle = middles.of(one, other)
+            if middle is not None and sense * (middle.amplitude[dof] - one.amplitude[dof]) > 0.0:
+                _about([one, middle, other], sense, dof, middles)
+    return middles.found()
+
+
+class _Middles:
+    """The motions between two, each looked for once: several amplitudes are often extreme together."""
+
+    def __init__(self, poll: Poll) -> None:
+        self.poll = poll
+        self.known: dict[tuple[int, int], tuple[Shot, Shot, Shot | None]] = {}
+
+    def of(self, one: Shot, other: Shot) -> Shot | None:
+        """That of two; None where it is not found."""
+        key = min(id(one), id(other)), max(id(one), id(other))
+        if key not in self.known:  # which keeps both, and with them their numbers
+            self.known[key] = one, other, between(one, other, self.poll)
+        return self.known[key][2]
+
+    def found(self) -> list[Shot]:
+        """All."""
+        return [middle for _, _, middle in self.known.values() if middle is not None]
+
+
+def _last_stable(line: list[Shot], poll: Poll) -> list[Shot]:
+    """Motions ever nearer to where, within a line, stability is lost; those behind that are left out."""
+    added = list[Shot]()
+    for pair in pairwise(line):
+        if _stable(pair[0]) == _stable(pair[1]):
+            continue
+        inner, outer = sorted(pair, key=_stable, reverse=True)
+        for _ in range(NEAREST):
+            middle = between(inner, outer, poll)
+            if middle is None:
+                break
+            inner, outer = (middle, outer) if _stable(middle) else (inner, middle)
+        added.append(inner)
+    return added
+
+
+def _stable(shot: Shot) -> bool:
+    return within_unit_circle(shot.multipliers)
+
+
+def _about(near: list[Shot], sense: float, dof: int, middles: _Middles) -> None:
+    """Look ever nearer to the greatest, or least, amplitude of a degree of freedom among three motions."""
+    for _ in range(HALVINGS):
+        one, other = middles.of(near[0], near[1]), middles.of(near[1], near[2])
+        if one is None or other is None:
+            break
+        five = [near[0], one, near[1], other, near[2]]
+        top = max((1, 2, 3), key=lambda i: sense * float(five[i].amplitude[dof]))
+        near = five[top - 1 : top + 2]
+
+
+def _directions(count: int) -> list[FloatArray]:
+    """In which the family is followed, either way: each contact alone, and all together."""
+    alone = list(np.eye(count))
+    if count == 1:
+        return alone
+    if count > MOST_TOGETHER:
+        return [*alone, np.ones(count)]
+    return [*alone, *(np.array((1.0, *signs)) for signs in product((1.0, -1.0), repeat=count - 1))]
+
+
+def chosen(shot: Shot, wanted: FloatArray, poll: Poll = without_end) -> Shot | None:
+    """The member that a scene chooses of the family that a motion belongs to, in as many steps as it takes.
+
+    Parameters
+    ----------
+    shot : Shot
+        A motion that closes.
+    wanted : (contact,)
+        The slip motions w of the contacts where the scene starts: `Shooting.resting`.
+    """
+    begin, end = -residual_of(shot), shot.system.k_u * wanted
+    done, share = 0.0, 1.0
+    while done < 1.0 and share > SHORTEST:
+        reach = min(done + share, 1.0)
+        new = moved(shot, begin + reach * (end - begin), poll=poll)
+        if new is None:
+            share *= 0.25
+        else:
+            shot, done, share = new, reach, 2.0 * share
+    return shot if done == 1.0 else None

@@ -1,0 +1,84 @@
+"""The search for what leads to further branches, as long as nobody waits for it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+
+from fcm.shooting.periodic import Poll
+
+if TYPE_CHECKING:
+    from fcm.branches.trace import Traced
+
+Found = TypeVar("Found")
+SELDOM = 0.05  # [s] between two looks at the processor time, which takes long to tell on some machines
+
+
+@dataclass
+class Doubts:
+    """Frequencies [rad/s] at which the balance that exact motions begin near may lack branches.
+
+    levels: where the level of the forces was not followed to its end; folds: from where its folds were not.
+    """
+
+    levels: list[float] = field(default_factory=list)
+    folds: list[float] = field(default_factory=list)
+
+    def take(self, found: Traced) -> None:
+        """Those of a traced balance, in the place of others."""
+        self.levels[:] = [one.omega for one in found.found if not one.complete]
+        self.folds[:] = found.folds_lost
+
+
+class Bounded:
+    """What leads to further branches, found in no more than so many seconds of processor time together.
+
+    outside : called now and then, all the while; `poll` is to be called while it is sought.
+    given_up : why there may be more branches than those, empty if all was sought.
+    """
+
+    def __init__(self, outside: Poll, most: float) -> None:
+        self.outside, self.most, self.given_up = outside, most, list[str]()
+        self._begin = self._ask = 0.0
+        self._end, self._left = np.inf, most
+
+    def poll(self) -> None:
+        """Raise `TooLongError` when it has taken as much."""
+        from fcm.harmonic_balance.work_budget import TooLongError
+
+        self.outside()
+        if self._end < np.inf and time.monotonic() > self._ask:
+            if time.process_time() > self._end:
+                raise TooLongError
+            self._ask = time.monotonic() + SELDOM
+
+    def each(self, finds: Iterator[Found]) -> Iterator[Found]:
+        """One after the other; what is done with them between takes nothing of their time."""
+        from fcm.harmonic_balance.work_budget import TooLongError
+
+        while True:
+            self._begin = time.process_time()
+            self._end = self._begin + self._left
+            try:
+                found = next(finds, None)
+            except TooLongError:
+                self.note(f"what leads to them takes more than {self.most:.3g} s to be found")
+                return
+            self._left -= time.process_time() - self._begin
+            if found is None:
+                return
+            yield found
+
+    def share(self, count: int) -> float:
+        """An equal share [s] of what is left, which the next of so many is to be found in."""
+        found = self._left / count
+        self._end = self._begin + found
+        return found
+
+    def note(self, why: str) -> None:
+        """That the search is not whole, and why."""
+        self.given_up.append(f"the search for further branches was given up: {why}")

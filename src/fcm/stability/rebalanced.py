@@ -1,0 +1,65 @@
+"""A solution of a balance with the harmonics of the finer motion balanced as well, at the same frequency."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from fcm.continuation.corrector import Newton, settle
+from fcm.harmonic_balance.homotopy import Homotopy
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray
+
+FAR = 0.5  # of a solution's size: what lies further away is another one
+PARTS = (0.1, 0.25, 0.45, 0.7, 1.0)  # of the further harmonics' equations, where all at once are too much
+DEAR = 240  # unknowns, from which on they are not tried by parts
+
+
+class Refined:
+    """`beside` a point of a system's balance is one of the balance with more harmonics; a workspace."""
+
+    def __init__(self, system: System, more: Sequence[int]) -> None:
+        self.harmonics, self.more, self.fewer = system.harmonics, tuple(more), system
+        self.system = system.with_harmonics(self.more)
+        self.balance = self.system.balance()
+        self.homotopy = Homotopy(self.balance)
+        self.homotopy.taken = 1.0
+        self.newton = Newton(self.homotopy)
+        self.newton.row[:] = np.eye(self.balance.unknowns + 1)[-1]  # holds the frequency
+        balanced = np.isin(self.system.layout.harmonic_of(self.more), [0, *self.harmonics])
+        self.balanced = np.tile(balanced, len(system.scene.contacts))
+
+    def take(self, system: System) -> None:
+        """A system with the same structure and harmonics, whose contacts may be others."""
+        self.fewer, self.system = system, system.with_harmonics(self.more)
+        self.balance.laws = self.system.laws()
+        self.balance.largest[:] = 0.0
+
+    def beside(self, z: FloatArray, x: FloatArray, persistent: bool = False) -> FloatArray | None:
+        """The solution (unknown of more + 1,) for z (unknown + 1,), sought from the finer motion x.
+
+        The forces are those of z, whatever their level: what the harmonics balanced there lack is kept. None
+        where Newton's method finds nothing near; nor, if it is persistent, by parts from z itself.
+        """
+        here = self.system.extended(z, self.harmonics)
+        self.balance.measure(here)
+        self.balance.probe(here)
+        newton, lack = self.newton, np.array(self.balance.residual)
+        newton.z[:-1], newton.z[-1] = x, z[-1]
+        newton.scale[:] = self.balance.scale
+        if self._settled(lack, 1.0) or (persistent and len(lack) < DEAR and self._by_parts(here, lack)):
+            return np.array(newton.z)
+        return None
+
+    def _settled(self, lack: FloatArray, part: float) -> bool:
+        """Whether Newton's method leads to a solution near, of a part of the further harmonics' equations."""
+        self.homotopy.removed[:] = np.where(self.balanced, lack, (1.0 - part) * lack)
+        return settle(self.newton, FAR) and self.newton.moved <= FAR
+
+    def _by_parts(self, here: FloatArray, lack: FloatArray) -> bool:
+        """The same from where all of them are lacking, to a solution that is near that, too."""
+        self.newton.z[:] = here
+        if not all(self._settled(lack, part) for part in PARTS):
+            return False
+        return bool(np.linalg.norm((self.newton.z - here) / self.balance.scale) <= FAR)

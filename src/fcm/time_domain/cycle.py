@@ -1,0 +1,62 @@
+"""One cycle of an exact motion: the sequence of its states, its values at any instants."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from fcm.model.scene import FloatArray
+from fcm.time_domain.samples import sample
+from fcm.time_domain.segments import Segments
+from fcm.time_domain.system import LETTERS, System
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """The motion over one period of the force, or over the part of one that ends a phase."""
+
+    system: System
+    start: float  # [s] from the start of the motion
+    duration: float  # [s]
+    angle: float  # of the forces at its start [rad]
+    segments: Segments
+
+    @property
+    def letters(self) -> list[str]:
+        """The states in each segment, one letter of EPNS for each contact."""
+        return ["".join(LETTERS[code] for code in row) for row in np.asarray(self.segments.states).tolist()]
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """For each contact the sequence of its states, such as 'EPEN', as if the cycle repeated."""
+        lasting = np.asarray(self.segments.states)[np.asarray(self.segments.length) > 0.0]
+        return _sequences(lasting.tobytes(), lasting.shape[1])
+
+    def values(self, rows: FloatArray, times: FloatArray) -> FloatArray:
+        """rows @ y at increasing times [s] from the start of the cycle: (time, row)."""
+        steps, done = self.system.steps(self.segments), 0
+        out, times = np.empty((times.size, self.system.size)), np.ascontiguousarray(times, dtype=np.float64)
+        while (done := sample(steps, times, out, done)) < times.size:
+            self.system.make(np.asarray(self.segments.states)[steps.at + 1])
+        values: FloatArray = out @ rows.T
+        return values
+
+
+@lru_cache
+def _sequences(states: bytes, contacts: int) -> tuple[str, ...]:
+    """The sequence of each contact, from the codes of all in each segment; most repeat along a curve."""
+    return tuple(_sequence([LETTERS[code] for code in states[j::contacts]]) for j in range(contacts))
+
+
+def _sequence(letters: list[str]) -> str:
+    """The letters around the cycle without repetition, from separation or else the stick before P."""
+    kept = "".join(x for i, x in enumerate(letters) if i == 0 or letters[i - 1] != x)
+    if len(kept) > 1 and kept[0] == kept[-1]:
+        kept = kept[:-1]
+    for first in ("S", "EP", "E"):
+        at = (kept + kept[:1]).find(first)
+        if at >= 0:
+            return kept[at:] + kept[:at]
+    return kept

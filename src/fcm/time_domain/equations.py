@@ -1,0 +1,116 @@
+"""What the equations of a motion in time are made of, whatever states the contacts are in."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fcm.model.scene import Contact, FloatArray, Held, Scene
+
+if TYPE_CHECKING:
+    from fcm.time_domain.system import System
+
+
+class Matrices(NamedTuple):
+    """Of a scene.
+
+    Parameters
+    ----------
+    modal : tuple of arrays
+        Squares of the modes' frequencies, 2 zeta omega_0, and by mass the steady forces, those of sin and cos
+        (2, mode), and those that grow as omega^2 (2, mode).
+    ports : tuple of arrays (contact, mode)
+        Shapes of u and of v, and the same divided by the modal masses.
+    law : array (5, contact)
+        mu, k_u, k_v, n_0, and whether the contact can exert friction at all.
+    springs : tuple of arrays (spring, mode)
+        Shapes of what springs resist, and the same times their stiffness divided by the modal masses.
+    """
+
+    modal: tuple[FloatArray, ...]
+    ports: tuple[FloatArray, ...]
+    law: FloatArray
+    springs: tuple[FloatArray, ...]
+
+
+def matrices_of(system: System) -> Matrices:
+    """Those of a system, which are the same at every frequency."""
+    modal, c = system.scene.modal, system.contacts
+    law = np.array([[k.mu, k.k_u, k.k_v, k.n_0, has_friction(k)] for k in c]).reshape(len(c), 5).T
+    return Matrices(
+        (
+            modal.frequency**2,
+            2.0 * modal.damping * modal.frequency,
+            system.steady / modal.mass,
+            *(np.array([one.real, one.imag]) / modal.mass for one in (system.constant, system.square)),
+        ),
+        (system.tangential, system.normal, system.tangential / modal.mass, system.normal / modal.mass),
+        law,
+        (system.stretch, system.pull),
+    )
+
+
+def held_as_springs(scene: Scene) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """What stands for the contacts that are held.
+
+    The shapes of springs (spring, mode), these times their stiffness divided by the modal masses, and the
+    steady modal forces.
+    """
+    modal, steady = scene.modal, np.zeros(scene.modal.mass.size)
+    stretch, stiffness = list[FloatArray](), list[float]()
+    for one in scene.held:
+        contact = one.contact
+        along, across = modal.shapes @ contact.tangential, modal.shapes @ contact.normal
+        if one.open:  # the preload is missing
+            steady += across * max(contact.n_0, 0.0)
+            continue
+        steady -= across * min(contact.n_0, 0.0)  # a gap is not pressed
+        stretch, stiffness = [*stretch, across], [*stiffness, contact.k_v]
+        if has_friction(contact):
+            steady += along * (contact.k_u * one.rest)
+            stretch, stiffness = [*stretch, along], [*stiffness, contact.k_u]
+    shapes = np.array(stretch).reshape(len(stretch), -1 if stretch else modal.mass.size)
+    return shapes, shapes * np.array(stiffness)[:, None] / modal.mass, steady
+
+
+def held_limits(system: System) -> FloatArray:
+    """Of each contact that is held its limit, or gap, and what is left of it either way.
+
+    Rows of the state vector without the forces' angle, (3 held, d - 2).
+    """
+    rows = [_limits_of(system, one) for one in system.scene.held]
+    return np.array(rows).reshape(3 * len(rows), system.size - 2)
+
+
+def _limits_of(system: System, one: Held) -> list[FloatArray]:
+    """The three rows of a contact."""
+    load, force = held_forces(system, one)
+    if one.open:
+        return [-load] * 3
+    if not has_friction(one.contact):
+        return [load] * 3
+    limit = one.contact.mu * load
+    return [limit, limit - force, limit + force]
+
+
+def held_rows(system: System) -> FloatArray:
+    """The normal forces of all contacts that are held, then their friction forces: (2 held, d - 2)."""
+    pairs = [held_forces(system, one) for one in system.scene.held]
+    loads, forces = ([pair[i] for pair in pairs] for i in (0, 1))
+    return np.array(loads + forces).reshape(2 * len(pairs), system.size - 2)
+
+
+def held_forces(system: System, one: Held) -> tuple[FloatArray, FloatArray]:
+    """The normal and the friction force of a contact that is held closed: rows of the state vector."""
+    contact, shapes = one.contact, system.scene.modal.shapes
+    load, force = np.zeros((2, system.size - 2))
+    load[system.q], load[-1] = contact.k_v * (shapes @ contact.normal), contact.n_0
+    if has_friction(contact):
+        force[system.q], force[-1] = contact.k_u * (shapes @ contact.tangential), -contact.k_u * one.rest
+    return load, force
+
+
+def has_friction(contact: Contact) -> bool:
+    """Whether the contact can exert friction at all; without, it is never more than closed or open."""
+    return contact.mu > 0.0 and contact.k_u > 0.0

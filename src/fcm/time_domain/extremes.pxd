@@ -1,0 +1,22 @@
+from fcm.time_domain.sparse_rows cimport Rows
+from fcm.time_domain.segment_walk cimport Walk
+
+cdef class Scan(Walk):
+    cdef readonly double[::1] greatest, least
+    cdef readonly double[:, ::1] place
+    cdef Rows _rows
+    cdef double[::1] _powers
+    cdef double[:, ::1] _there, _terms, _path
+    cdef double[:, :, ::1] _values
+    cdef double _first, _length
+    cdef Py_ssize_t _steps(self, Py_ssize_t slot, double left) except -1 nogil
+    cdef void _poll(self, Py_ssize_t slot, Py_ssize_t k) noexcept nogil
+    cdef void _note_ends(self, Py_ssize_t count, double last) noexcept nogil
+    cdef void _step(self, Py_ssize_t slot, Py_ssize_t k) noexcept nogil
+    cdef void _spread(self, Py_ssize_t slot, Py_ssize_t k, Py_ssize_t last) noexcept nogil
+    cdef bint _may_exceed(self, Py_ssize_t r, Py_ssize_t k) noexcept nogil
+    cdef bint _has_extreme(self, Py_ssize_t slot, Py_ssize_t r, Py_ssize_t k) noexcept nogil
+    cdef void _extremes(self, Py_ssize_t r, Py_ssize_t k) noexcept nogil
+    cdef void _extreme_between(self, Py_ssize_t r, Py_ssize_t k, double low, double high) noexcept nogil
+    cdef void _note(self, Py_ssize_t r, double x, double here) noexcept nogil
+    cdef void _put(self, Py_ssize_t k, double x) noexcept nogil

@@ -1,0 +1,127 @@
+"""The schedule of a scene for each of its curves."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+import numpy as np
+
+from fcm.at_rest import at_rest
+from fcm.model.scene import Scene
+from fcm.time_domain.errors import SimulationError
+from fcm.time_domain.schedule_plan import Plan
+from fcm.time_domain.schedule_record import Passed, Record, record, unfinished
+from fcm.time_domain.simulation import Progress
+
+
+@dataclass(frozen=True)
+class Histories:
+    """A schedule simulated for each curve of a scene."""
+
+    scene: Scene
+    plan: Plan
+    records: list[Record]  # one for each curve
+    seconds: float
+
+    @property
+    def complete(self) -> bool:
+        """Whether every curve was simulated to the end of the schedule."""
+        return all(one.complete for one in self.records)
+
+
+class Kept(Protocol):
+    """What is kept of a run, by the number of the curve (`fcm.run.Results`)."""
+
+    finished: dict[int, list[Any]]  # one `Record`
+    states: dict[int, list[Any]]  # `Passed`, of the first phases
+
+    def add(self, number: int, results: list[Any], /) -> None:
+        """A curve is finished."""
+
+    def save(self, number: int, state: Any, /) -> None:
+        """A phase of a curve is."""
+
+
+def histories(scene: Scene, progress: Progress | None = None, kept: Kept | None = None) -> Histories:
+    """Simulate the schedule of a scene, for each combination of its swept values.
+
+    Parameters
+    ----------
+    scene : Scene
+        From `fcm.load_scene`, with a schedule.
+    progress : optional
+        Called now and then with the finished fraction and a text.
+    kept : optional
+        What an interrupted run has finished, and where what is finished goes.
+
+    Raises
+    ------
+    SimulationError
+        If the scene has no schedule.
+    KeyboardInterrupt
+        If it is interrupted before its first cycle is finished; later, what is finished is returned.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> found = histories(fcm.load_scene("yang1998-jump"))
+    >>> [phase.states for phase in found.records[0].phases]
+    [('SPEN',), ('E',), ('E',)]
+    """
+    if not scene.schedule:
+        raise SimulationError("the scene has no [[schedule]]; give it one, or simulate one frequency")
+    begin, curves, plan = time.perf_counter(), scene.each_curve(), _plan(scene)
+    records: list[Record] = []
+    for number, curve in enumerate(curves):
+        made = _record(number, curve, plan, _share(progress, number, len(curves)), kept)
+        records.append(made)
+        if made.interrupted:
+            break
+    if not any(one.cycles for one in records) and records[-1].interrupted:
+        raise KeyboardInterrupt
+    records += [unfinished(curve, plan) for curve in curves[len(records) :]]
+    return Histories(scene, plan, list(map(_without_rounding, records)), time.perf_counter() - begin)
+
+
+def _without_rounding(record: Record) -> Record:
+    """The record with amplitudes of 0 where a degree of freedom moves by rounding alone, as of curves."""
+    if not record.phases:
+        return record
+    rest = at_rest(np.fmax.reduce([phase.amplitude for phase in record.phases]))
+    phases = [replace(one, amplitude=np.where(rest, 0.0, one.amplitude)) for one in record.phases]
+    amplitude = np.where(rest & np.isfinite(record.amplitude), 0.0, record.amplitude)
+    return replace(record, phases=phases, amplitude=amplitude)
+
+
+def _record(number: int, curve: Scene, plan: Plan, progress: Progress | None, kept: Kept | None) -> Record:
+    """The record of a curve, from what is kept of it on."""
+    if kept is None:
+        return record(curve, plan, progress)
+    if number in kept.finished:
+        whole: Record = kept.finished[number][0]
+        return whole
+    passed: Sequence[Passed] = kept.states.get(number, ())
+    made = record(curve, plan, progress, passed, lambda one: kept.save(number, one))
+    if not made.interrupted:
+        kept.add(number, [made])
+    return made
+
+
+def _share(progress: Progress | None, number: int, count: int) -> Progress | None:
+    """The progress of one curve among several."""
+    if progress is None or count == 1:
+        return progress
+    return lambda part, text: progress((number + part) / count, f"curve {number + 1}, {text}")
+
+
+def not_begun(scene: Scene) -> Histories:
+    """The histories of a calculation that was interrupted before their turn."""
+    plan = _plan(scene)
+    return Histories(scene, plan, [unfinished(curve, plan) for curve in scene.each_curve()], 0.0)
+
+
+def _plan(scene: Scene) -> Plan:
+    return Plan(scene.schedule, len(scene.modal.dofs) * len(scene.each_curve()))

@@ -1,0 +1,294 @@
+"""A schedule simulated cycle by cycle; of each cycle only what is reported is kept."""
+
+from __future__ import annotations
+
+import time
+from array import array
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.model.scene import FloatArray, Phase, Scene
+from fcm.time_domain.cycle import Cycle
+from fcm.time_domain.cycle_measures import measure
+from fcm.time_domain.energy import Energy, energy
+from fcm.time_domain.errors import SimulationError
+from fcm.time_domain.schedule_plan import Plan
+from fcm.time_domain.settling import unsettled
+from fcm.time_domain.simulation import Progress, cycles_from
+from fcm.time_domain.state import State
+from fcm.time_domain.system import LETTERS, System
+from fcm.time_domain.trajectory import Motion, dof_rows
+
+NOT_REACHED = -1  # state of a contact at an instant that was not simulated
+SETTLED = 1e-3  # relative change of the amplitudes that is still to come
+MOST_TRANSITIONS = 1_000_000  # kept with their times; all are counted
+INTERRUPTED = "interrupted"
+NOT_BEGUN = "interrupted before it was simulated"
+
+ByteArray = npt.NDArray[np.int8]
+
+
+@dataclass(frozen=True)
+class PhaseResult:
+    """What one phase of a schedule came to; displacements are of its last whole cycle."""
+
+    frequency: float  # [rad/s]
+    cycles: float  # that were simulated
+    amplitude: FloatArray  # (dof,) half the peak-to-peak
+    mean: FloatArray  # (dof,) time average
+    states: tuple[str, ...]  # (contact,) their sequence
+    transitions: int  # in all the phase
+    unsettled: float  # relative change of the amplitudes that is still to come, estimated; nan if unknown
+    energy: Energy
+
+    @property
+    def settled(self) -> bool:
+        """Whether the motion is shown to have become periodic."""
+        return self.unsettled <= SETTLED
+
+
+@dataclass
+class Record:
+    """One schedule of one curve; NaN and -1 stand for what was not reached."""
+
+    parameters: dict[str, float]
+    amplitude: FloatArray  # (cycle, dof) half the peak-to-peak
+    mean: FloatArray  # (cycle, dof)
+    greatest: FloatArray  # (cycle, dof)
+    least: FloatArray  # (cycle, dof)
+    displacement: FloatArray  # (instant, dof)
+    state: ByteArray  # (instant, contact) index into LETTERS
+    transition_time: FloatArray  # (transition,) [s]
+    transition_contact: npt.NDArray[np.int16]  # (transition,)
+    transition_state: ByteArray  # (transition,) index into LETTERS of the state that begins
+    phases: list[PhaseResult]
+    end: State  # from which another schedule can go on
+    reason: str  # why it is not complete, else ''
+    seconds: float
+
+    @property
+    def complete(self) -> bool:
+        """Whether the schedule was simulated to its end."""
+        return not self.reason
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether an interruption has cut it off, or left it out."""
+        return self.reason in (INTERRUPTED, NOT_BEGUN)
+
+    @property
+    def cycles(self) -> float:
+        """Cycles that were simulated."""
+        return sum(phase.cycles for phase in self.phases)
+
+    @property
+    def energy(self) -> Energy:
+        """The energy balance of the whole schedule."""
+        return total([phase.energy for phase in self.phases])
+
+
+@dataclass(frozen=True)
+class Passed:
+    """What is reported of a whole phase, and the state at its end: the schedule can go on from there."""
+
+    measures: FloatArray  # (4, cycle, dof) amplitude, mean, greatest and least displacement
+    displacement: FloatArray  # (instant, dof)
+    state: ByteArray  # (instant, contact)
+    transitions: tuple[FloatArray, npt.NDArray[np.int16], ByteArray]  # times [s], contacts, states
+    letters: str  # the states of all contacts at the end
+    count: int  # transitions in all
+    states: tuple[str, ...]  # (contact,) of the last whole cycle
+    energy: Energy
+    end: State
+
+
+def record(
+    scene: Scene,
+    plan: Plan | None = None,
+    progress: Progress | None = None,
+    passed: Sequence[Passed] = (),
+    save: Callable[[Passed], None] | None = None,
+) -> Record:
+    """Simulate the schedule of a scene, and keep what is reported of it.
+
+    An interruption, contacts that chatter without end, or static loads that nothing holds, leave it
+    incomplete with a reason. It goes on after the phases that are passed, to the same record; every further
+    one but the last is saved.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> done = record(fcm.load_scene("yang1998-jump"))
+    >>> [round(float(phase.amplitude[0]), 2) for phase in done.phases], done.complete
+    ([14.72, 1.73, 1.75], True)
+    """
+    begin = time.perf_counter()
+    plan = plan or Plan(scene.schedule, len(scene.modal.dofs))
+    recorder, reason = _Recorder(scene, plan), ""
+    try:
+        recorder.end = State.start(scene)
+        for one in passed:
+            recorder.take(one)
+        for number, phase in list(enumerate(scene.schedule))[len(passed) :]:
+            for cycle, end in cycles_from(System(scene, phase.frequency), phase.cycles, recorder.end):
+                recorder.add(number, cycle, end)
+                if progress is not None:
+                    progress(recorder.done / plan.phase.size, f"phase {number + 1}, cycle {recorder.done}")
+            if save is not None and recorder.done < plan.phase.size:
+                save(recorder.passed())
+    except KeyboardInterrupt:
+        reason = INTERRUPTED
+    except SimulationError as error:
+        reason = str(error)
+    made = recorder.record(reason)
+    made.seconds = time.perf_counter() - begin
+    return made
+
+
+def unfinished(scene: Scene, plan: Plan) -> Record:
+    """The record of a curve that was not begun."""
+    return _Recorder(scene, plan).record(NOT_BEGUN)
+
+
+def total(parts: Sequence[Energy]) -> Energy:
+    """The balance of successive motions."""
+    work, slip, damping, stored = (sum((part[i] for part in parts), 0.0) for i in range(4))
+    turnover = sum((part.turnover - abs(part.stored) for part in parts), abs(stored))
+    return Energy(work, slip, damping, stored, turnover)
+
+
+@dataclass
+class _Tally:
+    """What is counted in a phase."""
+
+    first: int  # its first cycle
+    kept: int  # transitions before it that are kept with their times
+    energy: Energy = field(default_factory=lambda: total([]))
+    transitions: int = 0
+    states: tuple[str, ...] | None = None  # of each contact in the last whole cycle
+
+
+class _Transitions:
+    """All changes of state are counted; their times are kept while there is room."""
+
+    def __init__(self) -> None:
+        self.times, self.contacts, self.states = array("d"), array("h"), array("b")
+        self.letters = ""  # the states until now
+
+    def count(self, cycle: Cycle, start: float) -> int:
+        """Transitions of a cycle that begins at a time [s]."""
+        found = 0
+        for begun, after in zip(np.asarray(cycle.segments.start).tolist(), cycle.letters, strict=True):
+            for j, (before, letter) in enumerate(zip(self.letters, after, strict=False)):
+                if before == letter:
+                    continue
+                found += 1
+                if len(self.times) < MOST_TRANSITIONS:
+                    self.times.append(start + begun)
+                    self.contacts.append(j)
+                    self.states.append(LETTERS.index(letter))
+            self.letters = after
+        return found
+
+
+class _Recorder:
+    def __init__(self, scene: Scene, plan: Plan) -> None:
+        dofs, contacts = len(scene.modal.dofs), len(scene.contacts)
+        self.scene, self.plan, self.end, self.done = scene, plan, State.unloaded(scene), 0
+        self.measures = np.full((4, plan.phase.size, dofs), np.nan)
+        self.displacement = np.full((plan.instants, dofs), np.nan)
+        self.state = np.full((plan.instants, contacts), NOT_REACHED, dtype=np.int8)
+        self.transitions = _Transitions()
+        self.tallies: list[_Tally] = []
+
+    def add(self, phase: int, cycle: Cycle, end: State) -> None:
+        """Keep what is reported of the next cycle; nothing of it if that is interrupted."""
+        found = measure(cycle)
+        balance = energy(Motion(self.scene, (cycle,), end))
+        self._sample(cycle)
+        if phase == len(self.tallies):
+            self.tallies.append(_Tally(self.done, len(self.transitions.times)))
+        tally = self.tallies[phase]
+        tally.transitions += self.transitions.count(cycle, float(self.plan.start[self.done]))
+        tally.energy = total([tally.energy, balance])
+        if self.plan.part[self.done] == 1.0 or tally.states is None:
+            tally.states = cycle.states
+        self.measures[:, self.done] = found.amplitude, found.mean, found.greatest, found.least
+        self.end, self.done = end, self.done + 1
+
+    def passed(self) -> Passed:
+        """The last phase, which is whole, and not the last of the schedule."""
+        tally, found = self.tallies[-1], self.transitions
+        cycles, instants = slice(tally.first, self.done), self._instants(tally.first, self.done)
+        times, contacts, states = (
+            values[tally.kept :] for values in (found.times, found.contacts, found.states)
+        )
+        return Passed(
+            self.measures[:, cycles].copy(), self.displacement[instants].copy(), self.state[instants].copy(),
+            (np.array(times), np.array(contacts, dtype=np.int16), np.array(states, dtype=np.int8)),
+            found.letters, tally.transitions, tally.states or (), tally.energy, self.end,
+        )  # fmt: skip
+
+    def take(self, passed: Passed) -> None:
+        """A phase that was simulated before."""
+        found, first = self.transitions, self.done
+        tally = _Tally(first, len(found.times), passed.energy, passed.count, passed.states)
+        self.tallies.append(tally)
+        self.end, self.done = passed.end, first + passed.measures.shape[1]
+        self.measures[:, first : self.done] = passed.measures
+        instants = self._instants(first, self.done)
+        self.displacement[instants], self.state[instants] = passed.displacement, passed.state
+        times, contacts, states = passed.transitions
+        found.times.extend(times.tolist())
+        found.contacts.extend(contacts.tolist())
+        found.states.extend(states.tolist())
+        found.letters = passed.letters
+
+    def _instants(self, first: int, end: int) -> slice:
+        """Those of the cycles from one to before another, which is not beyond the last."""
+        return slice(int(self.plan.first[first]), int(self.plan.first[end]))
+
+    def _sample(self, cycle: Cycle) -> None:
+        first, count = int(self.plan.first[self.done]), int(self.plan.sampled[self.done])
+        times = cycle.system.period / self.plan.samples * np.arange(count, dtype=np.float64)
+        if self.done + 1 == self.plan.phase.size:
+            times = np.append(times, cycle.duration)
+        if times.size == 0:
+            return
+        chosen = slice(first, first + times.size)
+        self.displacement[chosen] = cycle.values(dof_rows(cycle.system), times)
+        segment = np.searchsorted(np.asarray(cycle.segments.start)[1:], times, side="right")
+        self.state[chosen] = np.asarray(cycle.segments.states)[segment]
+
+    def record(self, reason: str) -> Record:
+        amplitude, mean, greatest, least = self.measures
+        found = self.transitions
+        if self.done < self.plan.phase.size:  # it may have been interrupted within a cycle
+            self.displacement[self.plan.first[self.done] :] = np.nan
+            self.state[self.plan.first[self.done] :] = NOT_REACHED
+        return Record(
+            self.scene.parameters, amplitude, mean, greatest, least, self.displacement, self.state,
+            np.array(found.times), np.array(found.contacts, dtype=np.int16),
+            np.array(found.states, dtype=np.int8),
+            self._phases(), self.end, reason, 0.0,
+        )  # fmt: skip
+
+    def _phases(self) -> list[PhaseResult]:
+        bounds = [*(tally.first for tally in self.tallies), self.done]
+        return [
+            self._phase(phase, tally, slice(tally.first, bounds[number + 1]))
+            for number, (phase, tally) in enumerate(zip(self.scene.schedule, self.tallies, strict=False))
+            if tally.states is not None  # else it is interrupted in its first cycle
+        ]
+
+    def _phase(self, phase: Phase, tally: _Tally, cycles: slice) -> PhaseResult:
+        part = self.plan.part[cycles]
+        whole = max(int((part == 1.0).sum()), 1)
+        amplitude, mean = (values[cycles][:whole] for values in self.measures[:2])
+        return PhaseResult(
+            phase.frequency, float(part.sum()), amplitude[-1], mean[-1], tally.states or (),
+            tally.transitions, unsettled(amplitude), tally.energy,
+        )  # fmt: skip

@@ -1,0 +1,101 @@
+"""The state of a scene at an instant: what a simulation starts from and ends with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, isfinite, sin
+
+import numpy as np
+
+from fcm.harmonic_balance.static_equilibrium import RestError, rest_of
+from fcm.model.scene import FloatArray, Scene
+from fcm.scene.errors import counted
+from fcm.time_domain.contact_states import Codes
+from fcm.time_domain.errors import SimulationError
+from fcm.time_domain.integrator import March
+from fcm.time_domain.system import System
+
+
+@dataclass(frozen=True)
+class State:
+    """Everything that the motion from an instant on depends on.
+
+    The slip motion of each contact is w = u - friction / k_u (2); its normal load follows from the
+    displacements. A friction force beyond the limit mu n is brought back to it.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> State.rest(fcm.load_scene("yang1998-n5"))
+    State(q=array([0., 0.]), velocity=array([0., 0.]), friction=array([0.]), angle=0.0)
+    """
+
+    q: FloatArray  # (mode,) modal displacements
+    velocity: FloatArray  # (mode,) modal velocities [1/s]
+    friction: FloatArray  # (contact,) friction forces
+    angle: float = 0.0  # omega t of the external forces [rad]
+
+    @staticmethod
+    def rest(scene: Scene) -> State:
+        """The structure at rest in equilibrium with its preloads and static loads, which alone strain it.
+
+        Raises
+        ------
+        SimulationError
+            If there is no equilibrium with the static loads.
+        """
+        still = State.unloaded(scene)
+        if not scene.loads:
+            return still
+        try:
+            displacement, friction = rest_of(scene.whole())
+        except RestError as error:
+            raise SimulationError(str(error)) from None
+        return State(displacement, still.velocity, friction[scene.computed()])
+
+    @staticmethod
+    def unloaded(scene: Scene) -> State:
+        """The structure at rest without static loads."""
+        modes = scene.modal.mass.size
+        return State(np.zeros(modes), np.zeros(modes), np.zeros(len(scene.contacts)))
+
+    @staticmethod
+    def start(scene: Scene) -> State:
+        """Where the scene's schedule starts from: rest, unless the scene says otherwise."""
+        given = scene.start
+        if given is None:
+            return State.rest(scene)
+        friction = given.friction[scene.computed()]
+        return State(given.displacement, given.velocity, friction, given.angle)
+
+
+def entry(system: System, state: State) -> tuple[FloatArray, Codes]:
+    """The state vector of a state, and a combination of contact states for the march to begin with."""
+    x = np.zeros(system.unknowns)
+    try:
+        x[system.q], x[system.p], x[system.f] = state.q, state.velocity, state.friction
+    except ValueError:
+        raise SimulationError(
+            f"a state of this scene has {counted(system.modes, 'mode')} and "
+            f"{counted(len(system.contacts), 'contact')}"
+        ) from None
+    march = entered(system, x, state.angle)
+    return np.array(march.y)[0], np.array(march.states)[0]
+
+
+def entered(system: System, x: FloatArray, angle: float = 0.0) -> March:
+    """The march, to go on from x = (q, q', f) at an angle of the forces."""
+    march, level = system.march(), system.level
+    if not (isfinite(angle) and march.enters(x, level * sin(angle), level * cos(angle))):
+        raise SimulationError("the state to start from has numbers that are not finite")
+    return march
+
+
+def leave(system: System, y: FloatArray, angle: float) -> State:
+    """The state of a state vector, at an angle of the forces."""
+    return State(y[system.q].copy(), y[system.p].copy(), y[system.f].copy(), angle)
+
+
+def set_angle(y: FloatArray, angle: float) -> None:
+    """Set the constant, and the phase angle of the forces."""
+    y[-3:] = 1.0, np.sin(angle), np.cos(angle)

@@ -1,0 +1,215 @@
+"""A scene as what its motion in time depends on: modes, contacts, forces; one at each frequency."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+from math import isfinite
+from threading import local
+from typing import Any, NamedTuple
+from weakref import ref
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.model.scene import FloatArray, Scene
+from fcm.structure.loads import loads_of
+from fcm.time_domain.contact_states import Codes, made
+from fcm.time_domain.directional import Directional
+from fcm.time_domain.equations import has_friction, held_as_springs, held_limits, held_rows, matrices_of
+from fcm.time_domain.errors import SimulationError
+from fcm.time_domain.extremes import Scan
+from fcm.time_domain.flow import Flows
+from fcm.time_domain.fourier_integrals import Integrals
+from fcm.time_domain.integrator import March
+from fcm.time_domain.power_integrals import Powers
+from fcm.time_domain.segment_walk import Walk
+from fcm.time_domain.segments import Segments
+from fcm.time_domain.sparse_rows import Rows
+from fcm.time_domain.steps import Steps
+from fcm.time_domain.variational import Derivative
+
+LETTERS = "SEPN"  # of the codes SEPARATED, STICKING, POSITIVE_SLIP, NEGATIVE_SLIP
+OTHER_HARMONICS = "forces of other harmonics than 1 are not followed in time; the balance has them"
+OWN = ("scene", "omega")  # what systems of a scene do not have in common, or must not keep
+
+
+class Parts(NamedTuple):
+    """Rows of what is reported of a motion."""
+
+    displaced: slice  # of each degree of freedom
+    forces: slice  # k_v v of each contact, then f
+    limits: slice  # see `held_limits`
+    held: slice  # see `held_rows`
+
+
+class System:
+    """A scene at an excitation frequency omega [rad/s]; the flows serve every frequency.
+
+    Parameters
+    ----------
+    scene : Scene
+    omega : float
+
+    level is that of the forces, by which all harmonic ones are multiplied: 1 of the scene as it is. Where it
+    is the parameter, motions are differentiated by it instead of the frequency.
+    """
+
+    level, by_level = 1.0, False
+
+    def __init__(self, scene: Scene, omega: float) -> None:
+        self.scene, self.omega = scene, _checked(omega)
+        if known := _LATEST.known(scene):
+            self.__dict__.update(known)
+            return
+        if any(force.harmonic != 1 for force in scene.forces):
+            raise SimulationError(OTHER_HARMONICS)
+        self.contacts = scene.contacts
+        modal = scene.modal
+        m, c = modal.mass.size, len(scene.contacts)
+        self.modes, self.size = m, 2 * m + 2 * c + 3
+        self.q, self.p = slice(0, m), slice(m, 2 * m)
+        self.f, self.n = slice(2 * m, 2 * m + c), slice(2 * m + c, 2 * m + 2 * c)
+        self.unknowns = 2 * m + c  # (q, q', f): the rest follows
+        self.tangential = np.array([modal.shapes @ k.tangential for k in scene.contacts]).reshape(c, m)
+        self.normal = np.array([modal.shapes @ k.normal for k in scene.contacts]).reshape(c, m)
+        law = np.array([(k.mu, k.k_u, k.k_v, k.n_0) for k in scene.contacts]).reshape(c, 4)
+        self.mu, self.k_u, self.stiffness, self.preload = law.T.copy()
+        shapes = np.abs(modal.shapes).max(axis=1, initial=0.0)
+        self.per_unit = np.where(shapes > 0.0, shapes, 1.0)  # displacement by a mode, whatever its unit
+        loads = loads_of(scene)
+        self.constant, self.square = modal.shapes @ loads.constant[0], modal.shapes @ loads.square[0]
+        self.static: FloatArray = modal.shapes @ loads.static  # modal
+        self.stretch, self.pull, pressed = held_as_springs(scene)
+        self.steady = self.static + pressed
+        self.sticking = np.zeros((c, self.unknowns))  # k_u w of the contacts, by x = (q, q', f)
+        self.sticking[:, self.q], self.sticking[:, self.f] = self.k_u[:, None] * self.tangential, -np.eye(c)
+        self.rough = [has_friction(contact) for contact in scene.contacts]
+        self.limit_rows = self._limit_rows()
+        self.flows = Flows(matrices_of(self))
+        self._march, self._derivative = March(self.flows), Derivative(self.flows)
+        self._along, self.integrals = Directional(self.flows), Integrals(self.flows)
+        none = np.zeros(m)
+        self.made = dict[str, Any]()  # what other packages make once for a scene
+        self.slips = Powers(self.flows, none, none, none, none, everywhere=False)
+        self.displaced, self.limits, self.reported, self.parts = self._scans()
+        _LATEST.keep(scene, {name: what for name, what in vars(self).items() if name not in OWN})
+
+    def at(self, omega: float) -> System:
+        """The same scene at another frequency, with the same flows."""
+        other = System.__new__(System)
+        other.__dict__.update(self.__dict__)
+        other.omega = _checked(omega)
+        return other
+
+    def at_level(self, level: float, by_level: bool = False) -> System:
+        """The same at another level of the forces, which may be the parameter, with the same flows."""
+        other = self.at(self.omega)
+        other.level, other.by_level = level, by_level
+        return other
+
+    @property
+    def wave(self) -> npt.NDArray[np.complex128]:
+        """Modal amplitudes of the harmonic forces, of Im(wave exp(i theta)): (mode,)."""
+        wave: npt.NDArray[np.complex128] = self.level * (self.constant + self.omega**2 * self.square)
+        return wave
+
+    @property
+    def period(self) -> float:
+        """Period of the force [s]."""
+        return 2.0 * np.pi / self.omega
+
+    def tuned(self) -> Flows:
+        """The flows at this frequency."""
+        self.flows.at(self.omega)
+        return self.flows
+
+    def march(self) -> March:
+        """The march through the flows at this frequency; there is one for all frequencies."""
+        self.tuned()
+        return self._march
+
+    def derivative(self) -> Derivative:
+        """The derivative of motions at this frequency; there is one for all frequencies."""
+        self.tuned()
+        return self._derivative
+
+    def derivative_along(self) -> Directional:
+        """The derivative along one direction; there is one for all frequencies."""
+        self.tuned()
+        return self._along
+
+    def make(self, states: Codes) -> int:
+        """Put the flow of a combination of states into the pool; returns its place."""
+        return int(self.flows.add(*made(self, states)))
+
+    def steps(self, segments: Segments) -> Steps:
+        """The steps of segments at this frequency."""
+        return Steps(self.tuned(), segments)
+
+    def run(self, kernel: Walk, segments: Segments) -> None:
+        """Let a kernel go through segments at this frequency, making the flows that are missing."""
+        self.tuned()
+        kernel.begins(segments)
+        while kernel.go() < 0:
+            self.make(np.asarray(segments.states)[kernel.at + 1])
+
+    def loads(self, y: FloatArray) -> FloatArray:
+        """Normal loads n_0 + k_v v of the contacts, negative while they are open: (contact,)."""
+        return self.preload + y[self.n]
+
+    def _scans(self) -> tuple[Scan, Scan, Scan, Parts]:
+        """Of the displacements alone, of the limits of slip, and of all that is reported with its parts."""
+        displacements = np.zeros((self.scene.modal.shapes.shape[1], self.size - 2))
+        displacements[:, self.q] = self.scene.modal.shapes.T
+        parts = displacements, self._force_rows(), held_limits(self), held_rows(self)
+        rows = displacements, self.limit_rows, np.concatenate(parts)
+        first, second, third = (Scan(self.flows, Rows(each)) for each in rows)
+        ends = np.cumsum([0, *(len(part) for part in parts)]).tolist()
+        return first, second, third, Parts(*(slice(a, b) for a, b in pairwise(ends)))
+
+    def _force_rows(self) -> FloatArray:
+        """Rows of k_v v, then of f, of each contact, for y without the forces' angle."""
+        c = len(self.contacts)
+        rows = np.zeros((2 * c, self.size - 2))
+        rows[:c, self.n], rows[c:, self.f] = np.eye(c), np.eye(c)
+        return rows
+
+    def _limit_rows(self) -> FloatArray:
+        """Rows of mu n - f and of mu n + f of each contact, for y without the forces' angle."""
+        c, each = len(self.contacts), np.arange(len(self.contacts))
+        rows = np.zeros((c, 2, self.size - 2))
+        for i, sign in enumerate((-1.0, 1.0)):
+            rows[each, i, self.f.start + each] = sign
+            rows[each, i, self.n.start + each], rows[:, i, -1] = self.mu, self.mu * self.preload
+        return rows.reshape(2 * c, self.size - 2)
+
+
+class _Latest(local):
+    """What the systems of the scene that this thread came to last have in common, as long as that is there:
+    flows are dear to make."""
+
+    of: Callable[[], Scene | None] = staticmethod(lambda: None)
+    common: dict[str, Any] | None = None
+
+    def known(self, scene: Scene) -> dict[str, Any] | None:
+        """That of a scene, if it is the one that was come to last."""
+        return self.common if self.of() is scene else None
+
+    def keep(self, scene: Scene, common: dict[str, Any]) -> None:
+        """Until the scene goes, or another comes."""
+        self.of, self.common = ref(scene, lambda gone: self.drop(gone)), common
+
+    def drop(self, gone: object) -> None:
+        """That of a scene that goes."""
+        if self.of is gone:
+            self.common = None
+
+
+_LATEST = _Latest()
+
+
+def _checked(omega: float) -> float:
+    if not (isfinite(omega) and omega > 0.0):
+        raise SimulationError(f"the frequency is {omega:g}; a simulation needs one that is positive")
+    return float(omega)

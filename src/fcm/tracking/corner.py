@@ -1,0 +1,109 @@
+"""Where the special point of a response is a corner: at the onset of something a contact does.
+
+The response then turns, or is greatest, at the corner itself as long as what is special of it has opposite
+signs on both sides. Another equation holds there: that the onset's function is zero.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray
+from fcm.tracking.extended_system import Condition, Kind, Tracked
+from fcm.tracking.onset_functions import kinds_of, onset
+from fcm.tracking.parameter_line import Varied
+
+STEPS = 20  # of Newton's method, and of the secant
+EXACT = 1e-13  # a step that ends them
+FIRST = 1e-6  # step of the secant
+FURTHEST = 0.1  # along a corner that what is special of it is sought
+BESIDE = 1e-13  # of the extent of the unknowns: how far from a corner its two sides are looked at
+
+
+class Corner:
+    """A corner of a tracked point: the problem with the onset's equation, and what is on its sides."""
+
+    def __init__(self, tracked: Tracked, at: Condition) -> None:
+        self.of, self.at = tracked, at
+        self.problem = Tracked(tracked.varied, at, tracked.span)
+
+    def reach(self, z: FloatArray, offset: float = 0.0) -> tuple[FloatArray, FloatArray] | None:
+        """The nearest point where the function is the offset, and the curve's direction there, scaled."""
+        self.problem.offset = offset
+        scale = np.asarray(self.problem.scale)
+        z = np.array(z)
+        for _ in range(STEPS):
+            self.problem.evaluate(z)
+            matrix = np.asarray(self.problem.jacobian) * scale / scale[:-1, None]
+            step = np.linalg.lstsq(matrix, -np.asarray(self.problem.residual) / scale[:-1], rcond=None)[0]
+            z += scale * step
+            if np.linalg.norm(step) < EXACT:
+                return z, np.linalg.svd(matrix)[2][-1]
+        return None
+
+    def zero(self, z: FloatArray, side: int | None, offset: float = 0.0) -> FloatArray | None:
+        """Where, along the corner or beside it, what is special is zero: on a side of it, or on it.
+
+        By the secant along the direction of the corner's curve, from the point of it that is nearest to z.
+        """
+        found = self.reach(z, offset)
+        if found is None:
+            return None
+        scale, (start, direction) = np.asarray(self.problem.scale), found
+        newton = Newton(self.problem)
+        newton.scale[:] = scale
+        length, last, worth = 0.0, 0.0, 0.0
+        for count in range(STEPS):
+            newton.z[:], newton.row[:] = start + length * scale * direction, direction
+            if abs(length) > FURTHEST or not newton.correct(1e-3):
+                return None
+            at = np.array(newton.z)
+            before, worth = worth, self.special(at) if side is None else float(self.sides(at)[side])
+            if count and (worth == before or abs(length - last) < EXACT):
+                return at
+            slope = (worth - before) / (length - last) if count else 0.0
+            last, length = length, length - worth / slope if count else FIRST
+        return at
+
+    def special(self, z: FloatArray, aside: float = 0.0) -> float:
+        """What is special beside the corner, along the response as the onset's function rises.
+
+        The rise of the frequency, or the growth of the amplitude; aside in the extent of the unknowns.
+        """
+        normal, there = self.normal(z), np.array(z)
+        there[:-1] += aside * np.asarray(self.problem.scale)[:-1] * normal
+        t, _, growth = self.problem.along(there)
+        fold = self.of.condition.kind is Kind.FOLD
+        found = t[-1] if fold else growth[self.of.condition.which]
+        return float(np.sign(normal @ t) * found)
+
+    def sides(self, z: FloatArray) -> FloatArray:
+        """What is special before and after the corner, (2,)."""
+        return np.array([self.special(z, -BESIDE), self.special(z, BESIDE)])
+
+    def holds(self, z: FloatArray) -> bool:
+        """Whether the corner is what is tracked."""
+        before, after = self.sides(z)
+        return bool(before * after < 0.0)
+
+    def normal(self, z: FloatArray) -> FloatArray:
+        """Unit vector in the problem's scale along which the onset's function rises, (unknown + 1,)."""
+        self.problem.evaluate(z)
+        slope = np.array(self.problem.jacobian)[-1, :-1] * np.asarray(self.problem.scale)[:-1]
+        return slope / np.linalg.norm(slope)  # type: ignore[no-any-return]
+
+
+def nearest(varied: Varied, z: FloatArray, scale: FloatArray) -> list[tuple[float, Condition]]:
+    """The onsets by their distance from z in a scale of its numbers, the nearest first."""
+    varied.put(float(z[-1]))
+    width = varied.balance.width
+    found = []
+    for c, law in enumerate(varied.balance.laws):
+        block = slice(c * width, (c + 1) * width)
+        for kind in kinds_of(law):
+            one = onset(law, np.ascontiguousarray(z[block]), kind, varied.harmonics)
+            slope = float(np.linalg.norm(one.slope * scale[block]))
+            if slope > 0.0:
+                found.append((abs(one.value) / slope, Condition(Kind.ONSET, c, kind)))
+    return sorted(found, key=lambda pair: pair[0])

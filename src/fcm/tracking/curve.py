@@ -1,0 +1,100 @@
+"""One curve of special points of a response, followed both ways from a point of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.model.scene import FloatArray
+from fcm.tracking.extended_system import Condition, Kind, Tracked
+from fcm.tracking.nonsmooth_continuation import follow_special_point
+from fcm.tracking.peak_check import is_top
+from fcm.tracking.tracked_point import Ending, Spot, Way
+
+CUSP = 1e-3  # of the frequency's rate beside a turn: at the turn it is less where it turns back, too
+
+BoolArray = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Track:
+    """One curve: points in the order along it."""
+
+    condition: Condition
+    spots: tuple[Spot, ...]
+    s: FloatArray  # (point,)
+    frequency: FloatArray  # (point,) [rad/s]
+    amplitude: FloatArray  # (point, dof)
+    greatest: BoolArray  # (point,) of peaks: whether it is one, and not a trough
+    endings: tuple[Ending, Ending]
+
+    @property
+    def whole(self) -> bool:
+        """Whether there is no more of it."""
+        return all(ending.whole for ending in self.endings)
+
+    def turns(self) -> list[tuple[int, str]]:
+        """Points at which the number turns back, and what they are."""
+        other = "peak and trough" if self.condition.kind is Kind.PEAK else "extreme"
+        fold, turns = self.condition.kind is Kind.FOLD, [i for i, spot in enumerate(self.spots) if spot.turn]
+        return [(i, self._turn_of_fold(i) if fold else other) for i in turns]
+
+    def _turn_of_fold(self, i: int) -> str:
+        """A cusp where two folds meet with one tangent; an isola where the frequency passes on.
+
+        Along a curve of folds w . R_omega omega' + w . R_s s' = 0, with w the adjoint null vector. At a cusp
+        omega' vanishes with s', as w . R_omega does not; else it is w . R_omega that vanishes, and the
+        response has an isolated point, or crosses itself. At a corner the frequency turns back, or does not.
+        """
+        beside = [self.spots[j].direction[-2] for j in (i - 1, i + 1) if 0 <= j < len(self.spots)]
+        if self.spots[i].switch and len(beside) == 2:
+            return "cusp" if beside[0] * beside[1] < 0.0 else "isola"
+        still = abs(self.spots[i].direction[-2]) < CUSP * max(map(abs, beside), default=0.0)
+        return "cusp" if still else "isola"
+
+
+def whole(way: Way, condition: Condition, spot: Spot) -> Track:
+    """The curve through a spot, both ways."""
+    spots, ending = follow_special_point(way, condition, spot, True)
+    endings = (ending, ending)
+    if ending is not Ending.CLOSED:
+        back, other = follow_special_point(way, condition, spot, False)
+        turned = [replace(one, direction=-one.direction) for one in back[:0:-1]]
+        spots, endings = [*turned, *spots], (other, ending)
+    return recorded(way, condition, spots or [spot], endings)
+
+
+def recorded(way: Way, condition: Condition, spots: list[Spot], endings: tuple[Ending, Ending]) -> Track:
+    """A curve with what is reported of its points."""
+    problem = way.tracked(condition)
+    return _joined(condition, spots, [_told(problem, spot) for spot in spots], endings)
+
+
+def with_spots(way: Way, track: Track, spots: list[Spot]) -> Track:
+    """A curve with more points, its own among them."""
+    problem = way.tracked(track.condition)
+    own = zip(track.amplitude, track.greatest.tolist(), strict=True)
+    known = {id(spot): told for spot, told in zip(track.spots, own, strict=True)}
+    told = [known.get(id(spot)) or _told(problem, spot) for spot in spots]
+    return _joined(track.condition, spots, told, track.endings)
+
+
+def _told(problem: Tracked, spot: Spot) -> tuple[FloatArray, bool]:
+    """Of a point its amplitudes, and whether it is no trough."""
+    problem.measure(spot.z)
+    amplitude = problem.along(spot.z)[1]
+    return amplitude, problem.condition.kind is not Kind.PEAK or is_top(problem, spot)
+
+
+def _joined(
+    condition: Condition,
+    spots: list[Spot],
+    told: list[tuple[FloatArray, bool]],
+    endings: tuple[Ending, Ending],
+) -> Track:
+    z, (amplitude, greatest) = np.array([spot.z for spot in spots]), zip(*told, strict=True)
+    return Track(
+        condition, tuple(spots), z[:, -1], z[:, -2], np.array(amplitude), np.array(greatest), endings
+    )

@@ -1,0 +1,155 @@
+"""All curves of special points of a response over a range of a number, each followed once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Protocol, TypeVar
+
+import numpy as np
+
+from fcm.continuation.follow import Progress
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray
+from fcm.tracking.curve import Track, whole
+from fcm.tracking.extended_system import Condition, Kind
+from fcm.tracking.known_curves import passed
+from fcm.tracking.nonsmooth_continuation import land
+from fcm.tracking.parameter_line import Line
+from fcm.tracking.peak_check import is_top
+from fcm.tracking.starts import moved, special_points
+from fcm.tracking.tracked_point import Spot, Way
+
+STARTS = 13  # values of the number, evenly spaced, at which ordinary curves are traced
+SAME, NEAR = 1e-9, 1e-3  # of the span, of a frequency: a point nearer to a curve is on it
+MOST_PEAKS = 3  # curves of peaks along which onsets are looked for
+
+T = TypeVar("T")
+
+
+class Once(Protocol):
+    """Takes a costly step, or knows already what comes of it: of the first, the second, ..."""
+
+    def __call__(self, step: Callable[[], T], /) -> T: ...
+
+
+def at_once(step: Callable[[], T], /) -> T:
+    """Takes every step."""
+    return step()
+
+
+@dataclass(frozen=True)
+class Tracks:
+    """All curves, and what could not be followed."""
+
+    curves: tuple[Track, ...]
+    problems: tuple[str, ...] = ()
+    lost: tuple[tuple[Condition, FloatArray], ...] = ()  # points of ordinary curves that are on none of these
+    interrupted: bool = False  # so that there may be more
+    unsure: tuple[tuple[float, float], ...] = ()  # values and frequencies where branches may have been missed
+
+
+def tracks(
+    system: System,
+    line: Line,
+    span: tuple[float, float],
+    conditions: list[Condition],
+    starts: tuple[float, ...] = (),
+    progress: Progress | None = None,
+    once: Once = at_once,
+) -> Tracks:
+    """The curves of conditions, from ordinary curves at some values of s, and at more of them.
+
+    An onset that comes and goes between two such values is first met by the highest peak. Interrupted, it
+    returns the curves that are finished. once takes each costly step.
+    """
+    values = sorted({*np.linspace(*span, STARTS).tolist(), *starts})
+    way = Way(system, line, span, tuple(values[1:-1]), system.scene.max_step)
+    made, stopped = _Made(way, once), False
+    try:
+        _follow_all(made, values, conditions, progress)
+    except KeyboardInterrupt:
+        stopped = True
+    lost = () if stopped else tuple(made.lost())
+    return Tracks(tuple(made.curves), tuple(made.problems), lost, stopped, tuple(made.unsure))
+
+
+def _follow_all(
+    made: _Made, values: list[float], conditions: list[Condition], progress: Progress | None
+) -> None:
+    """From ordinary curves at some values."""
+    system, line = made.way.system, made.way.line
+    for number, value in enumerate(values):
+        if progress is not None:
+            progress(number / len(values))
+        there = moved(system, line.scene(system.scene, value))
+        special = made.once(partial(special_points, there, conditions))
+        if special.wrong:
+            made.problems.append(f"at {value:.6g}: {special.wrong}")
+        made.unsure += [(value, omega) for omega in special.unsure]
+        made.from_points([(condition, np.append(z, value)) for condition, z in special.points])
+    onsets = [condition for condition in conditions if condition.kind is Kind.ONSET]
+    if onsets:
+        made.from_points(made.once(partial(_met_by_peaks, made.way, onsets)))
+
+
+class _Made:
+    """The curves so far."""
+
+    def __init__(self, way: Way, once: Once = at_once) -> None:
+        self.way, self.once = way, once
+        self.curves: list[Track] = []
+        self.problems: list[str] = []
+        self.unsure: list[tuple[float, float]] = []
+        self.missed: list[tuple[Condition, FloatArray]] = []  # points that were not landed on
+
+    def from_points(self, points: list[tuple[Condition, FloatArray]]) -> None:
+        """Follow those that no curve has passed; z = (x, omega, s)."""
+        for condition, z in points:
+            spot = land(self.way, condition, z)
+            if spot is None or not self._is_top(condition, spot):
+                self.missed.append((condition, z))
+            if spot is not None and not any(passed(one, condition, spot, self.way) for one in self.curves):
+                self.curves.append(self.once(partial(whole, self.way, condition, spot)))
+
+    def lost(self) -> list[tuple[Condition, FloatArray]]:
+        """Points at which no curve could begin, and that none has come to either."""
+        return [
+            (condition, z)
+            for condition, z in self.missed
+            if not any(self._comes_to(curve, condition, z) for curve in self.curves)
+        ]
+
+    def _comes_to(self, curve: Track, condition: Condition, z: FloatArray) -> bool:
+        """Whether a curve has a point at the same value of the number, and nearly the same frequency."""
+        low, high = self.way.span
+        there = np.abs(curve.s - z[-1]) < SAME * (high - low)
+        near = np.abs(curve.frequency[there] / z[-2] - 1.0) < NEAR
+        return curve.condition == condition and bool(near.any())
+
+    def _is_top(self, condition: Condition, spot: Spot) -> bool:
+        """Whether a peak that was landed on is one: beside a peak at a corner there may be a trough."""
+        if condition.kind is not Kind.PEAK:
+            return True
+        problem = self.way.tracked(condition)
+        problem.measure(spot.z)
+        return is_top(problem, spot)
+
+
+def _met_by_peaks(way: Way, onsets: list[Condition]) -> list[tuple[Condition, FloatArray]]:
+    """Points of onsets next to which the peak of the degree of freedom that moves most comes."""
+    middle = moved(way.system, way.line.scene(way.system.scene, 0.5 * sum(way.span)))
+    peaks = [Condition(Kind.PEAK, d) for d in range(len(middle.scene.modal.dofs))]
+    points = special_points(middle, peaks).points
+    problem = way.tracked(onsets[0])
+    made = _Made(way)
+    for condition, z in points[:MOST_PEAKS]:
+        made.from_points([(condition, np.append(z, 0.5 * sum(way.span)))])
+    found = []
+    for spots in (curve.spots for curve in made.curves):
+        for onset in onsets:
+            value = np.array([problem.onset_at(spot.z, onset) for spot in spots])
+            for i in np.flatnonzero(value[:-1] * value[1:] <= 0.0):
+                found.append((onset, np.array(spots[i + int(abs(value[i + 1]) < abs(value[i]))].z)))
+    return found

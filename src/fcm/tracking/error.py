@@ -1,0 +1,134 @@
+r"""What the harmonics left out would change at chosen points of a tracked curve.
+
+The same extended system with the harmonics of the partner's partner is solved at the same value of the
+number. Where the number turns back that has no solution on one side: there the curve with more harmonics is
+followed from beside the turn to its own turn.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from fcm.accuracy.options import AT_POINTS
+from fcm.accuracy.partner import partner_of
+from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
+from fcm.tracking.curve import Track
+from fcm.tracking.extended_system import Condition, Kind
+from fcm.tracking.nonsmooth_continuation import follow_special_point, land
+from fcm.tracking.peak_check import is_top
+from fcm.tracking.starts import moved
+from fcm.tracking.tracked_point import Ending, Spot, Way
+
+BEFORE = 3  # points before a turn from which the turn with more harmonics is sought
+BEYOND = 3.0  # times the way of the number from there to the turn, up to which it is sought
+
+
+class Change(NamedTuple):
+    """By more harmonics: relative of a peak's amplitude, else of the frequency; of the number at a turn."""
+
+    relative: float
+    number: float  # 0 where the number is given; NaN both where it cannot be told
+
+
+UNTOLD = Change(np.nan, np.nan)
+
+
+@dataclass
+class _Found:
+    """A point of the same curve with some harmonics."""
+
+    way: Way
+    spot: Spot
+
+    def value(self, condition: Condition) -> float:
+        """What the error is of."""
+        if condition.kind is not Kind.PEAK:
+            return float(self.spot.z[-2])
+        problem = self.way.tracked(condition)
+        problem.measure(self.spot.z)
+        return float(problem.along(self.spot.z)[1][condition.which])
+
+
+def places(track: Track) -> dict[int, str]:
+    """Points at which the error is told, with what they are."""
+    ends = [] if Ending.CLOSED in track.endings else [0, len(track.spots) - 1]
+    marks = [*((i, "end") for i in dict.fromkeys(ends)), *((i, kind) for i, kind in track.turns())]
+    if track.condition.kind is Kind.PEAK and track.greatest.any():
+        height = np.where(track.greatest, track.amplitude[:, track.condition.which], np.nan)
+        marks += [(int(np.nanargmin(height)), "least"), (int(np.nanargmax(height)), "greatest")]
+    found: dict[int, str] = {}
+    for i, mark in sorted(marks):
+        found[i] = f"{found[i]}, {mark}" if i in found else mark
+    return found
+
+
+def change(way: Way, track: Track, i: int) -> Change:
+    """At one point: to that of the partner."""
+    condition, here = track.condition, _Found(way, track.spots[i])
+    value, number, begin = here.value(condition), float(here.spot.z[-1]), beginning(track, i)
+    start = here if begin is None else _Found(way, track.spots[begin])
+    more = _more(here)
+    if more == here.way.system.harmonics:
+        return Change(0.0, 0.0)
+    wider = replace(way, system=way.system.with_harmonics(more), stations=())
+    there = _landed(wider, condition, start, track.spots[i], begin is not None)
+    if there is None:
+        return UNTOLD
+    off = abs(there.value(condition) - value) / abs(value)
+    return Change(off, abs(float(there.spot.z[-1]) - number))
+
+
+def beginning(track: Track, i: int) -> int | None:
+    """Of a turn the point from which it is sought, some before it and not beyond another turn."""
+    if not track.spots[i].turn:
+        return None
+    j = i
+    while j > max(0, i - BEFORE) and not track.spots[j - 1].turn:
+        j -= 1
+    return j
+
+
+def _more(found: _Found) -> tuple[int, ...]:
+    """The harmonics of the partner; none more where nothing slips or opens."""
+    z, s = found.spot.z, float(found.spot.z[-1])
+    system = moved(found.way.system, found.way.line.scene(found.way.system.scene, s))
+    further, y = FurtherHarmonics(system), z[None, :-1]
+    if further.linear(y).all():
+        return system.harmonics
+    problem = found.way.tracked(Condition(Kind.FOLD))
+    problem.measure(z)
+    amplitude = problem.along(z)[1]
+    share = further.shares(y, amplitude[None])[0]
+    return partner_of(system.harmonics, share, system.layout.ports, AT_POINTS)
+
+
+def _landed(wider: Way, condition: Condition, start: _Found, turn: Spot, turns: bool) -> _Found | None:
+    """The point with more harmonics: that beside the start, or the turn that follows it."""
+    beside = land(wider, condition, wider.system.extended(start.spot.z, start.way.system.harmonics))
+    if beside is None or not _same(wider, condition, beside, start):
+        return None
+    if not turns:
+        return _Found(wider, beside)
+    s, rise = float(start.spot.z[-1]), float(turn.z[-1] - start.spot.z[-1])
+    if rise == 0.0:
+        return None
+    near = replace(wider, span=(min(s, s + BEYOND * rise), max(s, s + BEYOND * rise)), peaks_only=True)
+    spots, _ = follow_special_point(near, condition, beside, rise > 0.0)
+    if not spots or not spots[-1].turn:
+        return None
+    return _Found(wider, spots[-1])
+
+
+def _same(wider: Way, condition: Condition, spot: Spot, start: _Found) -> bool:
+    """Whether a peak stays one, and a trough one."""
+    if condition.kind is not Kind.PEAK:
+        return True
+    tops = []
+    for way, one in ((wider, spot), (start.way, start.spot)):
+        problem = way.tracked(condition)
+        problem.measure(one.z)
+        tops.append(is_top(problem, one))
+    return tops[0] == tops[1]

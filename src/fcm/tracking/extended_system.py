@@ -1,0 +1,255 @@
+r"""A point of a response that is special - its fold, its peak, an onset - as the solution of more equations.
+
+The unknowns are those of the balance and its frequency, y = (x, omega); the parameter s moves numbers of the
+scene. One equation g = 0 is added to the balance R = 0. With the tangent t of the response curve,
+
+    [dR/d(x, omega); row] t = (0, 1),
+
+it is t_omega = 0 of a fold and grad a . t = 0 of a peak of the amplitude a. Its derivatives by any unknown
+are those of w^T dR t, with w the adjoint of the same matrix, so that two more evaluations of the exact
+Jacobian, a little way along t, give all of them.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import NamedTuple
+
+import numpy as np
+
+from fcm.continuation.problem import Problem
+from fcm.harmonic_balance.dense_jacobian import Amplitude, jacobian_of
+from fcm.model.scene import FloatArray
+from fcm.tracking.onset_functions import onset, values
+from fcm.tracking.parameter_line import Varied
+
+SMALLEST = 1e-150  # amplitudes below this count as this in a division
+ASIDE = 1e-5  # of the response curve's extent: how far along it the Jacobian is evaluated for a difference
+LEAST_ASIDE = 1e-9  # and at least, where a corner is near
+NEARER = 0.05  # of the way to a corner: beside it derivatives begin like a root, and change again close by
+ASKEW = 1e3  # times as long as the row: a tangent that is nearly across it
+
+
+class Kind(Enum):
+    """What is special of a point."""
+
+    FOLD = "fold"
+    PEAK = "peak"
+    ONSET = "onset"
+    END = "end"
+
+
+class Condition(NamedTuple):
+    """What is tracked: the fold, the peak of a degree of freedom, an onset of a contact, a frequency."""
+
+    kind: Kind
+    which: int = -1  # degree of freedom, or contact
+    onset: str = ""  # one of `onset.KINDS`
+    omega: float = 0.0  # of an end of the range
+
+
+class Tangent(NamedTuple):
+    """Of the response curve, in the problem's scale, with row . t = 1; adjoint solves are with the matrix."""
+
+    t: FloatArray  # (unknown + 1,)
+    matrix: FloatArray
+
+
+class Poll(NamedTuple):
+    """The balance at a place: its Jacobian, by s, and the slopes of ln amplitude of a peak by (y, s)."""
+
+    jacobian: FloatArray  # (unknown, unknown + 1)
+    by_s: FloatArray  # (unknown,)
+    growth: FloatArray  # (unknown + 2,)
+
+
+class Tracked(Problem):
+    """See the module; y, s are the numbers z (unknown + 2,) of a problem, s the last."""
+
+    def __init__(self, varied: Varied, condition: Condition, span: float) -> None:
+        self.varied, self.condition, self.span = varied, condition, span
+        self.n, self.offset = varied.balance.unknowns, 0.0  # of an onset: its function, in the scale, is this
+        Problem.__init__(self, self.n + 1, 0, 0)
+        self.rooted = varied.balance.rooted
+        self.row = np.zeros(self.n + 1)
+        self.row[-1] = 1.0
+        self.angles: FloatArray | None = None  # of the extremes whose peak it is, that were greatest last
+
+    def evaluate(self, z: FloatArray) -> int:
+        """Residual and derivatives; no numbers where the response crosses itself: nothing is found there."""
+        z = np.asarray(z)
+        self.varied.put(float(z[-1]))
+        y, n = np.array(z[:-1]), self.n
+        here = self._poll(y)
+        residual, jacobian = np.asarray(self.residual), np.asarray(self.jacobian)
+        residual[:n] = self.varied.balance.residual
+        jacobian[:n, : n + 1], jacobian[:n, n + 1] = here.jacobian, here.by_s
+        try:
+            value, gradient = self._condition(y, here)
+        except np.linalg.LinAlgError:  # the response has no one direction there
+            residual[n], jacobian[n] = np.nan, np.nan
+            return 0
+        unit = np.asarray(self.scale)[n]  # by which the row of this unknown is divided
+        residual[n], jacobian[n] = unit * value, unit * gradient
+        return 0
+
+    def surface(self, z: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+        """Residual and derivatives by z of the balance alone, scaled, and what is special of the point."""
+        z, scale = np.asarray(z), np.asarray(self.scale)
+        self.varied.put(float(z[-1]))
+        y, n = np.array(z[:-1]), self.n
+        here = self._poll(y)
+        matrix = np.concatenate((here.jacobian, here.by_s[:, None]), axis=1) * scale / scale[:n, None]
+        return np.array(self.varied.balance.residual) / scale[:n], matrix, self._special(y, here)
+
+    def _special(self, y: FloatArray, here: Poll) -> float:
+        """What `_condition` says, without its derivatives; of the tangent of length 1."""
+        if self.condition.kind not in (Kind.FOLD, Kind.PEAK):
+            return self._condition(y, here)[0]
+        scale = np.asarray(self.scale)[:-1]
+        t = self._tangent(here.jacobian).t
+        t /= np.linalg.norm(t)
+        return float(t[-1] if self.condition.kind is Kind.FOLD else here.growth[:-1] @ (scale * t))
+
+    def _poll(self, y: FloatArray) -> Poll:
+        """The balance at a place."""
+        balance = self.varied.balance
+        balance.evaluate(y)
+        by_s, growth = self.varied.by_s(y), np.zeros(self.n + 2)
+        if self.condition.kind is Kind.PEAK:
+            one = Amplitude(balance, self.condition.which)
+            one.at(y, self.angles)
+            growth = np.append(one.slopes, by_s.of(one)) / max(one.value, SMALLEST)
+        return Poll(jacobian_of(balance), by_s.residual, growth)
+
+    def measure(self, z: FloatArray) -> int:
+        """As the balance; s by the span. The row becomes the tangent of the response curve.
+
+        A peak is from here on that of the extremes that are the greatest of the cycle here: they are followed
+        as theirs, as the amplitude has a kink where others become greater.
+        """
+        z = np.asarray(z)
+        self.varied.put(float(z[-1]))
+        y, balance, scale = np.array(z[:-1]), self.varied.balance, np.asarray(self.scale)
+        balance.measure(y)
+        scale[:-1], scale[-1] = balance.scale, self.span
+        balance.evaluate(y)
+        t = _direction(jacobian_of(balance) * scale[:-1] / scale[:-2, None], self.row)
+        self.row[:] = t if t @ self.row >= 0.0 else -t
+        if self.condition.kind is Kind.PEAK:
+            one = Amplitude(balance, self.condition.which)
+            one.at(y)
+            self.angles = one.angles
+        return 0
+
+    def along(self, z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Unit tangent of the response in the problem's scale, amplitudes and their growth along it (dof,).
+
+        Where the response has a corner, it is that of the side that z is on.
+        """
+        z = np.asarray(z)
+        self.varied.put(float(z[-1]))
+        y, balance = np.array(z[:-1]), self.varied.balance
+        balance.evaluate(y)
+        scale = np.asarray(self.scale)[:-1]
+        t = _direction(jacobian_of(balance) * scale / scale[:-1, None], self.row)
+        balance.report(y, np.ascontiguousarray(t * np.asarray(self.scale)[:-1]))
+        return t, np.array(balance.output), np.array(balance.growth)
+
+    def _tangent(self, jacobian: FloatArray) -> Tangent:
+        scale = np.asarray(self.scale)[:-1]
+        scaled = jacobian * scale / scale[:-1, None]
+        matrix = np.concatenate((scaled, self.row[None]))
+        right = np.zeros(self.n + 1)
+        right[-1] = 1.0
+        return Tangent(np.linalg.solve(matrix, right), matrix)
+
+    def _condition(self, y: FloatArray, here: Poll) -> tuple[float, FloatArray]:
+        """g, without a unit, and its derivatives by (y, s)."""
+        kind = self.condition.kind
+        if kind is Kind.END:
+            gradient = np.zeros(self.n + 2)
+            gradient[-2] = 1.0 / self.varied.balance.span
+            return (y[-1] - self.condition.omega) / self.varied.balance.span, gradient
+        if kind is Kind.ONSET:
+            return self._onset(y)
+        return self._turning(y, here)
+
+    def _onset(self, y: FloatArray) -> tuple[float, FloatArray]:
+        c, width = self.condition.which, self.varied.balance.width
+        block = slice(c * width, (c + 1) * width)
+        found = onset(self.varied.balance.laws[c], y[block], self.condition.onset, self.varied.harmonics)
+        gradient = np.zeros(self.n + 2)
+        gradient[block] = found.slope
+        gradient[-1] = self.varied.contact_rates()[c] @ found.by_number
+        unit = float(np.linalg.norm(gradient * np.asarray(self.scale))) or 1.0
+        return found.value / unit - self.offset, gradient / unit
+
+    def _turning(self, y: FloatArray, here: Poll) -> tuple[float, FloatArray]:
+        """Of a fold, or a peak: growth along the tangent, which row . t = 1 makes as long as it is."""
+        scale = np.asarray(self.scale)[:-1]
+        tangent = self._tangent(here.jacobian)
+        t, special = tangent.t, here.growth
+        if self.condition.kind is Kind.FOLD:
+            special[-2] = 1.0 / scale[-1]
+        value = float(special[:-1] @ (scale * t))
+        adjoint = np.linalg.solve(tangent.matrix.T, special[:-1] * scale)[:-1] / scale[:-1]
+        ahead = scale * t / np.linalg.norm(t)
+        step = self._room(y, ahead)
+        gradient = self._aside(y + step * ahead, adjoint) - self._aside(y - step * ahead, adjoint)
+        gradient *= np.linalg.norm(t) / (2.0 * step)
+        return value, gradient
+
+    def _room(self, y: FloatArray, ahead: FloatArray) -> float:
+        """How far to go along the tangent so that no margin changes its sign, not even nearly."""
+        signs, step = self._margins(y), ASIDE
+        for there in (self._margins(y + step * ahead), self._margins(y - step * ahead)):
+            crossed = signs * there < 0.0
+            if crossed.any():
+                part = np.abs(signs[crossed] / (signs[crossed] - there[crossed])).min()
+                step = min(step, max(NEARER * part * ASIDE, LEAST_ASIDE))
+        return step
+
+    def _margins(self, y: FloatArray) -> FloatArray:
+        """Functions whose signs change where the Jacobian is not smooth."""
+        balance = self.varied.balance
+        if balance.margins:
+            balance.bound(y)
+            return np.array(balance.margin)
+        return values(balance.laws, y, self.varied.harmonics)
+
+    def _aside(self, y: FloatArray, adjoint: FloatArray) -> FloatArray:
+        """What changes along the tangent, (unknown + 2,), at a place on it."""
+        poll = self._poll(y)
+        return poll.growth - np.append(adjoint @ poll.jacobian, adjoint @ poll.by_s)
+
+    def onset_at(self, z: FloatArray, condition: Condition) -> float:
+        """The function of an onset."""
+        self.varied.put(float(z[-1]))
+        c, width = condition.which, self.varied.balance.width
+        block = np.ascontiguousarray(z[c * width : (c + 1) * width])
+        return onset(self.varied.balance.laws[c], block, condition.onset, self.varied.harmonics).value
+
+    def amplitude_along(self, z: FloatArray, direction: FloatArray, dof: int) -> tuple[float, float]:
+        """An amplitude, and its rate along a direction (unknown + 2,), what s does to it included."""
+        self.varied.put(float(z[-1]))
+        y, balance = np.array(z[:-1]), self.varied.balance
+        balance.evaluate(y)
+        one = Amplitude(balance, dof)
+        one.at(y)
+        slopes = np.append(one.slopes, self.varied.by_s(y).of(one))
+        return one.value, float(slopes @ direction)
+
+
+def _direction(matrix: FloatArray, row: FloatArray) -> FloatArray:
+    """Unit vector (unknown + 1,) that a matrix (unknown, unknown + 1) takes to 0; row is nearly that."""
+    closed = np.concatenate((matrix, row[None]))
+    try:
+        t = np.linalg.solve(closed, np.eye(row.size)[-1])
+    except np.linalg.LinAlgError:
+        t = np.full(row.size, np.inf)
+    size = float(np.linalg.norm(t))
+    if size < ASKEW * float(np.linalg.norm(row)):
+        return t / size
+    last: FloatArray = np.linalg.svd(matrix)[2][-1]
+    return last if last @ row >= 0.0 else -last

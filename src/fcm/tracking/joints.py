@@ -1,0 +1,302 @@
+"""How the smooth pieces of a curve of special points are joined: along corners, across them, past kinks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray
+from fcm.tracking.corner import Corner, nearest
+from fcm.tracking.extended_system import Condition, Kind
+from fcm.tracking.kinks import Circle
+from fcm.tracking.onset_functions import values
+from fcm.tracking.tracked_point import Ending, Spot, Way, kinks
+
+
+class Joints:
+    """z, t: the point that the curve has come to, and the direction there in the problem's scale, a unit
+    vector; spots: all points until now; first: the first step of the next piece."""
+
+    z: FloatArray
+    t: FloatArray
+    spots: list[Spot]
+
+    def __init__(self, way: Way, condition: Condition) -> None:
+        self.way, self.condition, self.options = way, condition, way.options
+        self.smooth = way.tracked(condition)
+        self.low, self.high = way.system.scene.frequency_range
+        self.turns = condition.kind in (Kind.FOLD, Kind.PEAK)
+        self.values = sorted({*way.span, *way.stations})
+        self.kinks, self.first = kinks(way), self.options.step.first
+        self.held = np.eye(self.smooth.n + 2)[-1]
+        self._use(None)
+
+    def _use(self, at: Condition | None) -> None:
+        """Go on with the equation of a corner, or with that of the smooth curve."""
+        self.corner = None if at is None else Corner(self.smooth, at)
+        self.newton = Newton(self.smooth if self.corner is None else self.corner.problem)
+
+    def _holds(self) -> bool:
+        """Whether the point found is a corner that is what is tracked; any is, that is not a corner."""
+        return self.corner is None or self.corner.holds(np.array(self.newton.z))
+
+    def _solve(self, guess: FloatArray, row: FloatArray) -> bool:
+        self.newton.z[:], self.newton.row[:] = guess, row
+        return bool(self.newton.correct(1e-3)) and bool(np.isfinite(self.newton.z).all())
+
+    def _measure(self, z: FloatArray) -> None:
+        """Units, and the row of the tangent, at a point."""
+        self.smooth.measure(z)
+        if self.corner is not None:
+            self.corner.problem.offset = 0.0
+            self.corner.problem.row[:] = self.smooth.row
+            self.corner.problem.measure(z)
+        self.newton.scale[:] = self.smooth.scale
+
+    def _accept(self) -> None:
+        """Go on from the point found."""
+        self._go_to(np.array(self.newton.z), np.asarray(self.newton.tangent) * np.asarray(self.newton.scale))
+
+    def _go_to(self, z: FloatArray, direction: FloatArray) -> None:
+        """Go on from a point with a direction in the units of z."""
+        self.z = np.array(z)
+        self._measure(self.z)
+        t = direction / np.asarray(self.newton.scale)
+        self.t = t / np.linalg.norm(t)
+
+    def _spot(self, z: FloatArray, t: FloatArray) -> Spot:
+        at = None if self.corner is None else self.corner.at
+        return Spot(z, t * np.asarray(self.newton.scale), at)
+
+    def _signs(self, z: FloatArray) -> FloatArray:
+        """Signs of the functions of all onsets."""
+        varied = self.smooth.varied
+        varied.put(float(z[-1]))
+        return np.sign(values(varied.balance.laws, z, varied.harmonics))
+
+    def _outside(self, s: float) -> bool:
+        low, high = self.way.span
+        return (
+            not low - self.options.kink * self.smooth.span < s < high + self.options.kink * self.smooth.span
+        )
+
+    def _corners_near(self, z: FloatArray) -> Iterator[Condition]:
+        """The corners of the response that a point is near to, the nearest first."""
+        if self.turns:
+            for off, at in nearest(self.smooth.varied, z, np.array(self.newton.scale)):
+                if off > self.options.near:
+                    break
+                yield at
+
+    def _past_kink(self, z: FloatArray, row: FloatArray) -> FloatArray:
+        """A point just beyond a kink."""
+        beyond: FloatArray = z + self.options.kink * self.smooth.span * row
+        return beyond
+
+    def _pass_kink(self) -> bool | Ending:
+        """Go on just beyond a kink that the curve has come to."""
+        row = np.sign(self.t[-1]) * self.held
+        if self._solve(self._past_kink(self.z, row), row) and self._holds():
+            self._accept()
+            return True
+        return self._round()
+
+    def _way_on(self) -> bool | Ending:
+        """Go on from where the equations do not hold any more, or no step leads on; or how the curve ends."""
+        return self._meet() or self._round()
+
+    def _meet(self) -> bool | Ending:
+        """Go on from a corner of the response: it is tracked from there on, or crossed; or how the curve ends
+        before that. False if the curve comes to none."""
+        if self.corner is not None:
+            return False
+        z, before, known = self.z, float(self.t[-1]), list(self.spots)
+        came = self.t * np.asarray(self.newton.scale)
+        for at in self._corners_near(z):
+            self._use(at)
+            self._measure(z)
+            assert self.corner is not None
+            self.corner.problem.evaluate(z)
+            side = int(self.corner.problem.residual[-1] > 0.0)
+            there = self.corner.zero(z, side)
+            if there is None or not self._is_ahead(there):
+                continue
+            self._back_before(there)
+            ending = self._until(there, at)
+            if isinstance(ending, Ending):
+                return ending
+            if ending and self._go_on(there, side, came, before):
+                return True
+            self.spots[:] = known
+        self._use(None)
+        self._measure(z)
+        return False
+
+    def _back_before(self, corner: FloatArray) -> None:
+        """Forget the points just beyond a corner: steps that are shorter than it is known may pass it."""
+        scale = np.asarray(self.newton.scale)
+        while (
+            len(self.spots) > 1 and 0.0 <= (self.spots[-1].z - corner) / scale @ self.t < self.options.reached
+        ):
+            self.spots.pop()
+
+    def _until(self, corner: FloatArray, at: Condition) -> Ending | bool:
+        """As `_passed`, by the equations of the smooth curve, up to a corner."""
+        if not any(self._values_between(self.z, corner)):
+            return True
+        self._use(None)
+        self._measure(self.z)
+        ending = self._passed(self.options.near, corner)
+        self._use(at)
+        self._measure(self.z)
+        return ending
+
+    def _is_ahead(self, corner: FloatArray) -> bool:
+        """Whether a corner lies where the curve leads."""
+        off = (corner - self.z) / np.asarray(self.newton.scale)
+        far = float(np.linalg.norm(off))
+        return far < self.options.near and (
+            far < self.options.reached or bool(off @ self.t > self.options.ahead * far)
+        )
+
+    def _go_on(self, there: FloatArray, side: int, came: FloatArray, before: float) -> bool:
+        """Go on from a corner that was come to from a side: along it, or on its other side."""
+        assert self.corner is not None
+        if abs(self.corner.sides(there)[1 - side]) > self.options.continuous:
+            return self._along(there, came, before)
+        exact = self.corner.zero(there, None)
+        return exact is not None and self._beyond(exact, came, before, 1 - 2 * side)
+
+    def _along(self, z: FloatArray, came: FloatArray, before: float) -> bool:
+        """Go on along the corner that was landed on, to the side on which it holds."""
+        assert self.corner is not None
+        found = self.corner.reach(z)
+        if found is None:
+            return False
+        scale, t = np.array(self.newton.scale), found[1]
+        ways = [t, -t] if t @ (came / scale) > 0.0 else [-t, t]
+        for way in ways:
+            if self._solve(z + scale * self.options.leaps[1] * way, way) and self._holds():
+                self.newton.z[:], self.newton.tangent[:] = z, way
+                self._accept()
+                self.first = self.options.step.first
+                self.spots.append(replace(self._spot(z, way), switch=True, turn=before * way[-1] < 0.0))
+                return True
+        return False
+
+    def _beyond(self, z: FloatArray, came: FloatArray, before: float, sign: int) -> bool:
+        """Go on with the smooth curve from a corner, to the side where its function has a sign."""
+        corner = self.corner
+        assert corner is not None
+        for leap in self.options.leaps:
+            self._use(corner.at)
+            self._measure(z)
+            there = self.corner.zero(z, None, sign * leap) if self.corner is not None else None
+            if there is None:
+                continue
+            self._use(None)
+            self._measure(there)
+            row = (there - z) / np.asarray(self.newton.scale)
+            if self._solve(there, row / np.linalg.norm(row)) and self.newton.moved < self.options.there:
+                self._accept()
+                self.first = leap
+                turn = bool(before * self.t[-1] < 0.0)
+                self.spots += [Spot(z, came, None, turn, switch=True), self._spot(self.z, self.t)]
+                return True
+        self._use(corner.at)
+        self._measure(z)
+        return False
+
+    def _leave(self) -> bool | Ending:
+        """The corner is no more what is tracked: go on with the smooth curve on the side that has it."""
+        assert self.corner is not None
+        z, before = self.z, float(self.t[-1])
+        came = self.t * np.asarray(self.newton.scale)
+        for side in np.argsort(np.abs(self.corner.sides(z))):
+            there = self.corner.zero(z, int(side))
+            if there is not None and self._beyond(there, came, before, 2 * int(side) - 1):
+                return True
+        return Ending.STALLED
+
+    def _round(self) -> bool | Ending:
+        """Go on from a kink of the curve, on a circle about the point; or why it cannot be gone on.
+
+        Where what a contact does changes with continuous derivatives, second ones jump, and so does the
+        direction of a curve of folds or peaks. Where the derivatives jump the response has a corner.
+        """
+        problem, ending = self.smooth if self.corner is None else self.corner.problem, Ending.STALLED
+        for radius in self.options.radii:
+            back = self._back(radius)
+            if back is None:
+                break
+            for change in Circle(problem, self.z, self.t, radius).changes(back):
+                if change.jump:
+                    ending = Ending.CORNER
+                elif (taken := self._turn_to(change.z, radius)) is not None:
+                    return taken
+        return ending
+
+    def _back(self, radius: float) -> FloatArray | None:
+        """The point on the way back at a distance, by the chord; None if that is further than it was come."""
+        scale, near = np.asarray(self.newton.scale), self.z
+        for spot in reversed(self.spots):
+            far = float(np.linalg.norm((spot.z - self.z) / scale))
+            if far > radius:
+                short = float(np.linalg.norm((near - self.z) / scale))
+                return near + (spot.z - near) * ((radius - short) / (far - short))
+            near = spot.z
+        return None
+
+    def _turn_to(self, there: FloatArray, radius: float) -> bool | Ending | None:
+        """Go on to a point on a circle; None if it is none of the curve."""
+        came, last = float(self.t[-1]), self.spots[-1]
+        row = (there - self.z) / np.asarray(self.newton.scale)
+        row /= np.linalg.norm(row)
+        if not self._solve(there, row) or self.newton.moved > self.options.off * radius:
+            return None
+        if np.asarray(self.newton.tangent) @ row < self.options.across:
+            return None
+        z, t = np.array(self.newton.z), np.array(self.newton.tangent)
+        self.spots[-1] = replace(last, turn=last.turn or came * t[-1] < 0.0)
+        ending = self._passed(radius, z)
+        if ending is True:
+            self.spots.append(self._spot(z, t))
+            self._go_to(z, self.spots[-1].direction)
+            self.first = radius
+            return True
+        return ending or None
+
+    def _passed(self, step: float, other: FloatArray) -> Ending | bool:
+        """Keep what lies on the short way to a point; how the curve ends there, if it does. Else whether that
+        could be: an end that is passed must be landed on."""
+        one, known = self.z, len(self.spots)
+        for part, i, value in sorted(self._values_between(one, other)):
+            ending = self._ends(i, value, other[i] - one[i])
+            guess, row = one + part * (other - one), np.zeros(one.size)
+            guess[i], row[i] = value, np.sign(other[i] - one[i])
+            if not self._solve(guess, row) or self.newton.moved > step:
+                del self.spots[known:]
+                return False
+            spot = self._spot(np.array(self.newton.z), np.array(self.newton.tangent))
+            spot.z[i] = value
+            self.spots.append(replace(spot, station=i == -1))
+            if ending is not None:
+                return ending
+        return True
+
+    def _values_between(self, one: FloatArray, other: FloatArray) -> Iterator[tuple[float, int, float]]:
+        """Values of s asked for, and ends of the range of frequencies: where on the way, and of what."""
+        for i, wanted in ((-1, self.values), (-2, [self.low, self.high])):
+            for value in wanted:
+                if (value - one[i]) * (value - other[i]) < 0.0 or value == other[i] != one[i]:
+                    yield (value - one[i]) / (other[i] - one[i]), i, value
+
+    def _ends(self, i: int, value: float, rise: float) -> Ending | None:
+        """How the curve ends where s (-1) or the frequency (-2) passes a value, rising or falling."""
+        low, high = self.way.span if i == -1 else (self.low, self.high)
+        if value != (high if rise > 0.0 else low):
+            return None
+        return Ending.SPAN if i == -1 else Ending.RANGE

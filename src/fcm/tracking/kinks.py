@@ -1,0 +1,91 @@
+r"""How a curve of special points goes on from a point at which its equations have a kink.
+
+The solutions of the balance at all frequencies and values of s are a surface, and what is special of a point
+is zero along lines on it. Where a contact begins to do something within its cycle, the slopes of its forces
+jump, or change as a root does, and so does what is special: the line goes on in another direction, which no
+derivative on this side of the kink foretells, or along the jump. So the changes of its sign are looked for on
+a small circle on the surface about the point: one is that on the way that was come, another is the way on.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from fcm.model.scene import FloatArray
+from fcm.tracking.extended_system import Tracked
+
+CLOSEST, WIDEST = 1e-3, 0.2  # [rad] of angles from the way back, with which the way on may make a narrow one
+STEPS = 8  # of Newton's method to the surface
+EXACT = 1e-12  # a step that ends them
+SHARP = 1e-10  # [rad] to which the change of a sign is found
+JUMP = 1e-3  # of the greatest value on the circle: what is more on a side of a change is no zero
+
+
+class Change(NamedTuple):
+    """Where what is special changes its sign on a circle, by a jump or through zero."""
+
+    angle: float  # from straight ahead
+    z: FloatArray
+    jump: bool
+
+
+class Circle:
+    """A circle on the surface of the balance's solutions, about a point of a curve with a direction."""
+
+    def __init__(self, problem: Tracked, z: FloatArray, t: FloatArray, radius: float) -> None:
+        self.problem, self.z, self.radius = problem, z, radius
+        self.scale = np.array(problem.scale)
+        plane = np.linalg.svd(problem.surface(z)[1])[2][-2:]
+        ahead = plane @ t
+        ahead /= np.linalg.norm(ahead)
+        self.axes = np.stack((ahead @ plane, np.array([-ahead[1], ahead[0]]) @ plane))
+
+    def changes(self, back: FloatArray) -> list[Change]:
+        """All changes of sign but that nearest to a point on the way back, the furthest from it first.
+
+        None where there is no motion on a part of the circle.
+        """
+        way = self.axes @ ((back - self.z) / self.scale)
+        came = float(np.arctan2(way[1], way[0]))
+        aside = np.append(np.geomspace(CLOSEST, WIDEST, 6), np.arange(2.0 * WIDEST, np.pi, 0.25))
+        angles = came + np.concatenate((aside, 2.0 * np.pi - aside[::-1], [2.0 * np.pi + CLOSEST]))
+        values = np.array([self.special(angle) for angle in angles])
+        if not np.isfinite(values).all():
+            return []
+        try:
+            found = [
+                self._change(angles[i], angles[i + 1], float(np.abs(values).max()))
+                for i in np.flatnonzero(values[:-1] * values[1:] < 0.0)
+            ]
+        except ValueError:  # of the search for a zero, at an angle where there is no motion
+            return []
+        found.sort(key=lambda one: float(np.cos(one.angle - came)))
+        return found[:-1]
+
+    def special(self, angle: float) -> float:
+        """What is special at an angle."""
+        return self.at(angle)[1]
+
+    def at(self, angle: float) -> tuple[FloatArray, float]:
+        """The point at an angle, 0 is straight ahead, and what is special there; NaN where there is none."""
+        z = self.z + self.radius * self.scale * (np.array([np.cos(angle), np.sin(angle)]) @ self.axes)
+        for _ in range(STEPS):
+            try:
+                residual, matrix, special = self.problem.surface(z)
+            except np.linalg.LinAlgError:  # the response has no one direction there
+                break
+            step = np.linalg.lstsq(matrix, -residual, rcond=None)[0]
+            if np.linalg.norm(step) < EXACT:
+                return z, special
+            z = z + self.scale * step
+        return z, np.nan
+
+    def _change(self, low: float, high: float, most: float) -> Change:
+        """The change of sign between two angles."""
+        angle = float(brentq(self.special, low, high, xtol=SHARP, rtol=SHARP))
+        sides = [self.at(angle + side * SHARP) for side in (-1.0, 1.0)]
+        jump = max(abs(special) for _, special in sides) > JUMP * most
+        return Change(angle, self.at(angle)[0], jump)

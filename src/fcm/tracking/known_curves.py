@@ -1,0 +1,61 @@
+"""Whether a curve of special points passes a point that was found otherwise: it is then not followed again.
+
+Near a turn of the number, or a cusp, parts of a curve come close to each other and to other curves, so that
+no distance tells. The curve itself is found instead: in the plane through the point, across the chord of the
+curve that is next to it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray
+from fcm.tracking.curve import Track
+from fcm.tracking.extended_system import Condition
+from fcm.tracking.tracked_point import Spot, Way
+
+SAME = 1e-5  # in the problem's scale: points nearer than this are one
+BESIDE = 0.5  # of a chord: what is further from it is not on its part of the curve, which turns by 90 degrees
+CHORDS = 4  # nearest ones that are looked at
+
+
+def passed(curve: Track, condition: Condition, spot: Spot, way: Way) -> bool:
+    """Whether a curve has passed a spot."""
+    if curve.condition != condition:
+        return False
+    problem = way.tracked(condition)
+    problem.measure(spot.z)
+    scale = np.array(problem.scale)
+    points = (np.array([one.z for one in curve.spots]) - spot.z) / scale
+    if np.linalg.norm(points, axis=1).min() < SAME:
+        return True
+    return any(_crosses(curve, i, spot, way, scale) for i in _beside(points))
+
+
+def _beside(points: FloatArray) -> npt.NDArray[np.intp]:
+    """The chords between points next to which the origin lies, the nearest first."""
+    chord = np.diff(points, axis=0)
+    length = np.linalg.norm(chord, axis=1)
+    square = np.maximum(length * length, np.finfo(float).tiny)  # of two points that are one
+    part = np.clip(-(points[:-1] * chord).sum(axis=1) / square, 0.0, 1.0)
+    off = np.linalg.norm(points[:-1] + part[:, None] * chord, axis=1)
+    order = np.argsort(off)
+    near: npt.NDArray[np.intp] = order[off[order] < BESIDE * length[order] + SAME][:CHORDS]
+    return near
+
+
+def _crosses(curve: Track, i: int, spot: Spot, way: Way, scale: FloatArray) -> bool:
+    """Whether the curve between a point and the next crosses, at a spot, the plane there across its chord."""
+    one, other = curve.spots[i], curve.spots[i + 1]
+    problem = way.tracked((other.corner if one.switch else one.corner) or curve.condition)
+    chord = (other.z - one.z) / scale
+    row = chord / max(float(np.linalg.norm(chord)), 1e-300)
+    guess = one.z + scale * row * float(row @ ((spot.z - one.z) / scale))
+    problem.measure(guess)
+    newton = Newton(problem)
+    newton.scale[:], newton.z[:], newton.row[:] = scale, guess, row
+    if not newton.correct(1e-3):
+        return False
+    return bool(np.linalg.norm((np.asarray(newton.z) - spot.z) / scale) < SAME)

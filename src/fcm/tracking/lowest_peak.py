@@ -1,0 +1,179 @@
+"""The least peak over a range of one number: follow the highest peaks, look where they are lowest, again.
+
+What was followed is nowhere above the response. So where the response, traced at the lowest point of what
+was followed, has nothing higher than that, this is the least of all; else the higher peak is followed, too.
+Only ordinary curves at such points are traced, at both ends of the range, and in the middle of a part where
+nothing was followed: if all is far above the least there, it is not sought in that part. A higher or a lower
+peak may be one that cannot be followed, of a motion with many states: then only what ordinary curves show can
+be believed, see `by_trials`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fcm.at_rest import at_rest
+from fcm.continuation.follow import Progress
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray
+from fcm.tracking.curve import Track, whole
+from fcm.tracking.extended_system import Condition, Kind
+from fcm.tracking.known_curves import passed
+from fcm.tracking.nonsmooth_continuation import land
+from fcm.tracking.options import SEARCH, SearchOptions
+from fcm.tracking.parameter_line import Line
+from fcm.tracking.peak_envelope import FINE, UNFINISHED, Height, Least, Piece, Target, gaps, least, pieces_of
+from fcm.tracking.starts import moved, special_points
+from fcm.tracking.tracked_point import Spot, Way
+
+NOTHING = Height(0.0, 0.0, np.zeros(0), -1)
+
+
+@dataclass(frozen=True)
+class Lowest:
+    """The least peak, None where there is none; what was followed; whether it is known to be least."""
+
+    best: Least | None
+    curves: tuple[Track, ...]
+    checked: bool
+    harmonics: tuple[int, ...]
+
+
+@dataclass
+class Search:
+    """Of one scene and its targets, with the curves that are known."""
+
+    system: System
+    line: Line
+    span: tuple[float, float]
+    targets: Sequence[Target]
+    options: SearchOptions = SEARCH
+    curves: list[Track] = field(default_factory=list)
+    seen: dict[float, Height] = field(default_factory=dict)  # the greatest of the responses that were traced
+    met: dict[float, list[tuple[Condition, Height]]] = field(default_factory=dict)  # and all of them
+    visited: set[float] = field(default_factory=set)  # where what was met was followed, too
+
+    def __post_init__(self) -> None:
+        step = self.system.scene.max_step
+        self.way = Way(self.system, self.line, self.span, (), step, peaks_only=True)
+
+    def conditions(self) -> list[Condition]:
+        """What may be greatest."""
+        found = [Condition(Kind.PEAK, dof) for dof in sorted({target.dof for target in self.targets})]
+        if any(target.ends for target in self.targets):
+            found += [Condition(Kind.END, omega=w) for w in self.system.scene.frequency_range]
+        return found
+
+    def run(self, known: Lowest | None = None, progress: Progress | None = None) -> Lowest:
+        """The least peak; from what was found with fewer harmonics, or else from both ends of the range."""
+        checked = False
+        if known is None:
+            for value in self.span:
+                self.visit(value)
+        else:
+            self.lift(known)
+        for count in range(self.options.visits):
+            if progress is not None:
+                progress(count / (count + 2.0))
+            best = self.best()
+            if best is None:
+                break
+            before = len(self.curves)
+            fine = FINE * (self.span[1] - self.span[0])
+            seen = [one.value for value, one in self.seen.items() if abs(value - best.s) <= fine]
+            top = seen[0] if seen else self.visit(best.s)
+            checked = top <= best.value * (1.0 + self.options.higher)
+            if checked and (top >= best.value * (1.0 - self.options.higher) or len(self.curves) == before):
+                break  # else a higher one is there; or lower ones, where the followed one ends
+            if seen:
+                break  # a higher one that could not be followed
+        checked = checked and not self._unknown(best) and not self._lower(best)
+        return Lowest(best, tuple(self.curves), checked, self.system.harmonics)
+
+    def best(self) -> Least | None:
+        """Of what was followed, and of what is met where nothing was."""
+        while True:
+            best = least(self.way, self.pieces())
+            new = [s for s in (*self._unknown(best), *self._lower(best)) if s not in self.visited]
+            if not new or len(self.seen) >= self.options.visits:
+                return best
+            for value in new:
+                self.visit(value)
+
+    def _unknown(self, best: Least | None) -> list[float]:
+        """Values about which nothing is followed, but for those where all is far above the least."""
+        return [s for s in gaps(self.way, self.pieces()) if best is None or self._near(s, best)]
+
+    def _near(self, s: float, best: Least) -> bool:
+        if s not in self.seen and s not in self.span and len(self.seen) < self.options.visits:
+            self.poll(s)
+        return s not in self.seen or 0.0 < self.options.high * self.seen[s].value <= best.value
+
+    def _lower(self, best: Least | None) -> list[float]:
+        """Values at which the response was traced and is lower than the least of what was followed."""
+        below = 0.0 if best is None else best.value * (1.0 - self.options.higher)
+        return [s for s, top in self.seen.items() if 0.0 < top.value < below]
+
+    def pieces(self) -> list[Piece]:
+        """The parts of the curves that count."""
+        return [piece for target in self.targets for piece in pieces_of(self.way, self.curves, target)]
+
+    def so_far(self) -> tuple[FloatArray, Least] | None:
+        """The least of the responses traced until now, and its number; None where none has a peak."""
+        peaks = {s: top for s, top in self.seen.items() if top.value > 0.0}
+        if not peaks:
+            return None
+        s = min(peaks, key=lambda value: peaks[value].value)
+        return self.line.values(s), Least(s, peaks[s].value, (peaks[s],), UNFINISHED)
+
+    def visit(self, value: float) -> float:
+        """Trace the response at a value; follow what is high and not known; the greatest of it."""
+        self.visited.add(value)
+        found = self.poll(value)
+        top = self.seen[value].value
+        for condition, height in found:
+            spot = land(self.way, condition, height.z) if height.value >= self.options.high * top else None
+            if spot is not None:
+                self.follow(condition, spot)
+        return top
+
+    def poll(self, value: float) -> list[tuple[Condition, Height]]:
+        """What may be greatest of the response at a value, with its heights."""
+        if value not in self.met:
+            here = moved(self.system, self.line.scene(self.system.scene, value))
+            points = special_points(here, self.conditions()).points
+            self.met[value] = found = [(one, self.height(one, np.append(z, value))) for one, z in points]
+            self.seen[value] = max(
+                (height for _, height in found), key=lambda one: one.value, default=NOTHING
+            )
+        return self.met[value]
+
+    def follow(self, condition: Condition, spot: Spot) -> None:
+        """The curve through a spot, if it is not known."""
+        if not any(passed(curve, condition, spot, self.way) for curve in self.curves):
+            self.curves.append(whole(self.way, condition, spot))
+
+    def height(self, condition: Condition, z: FloatArray) -> Height:
+        """The greatest of the targets at a place; 0 where it is none of them."""
+        problem = self.way.tracked(condition)
+        problem.measure(z)
+        amplitude = problem.along(z)[1]
+        amplitude = np.where(at_rest(amplitude), 0.0, amplitude)
+        heights = [
+            Height(float(amplitude[t.dof]), 0.0, z, t.dof)
+            for t in self.targets
+            if condition.which == t.dof or (condition.kind is Kind.END and t.ends)
+        ]
+        return max(heights, key=lambda one: one.value, default=NOTHING)
+
+    def lift(self, known: Lowest) -> None:
+        """Follow curves found with fewer harmonics from both their ends and their middle."""
+        for curve in known.curves:
+            for i in sorted({0, len(curve.spots) // 2, len(curve.spots) - 1}):
+                z = self.system.extended(curve.spots[i].z, known.harmonics)
+                spot = land(self.way, curve.condition, z) if curve.greatest[i] else None
+                if spot is not None:
+                    self.follow(curve.condition, spot)

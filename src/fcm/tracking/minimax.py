@@ -1,0 +1,247 @@
+r"""The least of the greatest over two or three numbers: downhill along the peaks, with their exact slopes.
+
+With the peaks A_i(q), each followed along straight lines in the numbers q, the problem
+
+    minimise t  subject to  A_i(q) <= t,  bounds on q
+
+is smooth, kinks of equal peaks included; its derivatives are those of the extended system of each peak. It
+is solved by sequential quadratic programming. At its end the response is traced anew: where other peaks than
+were followed are higher than where the way began, it is traced half of the way back, until it is lower; the
+way goes on with the peaks that are there. Where a contact sticks throughout, its friction changes
+nothing and no way leads down. So the least peak is then sought along the whole range of each number alone,
+as of one number, by trials where not all peaks can be followed, and the way down is taken again from there as
+long as that finds less.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import minimize
+
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray
+from fcm.scene.draft import Number
+from fcm.tracking.extended_system import Condition, Kind
+from fcm.tracking.lowest_peak import Search
+from fcm.tracking.nonsmooth_continuation import follow_special_point, land
+from fcm.tracking.options import DESCENT, DescentOptions
+from fcm.tracking.parameter_line import Line
+from fcm.tracking.peak_envelope import UNFINISHED, Height, Least, Target
+from fcm.tracking.starts import moved, special_points
+from fcm.tracking.tracked_point import Ending, Spot, Way
+from fcm.tracking.trials import by_trials
+
+Member = tuple[Condition, int, FloatArray]  # what is tracked, the degree of freedom, z = (x, omega)
+
+
+class OnLine(NamedTuple):
+    """The least over the range of one number, scaled; and whether all higher peaks could be followed."""
+
+    q: FloatArray
+    value: float
+    followed: bool
+
+
+class LeftRangeError(Exception):
+    """A peak is beyond the end of the range of frequencies."""
+
+
+class Valley:
+    """Peaks at numbers q (number,), scaled to 0 and 1 at their bounds."""
+
+    def __init__(
+        self,
+        system: System,
+        numbers: Sequence[Number],
+        bounds: FloatArray,
+        targets: Sequence[Target],
+        options: DescentOptions = DESCENT,
+    ) -> None:
+        self.system, self.numbers, self.targets, self.options = system, tuple(numbers), targets, options
+        self.low, self.width = bounds[:, 0], bounds[:, 1] - bounds[:, 0]
+        self.lowest: tuple[FloatArray, float, Member] | None = None  # of all that were traced until now
+
+    def line(self, q: FloatArray, direction: FloatArray) -> Line:
+        """From q along a direction, both scaled."""
+        return Line(self.numbers, self.low + q * self.width, direction * self.width)
+
+    def way(self, q: FloatArray, direction: FloatArray) -> Way:
+        """The same, to the end of the direction."""
+        return Way(self.system, self.line(q, direction), (0.0, 1.0), (), self.system.scene.max_step)
+
+    def peaks(self, q: FloatArray) -> list[Member]:
+        """All that counts for the targets of the response at q, by tracing it."""
+        ends = [Condition(Kind.END, omega=w) for w in self.system.scene.frequency_range]
+        here = moved(self.system, self.line(q, np.zeros(q.size)).scene(self.system.scene, 0.0))
+        way, found = self.way(q, np.zeros(q.size)), []
+        for target in self.targets:
+            conditions = [Condition(Kind.PEAK, target.dof), *(ends if target.ends else [])]
+            for condition, z in special_points(here, conditions).points:
+                if (spot := land(way, condition, np.append(z, 0.0))) is not None:
+                    found.append((condition, target.dof, spot))
+        return [(condition, dof, spot.z[:-1]) for condition, dof, spot in found]
+
+    def traced(self, q: FloatArray) -> tuple[float, list[Member]]:
+        """The greatest of the response at q, infinite where nothing has a peak; and all that counts there."""
+        heights = [(self.height(member, q)[0], member) for member in self.peaks(q)]
+        value, top = max(heights, key=lambda one: one[0], default=(np.inf, None))
+        if top is not None and (self.lowest is None or value < self.lowest[1]):
+            self.lowest = q, value, top
+        return value, [member for _, member in heights]
+
+    def so_far(self) -> tuple[FloatArray, Least] | None:
+        """The least of them, and its numbers; None where none has a peak."""
+        if self.lowest is None:
+            return None
+        q, value, (_, dof, z) = self.lowest
+        top = Height(value, 0.0, np.append(z, np.nan), dof)
+        return self.low + q * self.width, Least(np.nan, value, (top,), UNFINISHED)
+
+    def moved(self, member: Member, q: FloatArray, to: FloatArray) -> Member | None:
+        """A member at other numbers; None where it is no more.
+
+        Raises
+        ------
+        LeftRangeError
+            If its frequency leaves the range that is traced.
+        """
+        condition, dof, z = member
+        if np.array_equal(q, to):
+            return member
+        way = self.way(q, to - q)
+        start = land(way, condition, np.append(z, 0.0))
+        if start is None:
+            return None
+        spots, ending = follow_special_point(way, condition, start, True)
+        last = spots[-1] if spots else start
+        if ending is Ending.RANGE:
+            raise LeftRangeError
+        whole = ending is Ending.SPAN and abs(last.z[-1] - 1.0) < self.options.counts
+        return (condition, dof, last.z[:-1]) if whole else None
+
+    def height(self, member: Member, q: FloatArray) -> tuple[float, FloatArray]:
+        """Of a member, with its slopes by q."""
+        condition, dof, z = member
+        slopes, value = np.empty(q.size), 0.0
+        for k, direction in enumerate(np.eye(q.size)):
+            way = self.way(q, direction)
+            spot = land(way, condition, np.append(z, 0.0)) or Spot(np.append(z, 0.0), np.zeros(z.size + 1))
+            problem = way.tracked(spot.corner or condition)
+            problem.measure(spot.z)
+            problem.evaluate(spot.z)
+            jacobian = np.asarray(problem.jacobian)
+            rate = np.linalg.solve(jacobian[:, :-1], -jacobian[:, -1])
+            value, slopes[k] = problem.amplitude_along(spot.z, np.append(rate, 1.0), dof)
+        return value, slopes
+
+
+def descend(valley: Valley, near: FloatArray | None = None) -> tuple[FloatArray, Least] | None:
+    """The optimum: the numbers, and what is least there; None where nothing has a peak.
+
+    With numbers near it, as fewer harmonics find them, the way leads down from there.
+    """
+    found = [downhill(valley, q) for q in _starts(valley, near)]
+    if not found:
+        return None
+    q, value, members = min(found, key=lambda one: one[1])
+    for _ in range(valley.options.rounds):
+        lines = [_along(valley, q, k) for k in range(q.size)]
+        followed, beside = all(line.followed for line in lines), min(lines, key=lambda line: line.value)
+        if not beside.value < value * (1.0 - valley.options.further):
+            break
+        again = downhill(valley, beside.q)
+        if not again[1] < value:
+            break
+        q, value, members = again
+    active = []
+    for member in members:
+        height, _ = valley.height(member, q)
+        if height >= value * (1.0 - valley.options.equal):
+            active.append(Height(height, 0.0, np.append(member[2], np.nan), member[1]))
+    edge = bool(((q < valley.options.bound) | (q > 1.0 - valley.options.bound)).any())
+    kind = "trials" if not followed else "kink" if len(active) > 1 else "bound" if edge else "smooth"
+    return valley.low + q * valley.width, Least(np.nan, value, tuple(active), kind)
+
+
+def _starts(valley: Valley, near: FloatArray | None) -> list[FloatArray]:
+    """Numbers from which the way leads down: the lowest of a coarse grid where none are known."""
+    if near is not None:
+        return [np.clip((near - valley.low) / valley.width, 0.0, 1.0)]
+    grid = map(np.array, product(valley.options.levels, repeat=len(valley.numbers)))
+    tried = [(valley.traced(q)[0], tuple(q)) for q in grid]
+    return [np.array(q) for value, q in sorted(tried)[: valley.options.starts] if value < np.inf]
+
+
+def _along(valley: Valley, q: FloatArray, k: int) -> OnLine:
+    """The least over the range of one number, the others as they are."""
+    origin, direction = np.array(q), np.eye(q.size)[k]
+    origin[k] = 0.0
+    line, options = valley.line(origin, direction), valley.options.search
+    search = Search(valley.system, line, (0.0, 1.0), valley.targets, options)
+    found = search.run()
+    best = found.best if found.checked else by_trials(search)
+    if best is None:
+        return OnLine(q, np.inf, found.checked)
+    return OnLine(origin + best.s * direction, best.value, found.checked)
+
+
+def downhill(valley: Valley, q: FloatArray) -> tuple[FloatArray, float, list[Member]]:
+    """Down from q until there is nothing lower at the end of the way, nor nearer and nearer on it."""
+    value, members = valley.traced(q)
+    for _ in range(valley.options.rounds):
+        end = _minimax(valley, q, members, value)
+        for _ in range(valley.options.halves):
+            there = valley.traced(end)
+            lower = there[0] < value * (1.0 - valley.options.counts)
+            if lower or there[0] <= value * (1.0 + valley.options.counts):
+                break
+            end = 0.5 * (q + end)
+        if not lower:
+            break
+        q, (value, members) = end, there
+    return q, value, members
+
+
+def _minimax(valley: Valley, q: FloatArray, members: list[Member], unit: float) -> FloatArray:
+    """Where the greatest of some members is least."""
+    memory: dict[bytes, tuple[FloatArray, FloatArray]] = {}
+    here: tuple[FloatArray, list[Member | None]] = (q, list(members))
+
+    def heights(to: FloatArray) -> tuple[FloatArray, FloatArray]:
+        nonlocal here
+        to = np.clip(to, 0.0, 1.0)
+        if to.tobytes() not in memory:
+            try:
+                followed = [None if one is None else valley.moved(one, here[0], to) for one in here[1]]
+            except LeftRangeError:
+                memory[to.tobytes()] = (
+                    np.full(len(members), valley.options.too_high),
+                    np.zeros((len(members), q.size)),
+                )
+                return memory[to.tobytes()]
+            rows = [(0.0, np.zeros(q.size)) if one is None else valley.height(one, to) for one in followed]
+            values, slopes = zip(*rows, strict=True)
+            memory[to.tobytes()] = np.array(values) / unit, np.array(slopes) / unit
+            if None not in followed:
+                here = (to, followed)
+        return memory[to.tobytes()]
+
+    found = minimize(
+        lambda x: x[-1],
+        np.append(q, 1.0),
+        jac=lambda x: np.eye(x.size)[-1],
+        bounds=[*((0.0, 1.0) for _ in q), (None, None)],
+        constraints={
+            "type": "ineq",
+            "fun": lambda x: x[-1] - heights(x[:-1])[0],
+            "jac": lambda x: np.column_stack((-heights(x[:-1])[1], np.ones(len(members)))),
+        },
+        method="SLSQP",
+        options={"ftol": valley.options.smallest, "maxiter": valley.options.iterations},
+    )
+    chosen: FloatArray = np.clip(found.x[:-1], 0.0, 1.0)
+    return np.where(np.abs(chosen - chosen.round()) < valley.options.rounding, chosen.round(), chosen)

@@ -1,0 +1,217 @@
+"""A special point of a response as a curve in a number of its scene: smooth pieces, and how these are joined.
+
+Each piece is followed by `fcm.continuation.follow`. It ends where its equations do not hold any more: at a
+value of the number where they have a kink, at a corner of the response, where another extreme of the cycle
+becomes the greatest. `Joints` finds the way on from there, as `corner` and `circle` say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fcm.continuation import End, Events, FollowOptions, Mark, Path, Status, follow
+from fcm.model.scene import FloatArray
+from fcm.tracking.extended_system import Condition
+from fcm.tracking.joints import Joints
+from fcm.tracking.peak_check import is_top, overtaken
+from fcm.tracking.tracked_point import Ending, Spot, Way
+
+
+def follow_special_point(
+    way: Way, condition: Condition, start: Spot, forward: bool
+) -> tuple[list[Spot], Ending]:
+    """The curve from a spot, which is the first of the list, with s rising or falling at first."""
+    return Pieces(way, condition).run(start, forward)
+
+
+def land(way: Way, condition: Condition, z: FloatArray) -> Spot | None:
+    """The spot near z = (x, omega, s) at the same s; at a corner if there is one that holds."""
+    return Pieces(way, condition).land(z)
+
+
+@dataclass(frozen=True)
+class _End:
+    """What may end a piece: a function of z, not negative as long as the equations hold, and what follows."""
+
+    holds: End
+    then: Callable[[], bool | Ending]
+
+
+class Pieces(Joints):
+    """The smooth pieces of one curve, one after the other."""
+
+    def land(self, z: FloatArray) -> Spot | None:
+        """See `land`."""
+        spot = self._landed(z)
+        if spot is not None and overtaken(self.smooth, spot.z):
+            spot = self._landed(spot.z)  # as a peak of those extremes that are the greatest of a cycle there
+            if spot is not None and overtaken(self.smooth, spot.z):
+                return None
+        return spot
+
+    def _landed(self, z: FloatArray) -> Spot | None:
+        self._measure(z)
+        for at in self._corners_near(z):
+            self._use(at)
+            self._measure(z)
+            if self._solve(z, self.held) and self.newton.moved < self.options.near and self._holds():
+                return self._held(z)
+        self._use(None)
+        self._measure(z)
+        if self._solve(z, self.held) and self.newton.moved < self.options.far:
+            return self._held(z)
+        return None
+
+    def _held(self, z: FloatArray) -> Spot:
+        """The point found with s held, which is as it was but for rounding."""
+        self.newton.z[-1] = z[-1]
+        return self._spot(np.array(self.newton.z), np.array(self.newton.tangent))
+
+    def run(self, start: Spot, forward: bool) -> tuple[list[Spot], Ending]:
+        """See `follow_special_point`."""
+        self._use(start.corner)
+        self._measure(start.z)
+        row, beside = self.held if forward else -self.held, np.array(start.z)
+        if beside[-1] in self.kinks:
+            beside = self._past_kink(beside, row)
+        if not self._solve(beside, row):
+            return [], Ending.STALLED
+        self.newton.z[-1] = beside[-1]
+        self._accept()
+        first, heading = self.z, self.t * np.asarray(self.newton.scale)
+        self.spots = [self._spot(self.z, self.t)]
+        if beside[-1] != start.z[-1]:
+            self.spots.insert(0, start)
+        if self._outside(self.z[-1] + self.t[-1] * self.options.step.shortest * self.smooth.span):
+            return self.spots, Ending.SPAN
+        for _ in range(self.options.pieces):
+            known = len(self.spots)
+            ending = self._piece()
+            if self.way.peaks_only:
+                turned = [i for i in range(known, len(self.spots)) if self.spots[i].turn]
+                if turned:
+                    return self.spots[: turned[0] + 1], Ending.TURNED
+            at = self._closed(first, heading, known) if known > 2 else None
+            if at is not None:
+                last = self.spots[at - 1].z
+                same = (
+                    np.linalg.norm((last - first) / np.asarray(self.newton.scale))
+                    < self.options.step.shortest
+                )
+                return [*self.spots[: at - bool(same)], self.spots[0]], Ending.CLOSED
+            if ending is Ending.STALLED and np.linalg.norm(self._off(self.z - first)) < self.options.short:
+                return self.spots[:1], ending  # short steps about a kink, which lead nowhere
+            if isinstance(ending, Ending) or len(self.spots) > self.options.points:
+                return self.spots, ending if isinstance(ending, Ending) else Ending.LONG
+        return self.spots, Ending.LONG
+
+    def _piece(self) -> bool | Ending:
+        """Follow the equations in force to where they hold no more; whether a way leads on, or the end."""
+        problem, s = self.newton.problem, float(self.z[-1])
+        low = max([k for k in self.kinks if k < s] + [self.way.span[0]])
+        high = min([k for k in self.kinks if k > s] + [self.way.span[1]])
+        ends = self._ends_of_piece()
+        events = Events(
+            values=self.way.stations,
+            ends=[end.holds for end in ends],
+            last=Mark.FOLD if self.way.peaks_only else 0,
+        )
+        slow, short = self.first < self.options.short, 0.999 * self.options.short
+        control = (
+            replace(self.options.step, most=self.options.few)
+            if slow
+            else replace(self.options.step, shortest=short)
+        )
+        options = FollowOptions(max_step=self.way.step, step=replace(control, first=self.first))
+        direction = self.t * np.asarray(self.newton.scale)
+        path = follow(problem, self.z, (low, high), events, options, direction=direction)
+        if not len(path.z):
+            return self._way_on()
+        self._keep(path)
+        if path.status in (Status.COMPLETE, Status.RETURNED):
+            return Ending.SPAN if self.z[-1] in self.way.span else self._pass_kink()
+        if path.status is Status.CLOSED:
+            return Ending.CLOSED
+        if path.status is Status.EVENT:
+            return Ending.TURNED if path.ended_by < 0 else ends[path.ended_by].then()
+        if path.status is Status.TOO_LONG and slow:
+            self.first = self.options.growth * float(np.linalg.norm(self._off(path.z[-1] - path.z[-2])))
+            return True
+        if path.status is Status.STALLED:
+            return self._way_on() if slow else self._slowly()
+        return Ending.LONG
+
+    def _slowly(self) -> bool | Ending:
+        """Go on from where a step was too long: along a corner of the response ahead, or by short steps."""
+        ending = self._meet()
+        if not ending:
+            self.first = 0.25 * self.options.short
+        return ending or True
+
+    def _ends_of_piece(self) -> list[_End]:
+        """What ends a piece: the range of frequencies; of what is smooth another extreme, or a corner."""
+        ends = [
+            _End(End(lambda z: z[-2] - self.low), lambda: self._at_end_of_range(self.low)),
+            _End(End(lambda z: self.high - z[-2]), lambda: self._at_end_of_range(self.high)),
+        ]
+        if self.corner is not None:
+            corner = self.corner
+            return [*ends, _End(End(lambda z: 2.0 * corner.holds(z) - 1.0), self._leave)]
+        ends.append(_End(End(lambda z: 1.0 - 2.0 * overtaken(self.smooth, z)), self._overtaken))
+        if self.turns:
+            signs = self._signs(self.z)
+            same = End(lambda z: 1.0 - 2.0 * (self._signs(z) * signs < 0.0).any(), 0.25 * self.options.short)
+            ends.append(_End(same, self._slowly))
+        return ends
+
+    def _keep(self, path: Path) -> None:
+        """Take the points of a path but the first, and go to the last."""
+        at = None if self.corner is None else self.corner.at
+        for z, way, mark in zip(path.z[1:], path.direction[1:], path.mark[1:].tolist(), strict=True):
+            station = z[-1] in self.values and bool(mark & (Mark.STATION | Mark.END))
+            self.spots.append(Spot(z, way, at, turn=bool(mark & Mark.FOLD), station=station))
+        self._go_to(path.z[-1], path.direction[-1])
+        self.first = self.options.step.first
+
+    def _off(self, way: FloatArray) -> FloatArray:
+        """A way in the problem's scale."""
+        off: FloatArray = way / np.asarray(self.newton.scale)
+        return off
+
+    def _at_end_of_range(self, omega: float) -> Ending:
+        """The curve leaves the range of frequencies: there it is landed on exactly."""
+        row = np.zeros(self.z.size)
+        row[-2] = np.sign(self.t[-2]) or 1.0
+        guess = np.array(self.z)
+        guess[-2] = omega
+        if self._solve(guess, row) and self.newton.moved < self.options.step.first:
+            spot = self._spot(np.array(self.newton.z), np.array(self.newton.tangent))
+            spot.z[-2] = omega
+            self.spots[-1] = replace(spot, turn=self.spots[-1].turn, station=self.spots[-1].station)
+        return Ending.RANGE
+
+    def _overtaken(self) -> Ending:
+        """Extremes other than those of the peak become the greatest of the cycle.
+
+        There the amplitude has a kink that is a trough: it meets a peak, and takes the place of a trough.
+        """
+        return Ending.MET if is_top(self.smooth, self.spots[-1]) else Ending.TROUGH
+
+    def _closed(self, first: FloatArray, heading: FloatArray, known: int) -> int | None:
+        """The first point, of those beyond so many, that is past the one where the curve began, in the same
+        direction; None if none is."""
+        scale = np.asarray(self.newton.scale)
+        heading = heading / scale
+        heading = heading / np.linalg.norm(heading)
+        for i in range(max(known, 3), len(self.spots)):
+            one, other = ((spot.z - first) / scale for spot in self.spots[i - 1 : i + 1])
+            length = np.linalg.norm(other - one)
+            if min(np.linalg.norm(one), np.linalg.norm(other)) > length:
+                continue
+            way = self.spots[i].direction / scale
+            if one @ heading < 0.0 <= other @ heading and way @ heading > 0.5 * np.linalg.norm(way):
+                return i
+        return None

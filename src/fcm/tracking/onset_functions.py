@@ -1,0 +1,215 @@
+r"""Signed functions that tell what a contact does over a cycle, of any number of harmonics.
+
+With the load n = n_0 + k_v v before it is cut at 0 and p = k_u u:
+
+    separation  min n                               negative where the contact opens at some time
+    closing     max n                               negative where it is open throughout
+    slip        min(p + mu n) - max(p - mu n)       negative where a contact that is closed must slip
+
+A slider at rest at k_u w needs |p - k_u w| <= mu n at all times, which the last is about. Two more are for
+corners alone, as a contact that does not slip has them: a slider that began at 0 rests there while
+
+    upper limit  min(p + mu n)                      is positive, and
+    lower limit  max(p - mu n)                      negative; else at the limit
+
+In a plane the slider is held by discs about p of radius mu n. By t these have to grow to have a place in
+common: -2 t is what "slip" is on a line, and a slider that began at 0 rests there while
+
+    start        min(mu n - |p|)                    is positive.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.harmonic_balance.contact_law import Law
+from fcm.harmonic_balance.planar_contact import Planar
+from fcm.model.scene import FloatArray
+from fcm.structure.layout import Layout
+
+KINDS = ("separation", "closing", "slip")
+LIMITS = ("upper limit", "lower limit")
+START = "start"  # in a plane, in the place of these
+NORMAL = -1  # of the directions of a contact
+SAMPLES = 24  # of a period of the highest harmonic, among which an extreme is sought
+REFINED = 4  # Newton steps from there
+
+ComplexArray = npt.NDArray[np.complex128]
+
+
+class Onset(NamedTuple):
+    """A function of a contact: its value, and its slopes by its unknowns (width,) and mu, k_u, k_v, n_0."""
+
+    value: float
+    slope: FloatArray
+    by_number: FloatArray
+
+
+def onset(law: Law, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Onset:
+    """One of `kinds_of` a contact at its unknowns."""
+    if isinstance(law, Planar) and kind in ("slip", START):
+        return _in_plane(law, x, kind, harmonics)
+    load = _polynomial(x, law, NORMAL) * law.k_v
+    load[0] += law.n_0
+    if kind == "slip" or kind in LIMITS:
+        push = _polynomial(x, law, 0) * law.k_u
+        upper = _least(push + law.mu * load, harmonics)
+        lower = _least(law.mu * load - push, harmonics)
+        parts = [(upper, 1.0, law.mu), (lower, -1.0, law.mu)]
+        parts = parts if kind == "slip" else [parts[LIMITS.index(kind)]]
+    else:
+        sign = 1.0 if kind == "separation" else -1.0
+        parts = [(_least(sign * load, harmonics), 0.0, sign)]
+    value, slope, numbers = 0.0, np.zeros(x.size), np.zeros(4)
+    sign = -1.0 if kind in ("closing", "lower limit") else 1.0  # max n = -min(-n)
+    for (least, theta), of_push, of_load in parts:
+        value += sign * least
+        at = _waves(theta, harmonics)  # of a displacement's own numbers, at the extreme
+        along, across = _places(law, x, 0), _places(law, x, NORMAL)
+        slope[along] += sign * of_push * law.k_u * at
+        slope[across] += sign * of_load * law.k_v * at
+        u, v = x[along] @ at, x[across] @ at
+        numbers[1] += sign * of_push * u
+        numbers[2] += sign * of_load * v
+        numbers[3] += sign * of_load
+        if of_push:
+            numbers[0] += sign * (law.n_0 + law.k_v * v)
+    return Onset(value, slope, numbers)
+
+
+def values(laws: list[Law], x: FloatArray, harmonics: tuple[int, ...]) -> FloatArray:
+    """The functions of all contacts at all unknowns: separation and closing, slip, and limits if none slips.
+
+    Also of those that cannot slip, or whose load does not vary, as a number may pass by the value that makes
+    them so: they are then negative, or change sign with another one.
+    """
+    if not laws:
+        return np.zeros(0)
+    if isinstance(laws[0], Planar):
+        return np.concatenate([_values_in_plane(law, x, i, harmonics) for i, law in enumerate(laws)])
+    blocks = x[: len(laws) * laws[0].width].reshape(len(laws), -1)
+    numbers = np.array([(law.mu, law.k_u, law.k_v, law.n_0) for law in laws])
+    mu, k_u, k_v, n_0 = numbers.T
+    u, v = (
+        np.array([_polynomial(block, law, part) for block, law in zip(blocks, laws, strict=True)])
+        for part in (0, NORMAL)
+    )
+    load, push = v * k_v[:, None], u * k_u[:, None]
+    load[:, 0] += n_0
+    limit = mu[:, None] * load
+    open_, shut, upper, lower = np.split(
+        _all_least(np.concatenate((load, -load, push + limit, limit - push)), harmonics), 4
+    )
+    rests = upper + lower > 0.0
+    return np.concatenate(
+        (open_, -shut, upper + lower, np.where(rests, upper, 1.0), np.where(rests, -lower, -1.0))
+    )
+
+
+def _all_least(c: ComplexArray, harmonics: tuple[int, ...]) -> FloatArray:
+    """The least value of each row of c as of `_least`."""
+    h, wave = np.array(harmonics), c[:, 1:]
+    if h.size == 1:
+        return c[:, 0].real - np.abs(wave[:, 0])
+    theta = 2.0 * np.pi * np.arange(SAMPLES * h[-1]) / (SAMPLES * h[-1])
+    at = theta[(wave @ np.exp(1j * np.outer(h, theta))).real.argmin(axis=1)]
+    for _ in range(REFINED):
+        turned = np.exp(1j * np.outer(at, h)) * wave
+        bend = (h * h * turned).real.sum(axis=1)
+        step = (h * turned).imag.sum(axis=1) / np.where(bend < 0.0, bend, 1.0)
+        at = at - np.where(bend < 0.0, step, 0.0)
+    return c[:, 0].real + (np.exp(1j * np.outer(at, h)) * wave).real.sum(axis=1)  # type: ignore[no-any-return]
+
+
+def _values_in_plane(law: Law, x: FloatArray, i: int, harmonics: tuple[int, ...]) -> FloatArray:
+    """Those of contact number i."""
+    block = np.ascontiguousarray(x[i * law.width : (i + 1) * law.width])
+    open_, shut, slip, start = (onset(law, block, kind, harmonics).value for kind in (*KINDS, START))
+    return np.array([open_, shut, slip, start if slip > 0.0 else 1.0])
+
+
+def _in_plane(law: Planar, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Onset:
+    """Of the discs that hold a slider in a plane.
+
+    Those that hold the place which all miss least do so with weights by which their directions vanish, and
+    with the same weights the distances change; the place may move, and makes no difference.
+    """
+    numbers, block = (law.mu, law.k_u, law.k_v, law.n_0), np.ascontiguousarray(x)
+    grown = law.bounds.overlap(block, *numbers, kind == START)
+    resting, motion = law.bounds.resting, law.bounds.motion
+    if kind == START:
+        angles, place = np.array([resting.angle]), -np.array([motion.mean_x, motion.mean_y])
+    else:
+        angles = np.asarray(resting.basis)[: resting.held, 3]
+        place = np.array([resting.w_x, resting.w_y])
+    along = [_places(law, x, direction) for direction in range(3)]
+    waves = np.array([_waves(theta, harmonics) for theta in angles])
+    means = np.zeros(3) if kind == START else x[:2].tolist()
+    u = [waves @ x[along[0]] - means[0], waves @ x[along[1]] - means[1]]
+    v = waves @ x[along[2]]
+    d = law.k_u * np.stack(u, axis=1) - motion.scale * (place if kind != START else 0.0)
+    size = np.linalg.norm(d, axis=1)
+    e = d / np.where(size > 0.0, size, 1.0)[:, None]
+    weight = _weights(e)
+    times = -1.0 if kind == START else -2.0
+    slope, by = np.zeros(x.size), np.zeros(4)
+    for one, at, (e_x, e_y), load in zip(weight, waves, e, v, strict=True):
+        for direction, factor in ((0, e_x * law.k_u), (1, e_y * law.k_u), (2, -law.mu * law.k_v)):
+            slope[along[direction]] += times * one * factor * at
+        of_u = e_x * (at @ x[along[0]]) + e_y * (at @ x[along[1]])
+        by += times * one * np.array([-(law.n_0 + law.k_v * load), of_u, -law.mu * load, -law.mu])
+    if kind != START:  # the place moves with the mean of u, and what holds it does not
+        slope[:2] = 0.0
+    return Onset(times * grown, slope, by)
+
+
+def _weights(e: FloatArray) -> FloatArray:
+    """With which directions (disc, 2) vanish, of sum 1."""
+    matrix = np.vstack((e.T, np.ones(len(e))))
+    found: FloatArray = np.linalg.lstsq(matrix, np.array([0.0, 0.0, 1.0]), rcond=None)[0]
+    return found if len(e) > 1 else np.ones(len(e))
+
+
+def kinds_of(law: Law) -> tuple[str, ...]:
+    """Those that a contact can have."""
+    if isinstance(law, Planar):
+        return (*(KINDS[:2] if law.k_v > 0.0 else ()), *(("slip", START) if law.mu * law.k_u > 0.0 else ()))
+    return (*(KINDS[:2] if law.k_v > 0.0 else ()), *((*KINDS[2:], *LIMITS) if law.mu * law.k_u > 0.0 else ()))
+
+
+def _places(law: Law, x: FloatArray, direction: int) -> npt.NDArray[np.intp]:
+    """Where the numbers of a displacement are among the unknowns: mean, then Re, Im of each harmonic."""
+    layout = Layout(1, law.directions, (x.size // law.directions - 1) // 2)
+    return np.flatnonzero(layout.along(direction % law.directions))
+
+
+def _polynomial(x: FloatArray, law: Law, direction: int) -> ComplexArray:
+    """Mean and complex amplitudes of the displacement along a direction."""
+    numbers = x[_places(law, x, direction)]
+    found: ComplexArray = np.concatenate((numbers[:1], numbers[1::2] + 1j * numbers[2::2]))
+    return found
+
+
+def _waves(theta: float, harmonics: tuple[int, ...]) -> FloatArray:
+    """The derivatives of a displacement at an angle by its numbers."""
+    h = np.array(harmonics) * theta
+    return np.concatenate(([1.0], np.stack((np.cos(h), -np.sin(h)), axis=1).ravel()))
+
+
+def _least(c: ComplexArray, harmonics: tuple[int, ...]) -> tuple[float, float]:
+    """The least value of c_0 + Re sum c_h exp(i h theta), and where it is."""
+    h, wave = np.array(harmonics), c[1:]
+    if h.size == 1:
+        return float(c[0].real - abs(wave[0])), float(np.pi - np.angle(wave[0]))
+    theta = 2.0 * np.pi * np.arange(SAMPLES * h[-1]) / (SAMPLES * h[-1])
+    at = float(theta[(np.exp(1j * np.outer(theta, h)) @ wave).real.argmin()])
+    for _ in range(REFINED):
+        turned = np.exp(1j * h * at) * wave
+        bend = float((h * h * turned).real.sum())
+        if bend >= 0.0:
+            break
+        at -= float((h * turned).imag.sum()) / bend
+    return float(c[0].real + (np.exp(1j * h * at) * wave).real.sum()), at

@@ -1,0 +1,167 @@
+"""A balance whose scene has numbers that move along a line: values = origin + s * direction."""
+
+from __future__ import annotations
+
+from copy import copy
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.harmonic_balance.dense_jacobian import Amplitude, answer
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray, Scene
+from fcm.scene.draft import LEVEL, Number
+from fcm.sensitivity.parameter_derivatives import Rates, law_rates, rates_of
+from fcm.structure.linear import linear_of
+
+ComplexArray = npt.NDArray[np.complex128]
+
+
+class Line(NamedTuple):
+    """Numbers of a scene and how they move together with the parameter s."""
+
+    numbers: tuple[Number, ...]
+    origin: FloatArray  # (number,)
+    direction: FloatArray  # (number,)
+
+    def values(self, s: float) -> FloatArray:
+        """Of the numbers, (number,)."""
+        values: FloatArray = self.origin + s * self.direction
+        return values
+
+    def scene(self, scene: Scene, s: float) -> Scene:
+        """The scene with the numbers at s."""
+        assert scene.draft is not None
+        every = {
+            address: one
+            for number, value in zip(self.numbers, self.values(s), strict=True)
+            for address, one in number.values(float(value)).items()
+        }
+        moved = scene.draft.curve(scene, scene.parameters, every)
+        if any(number.key == LEVEL for number in self.numbers):  # which is relative to what was written
+            return moved
+        return replace(moved, draft=scene.draft.fixed(scene, every))  # of which the rates there are taken
+
+
+def along(number: Number) -> Line:
+    """The line on which the parameter is the number itself."""
+    return Line((number,), np.zeros(1), np.ones(1))
+
+
+class ByNumber(NamedTuple):
+    """Rates by s: of residual and contacts' forces (unknown,); by a structure of X (harmonic, dof)."""
+
+    residual: FloatArray
+    force: FloatArray
+    shown: ComplexArray | None
+
+    def of(self, one: Amplitude) -> float:
+        """Rate of an amplitude."""
+        if self.shown is None:
+            return float(one.of_forces @ self.force)
+        return float((one.weights @ self.shown[:, one.dof]).real)
+
+
+def _excitation(system: System, line: Line) -> list[tuple[ComplexArray, ComplexArray]]:
+    """Of the forces on the modes, and of those that grow with omega^2: at s = 0, and their rates by s."""
+    origin, one = (linear_of(line.scene(system.scene, s)) for s in (0.0, 1.0))
+    return [(origin.force, one.force - origin.force), (origin.square, one.square - origin.square)]
+
+
+class Varied:
+    """The balance of a system (of one curve) that `put` moves along a line, with the rates by s.
+
+    A number of a contact is changed in the balance as it is, and so are the forces that a level multiplies;
+    another number of the structure makes another balance.
+    """
+
+    def __init__(self, system: System, line: Line) -> None:
+        self.base, self.line, self.s = system, line, np.nan
+        tables = {address[0] for number in line.numbers for address in number.addresses}
+        fields = {address[-1] for number in line.numbers for address in number.addresses}
+        rigid = bool((system.linear.natural == 0.0).any())
+        self.structure = tables != {"contact"} or not fields <= {"n_0", "gap", "mu", "k_u", "k_v"} or rigid
+        # of one number, or of those that no product of two makes, the contacts' rates are the same everywhere
+        self._constant = len(line.numbers) == 1 or "gap" not in fields
+        excited = tables <= {"force", "base"} and fields <= {"amplitude", "acceleration"}
+        self._excitation = _excitation(system, line) if excited else None
+        self._system: System | None = system
+        self.balance = system.balance()
+        self.contacts, self.harmonics = len(system.scene.contacts), system.harmonics
+        self._rates: list[Rates] = []
+        self._contact_rates: FloatArray | None = None
+
+    @property
+    def system(self) -> System:
+        """With the numbers where they are."""
+        if self._system is None:
+            self._system = copy(self.base)
+            object.__setattr__(self._system, "scene", self.line.scene(self.base.scene, self.s))
+            if self.structure:
+                object.__setattr__(self._system, "linear", linear_of(self._system.scene))
+        return self._system
+
+    def put(self, s: float) -> None:
+        """Move the numbers."""
+        if s == self.s:
+            return
+        self.s, self._system = s, None
+        if self._excitation is not None:
+            constant, square = (origin + s * rate for origin, rate in self._excitation)
+            self.balance.seen.moved_by(constant, square)
+            self.balance.largest[:] = 0.0  # units are of the motion there, as of a balance of its own
+            return
+        if self.structure:
+            self.balance = self.system.balance()
+        for law, contact in zip(self.balance.laws, self.system.scene.contacts, strict=True):
+            law.mu, law.k_u, law.k_v, law.n_0 = contact.mu, contact.k_u, contact.k_v, contact.n_0
+        if self.structure or not self._constant:
+            self._rates = []
+        if not self._constant:
+            self._contact_rates = None
+
+    def by_s(self, z: FloatArray) -> ByNumber:
+        """Rates by s at fixed z, where the balance was evaluated last."""
+        force = self._forces_by_s(z)
+        if not self.structure:
+            return ByNumber(answer(self.balance, force), force, None)
+        residual = np.zeros(self.balance.unknowns)
+        shown = np.zeros((len(self.harmonics), self.balance.outputs), dtype=np.complex128)
+        for rate, weight in zip(self.rates, self.line.direction, strict=True):
+            if weight:
+                of_residual, of_shown = rate.here(self.balance, z)
+                residual, shown = residual + weight * of_residual, shown + weight * of_shown
+        return ByNumber(residual, force, shown)
+
+    def _forces_by_s(self, z: FloatArray) -> FloatArray:
+        """Rates of the contacts' forces, (unknown,); of a preload alone they are those of a mean load."""
+        balance, w, rates = self.balance, self.balance.width, self.contact_rates()
+        normal = balance.directions - 1
+        found = np.zeros(balance.unknowns)
+        for c, (rate, law) in enumerate(zip(rates, balance.laws, strict=True)):
+            here = slice(c * w, (c + 1) * w)
+            if rate.any() and not rate[:3].any() and law.k_v > 0.0:
+                by_load = np.array(balance.tangent[c, :, normal])
+                by_load[normal] += balance.counted[c]
+                by_load /= law.k_v
+                by_load[normal] -= float(law.n_0 > 0.0)  # what the structure at rest is in equilibrium with
+                found[here] = rate[3] * by_load
+            elif rate.any():
+                found[here] = rate @ law_rates(law, z[here])
+        return found
+
+    @property
+    def rates(self) -> list[Rates]:
+        """Of each of the numbers."""
+        self._rates = self._rates or [rates_of(self.system, number.key) for number in self.line.numbers]
+        return self._rates
+
+    def contact_rates(self) -> FloatArray:
+        """Rates of mu, k_u, k_v, n_0 by s, (contact, 4)."""
+        if self._contact_rates is None:
+            moved = zip(self.rates, self.line.direction, strict=True)
+            each = (weight * rate.contact for rate, weight in moved)
+            self._contact_rates = sum(each, np.zeros((self.contacts, 4)))
+        return self._contact_rates

@@ -1,0 +1,40 @@
+"""Whether a tracked peak is one: no trough, and of the greatest extremes of a cycle."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fcm.harmonic_balance.dense_jacobian import Amplitude
+from fcm.model.scene import FloatArray
+from fcm.tracking.corner import Corner
+from fcm.tracking.extended_system import Tracked
+from fcm.tracking.tracked_point import Spot
+
+EQUAL = 1e-12  # relative: extremes of a cycle that are one
+
+
+def is_top(problem: Tracked, spot: Spot) -> bool:
+    """Whether a tracked peak that was measured is one, and not a trough: growth falls along the response."""
+    if spot.corner is None or spot.switch:
+        problem.evaluate(spot.z)  # no numbers where the response crosses itself, and a peak meets a trough
+        gradient = np.asarray(problem.jacobian)[problem.n, : problem.n + 1]
+        return bool(gradient @ (np.asarray(problem.scale)[:-1] * problem.row) < 0.0)
+    corner = Corner(problem, spot.corner)
+    corner.problem.row[:] = problem.row
+    corner.problem.measure(spot.z)
+    before, after = corner.sides(spot.z)
+    return bool(before > after)
+
+
+def overtaken(problem: Tracked, z: FloatArray) -> bool:
+    """Whether other extremes than those of the place that was measured last are the greatest of a cycle."""
+    if problem.angles is None:
+        return False
+    problem.varied.put(float(z[-1]))
+    y, balance = np.array(z[:-1]), problem.varied.balance
+    balance.evaluate(y)
+    one = Amplitude(balance, problem.condition.which)
+    one.at(y)
+    greatest = one.value
+    one.at(y, problem.angles)
+    return not one.value >= greatest * (1.0 - EQUAL)

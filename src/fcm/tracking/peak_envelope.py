@@ -1,0 +1,245 @@
+r"""The least of the greatest: where the highest of several tracked peaks is lowest over a range of a number.
+
+A curve of peaks is cut into pieces on which the number rises or falls, and each piece is a function of the
+number, evaluated by Newton's method to rounding. The greatest of all is piecewise smooth: its least value is
+where a piece turns, where two pieces cross, or at an end of one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from fcm.continuation.corrector import Newton
+from fcm.model.scene import FloatArray
+from fcm.tracking.curve import Track
+from fcm.tracking.extended_system import Condition, Kind, Tracked
+from fcm.tracking.tracked_point import Way
+
+BRACKETS = 4  # of the lowest points, in which the least value is sought
+FINE = 1e-9  # of the span: the number is known to this
+ROUGH = 0.7  # of the highest by the chords: what is lower is not looked at
+GAP = 1e-3  # of the span, in which no piece is known
+EQUAL = 1e-7  # relative: peaks that are one at a crossing
+UNFINISHED = "unfinished"  # what the least so far is of, where it was still sought
+UNKNOWN = 10.0  # of the highest: what counts where no peak is known, as differences of infinities are none
+
+
+class Target(NamedTuple):
+    """What is to be least: of a degree of freedom, and whether the ends of the range count."""
+
+    dof: int
+    ends: bool = False
+
+
+class Height(NamedTuple):
+    """A piece at a value of the number."""
+
+    value: float
+    slope: float
+    z: FloatArray  # (x, omega, s)
+    dof: int
+
+
+@dataclass(frozen=True)
+class Least:
+    """The optimum on a line: the value of s, the greatest amplitude there, and which pieces have it."""
+
+    s: float
+    value: float
+    active: tuple[Height, ...]
+    kind: str  # "smooth", "kink" of equal peaks, "corner", "end" of a higher, "bound", "trials", "unfinished"
+    between: tuple[float, float] | None = None  # values of s next to it, if it was found by trials
+
+
+class Piece:
+    """A part of a tracked curve along which s is monotone; its height is that of a degree of freedom."""
+
+    def __init__(self, way: Way, track: Track, places: Sequence[int], dof: int) -> None:
+        order = list(places) if track.s[places[0]] <= track.s[places[-1]] else list(places)[::-1]
+        self.way, self.condition, self.dof = way, track.condition, dof
+        self.spots = [track.spots[i] for i in order]
+        self.s, self.height = track.s[order], track.amplitude[order, dof]
+        self._problems: dict[Condition | None, Tracked] = {}
+
+    def covers(self, s: float) -> bool:
+        """Whether it is a function there."""
+        return bool(self.s[0] <= s <= self.s[-1])
+
+    def roughly(self, s: float) -> float:
+        """The height between two points, by the chord."""
+        return float(np.interp(s, self.s, self.height))
+
+    def at(self, s: float) -> Height:
+        """Exactly, or by the chord where Newton's method does not come to it."""
+        i = int(np.clip(np.searchsorted(self.s, s) - 1, 0, len(self.s) - 2))
+        one, other = self.spots[i], self.spots[i + 1]
+        part = (s - self.s[i]) / max(self.s[i + 1] - self.s[i], 1e-300)
+        guess = one.z + part * (other.z - one.z)
+        guess[-1] = s
+        corner = other.corner if one.switch else one.corner
+        problem = self._problem(corner)
+        problem.measure(guess)
+        newton = Newton(problem)
+        newton.scale[:], newton.z[:] = problem.scale, guess
+        newton.row[:] = np.eye(guess.size)[-1]
+        if not newton.correct(1e-3):
+            slope = (self.height[i + 1] - self.height[i]) / max(self.s[i + 1] - self.s[i], 1e-300)
+            return Height(
+                float(self.height[i] + part * (self.height[i + 1] - self.height[i])), slope, guess, self.dof
+            )
+        return self._height(problem, newton)
+
+    def _problem(self, corner: Condition | None) -> Tracked:
+        if corner not in self._problems:
+            self._problems[corner] = self.way.tracked(corner or self.condition)
+        return self._problems[corner]
+
+    def _height(self, problem: Tracked, newton: Newton) -> Height:
+        """The amplitude, and its rate by s along the curve."""
+        z, t = np.array(newton.z), np.asarray(newton.tangent) * np.asarray(newton.scale)
+        value, slope = problem.amplitude_along(z, t / t[-1], self.dof)
+        return Height(value, slope, z, self.dof)
+
+
+def pieces_of(way: Way, tracks: Sequence[Track], target: Target) -> list[Piece]:
+    """The monotone pieces of the curves that count for a target, of peaks where they are greatest."""
+    found = []
+    for track in tracks:
+        kind, which = track.condition.kind, track.condition.which
+        if not (kind is Kind.PEAK and which == target.dof) and not (kind is Kind.END and target.ends):
+            continue
+        found += [Piece(way, track, places, target.dof) for places in _monotone(track)]
+    return found
+
+
+def _monotone(track: Track) -> list[list[int]]:
+    """Indices of points of which s rises or falls, and that are greatest."""
+    parts: list[list[int]] = [[]]
+    for i in range(len(track.s)):
+        if not track.greatest[i] and not track.spots[i].turn:
+            parts.append([])
+            continue
+        last = parts[-1]
+        if last and track.s[i] == track.s[last[-1]]:
+            continue
+        if len(last) > 1 and (track.s[i] - track.s[last[-1]]) * (track.s[last[-1]] - track.s[last[-2]]) < 0.0:
+            parts.append([last[-1]])
+        parts[-1].append(i)
+    return [part for part in parts if len(part) > 1]
+
+
+def least(way: Way, pieces: Sequence[Piece]) -> Least | None:
+    """The optimum; None where there is no piece."""
+    if not pieces:
+        return None
+    low, high = way.span
+    grid = np.unique(np.concatenate([piece.s for piece in pieces]))
+    grid = grid[(grid >= low) & (grid <= high)]
+    rough = np.array([np.max([p.roughly(s) for p in pieces if p.covers(s)]) for s in grid])
+    inner = np.pad(rough, 1, constant_values=np.inf)
+    lowest = np.flatnonzero((rough <= inner[:-2]) & (rough <= inner[2:]))
+    lowest = lowest[np.argsort(rough[lowest])][:BRACKETS]
+    found = [_refined(pieces, way, *_around(pieces, grid, i)) for i in lowest.tolist()]
+    return min(found, key=lambda one: one.value)
+
+
+def gaps(way: Way, pieces: Sequence[Piece]) -> list[float]:
+    """Values of s about which no piece says anything: the ends of the span, or the middle of a gap."""
+    low, high = way.span
+    least, found, last = GAP * (high - low), [], low
+    if not pieces:
+        return [low, high]
+    for piece in sorted(pieces, key=lambda piece: float(piece.s[0])):
+        if piece.s[0] - last > least:
+            found.append(low if last == low else 0.5 * (last + float(piece.s[0])))
+        last = max(last, float(piece.s[-1]))
+    return [*found, high] if high - last > least else found
+
+
+def _around(pieces: Sequence[Piece], grid: FloatArray, i: int) -> tuple[float, float, float]:
+    """A value of s between its neighbours, among which those of the highest piece itself."""
+    s = float(grid[i])
+    top = max((p for p in pieces if p.covers(s)), key=lambda p: p.roughly(s))
+    low, high = float(grid[max(i - 1, 0)]), float(grid[min(i + 1, len(grid) - 1)])
+    below, above = top.s[top.s < s], top.s[top.s > s]
+    low = min(low, float(below.max())) if below.size else low
+    high = max(high, float(above.min())) if above.size else high
+    return low, s, high
+
+
+def _refined(pieces: Sequence[Piece], way: Way, low: float, middle: float, high: float) -> Least:
+    """The least value between two values of s."""
+    span = way.span[1] - way.span[0]
+
+    def highest(s: float) -> tuple[Height, Piece]:
+        rough = {piece: piece.roughly(s) for piece in pieces if piece.covers(s)}
+        if not rough:  # nothing is known there
+            return Height(np.inf, 0.0, np.zeros(0), -1), pieces[0]
+        top = max(rough.values())
+        heights = [(piece.at(s), piece) for piece, height in rough.items() if height >= ROUGH * top]
+        return max(heights, key=lambda pair: pair[0].value)
+
+    if high > low:
+        most = UNKNOWN * max(float(piece.height.max()) for piece in pieces)
+        bounded = minimize_scalar(
+            lambda s: min(highest(s)[0].value, most),
+            bounds=(low, high),
+            method="bounded",
+            options={"xatol": 1e-5 * span},
+        )
+        tried = [float(bounded.x), low, middle, high]
+        s = min(tried, key=lambda s: highest(s)[0].value)
+    else:
+        s = middle
+    width = 1e-4 * span
+    left, right = max(low, s - width), min(high, s + width)
+    (before, one), (after, other) = highest(left), highest(right)
+    kind = "bound"
+    if before.slope < 0.0 < after.slope:
+        kind, s = _turned(highest, one, other, left, right, span)
+    elif low < s < high or way.span[0] < s < way.span[1]:
+        kind = "corner"
+    else:
+        s = left if before.value <= after.value else right
+    top = highest(s)[0]
+    active = [h for p in pieces if p.covers(s) and (h := p.at(s)).value >= top.value * (1.0 - EQUAL)]
+    kind = "kink" if len(active) > 1 else kind
+    if kind == "corner" and any(_ends_higher(piece, s, top.value, width) for piece in pieces):
+        kind = "end"
+    return Least(s, top.value, tuple(active), kind)
+
+
+def _ends_higher(piece: Piece, s: float, value: float, width: float) -> bool:
+    """Whether a piece that is not there ends higher close by."""
+    ends = ((piece.s[0], piece.height[0]), (piece.s[-1], piece.height[-1]))
+    near = any(abs(end - s) < width and height > value * (1.0 + EQUAL) for end, height in ends)
+    return near and not piece.s[0] < s < piece.s[-1]
+
+
+def _turned(
+    highest: Callable[[float], tuple[Height, Piece]],
+    one: Piece,
+    other: Piece,
+    low: float,
+    high: float,
+    span: float,
+) -> tuple[str, float]:
+    """Where the greatest turns between two values of s: where pieces cross, or one has its least value."""
+    if one is not other:
+        crossing = _root(lambda s: one.at(s).value - other.at(s).value, low, high, span)
+        if one.covers(crossing) and other.covers(crossing):
+            return "kink", crossing
+    at = _root(lambda s: highest(s)[0].slope, low, high, span)
+    return "smooth" if abs(highest(at)[0].slope) * span < 1e-3 * highest(at)[0].value else "corner", at
+
+
+def _root(function: Callable[[float], float], low: float, high: float, span: float) -> float:
+    """A change of sign, or the end with the lesser value where there is none."""
+    if function(low) * function(high) > 0.0:
+        return low if abs(function(low)) < abs(function(high)) else high
+    return float(brentq(function, low, high, xtol=FINE * span))

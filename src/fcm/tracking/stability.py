@@ -1,0 +1,122 @@
+"""Whether the motion is stable at the points of a tracked curve: at a peak where it is not, none stays."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from fcm.continuation.corrector import Newton
+from fcm.harmonic_balance.dense_jacobian import jacobian_of
+from fcm.model.scene import FloatArray
+from fcm.stability.floquet import multipliers_of
+from fcm.stability.multipliers import Multipliers
+from fcm.tracking.curve import Track, with_spots
+from fcm.tracking.extended_system import Kind, Tracked
+from fcm.tracking.tracked_point import Spot, Way
+
+BESIDE = 1e-6  # of the response's extent: on either side of a corner, where it may turn back
+HALVINGS = 14  # of a step between points, within which the motion ceases to be stable
+
+Seen = tuple[Spot, float]  # a point, and what is said of it
+
+
+def stability_along(way: Way, track: Track) -> tuple[Track, FloatArray]:
+    """(point,): 1 where small disturbances die out, 0 where one grows, NaN where it cannot be told.
+
+    As along a response: a fold counts to its stable side, and so does a corner at which it turns back. The
+    curve is that with two more points wherever this changes, one on either side.
+    """
+    return _Along(way, track).run()
+
+
+class _Along:
+    """The points of one curve."""
+
+    def __init__(self, way: Way, track: Track) -> None:
+        self.way, self.track, self.problem = way, track, way.tracked(track.condition)
+        self.highest = way.system.scene.frequency_range[1]
+        self.known: Multipliers | None = None
+
+    def run(self) -> tuple[Track, FloatArray]:
+        seen = [(spot, self._at(spot)) for spot in self.track.spots]
+        found = seen[:1]
+        for one, other in pairwise(seen):
+            found += [*self._limit(one, other), other]
+        track, spots = self.track, [spot for spot, _ in found]
+        if len(found) > len(seen):
+            track = with_spots(self.way, track, spots)
+        return track, np.array([stable for _, stable in found])
+
+    def _limit(self, one: Seen, other: Seen) -> list[Seen]:
+        """Points on both sides of where what is said of two changes; none if it does not."""
+        before, ends = one[1], [one, other]
+        if _same(before, other[1]):
+            return []
+        for _ in range(HALVINGS):
+            middle = self._middle(ends[0][0], ends[1][0])
+            if middle is None:
+                break
+            stable = self._at(middle)
+            ends[0 if _same(stable, before) else 1] = middle, stable
+        return [end for end, old in zip(ends, (one, other), strict=True) if end is not old]
+
+    def _middle(self, one: Spot, other: Spot) -> Spot | None:
+        """The point of the curve between two, on the plane half way across their chord."""
+        at = other.corner if one.switch else one.corner
+        problem = self.way.tracked(at or self.track.condition)
+        z = 0.5 * (one.z + other.z)
+        problem.measure(z)
+        newton = Newton(problem)
+        newton.scale[:] = problem.scale
+        chord = (other.z - one.z) / np.asarray(problem.scale)
+        length = float(np.linalg.norm(chord))
+        if length == 0.0:
+            return None
+        newton.z[:], newton.row[:] = z, chord / length
+        try:
+            if not newton.correct(1e-3) or newton.moved > length:
+                return None
+        except np.linalg.LinAlgError:
+            return None
+        return Spot(np.array(newton.z), np.array(newton.tangent) * np.asarray(problem.scale), at)
+
+    def _at(self, spot: Spot) -> float:
+        problem = self.problem
+        problem.measure(spot.z)
+        fold = self.track.condition.kind is Kind.FOLD
+        signs = {1.0, -1.0} if fold else _signs(problem, spot)
+        if max(signs) < 0.0:  # of the real multipliers an odd number is above 1
+            return 0.0
+        turning = min(signs) < 0.0
+        return self._multipliers().verdict(np.array(spot.z[:-1]), turning).stable
+
+    def _multipliers(self) -> Multipliers:
+        """With the numbers as the problem has them."""
+        varied = self.problem.varied
+        if self.known is None or varied.structure:
+            known = multipliers_of(varied.system, self.highest)
+            assert isinstance(known, Multipliers)  # no law of one's own is tracked
+            self.known = known
+        self.known.take(varied.system)
+        return self.known
+
+
+def _same(one: float, other: float) -> bool:
+    """Whether two verdicts are one, not to be told among them."""
+    return one == other or bool(np.isnan(one) and np.isnan(other))
+
+
+def _signs(problem: Tracked, spot: Spot) -> set[float]:
+    """Of the balance's determinant at a point; at a corner of the response those on both sides."""
+    scale, y = np.asarray(problem.scale)[:-1], np.array(spot.z[:-1])
+    ahead = BESIDE * scale * np.asarray(problem.row)
+    places = [y] if spot.corner is None and not spot.switch else [y - ahead, y + ahead]
+    return {_sign(problem, place, scale[:-1]) for place in places}
+
+
+def _sign(problem: Tracked, y: FloatArray, scale: FloatArray) -> float:
+    balance = problem.varied.balance
+    balance.evaluate(y)
+    own = jacobian_of(balance)[:, :-1]
+    return float(np.linalg.slogdet(own * scale / scale[:, None])[0])

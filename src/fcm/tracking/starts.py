@@ -1,0 +1,98 @@
+"""Where tracked curves begin: the special points of ordinary curves at some values of the number."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from copy import copy
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.at_rest import at_rest
+from fcm.branches.search import every_branch
+from fcm.continuation import Mark, Path
+from fcm.harmonic_balance.reported_quantities import reported
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray, Scene
+from fcm.structure.linear import linear_of
+from fcm.tracking.extended_system import Condition, Kind
+from fcm.tracking.onset_functions import onset
+
+LOWEST = 1e-3  # of the greatest amplitude of a degree of freedom: lower peaks are not tracked
+
+
+class Special(NamedTuple):
+    """Points z (unknown + 1,) at which conditions nearly hold; what is wrong with their curves; and
+    at which frequencies [rad/s] the level, or a fold of it, was not followed to its end, so that branches may
+    be missing."""
+
+    points: list[tuple[Condition, FloatArray]]
+    wrong: str
+    unsure: tuple[float, ...]
+
+
+def moved(system: System, scene: Scene) -> System:
+    """The system of another scene of the same contacts."""
+    other = copy(system)
+    object.__setattr__(other, "scene", scene)
+    object.__setattr__(other, "linear", linear_of(scene))
+    return other
+
+
+def special_points(system: System, conditions: list[Condition]) -> Special:
+    """Those of a system's curves.
+
+    Conditions that differ in which degree of freedom are sought one by one; onsets of every contact.
+    """
+    curves = every_branch(system)
+    branches, levels = curves.branches, tuple(one.omega for one in curves.found if not one.complete)
+    unsure = (*levels, *curves.folds_lost)
+    found = []
+    amplitudes = _amplitudes(system, branches.paths, conditions)
+    for path, amplitude in zip(branches.paths, amplitudes, strict=True):
+        for condition in conditions:
+            found += [(condition, z) for z in _points(system, path, amplitude, condition)]
+    if not branches.paths:
+        return Special(found, "no solution was found at either end of the range", unsure)
+    wrong = "" if branches.status.name == "COMPLETE" else branches.status.value
+    return Special(found, wrong, unsure)
+
+
+def _amplitudes(system: System, paths: Sequence[Path], conditions: list[Condition]) -> list[FloatArray]:
+    """Along each path, (point, dof), 0 of what moves by rounding alone; none where no peak is sought."""
+    if not paths or all(condition.kind is not Kind.PEAK for condition in conditions):
+        return [np.zeros((len(path.z), 0)) for path in paths]
+    every = [reported(system, path).amplitude for path in paths]
+    moves = ~at_rest(np.max([one.max(axis=0) for one in every], axis=0))
+    return [one * moves for one in every]
+
+
+def _points(system: System, path: Path, amplitude: FloatArray, condition: Condition) -> Iterator[FloatArray]:
+    if condition.kind is Kind.FOLD:
+        yield from path.z[path.where(Mark.FOLD)]
+    elif condition.kind is Kind.END:
+        yield from path.z[path.parameter == condition.omega]
+    elif condition.kind is Kind.PEAK:
+        yield from path.z[_tops(amplitude[:, condition.which])]
+    else:
+        yield from _onsets(system, path, condition)
+
+
+def _tops(amplitude: FloatArray) -> npt.NDArray[np.intp]:
+    """Points higher than their neighbours."""
+    inner = amplitude[1:-1]
+    tops = 1 + np.flatnonzero((inner >= amplitude[:-2]) & (inner > amplitude[2:]))
+    high: npt.NDArray[np.intp] = tops[amplitude[tops] > LOWEST * amplitude.max(initial=0.0)]
+    return high
+
+
+def _onsets(system: System, path: Path, condition: Condition) -> Iterator[FloatArray]:
+    """Where a function of a contact changes its sign between points, by the chord."""
+    law, c = system.laws()[condition.which], condition.which
+    blocks = [np.ascontiguousarray(z[c * law.width : (c + 1) * law.width]) for z in path.z]
+    value = np.array([onset(law, x, condition.onset, system.harmonics).value for x in blocks])
+    for i in np.flatnonzero(value[:-1] * value[1:] < 0.0):
+        part = value[i] / (value[i] - value[i + 1])
+        yield path.z[i] + part * (path.z[i + 1] - path.z[i])
+    yield from path.z[value == 0.0]

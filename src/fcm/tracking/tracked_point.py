@@ -1,0 +1,72 @@
+"""Points of tracked curves, how these end, and what all curves of a run share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray
+from fcm.tracking.extended_system import Condition, Tracked
+from fcm.tracking.options import PIECES, PieceOptions
+from fcm.tracking.parameter_line import Line, Varied
+
+
+class Ending(Enum):
+    """How a tracked curve ended."""
+
+    SPAN = "the number reached an end of its range"
+    RANGE = "its frequency left the range that is traced"
+    CLOSED = "the curve came back to where it began"
+    MET = "another extreme within the cycle became the greatest, and so there is no peak beyond"
+    TROUGH = "another extreme within the cycle became the greatest, and the least amplitude is there"
+    CORNER = "it goes on as a corner of the response, which cannot be followed there"
+    STALLED = "no further point could be found"
+    LONG = "there are too many points"
+    TURNED = "the number turned back, and only peaks are followed"
+
+    @property
+    def whole(self) -> bool:
+        """Whether there is no more of the curve, or none that was asked for."""
+        return self not in (Ending.CORNER, Ending.STALLED, Ending.LONG)
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A point of a tracked curve: z = (x, omega, s), its direction in units of z, and what it is."""
+
+    z: FloatArray
+    direction: FloatArray
+    corner: Condition | None = None  # of the response, where that is what is special
+    turn: bool = False  # the number turns back
+    station: bool = False  # the number has a value that was asked for
+    switch: bool = False  # a corner begins or ends to be what is special
+
+
+@dataclass(frozen=True)
+class Way:
+    """What all curves of one run share."""
+
+    system: System
+    line: Line
+    span: tuple[float, float]  # of s
+    stations: tuple[float, ...] = ()
+    step: float = 0.05  # longest
+    peaks_only: bool = False  # a peak ends where it meets a trough, and the number turns back
+    options: PieceOptions = PIECES
+
+    def tracked(self, condition: Condition) -> Tracked:
+        """The problem of a condition, with a balance of its own."""
+        return Tracked(Varied(self.system, self.line), condition, self.span[1] - self.span[0])
+
+
+def kinks(way: Way) -> list[float]:
+    """Values of s at which a preload changes sign: what the structure at rest bears has a kink there."""
+    loads = np.array([[c.n_0 for c in way.line.scene(way.system.scene, s).contacts] for s in way.span])
+    found = set()
+    for low, high in loads.T:
+        if low * high <= 0.0 and low != high:
+            found.add(float(way.span[0] - low * (way.span[1] - way.span[0]) / (high - low)))
+    return sorted(found)

@@ -1,0 +1,282 @@
+"""The linear system of many contacts on few modes, condensed to the modes, beside the system itself."""
+
+import itertools
+import tracemalloc
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fcm.branches.linear_limits import foresee
+from fcm.continuation import Events, follow
+from fcm.continuation.corrector import Newton
+from fcm.harmonic_balance import rounding
+from fcm.harmonic_balance.dense_jacobian import jacobian_of
+from fcm.harmonic_balance.modal_condensation import CondensedOptions
+from fcm.harmonic_balance.response_quantities import recorded
+from fcm.harmonic_balance.rounding import _moved
+from fcm.harmonic_balance.system import System
+from fcm.scene import scene_from_dict
+
+from .strips import strip
+
+EVERY_MODE = CondensedOptions(fewest=1, share=1.0, stiff=(0.0,))
+WHOLE, CONDENSED = CondensedOptions(fewest=10**9), CondensedOptions(fewest=1, share=1.0)
+
+
+def many_contacts(contacts=36, modes=4):
+    rng = np.random.default_rng(5)
+    dofs = [f"x{i}" for i in range(2 * contacts)]
+    return scene_from_dict(
+        {
+            "modal": {
+                "dofs": dofs,
+                "frequency": [1.0, 1.7, 2.9, 4.1][:modes],
+                "damping": [0.02] * modes,
+                "shapes": rng.normal(size=(modes, len(dofs))).tolist(),
+            },
+            "contact": [
+                {
+                    "name": f"c{i}",
+                    "tangential": dofs[2 * i],
+                    "normal": dofs[2 * i + 1],
+                    "mu": 0.3,
+                    "k_u": 0.1,
+                    "k_v": 0.2,
+                    "n_0": float(rng.uniform(-0.5, 1.0)),
+                }
+                for i in range(contacts)
+            ],
+            "force": [{"dof": "x0", "amplitude": 1.0}],
+            "response": {"frequency": [0.8, 1.3]},
+        }
+    )
+
+
+def mostly(n_0, contacts=24, slipping=(0, 23)):
+    """A strip of which all contacts but some stay as they are at rest, stuck or open."""
+    scene = strip(contacts)
+    preloads = [0.02 / contacts if i in slipping else n_0 / contacts for i in range(contacts)]
+    held = tuple(replace(one, n_0=n) for one, n in zip(scene.contacts, preloads, strict=True))
+    return replace(scene, contacts=held)
+
+
+def mostly_stuck():
+    return mostly(40.0)
+
+
+def mostly_open():
+    return mostly(-40.0)
+
+
+def jacobian(system, z):
+    """By central differences of the residual, (unknown, unknown + 1)."""
+    columns = []
+    for i in range(z.size):
+        step = 1e-6 * max(abs(z[i]), 1e-2)
+        ends = []
+        for sign in (1.0, -1.0):
+            problem, moved = system.balance(), z.copy()
+            moved[i] += sign * step
+            problem.evaluate(moved)
+            ends.append(np.array(problem.residual))
+        columns.append((ends[0] - ends[1]) / (2.0 * step))
+    return np.array(columns).T
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("harmonics", [(1,), (1, 3)])
+@pytest.mark.parametrize(
+    ("scene", "options"),
+    [
+        (many_contacts, CONDENSED),
+        (strip, CONDENSED),
+        (mostly_stuck, EVERY_MODE),
+        (mostly_open, EVERY_MODE),
+    ],
+)
+def test_direction_and_orientation_are_those_of_the_whole_system(scene, options, harmonics):
+    system = System(scene(), harmonics, condensing=options)
+    problem = system.balance()
+    assert 0 < problem.rank < problem.unknowns
+    rng = np.random.default_rng(2)
+    z = np.append(rng.normal(size=problem.unknowns), 1.05)
+    newton = Newton(problem)
+    problem.measure(z)
+    scale = np.array(problem.scale)
+    row = rng.normal(size=z.size)
+    row /= np.linalg.norm(row)
+    newton.scale[:], newton.row[:], newton.z[:] = scale, row, z
+    assert newton.poll()
+    whole = np.vstack((jacobian(system, z) * scale / scale[:-1, None], row))
+    tangent = np.linalg.solve(whole, np.append(np.zeros(z.size - 1), 1.0))
+    np.testing.assert_allclose(newton.tangent, tangent / np.linalg.norm(tangent), atol=1e-6)
+    assert newton.orientation == np.sign(np.linalg.det(whole))
+
+
+@pytest.mark.parametrize("harmonics", [(1,), (1, 3)])
+@pytest.mark.parametrize("scene", [mostly_stuck, mostly_open])
+def test_contacts_that_stay_stuck_or_open_are_condensed(scene, harmonics):
+    """The equations are no more than those of the forces that two contacts have beside them."""
+    at, solutions, parts = (1.0, 1.15, 1.3), [], 1 + 2 * len(harmonics)
+    for options in (EVERY_MODE, WHOLE):
+        problem = System(scene(), harmonics, condensing=options).balance()
+        path = follow(problem, np.append(np.zeros(problem.unknowns), 0.9), (0.9, 1.5), Events(at))
+        solutions.append(path.z[np.isin(path.parameter, at)])
+        problem.evaluate(path.z[np.flatnonzero(path.parameter == 1.15)[0]])
+        assert problem.differs()
+        if options is EVERY_MODE:
+            assert problem.condensed is not None and problem.condensed.holds
+            assert parts < problem.condensed.held.size <= 4 * parts + 1
+    found, expected = solutions
+    assert len(found) == 3
+    np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected[:, :-1]).max())
+
+
+def test_contacts_that_begin_to_slip_or_open_are_taken_back():
+    """By a level of the forces at which all stick, one at which all slip, and back."""
+    system = System(strip(24, n_0=3.0), (1, 3), condensing=EVERY_MODE)
+    problem, whole = system.balance(), System(system.scene, (1, 3), condensing=WHOLE).balance()
+    rng, holds = np.random.default_rng(3), []
+    for size in (1e-3, 1.0, 1e-3):
+        z = np.append(size * rng.normal(size=problem.unknowns), 1.05)
+        tangents = []
+        for one in (problem, whole):
+            one.measure(z)
+            newton = Newton(one)
+            newton.scale[:], newton.z[:] = one.scale, z
+            newton.row[:] = np.append(np.zeros(problem.unknowns), 1.0)
+            assert newton.poll()
+            tangents.append((newton.orientation, *newton.tangent))
+        np.testing.assert_allclose(*tangents, atol=1e-7)
+        holds.append(problem.condensed.holds)
+    assert holds == [True, False, True]
+
+
+def test_points_of_the_curve_balance():
+    system = System(many_contacts(), (1,), condensing=CONDENSED)
+    newton = Newton(system.balance())
+    z = np.append(np.zeros(newton.problem.unknowns), 0.9)
+    newton.problem.measure(np.append(np.ones(newton.problem.unknowns), 0.9))
+    newton.scale[:] = newton.problem.scale
+    newton.row[:] = np.append(np.zeros(newton.problem.unknowns), 1.0)
+    newton.z[:] = z
+    assert newton.correct(1.0)
+    newton.problem.evaluate(newton.z)
+    assert np.abs(newton.problem.residual).max() < 1e-12 * np.abs(newton.z).max()
+
+
+def stations(condensing, harmonics):
+    system = System(strip(), harmonics, condensing=condensing)
+    problem = system.balance()
+    at = (1.0, 1.15, 1.3)
+    path = follow(problem, np.append(np.zeros(problem.unknowns), 0.9), (0.9, 1.5), Events(at))
+    return problem, path.z[np.isin(path.parameter, at)]
+
+
+@pytest.mark.parametrize("harmonics", [(1,), (1, 2, 3)])
+def test_few_modes_and_the_contacts_themselves_have_the_same_solutions(harmonics):
+    condensed, found = stations(CONDENSED, harmonics)
+    whole, expected = stations(WHOLE, harmonics)
+    modes, parts = 3, 1 + 2 * len(harmonics)
+    assert (condensed.rank, whole.rank) == (modes * parts, 0)
+    assert len(found) == 3
+    np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected[:, :-1]).max())
+    whole.evaluate(expected[1])
+    assert whole.differs()  # contacts slip or separate
+
+
+def test_modes_that_yield_too_much_to_be_left_out_are_taken_after_all():
+    left_out = CondensedOptions(fewest=1, share=1.0, stiff=(1e9,), corrections=1)
+    problem, found = stations(left_out, (1,))
+    expected = stations(WHOLE, (1,))[1]
+    np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected[:, :-1]).max())
+    assert problem.condensed is not None and problem.condensed.modes > 3
+
+
+def test_many_contacts_make_no_arrays_of_ports_by_ports():
+    problem = System(strip(contacts=80), (1, 2, 3)).balance()
+    assert problem.rank == 3 * 7
+    assert np.asarray(problem.seen.G_re).size == 0
+    assert np.asarray(problem.jacobian).shape == (problem.unknowns, 1)
+
+
+@pytest.mark.parametrize("stiff", [0.3, 1.0])
+def test_modes_left_out_that_yield_as_much_as_contacts_are_in_the_solutions(stiff):
+    """As in a joint, where no mode is stiff beside the contacts."""
+    soft = {"kept": (1.0, 1.6, 2.7), "stiff": (4.7, 5.3, 6.1)}
+    solutions = []
+    for options in (CondensedOptions(fewest=1, share=1.0, stiff=(stiff,)), WHOLE):
+        system = System(strip(**soft), (1, 3), condensing=options)
+        problem, at = system.balance(), (1.0, 1.15, 1.3)
+        path = follow(problem, np.append(np.zeros(problem.unknowns), 0.9), (0.9, 1.5), Events(at))
+        solutions.append(path.z[np.isin(path.parameter, at)])
+        if options is not WHOLE:
+            left_out = system.yields[system.yields <= stiff]
+            assert problem.condensed is not None and problem.condensed.modes < 6 and left_out.max() > 0.05
+    found, expected = solutions
+    assert len(found) == 3
+    np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected[:, :-1]).max())
+
+
+def test_what_is_not_finite_is_refused_without_a_warning():
+    newton = Newton(System(strip(), (1,), condensing=CONDENSED).balance())
+    newton.z[:] = np.append(np.full(newton.problem.unknowns, np.nan), 1.0)
+    newton.row[:] = np.append(np.zeros(newton.problem.unknowns), 1.0)
+    assert not newton.correct(1.0)
+
+
+def test_linear_responses_at_many_frequencies_take_one_matrix_at_a_time():
+    """All at once they took 1.6 GB for 800 contacts."""
+    system, ports = System(many_contacts(40)), 80
+    frequencies = np.linspace(0.5, 1.5, 60)
+    system.linear.at(1.0)
+    tracemalloc.start()
+    foresee(system, frequencies)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    (G,), (X,) = system.linear.at(frequencies[7])
+    stuck = system.springs(stuck=True)
+    assert system.on_ports[frequencies[7]][1, 0] == pytest.approx(
+        np.linalg.solve(np.eye(ports) + G * stuck, X)
+    )
+    assert most < 16 * ports**2 * 16
+
+
+def test_rounding_of_many_contacts_is_that_of_random_errors():
+    """Three times the root of the sum of squares of the inverse of the whole system times each error."""
+    system = System(mostly_stuck(), (1, 3), condensing=EVERY_MODE)
+    balance = system.balance()
+    path = follow(balance, np.append(np.zeros(balance.unknowns), 0.9), (0.9, 1.5), Events((1.15,)))
+    (i,) = np.flatnonzero(path.parameter == 1.15)
+    balance.evaluate(path.z[i])
+    errors = np.random.default_rng(4).uniform(0.5, 1.0, balance.unknowns)
+    found = _moved(balance, path.z[i], path.direction[i], errors)
+    scale = np.array(balance.scale)
+    row = path.direction[i] / scale
+    matrix = np.vstack((jacobian_of(balance) * scale, row / np.linalg.norm(row)))
+    inverse = np.linalg.inv(matrix)[:-1, :-1]
+    np.testing.assert_array_less(found, 3.0 * scale[:-1] * (np.abs(inverse) @ errors) * (1.0 + 1e-6))
+    typical = 3.0 * scale[:-1] * np.sqrt(np.square(inverse * errors).sum(axis=1))
+    assert 0.8 < np.sqrt(np.mean(np.square(found / typical))) < 1.25
+
+
+def test_rounding_between_points_that_are_looked_at_is_the_greater_of_theirs(monkeypatch):
+    scene = mostly_stuck()
+    hard = tuple(replace(one, k_u=1e3, k_v=1e3, n_0=10.0) for one in scene.contacts)
+    system = System(replace(scene, contacts=hard), (1,), condensing=EVERY_MODE)
+    balance = system.balance()
+    path = follow(balance, np.append(np.zeros(balance.unknowns), 0.9), (0.9, 1.5))
+    monkeypatch.setattr(rounding, "STIFF", 0.0)
+    roundings = []
+    for points in (10**6, 3):
+        monkeypatch.setattr(rounding, "POINTS", points)
+        roundings.append(rounding.with_digits(system, recorded(system, [path]))[1])
+    every, some = roundings
+    last = len(path.z) - 1
+    looked = [0, round(0.5 * last), last]
+    assert last > 4 and every.min() > 0.0
+    np.testing.assert_array_equal(some[looked], every[looked])
+    for a, b in itertools.pairwise(looked):
+        between = some[a + 1 : b]
+        np.testing.assert_array_equal(between, np.tile(np.maximum(every[a], every[b]), (len(between), 1)))

@@ -1,0 +1,50 @@
+"""Curves of the level of the forces of which only the passings of the level 1 matter."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fcm.branches import force_level
+from fcm.branches.force_level import BEFORE, LEVELS, LONG, STEP, LevelOptions, level_curve, looked_at
+from fcm.branches.linear_limits import highest, least
+from fcm.harmonic_balance.system import System
+from fcm.scene import load_scene
+
+from .strips import strip
+
+
+def test_a_hasty_curve_of_many_contacts_comes_to_the_same_with_less():
+    """Against the same curve by way of all its corners, of ten contacts; they are followed up to a level."""
+    system = System(load_scene("blade").each_curve()[0], (1, 2, 3))
+    hasty = careful = passed = 0
+    for omega in looked_at(system):
+        linear, top = BEFORE * least(system, omega), min(highest(system, omega), 20.0)
+        if linear >= top:
+            continue
+        one = level_curve(system, omega, (0.0, top), LONG, (1.0,), linear, hasty=True, lightly=True)
+        other = level_curve(system, omega, (0.0, top), STEP, (1.0,), linear)
+        there, true = (path.z[path.parameter == 1.0, :-1] for path in (one, other))
+        assert there == pytest.approx(true, abs=1e-9 * np.abs(other.z[:, :-1]).max())
+        hasty, careful = hasty + one.evaluations, careful + other.evaluations
+        passed += len(true)
+    assert passed > 1
+    assert hasty < 1.03 * careful, (hasty, careful)
+
+
+def test_with_many_contacts_the_level_is_followed_no_further_than_allowed(monkeypatch):
+    """To the same solutions, with less; strips of stiff contacts slip and open at ever higher levels."""
+    one = strip(n_0=12.0)
+    contacts = tuple(replace(c, n_0=c.n_0 * (1.0 + i) ** 2) for i, c in enumerate(one.contacts))
+    system = System(replace(one, contacts=contacts))
+    taken, found = [], []
+    assert all(highest(system, omega) > LEVELS.most for omega in looked_at(system))
+    for contacts in (LEVELS.contacts, 10**6):
+        monkeypatch.setattr(force_level, "LEVELS", LevelOptions(contacts))
+        before = system.work.seconds
+        found.append([force_level.solutions(system, omega) for omega in looked_at(system)])
+        taken.append(system.work.seconds - before)
+    for near, far in zip(*found, strict=True):
+        assert near.complete and len(near.solutions) == len(far.solutions) > 0
+        assert np.allclose(near.solutions, far.solutions, rtol=1e-9, atol=1e-12)
+    assert taken[0] < 0.8 * taken[1]

@@ -1,0 +1,245 @@
+"""Exact curves without the contacts that keep their state: the same motion, and checked to be."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fcm.continuation import Events, FollowOptions
+from fcm.model.scene import Held, Load
+from fcm.reduction import constant_state_contacts
+from fcm.response import exact_curve, orbit_curve, resumable_branches
+from fcm.response.exact import trace_exact
+from fcm.response.resumable_branches import Leg, Legs, TimeOver
+from fcm.run import Report
+from fcm.scene import Contact, Force, Modal, Scene
+from fcm.shooting.harmonic_balance_state import balanced_states
+from fcm.shooting.initial_orbits import first_point, near_balance
+from fcm.shooting.problem import OrbitProblem
+from fcm.time_domain import simulate
+
+SAME = 1e-8  # of amplitudes, of curves that are known to a few 1e-10
+OMEGA = 1.2  # of the one point that is looked at
+
+
+def contact(along, across, n_0, name):
+    return Contact(name, np.array(along), np.array(across), 0.3, 2.0, 3.0, n_0)
+
+
+@pytest.fixture(scope="module")
+def scene():
+    """A contact that slips, one that always sticks, pressed by a load, and one that is always open."""
+    modal = Modal(
+        ("x", "y", "z"), np.array([1.0, 1.2, 0.8]), np.array([1.0, 1.6, 2.9]), np.array([0.02, 0.03, 0.02]),
+        np.array([[0.7, 0.3, 0.4], [0.5, -0.8, 0.2], [0.3, 0.4, -0.9]]),
+    )  # fmt: skip
+    contacts = (
+        contact([1.0, 0.0, 0.0], [0.0, 0.5, 0.2], 2.0, "slips"),
+        contact([0.0, 1.0, 0.0], [0.0, 0.0, 1.0], 30.0, "sticks"),
+        contact([0.0, 0.0, 1.0], [1.0, 0.0, 0.0], -300.0, "open"),
+    )
+    return Scene(
+        "three", modal, contacts, (Force(np.array([1.0, 0.0, 0.0]), 1.0, 0.0),), (0.9, 1.5), 0.1,
+        name="three", reported=("x", "y", "z"), loads=(Load(np.array([0.0, 0.4, 0.0]), 1.0),),
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def lightened(scene):
+    """The scene without the two that keep their state, and a point of its exact curve."""
+    w = constant_state_contacts.resting(scene)
+    light = scene.holding((Held(1, scene.contacts[1], False, w[1]), Held(2, scene.contacts[2], True)))
+    problem, orbit = OrbitProblem(light), next(near_balance(light, OMEGA))
+    return light, problem.shot(first_point(problem, orbit))
+
+
+@pytest.fixture(scope="module")
+def responses(scene):
+    return trace_exact(scene), trace_exact(scene, tolerance=None)
+
+
+@pytest.mark.slow
+def test_contacts_that_keep_their_state_are_left_out_and_told(responses):
+    light, whole = responses
+    assert len(light.left_out) == 2
+    assert light.left_out[0].startswith(
+        "the transitions of contact sticks, which sticks all over the range: "
+    )
+    assert light.left_out[1].startswith("the transitions of contact open, which is open all over the range: ")
+    assert whole.left_out == [] and whole.curves[0].orbits.held.size == 0
+    kept = light.curves[0].orbits.held
+    assert np.isfinite(kept).tolist() == [[False, False], [True, False], [False, True]]
+    assert (kept[np.isfinite(kept)] > 0.2).all()
+
+
+def test_the_curve_is_that_with_all_contacts(responses):
+    light, whole = (response.curves[0] for response in responses)
+    assert light.complete and whole.complete
+    for dof, peak in whole.peaks.items():
+        assert light.peaks[dof].amplitude == pytest.approx(peak.amplitude, rel=SAME)
+    assert set(light.regime[:, 1]) == {"E"} and set(light.regime[:, 2]) == {"S"}
+    assert set(light.regime[:, 0]) == set(whole.regime[:, 0]) != {"E"}
+    for end in (0, -1):
+        assert light.amplitude[end] == pytest.approx(whole.amplitude[end], rel=SAME)
+        assert light.cycle[end] == pytest.approx(whole.cycle[end], rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.slow
+def test_of_a_sweep_it_is_told_in_how_many_curves(scene):
+    """The load of the second contact: it sticks in one of the two, and slips in the other."""
+    weak = replace(
+        scene, contacts=(scene.contacts[0], replace(scene.contacts[1], n_0=0.1), scene.contacts[2])
+    )
+    response = trace_exact(replace(scene, curves=(scene, weak)))
+    assert "which sticks all over the range of 1 of 2 curves: " in response.left_out[0]
+    assert "which is open all over the range: " in response.left_out[1]
+    assert {len(row) for row in response.curves[1].regime} == {3}
+
+
+def test_a_point_is_a_motion_of_all_contacts(scene, lightened):
+    """Marched for some periods with all contacts, the state comes back."""
+    light, first = lightened
+    state = constant_state_contacts.whole_state(light, first.state)
+    motion = simulate(scene, OMEGA, 3, state)
+    assert motion.cycles[0].states == constant_state_contacts.whole_states(light, first.cycle.states)
+    assert motion.end.q == pytest.approx(state.q, abs=1e-9)
+    assert motion.end.friction == pytest.approx(state.friction, abs=1e-9)
+
+
+def test_what_a_contact_keeps_is_that_of_its_motion(scene, lightened):
+    """Of its slip limit and of its gap, sampled from a motion with all contacts."""
+    light, first = lightened
+    motion = simulate(scene, OMEGA, 1, constant_state_contacts.whole_state(light, first.state))
+    cycle = motion.cycles[0]
+    rows = np.zeros((3, cycle.system.size))
+    rows[0, cycle.system.f.start + 1] = rows[1, cycle.system.n.start + 1] = 1.0
+    rows[2, cycle.system.n.start + 2] = 1.0
+    force, load, gap = cycle.values(rows, np.linspace(0.0, cycle.duration, 4001)).T
+    limit = 0.3 * (30.0 + load)
+    expected = [(limit - np.abs(force)).min() / limit.max(), (300.0 - gap).min() / (300.0 - gap).max()]
+    assert first.kept == pytest.approx(expected, rel=1e-5)
+
+
+@pytest.mark.slow
+def test_beside_points_that_are_not_kept_no_other_motions_are_sought(scene, monkeypatch):
+    """They are the waste of a curve that is followed again: here it is seen of its points alone."""
+    w, sought = constant_state_contacts.resting(scene), []
+    wrong = tuple(Held(i, one, False, w[i]) for i, one in enumerate(scene.contacts[:1]))
+    monkeypatch.setattr(exact_curve, "expected_constant", lambda *_: wrong)
+    monkeypatch.setattr(exact_curve, "_watched", None)
+    monkeypatch.setattr(orbit_curve, "not_unique", spied(orbit_curve.not_unique, sought))
+    (curve,) = trace_exact(scene).curves
+    assert curve.complete and not curve.orbits.held.size
+    assert len(sought) == 1
+
+
+@pytest.mark.slow
+def test_a_curve_goes_on_where_a_contact_has_lost_its_state(scene, monkeypatch):
+    """From a motion of the contacts that are computed then, as all before are; to the curve of them all."""
+    weak = (scene.contacts[0], replace(scene.contacts[1], n_0=2.0), scene.contacts[2])
+    scene, calls = replace(scene, contacts=weak), []
+    wrong = (Held(1, weak[1], False, constant_state_contacts.resting(scene)[1]), Held(2, weak[2], True))
+    monkeypatch.setattr(exact_curve, "expected_constant", lambda *_: wrong)
+    monkeypatch.setattr(resumable_branches, "follow", spied(resumable_branches.follow, calls))
+    (curve,) = trace_exact(scene).curves
+    assert curve.complete and np.isfinite(curve.orbits.held).tolist()[1:] == [[False, False], [False, True]]
+    begun = [(args[0], there) for args, options in calls if (there := options["checkpoint"]) is not None]
+    assert len(begun) == 1
+    problem, checkpoint = begun[0]
+    assert len(checkpoint.kept.before.z) > 10
+    for z in (*checkpoint.kept.before.z, checkpoint.z):
+        assert problem.shot(z).residual < 1e-9 and problem.shot(z).cycle.states[1] == "E"
+    (whole,) = trace_exact(scene, tolerance=None).curves
+    for dof, peak in whole.peaks.items():
+        assert curve.peaks[dof].amplitude == pytest.approx(peak.amplitude, rel=SAME)
+
+
+def spied(function, calls):
+    """The same function, its calls noted."""
+
+    def spy(*args, **options):
+        calls.append((args, options))
+        return function(*args, **options)
+
+    return spy
+
+
+@pytest.mark.slow
+def test_a_contact_that_does_not_keep_its_state_is_computed_after_all(scene, responses, monkeypatch):
+    """Foreseen wrongly: the first contact, which slips, and the last, which is open, as sticking."""
+    w = constant_state_contacts.resting(scene)
+    wrong = tuple(Held(i, one, False, w[i]) for i, one in enumerate(scene.contacts))
+    monkeypatch.setattr(exact_curve, "expected_constant", lambda *_: wrong)
+    response = trace_exact(scene)
+    assert [text.split(",")[0] for text in response.left_out] == ["the transitions of contact sticks"]
+    curve, whole = response.curves[0], responses[1].curves[0]
+    assert curve.peaks["x"].amplitude == pytest.approx(whole.peaks["x"].amplitude, rel=SAME)
+    assert set(curve.regime[:, 2]) == {"S"}
+
+
+def test_with_a_contact_that_loses_its_state_no_curve_is_followed_to_its_end(scene, monkeypatch):
+    w, finished, made = constant_state_contacts.resting(scene), [], exact_curve.orbit_curve
+    wrong = tuple(Held(i, one, False, w[i]) for i, one in enumerate(scene.contacts))
+
+    def noted(groups, *rest):
+        finished.append([one.place for one in groups[0].problem.scene.held])
+        return made(groups, *rest)
+
+    monkeypatch.setattr(exact_curve, "expected_constant", lambda *_: wrong)
+    monkeypatch.setattr(exact_curve, "orbit_curve", noted)
+    assert trace_exact(scene).curves[0].complete
+    assert finished == [[1]]
+
+
+def over(*_):
+    raise TimeOver
+
+
+def test_a_limit_of_time_before_the_first_point(scene, monkeypatch):
+    """In the balance that tells which contacts keep their state; and where the first motion is sought."""
+    curve = trace_exact(scene, limit=1e-9).curves[0]
+    assert curve.points == 0 and curve.reason == "not finished in 1e-09 s of processor time, at the start"
+    monkeypatch.setattr(exact_curve, "explore", over)
+    curve = trace_exact(scene, limit=100.0).curves[0]
+    assert curve.points == 0 and curve.reason == "not finished in 100 s of processor time, at the start"
+
+
+def test_the_balance_that_guesses_come_from_is_ended_by_a_look(scene):
+    assert balanced_states(scene, 1.2)
+    with pytest.raises(TimeOver):
+        balanced_states(scene, 1.2, over)
+
+
+def test_contacts_are_foreseen_only_with_room(scene):
+    found = constant_state_contacts.expected_constant(scene)
+    assert [(one.place, one.open) for one in found] == [(1, False), (2, True)]
+    weaker = replace(
+        scene, contacts=(scene.contacts[0], replace(scene.contacts[1], n_0=3.0), scene.contacts[2])
+    )
+    assert [one.place for one in constant_state_contacts.expected_constant(weaker)] == [2]
+
+
+def test_a_stiff_contact_is_not_replaced_by_a_spring(scene):
+    """Its force, computed from displacements, would have fewer digits."""
+    stiff = replace(scene.contacts[1], k_u=1e6, mu=1e6)
+    other = replace(scene, contacts=(scene.contacts[0], stiff, scene.contacts[2]))
+    assert [one.place for one in constant_state_contacts.expected_constant(other)] == [2]
+
+
+def test_what_is_saved_of_other_unknowns_is_not_gone_on_with(scene):
+    """A run that is resumed may hold other contacts at first than the one that was interrupted."""
+    light = scene.holding((Held(2, scene.contacts[2], True),))
+    saved: list[object] = []
+    first = OrbitProblem(scene)
+    z = first_point(first, next(near_balance(scene, 0.9)))
+    Legs(scene.frequency_range, Report(lambda *_: None, save=saved.append))(
+        first, z, scene.frequency_range, Events(), FollowOptions(0.1), forward=True
+    )
+    assert isinstance(saved[-1], Leg)
+    problem = OrbitProblem(light)
+    z = first_point(problem, next(near_balance(light, 0.9)))
+    legs = Legs(scene.frequency_range, Report(lambda *_: None, saved))
+    path = legs(problem, z, scene.frequency_range, Events(), FollowOptions(0.1), forward=True)
+    assert path.z.shape[1] == z.size

@@ -1,0 +1,203 @@
+"""Exact curves that are interrupted while other motions are sought, or peaks alone, or irregular motions."""
+
+from __future__ import annotations
+
+import pickle
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fcm
+from fcm.response import exact_curve, friction_extent, resumable_branches
+from fcm.response.groups import KINDS
+from fcm.response.orbit_curve import orbit_curve
+from fcm.results.orbits import Stuck
+from fcm.run.records import unpacked
+from fcm.shooting import orbit_record, problem, trace
+from fcm.shooting.period_doubling import Doubled
+
+from ..interrupted import interrupted_after, interrupted_beyond
+from ..time_domain.cases import yang
+from .curves import between, curve_of
+
+SCENES = Path(__file__).parent / "scenes"
+AT = [1.4, 1.45, 1.5]  # up and down
+EXTENT = ("family_least", "family_greatest", "family_complete")
+
+
+@pytest.fixture(scope="module")
+def scene():
+    """One of two contacts never slips, and its residual friction decides what the other does."""
+    found = fcm.load_scene(SCENES / "not_unique.toml")
+    return replace(found, frequency_range=(1.4, 1.5), max_step=0.2)
+
+
+@pytest.fixture
+def searched(monkeypatch):
+    """How often an extent is sought, and how often it may be before an interruption; None without one."""
+
+    class Searched:
+        times = 0
+        most: int | None = None
+
+        def __init__(self):
+            self.family = friction_extent.family
+
+        def __call__(self, *args):
+            *_, poll = args
+            poll()
+            if self.times == self.most:
+                raise KeyboardInterrupt
+            self.times += 1
+            return self.family(*args)
+
+    found = Searched()
+    monkeypatch.setattr(friction_extent, "family", found)
+    return found
+
+
+def assert_same(one, other):
+    for name in ("frequency", "amplitude", "regime", "stable"):
+        np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
+    for name in EXTENT:
+        np.testing.assert_array_equal(getattr(one.orbits, name), getattr(other.orbits, name))
+
+
+@pytest.mark.parametrize("at", [None, AT])
+def test_points_are_kept_and_extents_found_again(scene, searched, tmp_path, at):
+    whole = curve_of(scene, at=at)
+    searched.times, searched.most = 0, 0
+    first = curve_of(scene, at=at, keep=tmp_path / "kept")
+    assert not first.complete and first.reason.startswith("interrupted at its end")
+    np.testing.assert_array_equal(first.amplitude, whole.amplitude)
+    known = np.isfinite(whole.orbits.family_greatest).all(axis=1)
+    assert known.any() and np.isnan(first.orbits.family_greatest).all()
+    assert (first.orbits.family_complete[known] == 0.0).all()
+    searched.most = None
+    assert_same(curve_of(scene, at=at, keep=tmp_path / "kept", resume=True), whole)
+
+
+def test_extents_that_were_found_are_not_sought_again(scene, searched, tmp_path):
+    whole = curve_of(scene, at=AT)
+    every, searched.times, searched.most = searched.times, 0, 1
+    first = curve_of(scene, at=AT, keep=tmp_path / "kept")
+    told = first.orbits.family_complete == 1.0
+    assert set(first.frequency[told]) == {AT[0]}
+    searched.most = None
+    assert_same(curve_of(scene, at=AT, keep=tmp_path / "kept", resume=True), whole)
+    assert searched.times == every
+
+
+def test_after_an_interruption_no_other_motions_are_sought(scene, searched):
+    """What was asked for is the end, not what takes longer than the curve itself."""
+    curve = curve_of(scene, progress=interrupted_after(3))
+    assert curve.points > 0 and curve.reason.startswith("interrupted at 1.")
+    assert searched.times == 0
+
+
+def test_of_a_run_that_goes_on_and_is_stopped_at_once_there_is_all_that_was(scene, monkeypatch, tmp_path):
+    """Before it has come to the curve again that was begun: nothing of that is lost."""
+    first = curve_of(scene, keep=tmp_path / "kept", progress=interrupted_after(5))
+    monkeypatch.setattr(trace, "starts", stopped)
+    again = curve_of(scene, keep=tmp_path / "kept", resume=True)
+    assert first.points > 0 and again.reason == first.reason
+    np.testing.assert_array_equal(again.amplitude, first.amplitude)
+
+
+@pytest.mark.slow
+def test_so_there_is_of_motions_of_two_periods(monkeypatch, tmp_path):
+    scene = between(fcm.load_scene(SCENES / "irregular.toml"), 1.2, 1.25)
+    begins, begun = Doubled.begins, []
+
+    def progress(_share, _text):
+        if begun:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(Doubled, "begins", lambda problem: begun.append(begins(problem)))
+    first = curve_of(scene, keep=tmp_path / "kept", progress=progress, periods=2)
+    assert set(first.orbits.repeats[np.isfinite(first.orbits.repeats)]) == {1.0, 2.0}
+    monkeypatch.setattr(trace, "starts", stopped)
+    again = curve_of(scene, keep=tmp_path / "kept", resume=True, periods=2)
+    np.testing.assert_array_equal(again.amplitude, first.amplitude)
+    np.testing.assert_array_equal(again.orbits.repeats, first.orbits.repeats)
+
+
+def stopped(*_):
+    raise KeyboardInterrupt
+
+
+def test_of_peaks_alone_those_that_were_found_are_kept(monkeypatch):
+    scene = between(yang(), 1.1, 1.3)
+    whole, steps = curve_of(scene, only="peaks"), []
+    monkeypatch.setattr(exact_curve, "peaks_alone", stopped_after(2, exact_curve.peaks_alone, steps))
+    curve = curve_of(scene, only="peaks")
+    found = curve.frequency[np.isfinite(curve.frequency)]
+    assert 0 < found.size < np.isfinite(whole.frequency).sum()
+    assert set(found) <= set(whole.frequency) and (np.diff(found) > 0.0).all()
+    assert not curve.complete and curve.reason.startswith("interrupted at 1.")
+
+
+def stopped_after(count, peaks_alone, steps):
+    """The same search, interrupted after so many of its places."""
+
+    def search(scene, known, report, poll):
+        def shown(share, text):
+            steps.append(text)
+            if len(steps) > count:
+                raise KeyboardInterrupt
+            report(share, text)
+
+        return peaks_alone(scene, known, shown, poll)
+
+    return search
+
+
+def test_a_sweep_of_motions_that_repeat_after_two_periods_goes_on(tmp_path):
+    """What was visited is there, and one more before the interruption is seen."""
+    scene, keep = fcm.load_scene(SCENES / "two_periods.toml"), tmp_path / "kept"
+    first = curve_of(scene, at=[2.02, 2.031], keep=keep, progress=interrupted_after(2))
+    assert first.orbits.repeats.max() == 2
+    again = curve_of(scene, at=[2.02, 2.031], keep=keep, resume=True, progress=interrupted_after(0))
+    np.testing.assert_array_equal(again.amplitude[:-1], first.amplitude)
+
+
+def test_a_curve_with_motions_beside_it_is_kept():
+    """A record of it is read, of those that a run which is resumed goes on from."""
+    curve = curve_of(between(yang(), 1.2, 1.21))
+    curve.orbits.stuck = [Stuck(1.2, ("E",), np.zeros(1), np.ones(2), np.ones(2))]
+    (kept,) = unpacked(pickle.dumps([curve]), KINDS)
+    assert kept.orbits.stuck[0].states == ("E",)
+
+
+@pytest.mark.slow
+def test_what_lies_between_points_is_not_sought_when_there_is_no_time(monkeypatch):
+    """To find where stability is lost takes longer than the points themselves."""
+    scene = between(fcm.load_scene(SCENES / "two_periods.toml"), 2.01, 2.05)
+    whole = curve_of(scene)
+    monkeypatch.setattr(orbit_record, "crossing", None)
+    curve = curve_of(scene, progress=interrupted_beyond(0.8))
+    assert curve.reason.startswith("interrupted at 2.0")
+    assert set(curve.stable) == set(whole.stable[np.isfinite(whole.stable)]) == {0.0, 1.0}
+    assert set(curve.frequency) < set(whole.frequency)
+
+
+def test_of_a_curve_whose_time_is_over_no_period_is_computed_again(monkeypatch):
+    """Its points were recorded when the curve came to them, and nothing else of them is remembered."""
+    looks, before = iter(range(60)), []
+
+    def poll(self):
+        if next(looks, None) is None:
+            raise resumable_branches.TimeOver
+
+    def made(groups, *rest):
+        before.append(groups[0].problem.periods)
+        return orbit_curve(groups, *rest)
+
+    monkeypatch.setattr(resumable_branches.Clock, "poll", poll)
+    monkeypatch.setattr(problem, "KEPT", 0)
+    monkeypatch.setattr(exact_curve, "orbit_curve", made)
+    curve = curve_of(yang(5.0), limit=100.0)
+    assert curve.reason.startswith("not finished in 100 s") and np.isfinite(curve.amplitude).sum() > 20
+    assert curve.orbits.periods == before[0] > 100

@@ -1,0 +1,96 @@
+"""The least peak over a number, and the way down over several, of peaks that are known functions."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fcm.cli.track import as_table
+from fcm.results.tracked import Optimal
+from fcm.tracking.minimax import Valley, downhill
+from fcm.tracking.options import DESCENT
+from fcm.tracking.peak_envelope import Height, least
+from fcm.tracking.trials import by_trials
+
+EDGE = 0.37  # of the first number: below it another, higher peak is there, which no way leads to
+
+
+class Known(Valley):
+    """A valley whose peaks are a slope along the first number and a parabola along the second."""
+
+    def __init__(self):
+        self.lowest, self.options = None, DESCENT
+
+    def peaks(self, q):
+        return ["slope", "higher"] if q[0] < EDGE else ["slope"]
+
+    def moved(self, member, q, to):
+        return member
+
+    def height(self, member, q):
+        if member == "higher":
+            return 3.0, np.zeros(2)
+        return 1.0 + q[0] + (q[1] - 0.8) ** 2, np.array([1.0, 2.0 * (q[1] - 0.8)])
+
+
+def test_the_way_down_ends_where_a_higher_peak_appears_that_was_not_followed():
+    """It stayed where it began: at the end of the way is a higher peak. (Along the edge leads no way.)"""
+    q, value, members = downhill(Known(), np.array([0.9, 0.1]))
+    assert EDGE <= q[0] < EDGE + 0.01 and members == ["slope"]
+    assert value == pytest.approx(1.0 + q[0] + (q[1] - 0.8) ** 2)
+    assert abs(q[1] - 0.8) < 0.5
+
+
+class Tried:
+    """Responses to a number from 0 to 1, some without a peak, in the order in which they are looked at."""
+
+    span = (0.0, 1.0)
+
+    def __init__(self, *heights):
+        self.heights, self.seen = list(heights), {}
+
+    def poll(self, value):
+        self.seen[value] = Height(self.heights.pop(0), 0.0, np.zeros(0), 0)
+
+
+def test_trials_where_some_responses_have_no_peak():
+    """The bracket was sought with infinite heights, and numpy warned of their differences."""
+    search = Tried(3.0, 2.0, 2.0, 1.0, 2.0, 2.0, 0.0, 0.0, 1.5, 1.4)
+    search.poll(np.float64(0.4))
+    found = by_trials(search)
+    assert (found.s, found.value) == (0.5, 1.0)
+
+
+class Straight:
+    """A piece of a curve of peaks, 2 + slope s, from one value to another."""
+
+    condition, spots = None, ()
+
+    def __init__(self, low, high, slope):
+        self.s, self.slope = np.array([low, high]), slope
+        self.height = 2.0 + slope * self.s
+
+    def covers(self, s):
+        return self.s[0] <= s <= self.s[1]
+
+    def roughly(self, s):
+        return 2.0 + self.slope * s
+
+    def at(self, s):
+        return Height(self.roughly(s), self.slope, np.array([s]), 0)
+
+
+def test_the_least_beside_a_gap_between_pieces():
+    """In the gap nothing is known: its heights were infinite, and numpy warned of their differences."""
+    way = SimpleNamespace(span=(0.0, 1.0))
+    found = least(way, [Straight(0.0, 0.25, -1.0), Straight(0.5, 1.0, 1.0)])
+    assert found.s == pytest.approx(0.25, abs=1e-9) and found.value == pytest.approx(1.75, abs=1e-9)
+
+
+def test_least_peaks_of_several_numbers_by_trials_say_so():
+    found = Optimal(
+        {}, {"contact.c.n_0": 1.0, "contact.c.k_u": 2.0}, ("peak.u",), 3.0, (("u", 1.2),), "trials", (1,),
+        stable=(1.0,),
+    )  # fmt: skip
+    shown = as_table({"optimum": [found.summary("rad/s")], "tracked": {"what": "optimum"}}, "rad/s")
+    assert "contact.c.k_u = 2; along each number known by trials alone" in shown

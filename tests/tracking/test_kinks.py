@@ -1,0 +1,93 @@
+"""Where a tracked curve has no derivatives: at kinks, and where the response crosses itself."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fcm.harmonic_balance.dense_jacobian import jacobian_of
+from fcm.harmonic_balance.system import System
+from fcm.scene import load_scene
+from fcm.scene.draft import number_of
+from fcm.tracking import extended_system
+from fcm.tracking.extended_system import Condition, Kind
+from fcm.tracking.kinks import Circle
+from fcm.tracking.nonsmooth_continuation import Pieces, land
+from fcm.tracking.parameter_line import along
+from fcm.tracking.peak_check import is_top
+from fcm.tracking.starts import moved, special_points
+from fcm.tracking.tracked_point import Spot, Way
+
+RADIUS = 1e-4
+PEAK = Condition(Kind.PEAK, 0)
+
+
+@pytest.fixture(scope="module")
+def way():
+    scene = load_scene("yang1998-n5")
+    return Way(System(scene, (1,)), along(number_of(scene, "contact.shroud.n_0")), (4.0, 10.0))
+
+
+@pytest.fixture(scope="module")
+def spot(way):
+    """A peak, on which a curve of peaks runs through."""
+    here = moved(way.system, way.line.scene(way.system.scene, 5.0))
+    (_, z), *_ = special_points(here, [PEAK])[0]
+    return land(way, PEAK, np.append(z, 5.0))
+
+
+class Plane(SimpleNamespace):
+    """All solutions are those with z_2 = 0, and what is special is z_1; aside, near its zero, nothing is."""
+
+    scale = np.ones(3)
+
+    def surface(self, z):
+        if abs(z[1]) < self.blind * RADIUS < abs(z[0]):
+            raise np.linalg.LinAlgError
+        return z[2:], np.eye(3)[2:], z[1]
+
+
+@pytest.mark.parametrize(
+    ("blind", "ways"), [(0.0, 1), (1e-4, 0), (0.5, 0)], ids=["all", "none at the zero", "none about it"]
+)
+def test_a_circle_on_which_there_is_no_motion_leads_nowhere(blind, ways):
+    circle = Circle(Plane(blind=blind), np.zeros(3), np.eye(3)[0], RADIUS)
+    found = circle.changes(np.array([-RADIUS, 0.0, 0.0]))
+    assert [np.cos(one.angle) for one in found] == pytest.approx([1.0] * ways)
+
+
+@pytest.mark.parametrize(("cosine", "taken"), [(0.95, True), (0.5, False)], ids=["away", "passing by"])
+def test_from_a_kink_a_curve_goes_on_only_along_a_line_that_leads_away(way, spot, cosine, taken):
+    """A curve crosses the circle in both cases; its angle with the radius tells whether it is the way on."""
+    follower = Pieces(way, PEAK)
+    follower._use(None)
+    follower._measure(spot.z)
+    assert follower._solve(spot.z, follower.held)
+    follower._accept()
+    follower.spots = [follower._spot(follower.z, follower.t)]
+    there, scale = follower.z, np.array(follower.newton.scale)
+    aside = np.eye(there.size)[-1] - follower.t[-1] * follower.t
+    radius = cosine * follower.t + np.sqrt(1.0 - cosine**2) * aside / np.linalg.norm(aside)
+    follower.z = there - RADIUS * scale * radius
+    assert (follower._turn_to(there, RADIUS) is not None) == taken
+
+
+def test_where_the_response_crosses_itself_there_is_a_direction_and_no_peak(way, spot, monkeypatch):
+    """Exactly: of its Jacobian one row is nothing, and no matrix closed by another can be solved."""
+    problem = way.tracked(PEAK)
+    problem.measure(spot.z)
+
+    def crossed(balance):
+        found = jacobian_of(balance)
+        found[0] = 0.0
+        return found
+
+    monkeypatch.setattr(extended_system, "jacobian_of", crossed)
+    t = problem.along(spot.z)[0]
+    y = np.array(spot.z[:-1])
+    problem.varied.balance.evaluate(y)
+    assert np.linalg.norm(t) == pytest.approx(1.0)
+    assert crossed(problem.varied.balance) @ (np.asarray(problem.scale)[:-1] * t) == pytest.approx(
+        0.0, abs=1e-12
+    )
+    assert not is_top(problem, Spot(spot.z, spot.direction))

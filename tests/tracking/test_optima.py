@@ -1,0 +1,122 @@
+"""A search for optima that is interrupted: what was found is not sought again, and comes out the same."""
+
+from unittest.mock import Mock
+
+import netCDF4
+import numpy as np
+import pytest
+
+from fcm.response import optima
+from fcm.response.least_peak import Task, optimum
+from fcm.response.sweep import trace
+from fcm.results.tracked import Optimal
+from fcm.run import Checkpoint
+from fcm.scene import load_scene
+
+from ..oscillator import oscillator
+
+SCENE = oscillator("[response]\nfrequency = [0.8, 1.6]\n", damping=0.05) + (
+    '\n[optimum]\nvary = ["contact.shroud.n_0"]\nbounds = [[2.0, 20.0]]\nminimise = "peak.u"\n'
+    '[sweep]\n"contact.shroud.mu" = [0.4, 0.8]\n'
+)
+COMMAND = ("respond", "scene.toml", "--harmonics", "1", "-o")
+
+
+@pytest.fixture
+def scene(tmp_path):
+    (tmp_path / "scene.toml").write_text(SCENE)
+    return tmp_path / "scene.toml"
+
+
+@pytest.fixture
+def sought(monkeypatch):
+    """A counter of the searches that are begun, of which so many are finished and the next is interrupted."""
+
+    def interrupted_after(count, search=optimum):
+        begun = Mock()
+
+        def one(task, harmonics, progress):
+            begun()
+            if begun.call_count > count:
+                raise KeyboardInterrupt
+            return search(task, harmonics, progress)
+
+        monkeypatch.setattr(optima, "optimum", one)
+        return begun
+
+    return interrupted_after
+
+
+@pytest.mark.slow
+def test_an_interrupted_search_goes_on_from_the_optima_that_it_has_found(fcm, tmp_path, scene, sought):
+    assert fcm(*COMMAND, "whole.nc").code == 0
+    begun = sought(1)
+    done = fcm(*COMMAND, "a.nc")
+    assert done.code == 3 and begun.call_count == 2
+    assert "kept in a.nc.unfinished: continue with --resume" in done.err
+    begun = sought(1)
+    assert fcm(*COMMAND, "a.nc", "--resume").code == 0
+    assert begun.call_count == 1 and not (tmp_path / "a.nc.unfinished").exists()
+    with netCDF4.Dataset("a.nc") as a, netCDF4.Dataset("whole.nc") as whole:
+        assert set(a.variables) == set(whole.variables)
+        for name in a.variables:
+            np.testing.assert_array_equal(a[name][...], whole[name][...])
+
+
+@pytest.mark.slow
+def test_optima_are_kept_until_the_response_with_them_is_written(fcm, scene, sought, monkeypatch):
+    monkeypatch.setattr("fcm.response.optimum.trace", Mock(side_effect=KeyboardInterrupt))
+    done = fcm(*COMMAND, "a.nc")
+    assert done.code == 3 and "continue with --resume" in done.err
+    monkeypatch.setattr("fcm.response.optimum.trace", trace)
+    none = sought(0)
+    assert fcm(*COMMAND, "a.nc", "--resume").code == 0 and none.call_count == 0
+
+
+def found(task, harmonics, _progress):
+    """As a search would: the first of the scenes takes one harmonic, the second takes two."""
+    chosen = harmonics or ((1,) if task.scene.parameters["contact.shroud.mu"] == 0.4 else (1, 2))
+    return Optimal(task.scene.parameters, {"n": 3.0}, ("peak.u",), 2.0, (), "smooth", chosen), []
+
+
+def tasks_of(scene):
+    return [Task(curve, [], 1e-3) for curve in load_scene(scene).each_curve()]
+
+
+def test_what_is_sought_again_with_the_harmonics_of_all_is_kept_too(scene, sought, monkeypatch):
+    monkeypatch.setattr(optima, "enough", lambda _task, _found, harmonics: (harmonics, 0.0))
+    begun = sought(2, found)
+    with Checkpoint(scene.with_name("kept")) as kept:
+        first, stopped = optima.optima(tasks_of(scene), None, kept, None)
+    assert stopped and [one.harmonics for one, _ in first] == [(1,), (1, 2)] and begun.call_count == 3
+    for finished in (1, 0):  # the last is sought, and then known
+        begun = sought(finished, found)
+        with Checkpoint(scene.with_name("kept"), resume=True) as kept:
+            every, stopped = optima.optima(tasks_of(scene), None, kept, None)
+        assert not stopped and [one.harmonics for one, _ in every] == [(1, 2), (1, 2)]
+        assert begun.call_count == finished
+
+
+def test_optima_of_another_aim_are_sought_anew(scene, sought):
+    sought(9, found)
+    with Checkpoint(scene.with_name("kept")) as kept:
+        optima.optima(tasks_of(scene), (1,), kept, None)
+    scene.write_text(SCENE.replace("20.0]]", "19.0]]"))
+    begun = sought(2, found)
+    warned = pytest.warns(UserWarning, match="it is of another scene")
+    with Checkpoint(scene.with_name("kept"), resume=True) as kept, warned:
+        optima.optima(tasks_of(scene), (1,), kept, None)
+    assert begun.call_count == 2
+
+
+def test_where_the_forces_may_vanish_they_do(fcm, tmp_path):
+    """All amplitudes are 0 there, the greatest of which is one of them."""
+    aim = '\n[optimum]\nvary = ["level"]\nbounds = [[0.0, 0.5]]\nminimise = "greatest.u"\n'
+    text = oscillator("[response]\nfrequency = [1.1, 1.3]\n", damping=0.05) + aim
+    (tmp_path / "scene.toml").write_text(text)
+    done = fcm(*COMMAND, "a.nc")
+    assert (
+        done.code == 0
+        and "least greatest.u: 0 " in done.out + done.err
+        and "with level = 0" in done.out + done.err
+    )
