@@ -266,19 +266,23 @@ def _of_folds(
 def _with_nearest_folds(
     path: Path, amplitude: FloatArray, errors: Errors, pieces: Sequence[CurvePiece], options: PairOptions
 ) -> FloatArray:
-    """Errors (fold,), where these are not told the relative distances in frequency to the folds of pieces
-    whose amplitudes are nearest, of those where the frequency turns back to the same side; NaN where there is
-    none near."""
+    """Errors (fold,), where these are not told the relative distances in frequency to the nearest folds of
+    pieces, of those where the frequency turns back to the same side; NaN where there is none near.
+
+    Near is one whose amplitudes and frequency are both within `PairOptions.same`: with the same amplitudes
+    at another frequency it is another fold.
+    """
     error, folds = errors.fold.copy(), path.where(Mark.FOLD)
     for k in np.flatnonzero(np.isnan(error)).tolist():
         fold = int(folds[k])
         now, omega, side = amplitude[fold], path.parameter[fold], _side(path.parameter, fold)
-        least = options.same * now.max()
+        least, size = options.same, float(now.max()) or 1.0
         for piece in pieces:
             for i in piece.turns(float(np.sign(side))).tolist():
-                off = float(np.abs(piece.value[i, : len(now)] - now).max())
+                shift = abs(float(piece.frequency[i] / omega) - 1.0)
+                off = max(float(np.abs(piece.value[i, : len(now)] - now).max() / size), shift)
                 if off < least:
-                    least, error[k] = off, abs(float(piece.frequency[i] / omega) - 1.0)
+                    least, error[k] = off, shift
     return error
 
 

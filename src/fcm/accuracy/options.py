@@ -47,7 +47,8 @@ class PairOptions:
     tries : int
         Points at an end of a stretch, from which the partner is sought.
     same : float
-        Relative difference of amplitudes up to which the partner has come to the other end of a stretch.
+        Relative difference of amplitudes up to which the partner has come to the other end of a stretch; of
+        amplitudes and frequency, up to which a fold elsewhere is that of the curve.
     together : float
         Part of the length of a curve: of the greatest amplitudes of degrees of freedom that lie so closely
         together one tells for all what the harmonics do that are left out, and of tops and folds which.
