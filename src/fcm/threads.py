@@ -10,6 +10,7 @@ import threading
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from contextlib import AbstractContextManager
     from typing import Any
 
 _VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
@@ -26,10 +27,18 @@ def one_each() -> dict[str, str]:
     return dict.fromkeys(_VARIABLES, "1")
 
 
+def one_here() -> AbstractContextManager[object]:
+    """`one_thread()` for a program that uses this one as a library; nothing where its environment says how
+    many threads there are, as that of the command does."""
+    from contextlib import nullcontext
+
+    return nullcontext() if any(name in os.environ for name in _VARIABLES) else one_thread()
+
+
 class one_thread:  # noqa: N801
     """``with one_thread():`` in a process of others, where numpy has been imported with as many as it likes.
 
-    Needs threadpoolctl, without which it has no effect. The number is the whole process's: the first of the
+    The number is the whole process's: the first of the
     threads that are inside sets it, the last gives it back.
     """
 
@@ -50,8 +59,6 @@ class one_thread:  # noqa: N801
 
 
 def _limited() -> Any:
-    try:
-        from threadpoolctl import threadpool_limits
-    except ImportError:
-        return None
+    from threadpoolctl import threadpool_limits
+
     return threadpool_limits(1, user_api="blas")

@@ -273,3 +273,20 @@ def test_one_thread_of_linear_algebra_on_whatever_worker():
         counts = sweep(lambda *_: [threads()], [[1], [2]], place_of(executor)).results
     assert before and counts == {0: [[1] * len(before)], 1: [[1] * len(before)]}
     assert threads() == before
+
+
+def test_one_thread_of_linear_algebra_in_a_program_that_says_nothing_of_it(monkeypatch):
+    """Threads that wait for one another make a scene with many contacts ten times slower."""
+    from threadpoolctl import threadpool_info, threadpool_limits
+
+    def threads(*_):
+        return [[pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"]]
+
+    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+        monkeypatch.delenv(name, raising=False)
+    with threadpool_limits(2, user_api="blas"):
+        (before,) = threads()
+        assert set(before) == {2}
+        assert sweep(threads, [[1]]).results == {0: [[1] * len(before)]}
+        monkeypatch.setenv("OPENBLAS_NUM_THREADS", "2")  # the user's own number
+        assert sweep(threads, [[1]]).results == {0: [before]}

@@ -14,6 +14,7 @@ from fcm.run.checkpoint import Results
 from fcm.run.places import Again, Died, Factory, Gone, Here, Place, Threads
 from fcm.run.progress import Bar
 from fcm.run.work import Attempt, Batch, Compute, Lost, Progress, Report
+from fcm.threads import one_here
 
 POLL = 0.1  # [s] between two looks at the progress of others
 GRACE = 0.8  # [s] in which those who are asked to stop may hand over what they have
@@ -81,7 +82,8 @@ def sweep(
     Gone
         If the place takes nothing any more before anything is finished; later, as an interruption.
     """
-    return _Sweep(compute, batches, at or place_for(1), kept or Results(), progress).run()
+    with one_here():
+        return _Sweep(compute, batches, at or place_for(1), kept or Results(), progress).run()
 
 
 class _Sweep:
