@@ -277,6 +277,7 @@ def test_ctrl_c_before_there_is_anyone_to_say_so_ends_in_silence():
     """While the very module is loaded that takes signals: it is the first that the script loads."""
     early = """
 import os, signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job has it ignored
 class Finder:
     def find_spec(self, name, *_):
         if name == "fcm.signals":
