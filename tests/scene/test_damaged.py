@@ -90,12 +90,12 @@ def test_every_byte_of_a_universal_file(tmp_path):
 READER = """
 import os, sys
 from pathlib import Path
-from fcm.scene import apart
+from fcm.scene import reader_process
 import scipy.io
 
 path, values = Path(sys.argv[1]), [int(value) for value in sys.argv[2].split(",")]
 if sys.argv[3] == "unchecked":
-    apart.check_tags = lambda *_: None
+    reader_process.check_tags = lambda *_: None
 whole = path.read_bytes()
 ends = {}
 null = os.open(os.devnull, os.O_RDWR)
@@ -108,7 +108,7 @@ for offset in range(len(whole)):
         if not process:
             os.dup2(null, 1)
             os.dup2(null, 2)
-            apart.child([str(path), "1000000", "dofs", "mass", "frequency", "damping", "shapes"])
+            reader_process.child([str(path), "1000000", "dofs", "mass", "frequency", "damping", "shapes"])
             sys.stdout.flush()
             os._exit(0)
         status = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])

@@ -232,7 +232,7 @@ import os, sys
 from contextlib import suppress
 from pathlib import Path
 import scipy.io, scipy.sparse
-from fcm.scene import apart
+from fcm.scene import reader_process
 with suppress(ImportError):
     import pyyeti.nastran.op4
 
@@ -242,7 +242,7 @@ for path in sorted(folder.glob("case*")):
     if not process:
         os.dup2(os.open(path.with_name(f"out-{path.name}"), os.O_CREAT | os.O_WRONLY), 1)
         os.dup2(os.open(path.with_name(f"err-{path.name}"), os.O_CREAT | os.O_WRONLY), 2)
-        apart.child([str(path), "1000000"])
+        reader_process.child([str(path), "1000000"])
         sys.stdout.flush()
         os._exit(0)
     print(path.name, os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]))

@@ -32,7 +32,7 @@ IntArray = npt.NDArray[np.intp]
 __all__ = ["Bifurcation", "Crossing", "Inserted", "Stability", "stability", "with_points"]
 
 SPAN = 16  # points of one harmonic, which misses windows anyway, between two that are always looked at;
-SPAN_OF_MANY = 8  # with more harmonics
+SPAN_OF_MANY = 8  # of many contacts with more harmonics: each changes the growth by little
 DEVIATION = 1.0  # of the growth from a straight line, over its own size, that is followed up
 SAFE = -0.05  # growth that is not followed up
 ENOUGH = -0.3  # growth that is as good as any that is less
@@ -75,7 +75,7 @@ class _Along:
     def __init__(self, system: System, path: Path) -> None:
         self.path, self.verdicts = path, Verdicts(system, path)
         self.many = len(system.scene.contacts) >= MANY_CONTACTS
-        self.span = SPAN if len(system.harmonics) == 1 else SPAN_OF_MANY
+        self.span = SPAN if len(system.harmonics) == 1 else SPAN_OF_MANY if self.many else 1
 
     def run(self, beyond: npt.NDArray[np.bool_]) -> Stability:
         even = self._even()
