@@ -107,7 +107,7 @@ def test_direction_and_orientation_are_those_of_the_whole_system(scene, options,
     row = rng.normal(size=z.size)
     row /= np.linalg.norm(row)
     newton.scale[:], newton.row[:], newton.z[:] = scale, row, z
-    assert newton.poll()
+    assert newton.take_tangent()
     whole = np.vstack((jacobian(system, z) * scale / scale[:-1, None], row))
     tangent = np.linalg.solve(whole, np.append(np.zeros(z.size - 1), 1.0))
     np.testing.assert_allclose(newton.tangent, tangent / np.linalg.norm(tangent), atol=1e-6)
@@ -146,7 +146,7 @@ def test_contacts_that_begin_to_slip_or_open_are_taken_back():
             newton = Newton(one)
             newton.scale[:], newton.z[:] = one.scale, z
             newton.row[:] = np.append(np.zeros(problem.unknowns), 1.0)
-            assert newton.poll()
+            assert newton.take_tangent()
             tangents.append((newton.orientation, *newton.tangent))
         np.testing.assert_allclose(*tangents, atol=1e-7)
         holds.append(problem.condensed.holds)

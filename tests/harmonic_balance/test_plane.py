@@ -147,7 +147,7 @@ def test_multipliers_do_not_depend_on_the_steps():
         sequence = PlanarSequence(contact, system.harmonics)
         known = sequence.options
         sequence.options = replace(known, step=part * known.step, turn=part * known.turn)
-        assert sequence.poll(z)
+        assert sequence.find_events(z)
         linear = system.linear
         near = np.zeros(3, dtype=bool)
         monodromy = PlanarMonodromy(linear.ports, linear.natural, linear.damping, near, sequence)

@@ -29,7 +29,7 @@ def test_multipliers_are_those_of_states_put_together_anew(omega, n_0, yielding,
     contact = np.array([[c.mu, c.k_u, c.k_v, c.n_0] for c in system.scene.contacts])
     states = BalancedSequence(contact, [1, 2, 3])
     states.yielding = yielding
-    assert states.poll(z) and states.events > 12
+    assert states.find_events(z) and states.events > 12
     near = linear.ports[~far], linear.natural[~far], linear.damping[~far]
     soft = (linear.ports[far].T / linear.natural[far] ** 2) @ linear.ports[far]
     anew = Monodromy(Stiffness(*near, soft if follow else None, contact), states)

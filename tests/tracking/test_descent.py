@@ -49,14 +49,14 @@ class Tried:
     def __init__(self, *heights):
         self.heights, self.seen = list(heights), {}
 
-    def poll(self, value):
+    def greatest_at(self, value):
         self.seen[value] = Height(self.heights.pop(0), 0.0, np.zeros(0), 0)
 
 
 def test_trials_where_some_responses_have_no_peak():
     """The bracket was sought with infinite heights, and numpy warned of their differences."""
     search = Tried(3.0, 2.0, 2.0, 1.0, 2.0, 2.0, 0.0, 0.0, 1.5, 1.4)
-    search.poll(np.float64(0.4))
+    search.greatest_at(np.float64(0.4))
     found = by_trials(search)
     assert (found.s, found.value) == (0.5, 1.0)
 

@@ -366,12 +366,12 @@ class Parted(Search):
     def pieces(self):
         return self.curves
 
-    def poll(self, value):
+    def greatest_at(self, value):
         self.seen[value] = Height(self.between if 4.0 < value < 6.0 else value, 0.0, np.zeros(0), 0)
 
     def visit(self, value):
         self.visited.add(value)
-        self.poll(value)
+        self.greatest_at(value)
         self.curves += [line for line in (Line(1.0, 4.0), Line(6.0, 9.0)) if line.covers(value)]
         return self.seen[value].value
 

@@ -81,7 +81,7 @@ def _with_all(
         newton.scale[:], newton.z[:] = newton.problem.scale, one
         row = way / np.asarray(newton.scale)
         newton.row[:] = row / np.linalg.norm(row)
-        if not newton.poll():
+        if not newton.take_tangent():
             continue
         off = np.asarray(newton.problem.residual) / np.asarray(newton.scale)[:-1]
         if np.abs(off).max(initial=0.0) < options.driven:

@@ -23,4 +23,4 @@ cdef class Surface:
     cpdef bint put(self, double ahead, double aside) except -1
     cdef bint factor(self) except -1
     cdef double correct(self, double ahead, double aside) except -2
-    cdef bint poll(self) except -1
+    cdef bint take_tangents(self) except -1

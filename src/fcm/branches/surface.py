@@ -106,7 +106,7 @@ class Surface:
                 return False
             if step < self.close:
                 length: cython.double = self.share * sqrt(ahead * ahead + aside * aside)
-                return (step < max(self.flat, length) or self.factor()) and self.poll()
+                return (step < max(self.flat, length) or self.factor()) and self.take_tangents()
         return False
 
     @cython.cfunc
@@ -165,7 +165,7 @@ class Surface:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def poll(self) -> cython.bint:
+    def take_tangents(self) -> cython.bint:
         """The tangents and the test function, from the equations as they are factored."""
         n: cython.Py_ssize_t = self.n
         i: cython.Py_ssize_t

@@ -10,7 +10,7 @@ cdef class Newton(BorderedSystem):
     cpdef bint once(self) except -1
     cpdef bint halve(self, double reach) except -1
     cdef bint converges(self, double reach, double most) except -1
-    cpdef bint poll(self) except -1
+    cpdef bint take_tangent(self) except -1
     cdef bint settled(self, double step, double ratio, int count) except -1
     cdef bint too_far(self, double step, double before, double most, int count) except -1
     cdef bint noise(self, double step, int count) except -1

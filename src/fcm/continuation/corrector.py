@@ -173,7 +173,7 @@ class Newton(BorderedSystem):
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def poll(self) -> cython.bint:
+    def take_tangent(self) -> cython.bint:
         """Tangent and orientation at z as it stands; false if they are not determined there."""
         self.guess[:] = self.z
         return self.factor() and self.direct()

@@ -77,7 +77,7 @@ class ExtremumSearch:
         many = stepper.problem.outputs >= options.outputs
         self.high = options.high_of_many if many else options.high
         self.stepper, self.scale = stepper, np.array(stepper.newton.scale)
-        self.known = [self._poll(0.0, stepper.here), self._poll(stepper.step, stepper.there)]
+        self.known = [self._sample(0.0, stepper.here), self._sample(stepper.step, stepper.there)]
 
     def extreme(self, output: int | None) -> Sample:
         """Where an output is greatest, or without one the parameter, as near as the curve is found."""
@@ -96,15 +96,15 @@ class ExtremumSearch:
                 guess = self._corner(low, high, upper, again)
             else:
                 guess = _middle(low, high)
-            poll = self._put(*guess) or self._put(*_middle(low, high))
-            if poll is None:
+            sample = self._put(*guess) or self._put(*_middle(low, high))
+            if sample is None:
                 return high
-            side = self._slope(poll, output) * sense <= 0.0
-            better = abs(self._slope(poll, output)) < self.options.better * abs(
+            side = self._slope(sample, output) * sense <= 0.0
+            better = abs(self._slope(sample, output)) < self.options.better * abs(
                 self._slope(high if side else low, output)
             )
             again = again + 1 if side == upper else 0
-            upper, low, high = side, *((low, poll) if side else (poll, high))
+            upper, low, high = side, *((low, sample) if side else (sample, high))
         return high
 
     def _between(self, output: int | None) -> tuple[Sample, Sample]:
@@ -115,15 +115,15 @@ class ExtremumSearch:
         return self.known[0], self.known[-1]
 
     @staticmethod
-    def _slope(poll: Sample, output: int | None) -> float:
-        return float(poll.slope[-1] if output is None else poll.growth[output])
+    def _slope(sample: Sample, output: int | None) -> float:
+        return float(sample.slope[-1] if output is None else sample.growth[output])
 
-    def _is_root(self, poll: Sample, low: Sample, high: Sample, output: int | None) -> bool:
+    def _is_root(self, sample: Sample, low: Sample, high: Sample, output: int | None) -> bool:
         """Whether the extreme is higher than this by no more than rounding."""
-        now, size = abs(self._slope(poll, output)), abs(float(poll.z[-1]))
+        now, size = abs(self._slope(sample, output)), abs(float(sample.z[-1]))
         smooth, corner = self.options.turned, self.options.corner
         if output is not None:
-            size, smooth, corner = float(poll.output[output]), self.high, self.high
+            size, smooth, corner = float(sample.output[output]), self.high, self.high
         if now * (high.at - low.at) < corner * size:
             return True
         return now * now < 2.0 * smooth * self._bend(low, high, output) * size
@@ -152,11 +152,11 @@ class ExtremumSearch:
         stepper = self.stepper
         if not stepper.near(at, self.scale * guess):
             return None
-        poll = self._poll(at, stepper.between)
-        self.known = sorted((*self.known, poll), key=lambda one: one.at)
-        return poll
+        sample = self._sample(at, stepper.between)
+        self.known = sorted((*self.known, sample), key=lambda one: one.at)
+        return sample
 
-    def _poll(self, at: float, point: Point) -> Sample:
+    def _sample(self, at: float, point: Point) -> Sample:
         tangent = np.array(point.tangent)
         along = max(float(tangent @ np.asarray(self.stepper.here.tangent)), self.options.flat)
         growth = np.array(point.growth) / along

@@ -262,7 +262,7 @@ def _direction(stepper: Stepper, poll: FloatArray) -> FloatArray | None:
     newton = stepper.newton
     np.asarray(newton.row)[:] = poll / np.linalg.norm(poll)
     np.asarray(newton.z)[:] = np.asarray(stepper.here.z) + np.asarray(newton.scale) * poll
-    if not newton.poll():
+    if not newton.take_tangent():
         return None
     return np.array(newton.tangent) * (1.0 if newton.orientation == stepper.here.orientation else -1.0)
 

@@ -190,7 +190,7 @@ def onwards(stepper: Stepper, length: cython.double) -> cython.bint:
     With the orientation that it has here, which is the same in all pieces of a piecewise smooth curve.
     """
     i: cython.Py_ssize_t
-    if not stepper.newton.poll():
+    if not stepper.newton.take_tangent():
         return False
     sign: cython.double = 1.0 if stepper.newton.orientation == stepper.here.orientation else -1.0
     for i in range(stepper.here.z.shape[0]):

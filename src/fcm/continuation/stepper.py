@@ -116,7 +116,7 @@ class Stepper:
         moved: cython.double = self.newton.moved
         if not self.problem.labelled:
             return True
-        found: cython.bint = self.newton.poll()
+        found: cython.bint = self.newton.take_tangent()
         self.newton.moved = moved
         return found
 
@@ -239,7 +239,7 @@ class Stepper:
 
         That of the corrector is from before its last step.
         """
-        if not self.newton.poll():
+        if not self.newton.take_tangent():
             return False
         self.record(self.between, margins, outputs)
         return True

@@ -140,7 +140,7 @@ class _Solver:
         newton.scale[:] = newton.problem.scale
         newton.z[:] = z
         newton.row[:] = np.eye(z.size)[-1]
-        if along and newton.poll():
+        if along and newton.take_tangent():
             newton.row[:] = newton.tangent
         newton.z[:] = z
         return np.array(newton.z) if newton.correct(1.0) else None

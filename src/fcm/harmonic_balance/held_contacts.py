@@ -50,7 +50,7 @@ HELD = HeldOptions()  # where nothing else is said
 
 
 class HeldContacts:
-    """`poll` at the tangents first, then `factor` and `solve` the system condensed to `size - 1` forces.
+    """`choose` at the tangents first, then `factor` and `solve` the system condensed to `size - 1` forces.
 
     springs (port,): of all contacts stuck; counted (contact,): what of their normal springs is counted to
     the structure in the means. Tangents are (contact, part port, part port), the parts being the mean and the
@@ -81,7 +81,7 @@ class HeldContacts:
         self.ports, self.size, self.lost = np.zeros(0, dtype=np.intp), 0, 0.0
         self.solver = Solver(0)
 
-    def poll(self, tangent: FloatArray, most: int) -> bool:
+    def choose(self, tangent: FloatArray, most: int) -> bool:
         """Whether the condensed system is no larger than the most at tangents; it is ready to be factored
         then."""
         diagonal = tangent.diagonal(axis1=1, axis2=2).reshape(self.stuck.shape)

@@ -138,7 +138,7 @@ class Condensed:
         """
         self.by, self.row, self.scale = by.copy(), row / scale, scale.copy()
         self.ordered = self.tangent[:, self.order[:, None], self.order]
-        self.holds = self.held.poll(self.ordered, self.rank)
+        self.holds = self.held.choose(self.ordered, self.rank)
         return self.held.factor(self.row, self.by) if self.holds else self._factor()
 
     def _factor(self) -> float:

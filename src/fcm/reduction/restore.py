@@ -130,7 +130,7 @@ def _corrected(newton: Newton, z: FloatArray) -> FloatArray | None:
     newton.scale[:] = newton.problem.scale
     newton.z[:] = z
     newton.row[:] = np.eye(z.size)[-1]
-    if newton.poll():
+    if newton.take_tangent():
         newton.row[:] = newton.tangent
     newton.z[:] = z
     return np.array(newton.z) if newton.correct(1.0) else None

@@ -25,7 +25,6 @@ MOST = 20  # numbers that are fitted together
 RESPONSE_KEYS = ("dof", "level", "quantity", "amplitude_error", "frequency_error")
 BACKBONE_KEYS = ("dof", "mode", "frequency_error", "damping_error")
 MODE = Rule("a whole number of at least 1", low=1.0, whole=True)
-Column = tuple[str, Callable[[FloatArray], FloatArray], str]  # name, which values are wrong, what is right
 NOT_POSITIVE: Callable[[FloatArray], Any] = lambda values: ~(values > 0.0)  # noqa: E731
 NEGATIVE: Callable[[FloatArray], Any] = lambda values: ~(values >= 0.0)  # noqa: E731
 RIGHT = {

@@ -71,7 +71,7 @@ class Peak:
         self.z = np.array(z)
         if not edge:
             self.newton.scale[:], self.newton.z[:], self.newton.row[:] = self.scale, z, self.unit
-            if not self.newton.poll():
+            if not self.newton.take_tangent():
                 return
             self.unit = np.array(self.newton.tangent)
         point = self.solved(self.newton, z)
@@ -86,7 +86,7 @@ class Peak:
         if not newton.correct(1.0):
             return None
         point = np.array(newton.z)
-        return point if newton.poll() else None
+        return point if newton.take_tangent() else None
 
     def slope(self, newton: Newton, z: FloatArray) -> float:
         """Growth of the amplitude along the curve, over a unit of length, at a point just solved."""

@@ -8,7 +8,7 @@ cdef class BalancedSequence(StateSequence):
     cdef readonly int width, moving, held
     cdef public bint yielding
     cdef readonly double[:, ::1] contact
-    cpdef bint poll(self, double[::1] x) except -1
+    cpdef bint find_events(self, double[::1] x) except -1
     cdef bint contact_cycle(self, double[::1] x, int c) noexcept
     cdef bint opens(self) noexcept
     cdef double limit_at(self, int p) noexcept

@@ -23,7 +23,7 @@ else:
 
 @cython.cclass
 class BalancedSequence(StateSequence):
-    """`poll` at a motion finds its events.
+    """`find_events` at a motion finds its events.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class BalancedSequence(StateSequence):
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def poll(self, x: cython.double[::1]) -> cython.bint:
+    def find_events(self, x: cython.double[::1]) -> cython.bint:
         """Find the events of the motion x; false where a number is not finite."""
         c: cython.int
         self.events, self.moving, self.held = 0, 0, 0

@@ -65,8 +65,8 @@ def stability(system: System, path: Path, beyond: npt.NDArray[np.bool_] | None =
     """Stability of the points of a path followed in the frequency, and where it changes between folds.
 
     A fold counts to the stable side, a crossing to neither. What is stable with the balanced harmonics and
-    not with the next ones that their forces make, or the other way round, is nan; and so is what is beyond
-    belief (point,) and that the determinant allows to be stable, which is not looked at.
+    not with the next ones that their forces make, or the other way round, is nan; and so is what is
+    beyond (point,), too far from the motion, and that the determinant allows to be stable.
     """
     return _Along(system, path).run(np.zeros(path.z.shape[0], dtype=np.bool_) if beyond is None else beyond)
 
@@ -83,7 +83,7 @@ class _Along:
         crossings: list[Crossing] = []
         for first, end in runs(even & ~beyond):
             last = end - 1
-            self._poll(first, last)
+            self._judge(first, last)
             if not self.many:
                 self._hidden(first, last)
             places = self.verdicts.among(first, last)
@@ -105,7 +105,7 @@ class _Along:
         even: npt.NDArray[np.bool_] = (sign > 0.0) | self.verdicts.fold
         return even
 
-    def _poll(self, first: int, last: int) -> None:
+    def _judge(self, first: int, last: int) -> None:
         """Enough points of a run."""
         parts = max(-(-(last - first) // self.span), 1)
         angle = self.verdicts.rotation[first : last + 1]

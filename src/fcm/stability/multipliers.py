@@ -111,7 +111,7 @@ class Multipliers:
 
     def see(self, states: BalancedSequence | PlanarSequence, x: FloatArray) -> bool:
         """Let states look at the motion x; false where a number is not finite."""
-        return bool(states.poll(x))
+        return bool(states.find_events(x))
 
     def of_period(self, values: list[complex]) -> list[complex]:
         """The multipliers of a period from the eigenvalues of what the monodromy follows."""

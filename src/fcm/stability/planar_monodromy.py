@@ -127,7 +127,7 @@ class PlanarSequence:
         self.kernel = PlanarContact(list(self.harmonics), [1], self.options.panels)
         self.width = 3 + 6 * len(self.harmonics)
 
-    def poll(self, x: FloatArray) -> bool:
+    def find_events(self, x: FloatArray) -> bool:
         """Find the states of the motion x; false where a number is not finite, or a cycle is not found."""
         self.cycles = []
         for c, numbers in enumerate(self.contact):

@@ -118,7 +118,7 @@ class RingMultipliers(Multipliers):
         whole = np.empty((len(shift), self.contacts, states.width))
         whole[..., :d] = blocks[:, :d]
         whole[..., d:] = shifted.reshape(len(shift), self.contacts, d * count).view(np.float64)
-        return bool(states.poll(whole.ravel()))
+        return bool(states.find_events(whole.ravel()))
 
     def verdict(self, z: FloatArray, turning: bool = False, enough: Sequence[float] = ()) -> Verdict:
         """As `Multipliers.verdict`; in a part of a period multipliers turn by as much less towards -1."""

@@ -24,7 +24,7 @@ _ORDER = cython.declare(cython.int, 19)
 class Exits(Forced):
     """`watch` tells the exits on the steps of a block, `leave` their series in a step; see `Pool`.
 
-    What these need for a new frequency is made where it is needed, by `poll` and `expand`.
+    What these need for a new frequency is made where it is needed, by `make_columns` and `expand`.
     """
 
     def __init__(self, matrices: Matrices) -> None:
@@ -111,7 +111,7 @@ class Exits(Forced):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def poll(self, slot: cython.Py_ssize_t, steps: cython.Py_ssize_t) -> cython.void:
+    def make_columns(self, slot: cython.Py_ssize_t, steps: cython.Py_ssize_t) -> cython.void:
         """Make the columns of the table of exits up to so many steps, those that are not made yet.
 
         T[k + 1] = T[k] exp(A h).
@@ -165,7 +165,7 @@ class Exits(Forced):
         d: cython.double
         x: cython.double = y[k, n]
         other: cython.double = y[k, n + 1]
-        self.poll(slot, steps)
+        self.make_columns(slot, steps)
         for w in range(wide):
             seen[w] = self.table_forced[slot, 0, w] * x + self.table_forced[slot, 1, w] * other
         while i + 4 <= n:

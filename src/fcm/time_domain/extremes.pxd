@@ -10,7 +10,7 @@ cdef class Scan(Walk):
     cdef double[:, :, ::1] _values
     cdef double _first, _length
     cdef Py_ssize_t _steps(self, Py_ssize_t slot, double left) except -1 nogil
-    cdef void _poll(self, Py_ssize_t slot, Py_ssize_t k) noexcept nogil
+    cdef void _rows_at(self, Py_ssize_t slot, Py_ssize_t k) noexcept nogil
     cdef void _note_ends(self, Py_ssize_t count, double last) noexcept nogil
     cdef void _step(self, Py_ssize_t slot, Py_ssize_t k) noexcept nogil
     cdef void _spread(self, Py_ssize_t slot, Py_ssize_t k, Py_ssize_t last) noexcept nogil

@@ -92,7 +92,7 @@ class Scan(Walk):
                 self.reach(slot)
                 self.values(slot)
             return self.span
-        self._poll(slot, 0)
+        self._rows_at(slot, 0)
         while count < _SPAN and left > 0.0:
             for i in range(self.flows.size):
                 self._path[count + 1, i] = self._path[count, i]
@@ -101,7 +101,7 @@ class Scan(Walk):
                 self.flows.advance(slot, 0, self._path, count)
             else:
                 self.flows.part(slot, left, self._path, count, count + 1)
-            self._poll(slot, count)
+            self._rows_at(slot, count)
             left -= 1.0
         return count
 
@@ -120,7 +120,7 @@ class Scan(Walk):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def _poll(self, slot: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.void:
+    def _rows_at(self, slot: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.void:
         """The rows where step k begins, and their slopes by the position."""
         self._spread(slot, k, 1)
         self._rows.all(self._there, 0, self._values[0], k)

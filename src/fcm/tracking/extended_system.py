@@ -55,7 +55,7 @@ class Tangent(NamedTuple):
     matrix: FloatArray
 
 
-class Poll(NamedTuple):
+class Evaluation(NamedTuple):
     """The balance at a place: its Jacobian, by s, and the slopes of ln amplitude of a peak by (y, s)."""
 
     jacobian: FloatArray  # (unknown, unknown + 1)
@@ -80,7 +80,7 @@ class Tracked(Problem):
         z = np.asarray(z)
         self.varied.put(float(z[-1]))
         y, n = np.array(z[:-1]), self.n
-        here = self._poll(y)
+        here = self._evaluated(y)
         residual, jacobian = np.asarray(self.residual), np.asarray(self.jacobian)
         residual[:n] = self.varied.balance.residual
         jacobian[:n, : n + 1], jacobian[:n, n + 1] = here.jacobian, here.by_s
@@ -98,11 +98,11 @@ class Tracked(Problem):
         z, scale = np.asarray(z), np.asarray(self.scale)
         self.varied.put(float(z[-1]))
         y, n = np.array(z[:-1]), self.n
-        here = self._poll(y)
+        here = self._evaluated(y)
         matrix = np.concatenate((here.jacobian, here.by_s[:, None]), axis=1) * scale / scale[:n, None]
         return np.array(self.varied.balance.residual) / scale[:n], matrix, self._special(y, here)
 
-    def _special(self, y: FloatArray, here: Poll) -> float:
+    def _special(self, y: FloatArray, here: Evaluation) -> float:
         """What `_condition` says, without its derivatives; of the tangent of length 1."""
         if self.condition.kind not in (Kind.FOLD, Kind.PEAK):
             return self._condition(y, here)[0]
@@ -111,7 +111,7 @@ class Tracked(Problem):
         t /= np.linalg.norm(t)
         return float(t[-1] if self.condition.kind is Kind.FOLD else here.growth[:-1] @ (scale * t))
 
-    def _poll(self, y: FloatArray) -> Poll:
+    def _evaluated(self, y: FloatArray) -> Evaluation:
         """The balance at a place."""
         balance = self.varied.balance
         balance.evaluate(y)
@@ -120,7 +120,7 @@ class Tracked(Problem):
             one = Amplitude(balance, self.condition.which)
             one.at(y, self.angles)
             growth = np.append(one.slopes, by_s.of(one)) / max(one.value, SMALLEST)
-        return Poll(jacobian_of(balance), by_s.residual, growth)
+        return Evaluation(jacobian_of(balance), by_s.residual, growth)
 
     def measure(self, z: FloatArray) -> int:
         """As the balance; s by the span. The row becomes the tangent of the response curve.
@@ -164,7 +164,7 @@ class Tracked(Problem):
         right[-1] = 1.0
         return Tangent(np.linalg.solve(matrix, right), matrix)
 
-    def _condition(self, y: FloatArray, here: Poll) -> tuple[float, FloatArray]:
+    def _condition(self, y: FloatArray, here: Evaluation) -> tuple[float, FloatArray]:
         """g, without a unit, and its derivatives by (y, s)."""
         kind = self.condition.kind
         if kind is Kind.END:
@@ -185,7 +185,7 @@ class Tracked(Problem):
         unit = float(np.linalg.norm(gradient * np.asarray(self.scale))) or 1.0
         return found.value / unit - self.offset, gradient / unit
 
-    def _turning(self, y: FloatArray, here: Poll) -> tuple[float, FloatArray]:
+    def _turning(self, y: FloatArray, here: Evaluation) -> tuple[float, FloatArray]:
         """Of a fold, or a peak: growth along the tangent, which row . t = 1 makes as long as it is."""
         scale = np.asarray(self.scale)[:-1]
         tangent = self._tangent(here.jacobian)
@@ -220,8 +220,8 @@ class Tracked(Problem):
 
     def _aside(self, y: FloatArray, adjoint: FloatArray) -> FloatArray:
         """What changes along the tangent, (unknown + 2,), at a place on it."""
-        poll = self._poll(y)
-        return poll.growth - np.append(adjoint @ poll.jacobian, adjoint @ poll.by_s)
+        here = self._evaluated(y)
+        return here.growth - np.append(adjoint @ here.jacobian, adjoint @ here.by_s)
 
     def onset_at(self, z: FloatArray, condition: Condition) -> float:
         """The function of an onset."""

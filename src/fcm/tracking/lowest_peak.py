@@ -109,7 +109,7 @@ class Search:
 
     def _near(self, s: float, best: Least) -> bool:
         if s not in self.seen and s not in self.span and len(self.seen) < self.options.visits:
-            self.poll(s)
+            self.greatest_at(s)
         return s not in self.seen or 0.0 < self.options.high * self.seen[s].value <= best.value
 
     def _lower(self, best: Least | None) -> list[float]:
@@ -132,7 +132,7 @@ class Search:
     def visit(self, value: float) -> float:
         """Trace the response at a value; follow what is high and not known; the greatest of it."""
         self.visited.add(value)
-        found = self.poll(value)
+        found = self.greatest_at(value)
         top = self.seen[value].value
         for condition, height in found:
             spot = land(self.way, condition, height.z) if height.value >= self.options.high * top else None
@@ -140,7 +140,7 @@ class Search:
                 self.follow(condition, spot)
         return top
 
-    def poll(self, value: float) -> list[tuple[Condition, Height]]:
+    def greatest_at(self, value: float) -> list[tuple[Condition, Height]]:
         """What may be greatest of the response at a value, with its heights."""
         if value not in self.met:
             here = moved(self.system, self.line.scene(self.system.scene, value))

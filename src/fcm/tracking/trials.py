@@ -39,7 +39,7 @@ def by_trials(search: Search) -> Least | None:
 def _greatest(search: Search, value: float) -> float:
     """The greatest at a value; where there is no peak, none that could be least."""
     if value not in search.seen:
-        search.poll(value)
+        search.greatest_at(value)
     return search.seen[value].value or UNKNOWN * max(height.value for height in search.seen.values())
 
 
