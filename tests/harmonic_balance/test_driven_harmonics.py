@@ -8,6 +8,7 @@ import pytest
 import fcm
 from fcm.response import ResponseError, trace
 from fcm.response.exact import trace_exact
+from fcm.response.mode import trace_modes
 from fcm.scene import scene_from_dict
 from fcm.scene.errors import SceneError
 
@@ -182,15 +183,55 @@ def test_what_is_no_harmonic_is_told(wrong):
         scene([force(1.0, wrong)])
 
 
-def test_the_exact_motion_and_schedules_refuse_other_harmonics():
-    with pytest.raises(ResponseError, match="the exact motion knows forces of harmonic 1 alone"):
-        trace_exact(scene(BOTH))
-    with pytest.raises(SceneError, match="must be 1 beside"):
-        scene(BOTH, schedule=[{"frequency": 1.0, "cycles": 3}])
-    from fcm.time_domain import SimulationError, simulate
+def test_a_mode_predicts_of_forces_of_harmonic_one_alone():
+    with pytest.raises(
+        ResponseError, match="what a nonlinear mode predicts knows forces of harmonic 1 alone"
+    ):
+        trace_modes(scene(BOTH), 1, (0.1, 1.0))
 
-    with pytest.raises(SimulationError, match="other harmonics than 1"):
-        simulate(scene(BOTH), 1.0, 3)
+
+def test_the_exact_motion_under_a_second_harmonic_is_that_at_twice_the_frequency():
+    (curve,) = trace_exact(scene([force(1.0, 2, 0.3)], n_0=1e4)).curves
+    assert curve.complete and curve.points > 50 and (curve.stable == 1.0).all()
+    expected = np.abs([linear(2.0 * omega) for omega in curve.frequency])
+    assert np.abs(curve.amplitude / expected - 1.0).max() < 1e-10
+
+
+def test_the_exact_motion_under_a_third_harmonic_slips_as_at_three_times_the_frequency():
+    (first,) = trace_exact(scene([force(1.0)])).curves
+    (curve,) = trace_exact(scene([force(1.0, 3)], span=(0.4 / 3.0, 0.4))).curves
+    assert curve.complete and "P" in "".join(curve.regime.ravel())
+    for dof, peak in first.peaks.items():
+        assert curve.peaks[dof].amplitude == pytest.approx(peak.amplitude, rel=1e-8)
+        assert curve.peaks[dof].frequency == pytest.approx(peak.frequency / 3.0, rel=1e-6)
+
+
+@pytest.mark.parametrize("n_0", [0.5, -0.3])
+def test_the_exact_superharmonic_motion_is_that_of_a_march(n_0):
+    at = (0.6, 0.95, 1.25)
+    (curve,) = trace_exact(scene(BOTH, n_0, (0.5, 1.4)), at).curves
+    assert "S" in "".join(curve.regime.ravel())
+    expected = dict(zip(at, marched(BOTH, n_0, at), strict=True))
+    for omega, found in zip(curve.frequency, curve.amplitude, strict=True):
+        np.testing.assert_allclose(found, expected[float(omega)], rtol=2e-3)
+
+
+def test_the_exact_motion_meets_the_balance_of_many_harmonics():
+    (exact,) = trace_exact(scene(BOTH, 0.5)).curves
+    (curve,) = trace(scene(BOTH, 0.5), harmonics=15).curves
+    assert exact.complete and curve.complete
+    for dof, peak in exact.peaks.items():
+        assert curve.peaks[dof].amplitude == pytest.approx(peak.amplitude, rel=1e-3)
+        assert curve.peaks[dof].frequency == pytest.approx(peak.frequency, rel=1e-3)
+
+
+def test_a_schedule_with_a_second_harmonic_comes_to_that_of_twice_the_frequency():
+    from fcm.time_domain.simulation import simulate_schedule
+
+    phases = [{"frequency": 0.45, "cycles": 40.5}, {"frequency": 0.5, "cycles": 60}]
+    motion = simulate_schedule(scene([force(1.0, 2, 0.3)], n_0=1e4, schedule=phases))
+    last = motion.measures(last=1)[0]
+    np.testing.assert_allclose(last.amplitude, np.abs(linear(1.0)), rtol=1e-4)
 
 
 def test_the_command_says_which_harmonics_it_took():

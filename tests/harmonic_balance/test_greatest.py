@@ -7,7 +7,7 @@ import pytest
 
 from fcm.harmonic_balance.dense_jacobian import Amplitude
 from fcm.harmonic_balance.system import System
-from fcm.nonlinear_modes.backbone import half_peak_to_peak
+from fcm.harmonic_balance.wave_extremes import half_peak_to_peak
 from fcm.scene import load_scene
 
 HARMONICS = (1, 2, 3)

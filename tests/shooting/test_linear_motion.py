@@ -43,7 +43,7 @@ def test_a_wedged_contact_stays_stuck_with_the_least_residual_friction_that_is_t
         cycles = simulate(scene, 1.3, 20, _with_residual(scene, one, share)).cycles
         assert all(cycle.states == ("E",) for cycle in cycles) is kept
     last = simulate(scene, 1.3, 20, one.state).measures(last=1)[0]
-    assert last.amplitude == pytest.approx(np.abs(scene.modal.shapes.T @ one.wave), rel=1e-6)
+    assert last.amplitude == pytest.approx(np.abs(scene.modal.shapes.T @ one.wave[0]), rel=1e-6)
 
 
 def test_marched_these_motions_keep_every_contact_as_it_is():
@@ -54,7 +54,7 @@ def test_marched_these_motions_keep_every_contact_as_it_is():
     for scene, omega, one in found:
         motion = simulate(scene, omega, 5, one.state)
         assert all(cycle.states == one.states for cycle in motion.cycles)
-        amplitude = np.abs(scene.modal.shapes.T @ one.wave)
+        amplitude = np.abs(scene.modal.shapes.T @ one.wave[0])
         assert motion.measures(last=1)[0].amplitude == pytest.approx(amplitude, rel=1e-6)
 
 
@@ -73,7 +73,7 @@ def test_motions_that_no_point_belongs_to_are_told_with_what_leads_to_them(optio
     assert chosen.complete and not chosen.orbits.stuck
     there = (chosen.regime[:, 0] == "E") & (chosen.stable == 1.0)
     nearest = np.abs(np.where(there, chosen.frequency, np.inf) - beside["frequency"]).argmin()
-    expected = np.abs(scene.modal.shapes.T @ linear_motions(scene, chosen.frequency[nearest])[0].wave)
+    expected = np.abs(scene.modal.shapes.T @ linear_motions(scene, chosen.frequency[nearest])[0].wave[0])
     assert there.any() and chosen.amplitude[nearest] == pytest.approx(expected, rel=1e-6)
 
 

@@ -21,7 +21,7 @@ from fcm.shooting.work_budget import Bounded
 from fcm.time_domain import State, simulate
 
 from ..response.random_scenes import random_scene
-from ..time_domain.cases import two_contacts, yang
+from ..time_domain.cases import three_harmonics, two_contacts, yang
 
 
 def at_level(scene, level):
@@ -29,7 +29,9 @@ def at_level(scene, level):
     return replace(scene, forces=tuple(replace(one, amplitude=level * one.amplitude) for one in scene.forces))
 
 
-@pytest.mark.parametrize(("scene", "omega"), [(yang(), 1.3), (yang(0.0), 1.1), (two_contacts(), 1.7)])
+@pytest.mark.parametrize(
+    ("scene", "omega"), [(yang(), 1.3), (yang(0.0), 1.1), (two_contacts(), 1.7), (three_harmonics(), 0.9)]
+)
 def test_the_derivative_by_the_level_is_that_of_differences_of_the_forces(scene, omega):
     """Away from where the period closes, from a motion that slips."""
     x, level, step = LevelProblem(scene, omega).shooting.unknowns(simulate(scene, omega, 20).end), 0.9, 1e-6

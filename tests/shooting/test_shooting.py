@@ -16,7 +16,10 @@ from fcm.time_domain.system import System
 
 from ..time_domain.cases import SCENES, one_mode, two_contacts, yang
 
-CASES = [("n_0 = 5", 1.3), ("n_0 = 0", 1.1), ("n_0 = -2", 0.9), ("one mode", 1.1), ("two contacts", 1.3)]
+CASES = [
+    ("n_0 = 5", 1.3), ("n_0 = 0", 1.1), ("n_0 = -2", 0.9), ("one mode", 1.1), ("two contacts", 1.3),
+    ("three harmonics", 0.9),
+]  # fmt: skip
 
 
 def many(modes=40, contacts=3):

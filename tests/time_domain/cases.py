@@ -37,6 +37,14 @@ def one_mode(**changes: object) -> Scene:
     return Scene("one mode", modal, (contact,), (force,), (0.5, 2.0), 0.05)
 
 
+def three_harmonics() -> Scene:
+    """The oscillator with forces at the second and, growing with the frequency, the third harmonic."""
+    scene = yang(2.0)
+    second = Force(np.array([0.2, 1.0]), 0.8, 0.3, harmonic=2)
+    third = Force(np.array([1.0, 0.0]), 0.5, -1.1, power=2, harmonic=3)
+    return replace(scene, forces=(*scene.forces, second, third))
+
+
 def two_contacts() -> Scene:
     """Three modes, two contacts of which one has a gap, forces out of phase; all terms of one size."""
     modal = Modal(
@@ -61,4 +69,5 @@ SCENES = {
     "n_0 = -2": yang(-2.0),
     "one mode": one_mode(),
     "two contacts": two_contacts(),
+    "three harmonics": three_harmonics(),
 }

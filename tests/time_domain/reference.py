@@ -26,7 +26,8 @@ class Law:
     def external(self, t):
         total = sum(load.direction * load.force for load in self.scene.loads)
         for f in self.scene.forces:
-            total = total + f.direction * f.amplitude * self.omega**f.power * np.sin(self.omega * t + f.phase)
+            turned = np.sin(f.harmonic * self.omega * t + f.phase)
+            total = total + f.direction * f.amplitude * self.omega**f.power * turned
         return self.scene.modal.shapes @ total
 
     def rhs(self, t, y, states):

@@ -16,6 +16,7 @@ CASES = [
     ("one mode", 1.1),
     ("two contacts", 1.3),
     ("two contacts", 2.3),
+    ("three harmonics", 0.9),
 ]
 
 
@@ -29,7 +30,9 @@ def test_against_solve_ivp_with_events(name, omega):
     assert np.abs(motion.displacement(times) - expected).max() < 1e-10 * np.abs(expected).max()
 
 
-@pytest.mark.parametrize(("name", "omega"), [("n_0 = 5", 1.3), ("two contacts", 1.3)])
+@pytest.mark.parametrize(
+    ("name", "omega"), [("n_0 = 5", 1.3), ("two contacts", 1.3), ("three harmonics", 0.9)]
+)
 def test_a_fixed_step_march_converges_to_it(name, omega):
     """A scheme of second order: four times nearer with every halving of its step."""
     motion = simulate(SCENES[name], omega, 5)

@@ -12,7 +12,7 @@ from fcm.compare.methods import CLOSED_FORM, EXACT, Method, Run, run, solve, wit
 from fcm.compare.startup import Startup, startup
 from fcm.model.scene import Scene
 from fcm.reduction.negligible_parts import TOLERANCE
-from fcm.response.ring_limits import refuse_other_harmonics, refuse_own_laws, refuse_plane, refuse_ring
+from fcm.response.ring_limits import refuse_own_laws, refuse_plane, refuse_ring
 from fcm.response.sweep import trace
 from fcm.scene.errors import counted
 from fcm.table import open_table
@@ -160,7 +160,6 @@ def compare(
     refuse_ring(scene, "a comparison with the exact motion")
     refuse_plane(scene, "a comparison with the exact motion")
     refuse_own_laws(scene, "a comparison with the exact motion")
-    refuse_other_harmonics(scene, "a comparison with the exact motion")
     begin = time.perf_counter()
     out = Comparison(scene)
     show = progress or (lambda _share, _text: None)

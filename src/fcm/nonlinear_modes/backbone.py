@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 
 from fcm.continuation import FollowOptions, Path
 from fcm.continuation.corrector import Newton
@@ -21,8 +20,6 @@ RIGID = 1e-12  # of the greatest square of a frequency: rigid-body modes are bel
 HALVES = (0.5, 0.0, 1.0)  # shares of its springs that a contact has in the mean which just touches
 NEAR = 1.25  # modes this near, by the ratio of the frequencies, to what the motion may come to are unknowns
 
-SAMPLES = 12  # for each period of the highest harmonic, among which extremes are sought
-REFINED = 4  # Newton steps from the greatest sample to the extreme
 SMALL = 1e-6  # damping ratio: errors of a smaller one are relative to this
 
 
@@ -198,39 +195,3 @@ def truncation(mode: Mode) -> tuple[FloatArray, FloatArray]:
     borne = borne_along(larger, contacts)
     borne[np.isnan(error)] = np.nan
     return error, borne
-
-
-def half_peak_to_peak(X: ComplexArray, harmonics: tuple[int, ...]) -> FloatArray:
-    """Of x = Re sum X_h exp(i h theta), X (point, harmonic, dof): (point, dof)."""
-    if harmonics == (1,):
-        return np.abs(X[:, 0])
-    h = np.array(harmonics)
-    return 0.5 * (_greatest(X, h) + _greatest(-X, h))
-
-
-def _greatest(X: ComplexArray, h: npt.NDArray[np.intp]) -> FloatArray:
-    """The greatest displacement (point, dof): of all extremes next to samples that may be as high.
-
-    Between samples it rises by the curvature times the square of half their distance over 2, at most.
-    """
-    step = 2.0 * np.pi / (SAMPLES * h[-1])
-    waves = np.exp(1j * np.outer(h, step * np.arange(SAMPLES * h[-1])))
-    x = np.einsum("ht,phd->tpd", waves, X).real
-    between = np.einsum("h,phd->pd", 0.125 * (h * step) ** 2, np.abs(X))
-    beside = np.maximum(np.roll(x, 1, axis=0), np.roll(x, -1, axis=0))
-    k, p, d = np.nonzero((x >= beside) & (x + between >= x.max(axis=0)))
-    found: FloatArray = x.max(axis=0)
-    np.maximum.at(found, (p, d), _extreme(X[p, :, d], h, step * k, step))
-    return found
-
-
-def _extreme(X: ComplexArray, h: npt.NDArray[np.intp], start: FloatArray, step: float) -> FloatArray:
-    """The displacements (n,) of motions X (n, harmonic) at extremes next to angles, by Newton's method."""
-    theta = start
-    for _ in range(REFINED):
-        turns = X * np.exp(1j * h * theta[:, None])
-        slope, bend = (np.sum((1j * h) ** k * turns, axis=1).real for k in (1, 2))
-        theta = theta - slope / np.where(bend != 0.0, bend, 1.0)
-        theta = np.where(np.abs(theta - start) < step, theta, start)
-    found: FloatArray = np.sum(X * np.exp(1j * h * theta[:, None]), axis=1).real
-    return found

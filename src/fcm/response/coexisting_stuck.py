@@ -7,10 +7,12 @@ from collections.abc import Iterable
 import numpy as np
 import numpy.typing as npt
 
+from fcm.harmonic_balance.wave_extremes import half_peak_to_peak
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.friction_extent import NotUnique
 from fcm.results.orbits import Stuck
 from fcm.shooting.linear_orbits import linear_motions
+from fcm.structure.loads import driven_harmonics
 
 SAME = 1e-3  # relative difference of amplitudes up to which a motion is within an extent
 
@@ -37,7 +39,9 @@ def stuck_beside(
         least = np.array([*others.least[here], *(one.least for one in beside)])
         greatest = np.array([*others.greatest[here], *(one.greatest for one in beside)])
         for one in linear_motions(scene, omega):
-            amplitude = np.abs(scene.modal.shapes.T @ one.wave)
+            amplitude = half_peak_to_peak(
+                (-1j * one.wave @ scene.modal.shapes)[None], driven_harmonics(scene)
+            )[0]
             if one.states not in known and not _within(amplitude, least, greatest):
                 found.append(Stuck(omega, one.states, 0.0 - one.residual, amplitude, amplitude))
     return found

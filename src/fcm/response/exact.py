@@ -21,7 +21,7 @@ from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.exact_curve import ExactWork
 from fcm.response.request import ResponseError
 from fcm.response.resumable_branches import LEGS
-from fcm.response.ring_limits import refuse_other_harmonics, refuse_own_laws, refuse_plane, refuse_ring
+from fcm.response.ring_limits import refuse_own_laws, refuse_plane, refuse_ring
 from fcm.response.stepped_sweep import STATES
 from fcm.results.at_rest import without_rounding
 from fcm.results.result import Response
@@ -92,7 +92,6 @@ def trace_exact(
     refuse_ring(scene, "the exact motion")
     refuse_plane(scene, "the exact motion")
     refuse_own_laws(scene, "the exact motion")
-    refuse_other_harmonics(scene, "the exact motion")
     begin, frequencies = time.perf_counter(), _checked(scene, at)
     with checkpoint_of(keep, resume) as checkpoint:
         work = ExactWork(frequencies, limit, only is not None, tolerance is None, periods)

@@ -16,8 +16,9 @@ from fcm.harmonic_balance.cost_model import with_twice_as_many
 from fcm.harmonic_balance.planar_quantities import in_plane
 from fcm.harmonic_balance.response_quantities import cycles, loops
 from fcm.harmonic_balance.system import System
+from fcm.harmonic_balance.wave_extremes import half_peak_to_peak
 from fcm.model.scene import FloatArray, Scene
-from fcm.nonlinear_modes.backbone import Mode, ModeError, half_peak_to_peak, nonlinear_mode, truncation
+from fcm.nonlinear_modes.backbone import Mode, ModeError, nonlinear_mode, truncation
 from fcm.nonlinear_modes.forced_response import flanks, modal_force, resonances, resonant_level
 from fcm.response.groups import anonymous, lost_curve
 from fcm.response.incomplete import because, no_steady_states

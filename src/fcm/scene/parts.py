@@ -110,11 +110,10 @@ def read_forces(top: Section, dofs: Dofs, solved: bool) -> list[dict[str, Any]]:
         return []
     if not top.data.get("force", ()) and isinstance(top.data.get("force", ()), list | tuple):
         top.wrong("force", "missing; without a [[force]] the response is zero")
-    scheduled = bool(top.data.get("schedule"))
-    return [_force(section, dofs, scheduled) for section in top.tables("force")]
+    return [_force(section, dofs) for section in top.tables("force")]
 
 
-def _force(section: Section, dofs: Dofs, scheduled: bool) -> dict[str, Any]:
+def _force(section: Section, dofs: Dofs) -> dict[str, Any]:
     section.only(*names("force"))
     dof = section.data.get("dof")
     return {
@@ -123,7 +122,7 @@ def _force(section: Section, dofs: Dofs, scheduled: bool) -> dict[str, Any]:
         "amplitude": section.number("amplitude", RULES["amplitude"]),
         "phase": section.angle("phase", default=0.0),
         "power": _power(section),
-        "harmonic": _harmonic(section, scheduled),
+        "harmonic": _harmonic(section),
     }
 
 
@@ -135,7 +134,7 @@ def _power(section: Section) -> int:
     return 0 if law is None else 2
 
 
-def _harmonic(section: Section, scheduled: bool) -> int:
+def _harmonic(section: Section) -> int:
     """The harmonic of the frequency at which a force acts."""
     value = section.data.get("harmonic", 1)
     whole = isinstance(value, int) and not isinstance(value, bool)
@@ -143,8 +142,6 @@ def _harmonic(section: Section, scheduled: bool) -> int:
         what = quoted(value) if isinstance(value, str) else value
         section.wrong("harmonic", f"must be a whole number from 1 to {MOST_HARMONICS}, is {what}")
         return 1
-    if scheduled and value != 1:
-        section.wrong("harmonic", f"must be 1 beside [[schedule]], which knows no other; is {value}")
     return int(value)
 
 

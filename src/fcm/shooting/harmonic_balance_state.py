@@ -66,7 +66,7 @@ def harmonic_state(
     if not (np.isfinite(x).all() and np.isfinite(average).all()):
         raise SimulationError("the point of the response curve to start from is not finite")
     system = System(scene, frequency)
-    wave, steady = system.wave, system.static.copy()
+    wave, steady = system.wave[0], system.static.copy()
     friction = np.zeros(len(scene.contacts))
     for j, contact in enumerate(scene.contacts):
         along, across = contact.tangential, contact.normal
@@ -114,9 +114,10 @@ def state_of(scene: Scene, harmonics: tuple[int, ...], z: FloatArray) -> State:
     The contacts' forces on the balanced motion have more harmonics than that, and move the modes by them.
     """
     system, highest = System(scene, float(z[-1])), FURTHER * max(harmonics)
+    driven = list(system.harmonics)
     width = 2 + 4 * len(harmonics)
     wave = np.zeros((highest + 1, system.modes), dtype=np.complex128)  # modal forces
-    wave[0], wave[1] = system.static, -1j * system.wave
+    wave[0], wave[driven] = system.static, -1j * system.wave
     friction = np.zeros(len(scene.contacts))
     for j, contact in enumerate(scene.contacts):
         u, v = np.zeros((2, highest + 1), dtype=np.complex128)

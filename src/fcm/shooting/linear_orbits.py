@@ -15,6 +15,7 @@ from itertools import product
 import numpy as np
 import numpy.typing as npt
 
+from fcm.harmonic_balance.wave_extremes import greatest
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.periodic import unloaded
 from fcm.shooting.residual_traction import resting
@@ -35,7 +36,7 @@ class Linear:
     states: tuple[str, ...]  # of each contact: E sticks, or is closed without friction; S is open
     residual: FloatArray  # (contact,) k_u w of the slip motions w
     mean: FloatArray  # (mode,)
-    wave: npt.NDArray[np.complex128]  # (mode,) of Im(wave exp(i omega t))
+    wave: npt.NDArray[np.complex128]  # (driven, mode) of Im(sum_h wave_h exp(i h omega t))
     state: State  # at the forces' angle 0
 
 
@@ -68,9 +69,10 @@ def about_rest(scene: Scene, omega: float, level: float) -> Iterator[State]:
     for closed in (at_rest, np.ones_like(at_rest), np.zeros_like(at_rest)):
         stuck = [j for j in np.flatnonzero(closed).tolist() if has_friction(whole.contacts[j])]
         wave = linear_answer(system, closed, stuck)[0]
+        still, orders = wave.sum(axis=0), np.array(system.harmonics)
         friction = np.where(closed, rest.friction, 0.0)
-        friction[stuck] += system.k_u[stuck] * (system.tangential[stuck] @ wave.imag)
-        yield State(rest.q + wave.imag, omega * wave.real, friction[computed])
+        friction[stuck] += system.k_u[stuck] * (system.tangential[stuck] @ still.imag)
+        yield State(rest.q + still.imag, omega * (orders @ wave.real), friction[computed])
 
 
 def _motion(
@@ -90,17 +92,17 @@ def _motion(
     if inside is None:
         return None
     mean = mean + by_residual @ inside
-    q, residual, friction = mean + wave.imag, np.zeros(closed.size), np.zeros(closed.size)
+    q, residual, friction = mean + wave.imag.sum(axis=0), np.zeros(closed.size), np.zeros(closed.size)
     residual[stuck] = inside
     friction[stuck] = system.k_u[stuck] * (system.tangential[stuck] @ q) - inside
-    state = State(q, system.omega * wave.real, friction)
+    state = State(q, system.omega * (np.array(system.harmonics) @ wave.real), friction)
     return Linear(tuple("E" if one else "S" for one in closed), residual, mean, wave, state)
 
 
 def linear_answer(
     system: System, closed: npt.NDArray[np.bool_], stuck: list[int]
 ) -> tuple[npt.NDArray[np.complex128], FloatArray, FloatArray]:
-    """The modes' harmonic answer, their mean without residual friction, and what that adds to it."""
+    """The modes' harmonic answer (driven, mode), their mean without residual friction, what that adds."""
     modal, across, along = system.scene.modal, system.normal, system.tangential
     stiffness, steady = np.diag(modal.mass * modal.frequency**2), np.array(system.static, dtype=np.float64)
     for contact, row, shut in zip(system.scene.contacts, across, closed, strict=True):
@@ -110,8 +112,9 @@ def linear_answer(
     for j in stuck:
         stiffness += system.k_u[j] * np.outer(along[j], along[j])
     damping = 2.0 * modal.mass * modal.damping * modal.frequency
-    dynamic = stiffness + np.diag(system.omega * (1j * damping - modal.mass * system.omega))
-    wave = np.linalg.solve(dynamic, system.wave).astype(np.complex128)
+    rates = [harmonic * system.omega for harmonic in system.harmonics]
+    dynamic = [stiffness + np.diag(rate * (1j * damping - modal.mass * rate)) for rate in rates]
+    wave = np.linalg.solve(dynamic, system.wave[..., None])[..., 0].astype(np.complex128)
     still = np.linalg.solve(stiffness, np.column_stack((steady, along[stuck].T))).astype(np.float64)
     return wave, still[:, 0], still[:, 1:]
 
@@ -128,7 +131,10 @@ def _limits(
     for j, contact in enumerate(system.scene.contacts):
         if j not in stuck:
             press, sign = contact.k_v * system.normal[j], 1.0 if closed[j] else -1.0
-            yield sign * (press @ by_residual), abs(press @ wave) - sign * (contact.n_0 + press @ mean)
+            yield (
+                sign * (press @ by_residual),
+                _lowered(system, sign * (wave @ press)) - sign * (contact.n_0 + press @ mean),
+            )
         else:
             yield from sticking(system, j, np.array(stuck) == j, wave, mean, by_residual)
 
@@ -144,11 +150,18 @@ def sticking(
     """What keeps contact j from slipping either way; own: which of the residual friction is its own."""
     contact = system.scene.contacts[j]
     press, pull = contact.k_v * system.normal[j], contact.k_u * system.tangential[j]
-    load = press @ by_residual, contact.n_0 + press @ mean, press @ wave
-    force = pull @ by_residual - own, pull @ mean, pull @ wave
+    load = press @ by_residual, contact.n_0 + press @ mean, wave @ press
+    force = pull @ by_residual - own, pull @ mean, wave @ pull
     for sign in (1.0, -1.0):
         row, constant, swing = (contact.mu * n - sign * f for n, f in zip(load, force, strict=True))
-        yield row, abs(swing) - constant
+        yield row, _lowered(system, swing) - constant
+
+
+def _lowered(system: System, swing: npt.NDArray[np.complex128]) -> float:
+    """How far below zero Im(sum_h swing_h exp(i h theta)) comes, swing (driven,)."""
+    if swing.size == 1:
+        return float(abs(swing[0]))
+    return float(greatest(1j * swing[None, :, None], np.array(system.harmonics))[0, 0])
 
 
 def _inside(rows: FloatArray, least: FloatArray, wanted: FloatArray, just_that: bool) -> FloatArray | None:

@@ -39,7 +39,10 @@ class Flow(NamedTuple):
     series: FloatArray  # (linear, exit * (ORDER + 1)) the Taylor coefficients of the exits
     sizes: FloatArray  # (linear, linear) of the terms of which a step is summed
     table: FloatArray  # (linear, (BLOCK + 1) * 3 * exit) the exits on the steps of a block
-    pushes: FloatArray  # (ORDER, 4, linear) h (A h)**k B; B: the forces of sin, cos and omega^2 times these
+    pushes: (
+        FloatArray  # (ORDER, 4 waves, linear) h (A h)**k B; B: of each harmonic the forces of sin, cos and
+    )
+    # omega^2 times these
 
 
 def made(system: System, states: Codes) -> Flow:
@@ -66,7 +69,7 @@ def made(system: System, states: Codes) -> Flow:
 def _matrix(system: System, states: Codes) -> FloatArray:
     """The matrix of (q, q', f, n, 1), (linear, linear)."""
     modal, m = system.scene.modal, system.modes
-    a = np.zeros((system.size - 2, system.size - 2))
+    a = np.zeros((system.linear, system.linear))
     a[system.q, system.p] = np.eye(m)
     a[system.p, system.q] = -np.diag(modal.frequency**2) - system.pull.T @ system.stretch
     a[system.p, system.p] = -np.diag(2.0 * modal.damping * modal.frequency)
@@ -103,9 +106,10 @@ def _step(system: System, a: FloatArray) -> tuple[float, bool]:
     damping = 2.0 * system.scene.modal.damping * system.scene.modal.frequency
     rate = float(np.sqrt(np.linalg.norm(stiffness, 2)) + np.abs(damping).max(initial=0.0))
     # where nothing has a rate, the forces alone bound the step: from a power of two that is long enough
-    longest = 1.0 / rate if rate > SLOWEST else 2.0 ** np.ceil(1.0 - np.log2(system.omega))
+    fastest = system.flows.highest * system.omega
+    longest = 1.0 / rate if rate > SLOWEST else 2.0 ** np.ceil(1.0 - np.log2(fastest))
     step = longest
-    while system.omega * step > FITS:
+    while fastest * step > FITS:
         step *= 0.5
     return float(step), bool(step < longest)
 
@@ -123,9 +127,10 @@ def _exponential(a: FloatArray) -> FloatArray:
 
 def _pushes(system: System, change: FloatArray, step: float) -> FloatArray:
     """See `Flow`."""
-    pushes, flows = np.zeros((ORDER, 4, change.shape[0])), system.flows
-    pushes[0, :2, system.p] = step * np.asarray(flows.constant)
-    pushes[0, 2:, system.p] = step * np.asarray(flows.square)
+    pushes, flows = np.zeros((ORDER, 4 * system.flows.waves, change.shape[0])), system.flows
+    for b in (0, 1):
+        pushes[0, b::4, system.p] = step * np.asarray(flows.constant)[b::2]
+        pushes[0, b + 2 :: 4, system.p] = step * np.asarray(flows.square)[b::2]
     for k in range(1, ORDER):
         np.matmul(pushes[k - 1], change, out=pushes[k])
     return pushes
@@ -138,7 +143,7 @@ def _exits(system: System, states: Codes) -> tuple[FloatArray, list[int], list[i
     goal: list[int] = []
 
     def add(j: int, leads_to: int, f: float = 0.0, n: float = 0.0, u: float = 0.0, v: float = 0.0) -> None:
-        contact, row = system.contacts[j], np.zeros(system.size - 2)
+        contact, row = system.contacts[j], np.zeros(system.linear)
         row[system.f.start + j], row[system.n.start + j], row[-1] = f, n, n * contact.n_0
         row[system.p] = u * system.tangential[j] + v * system.normal[j]
         rows.append(row)
@@ -157,4 +162,4 @@ def _exits(system: System, states: Codes) -> tuple[FloatArray, list[int], list[i
             add(j, STICKING, n=-1.0)
         elif state != STICKING or not rough:
             add(j, SEPARATED, n=1.0)
-    return np.array(rows).reshape(len(rows), system.size - 2), owner, goal
+    return np.array(rows).reshape(len(rows), system.linear), owner, goal

@@ -88,20 +88,23 @@ class Directional(Derivative):
     def _expand(self, slot: cython.Py_ssize_t) -> cython.void:
         """The series of the change in the step that begins here."""
         n: cython.Py_ssize_t = self.flows.linear
+        h: cython.Py_ssize_t
         i: cython.Py_ssize_t
         j: cython.int
-        angle: cython.double = self.flows.step[slot] * self.flows.omega
+        angle: cython.double
         for i in range(self.flows.size):
             self._series[0, i] = self.columns[0, i] + self.pace * self.columns[1, i]
-        self._angle[0, n], self._angle[0, n + 1] = (
-            self.pace * self.columns[2, n],
-            self.pace * self.columns[2, n + 1],
-        )
-        for j in range(_ORDER):
-            self._angle[j + 1, n], self._angle[j + 1, n + 1] = (
-                angle / (j + 1) * self._angle[j, n + 1],
-                -angle / (j + 1) * self._angle[j, n],
+        for h in range(self.flows.waves):
+            i, angle = n + 2 * h, self.flows.harmonic[h] * self.flows.step[slot] * self.flows.omega
+            self._angle[0, i], self._angle[0, i + 1] = (
+                self.pace * self.columns[2, i],
+                self.pace * self.columns[2, i + 1],
             )
+            for j in range(_ORDER):
+                self._angle[j + 1, i], self._angle[j + 1, i + 1] = (
+                    angle / (j + 1) * self._angle[j, i + 1],
+                    -angle / (j + 1) * self._angle[j, i],
+                )
         self.flows.extend(slot, self._series, _ORDER, self.flows.step[slot], self._angle, True)
 
     @cython.cfunc

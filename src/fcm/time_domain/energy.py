@@ -8,6 +8,7 @@ import numpy as np
 
 from fcm.model.scene import Contact, FloatArray
 from fcm.time_domain.cycle import Cycle
+from fcm.time_domain.equations import sines_and_cosines
 from fcm.time_domain.power_integrals import Powers
 from fcm.time_domain.state import entry
 from fcm.time_domain.system import System
@@ -55,8 +56,8 @@ def energy(motion: Motion) -> Energy:
 def powers_of(cycle: Cycle) -> Powers:
     """The integrals of the powers over a cycle."""
     system, modal = cycle.system, cycle.system.scene.modal
-    wave, damper = system.wave, 2.0 * modal.mass * modal.damping * modal.frequency
-    powers = Powers(system.flows, wave.real.copy(), wave.imag.copy(), system.static, damper)
+    damper = 2.0 * modal.mass * modal.damping * modal.frequency
+    powers = Powers(system.flows, sines_and_cosines(system.wave), system.static, damper)
     system.run(powers, cycle.segments)
     return powers
 

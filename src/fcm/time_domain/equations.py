@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from fcm.model.scene import Contact, FloatArray, Held, Scene
 
@@ -19,19 +20,22 @@ class Matrices(NamedTuple):
     ----------
     modal : tuple of arrays
         Squares of the modes' frequencies, 2 zeta omega_0, and by mass the steady forces, those of sin and cos
-        (2, mode), and those that grow as omega^2 (2, mode).
+        of each harmonic (2 waves, mode), and those that grow as omega^2 (2 waves, mode).
     ports : tuple of arrays (contact, mode)
         Shapes of u and of v, and the same divided by the modal masses.
     law : array (5, contact)
         mu, k_u, k_v, n_0, and whether the contact can exert friction at all.
     springs : tuple of arrays (spring, mode)
         Shapes of what springs resist, and the same times their stiffness divided by the modal masses.
+    harmonics : tuple of int (waves,)
+        At which there are forces, after 1.
     """
 
     modal: tuple[FloatArray, ...]
     ports: tuple[FloatArray, ...]
     law: FloatArray
     springs: tuple[FloatArray, ...]
+    harmonics: tuple[int, ...]
 
 
 def matrices_of(system: System) -> Matrices:
@@ -43,12 +47,19 @@ def matrices_of(system: System) -> Matrices:
             modal.frequency**2,
             2.0 * modal.damping * modal.frequency,
             system.steady / modal.mass,
-            *(np.array([one.real, one.imag]) / modal.mass for one in (system.constant, system.square)),
+            *(sines_and_cosines(one) / modal.mass for one in (system.constant, system.square)),
         ),
         (system.tangential, system.normal, system.tangential / modal.mass, system.normal / modal.mass),
         law,
         (system.stretch, system.pull),
+        system.harmonics,
     )
+
+
+def sines_and_cosines(wave: npt.NDArray[np.complex128]) -> FloatArray:
+    """Of Im(wave exp(i h theta)) (waves, mode) the factors of sin, cos in turn: (2 waves, mode)."""
+    parts: FloatArray = np.stack((wave.real, wave.imag), axis=1)
+    return parts.reshape(-1, wave.shape[-1])
 
 
 def held_as_springs(scene: Scene) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -77,10 +88,10 @@ def held_as_springs(scene: Scene) -> tuple[FloatArray, FloatArray, FloatArray]:
 def held_limits(system: System) -> FloatArray:
     """Of each contact that is held its limit, or gap, and what is left of it either way.
 
-    Rows of the state vector without the forces' angle, (3 held, d - 2).
+    Rows of the state vector without the forces' angle, (3 held, linear).
     """
     rows = [_limits_of(system, one) for one in system.scene.held]
-    return np.array(rows).reshape(3 * len(rows), system.size - 2)
+    return np.array(rows).reshape(3 * len(rows), system.linear)
 
 
 def _limits_of(system: System, one: Held) -> list[FloatArray]:
@@ -98,13 +109,13 @@ def held_rows(system: System) -> FloatArray:
     """The normal forces of all contacts that are held, then their friction forces: (2 held, d - 2)."""
     pairs = [held_forces(system, one) for one in system.scene.held]
     loads, forces = ([pair[i] for pair in pairs] for i in (0, 1))
-    return np.array(loads + forces).reshape(2 * len(pairs), system.size - 2)
+    return np.array(loads + forces).reshape(2 * len(pairs), system.linear)
 
 
 def held_forces(system: System, one: Held) -> tuple[FloatArray, FloatArray]:
     """The normal and the friction force of a contact that is held closed: rows of the state vector."""
     contact, shapes = one.contact, system.scene.modal.shapes
-    load, force = np.zeros((2, system.size - 2))
+    load, force = np.zeros((2, system.linear))
     load[system.q], load[-1] = contact.k_v * (shapes @ contact.normal), contact.n_0
     if has_friction(contact):
         force[system.q], force[-1] = contact.k_u * (shapes @ contact.tangential), -contact.k_u * one.rest

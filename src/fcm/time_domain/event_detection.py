@@ -126,13 +126,15 @@ class Lookout:
         n: cython.Py_ssize_t = self.flows.linear
         i: cython.Py_ssize_t
         w: cython.Py_ssize_t
+        b: cython.Py_ssize_t
         j: cython.int
         size: cython.double
         if self._floors[e] < 0.0:
             for j in range(3):
                 w = e * (_ORDER + 1) + j
-                size = fabs(self.flows.series_forced[self.slot, 0, w] * self._begun[0, n])
-                size += fabs(self.flows.series_forced[self.slot, 1, w] * self._begun[0, n + 1])
+                size = 0.0
+                for b in range(2 * self.flows.waves):
+                    size += fabs(self.flows.series_forced[self.slot, b, w] * self._begun[0, n + b])
                 for i in range(n):
                     size += fabs(self.flows.series[self.slot, i, w] * self._begun[0, i])
                 self._floors[e] = max(self._floors[e], DEPTH * size)

@@ -1,7 +1,7 @@
 from fcm.time_domain.forcing cimport Forced
 
 cdef class Exits(Forced):
-    cdef double[::1] _rotated
+    cdef double[:, ::1] _rotated
     cdef void _angles(self, Py_ssize_t slot) noexcept nogil
     cdef void _of_exit(self, Py_ssize_t slot, Py_ssize_t e, int a) noexcept nogil
     cdef void expand(self, Py_ssize_t slot, Py_ssize_t e) noexcept nogil

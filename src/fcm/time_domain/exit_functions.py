@@ -29,7 +29,7 @@ class Exits(Forced):
 
     def __init__(self, matrices: Matrices) -> None:
         Forced.__init__(self, matrices)
-        self._rotated = np.zeros(ORDER)
+        self._rotated = np.zeros((self.waves, ORDER))
 
     @cython.cfunc
     @cython.nogil
@@ -51,7 +51,7 @@ class Exits(Forced):
             self._of_exit(slot, e, 1)
             self._of_exit(slot, e, 2)
             self._of_exit(slot, e, 4)
-            for b in range(2):
+            for b in range(2 * self.waves):
                 self.series_forced[slot, b, w] = self.table_forced[slot, b, e] = 0.0
                 self.table_forced[slot, b, exits + e] = self.series_forced[slot, b, w + 1]
                 self.table_forced[slot, b, 2 * exits + e] = 24.0 * self.series_forced[slot, b, w + 4]
@@ -62,38 +62,47 @@ class Exits(Forced):
     @cython.nogil
     @cython.exceptval(check=False)
     def _angles(self, slot: cython.Py_ssize_t) -> cython.void:
-        """The powers of the angle of a step, with the signs of the derivatives of sin from sin = 0."""
+        """The powers of each harmonic's angle of a step, signed as the derivatives of sin from sin = 0."""
+        h: cython.Py_ssize_t
         j: cython.int
-        power: cython.double = 1.0
-        x: cython.double = self.omega * self.step[slot]
-        for j in range(_ORDER):
-            self._rotated[j] = power
-            power *= -x if j % 2 else x
+        power: cython.double
+        x: cython.double
+        for h in range(self.waves):
+            power, x = 1.0, self.harmonic[h] * self.omega * self.step[slot]
+            for j in range(_ORDER):
+                self._rotated[h, j] = power
+                power *= -x if j % 2 else x
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
     def _of_exit(self, slot: cython.Py_ssize_t, e: cython.Py_ssize_t, a: cython.int) -> cython.void:
         """The Taylor coefficient a > 0 of an exit in that step."""
+        h: cython.Py_ssize_t
+        b: cython.Py_ssize_t
         k: cython.int
         j: cython.int
         square: cython.double = self.omega * self.omega
         first: cython.double
         other: cython.double
-        sine: cython.double = 0.0
-        cosine: cython.double = 0.0
+        sine: cython.double
+        cosine: cython.double
         total: cython.double = 1.0
         for k in range(a):
             total *= k + 1
-            j = a - 1 - k
-            first = self._rotated[j] * (self.kick[slot, e, 0, k] + square * self.kick[slot, e, 2, k])
-            other = self._rotated[j] * (self.kick[slot, e, 1, k] + square * self.kick[slot, e, 3, k])
-            if j % 2:
-                sine, cosine = sine - other, cosine + first
-            else:
-                sine, cosine = sine + first, cosine + other
-        self.series_forced[slot, 0, e * (_ORDER + 1) + a] = sine / total
-        self.series_forced[slot, 1, e * (_ORDER + 1) + a] = cosine / total
+        for h in range(self.waves):
+            b, sine, cosine = 4 * h, 0.0, 0.0
+            for k in range(a):
+                j = a - 1 - k
+                first = self.kick[slot, e, b, k] + square * self.kick[slot, e, b + 2, k]
+                other = self.kick[slot, e, b + 1, k] + square * self.kick[slot, e, b + 3, k]
+                first, other = self._rotated[h, j] * first, self._rotated[h, j] * other
+                if j % 2:
+                    sine, cosine = sine - other, cosine + first
+                else:
+                    sine, cosine = sine + first, cosine + other
+            self.series_forced[slot, 2 * h, e * (_ORDER + 1) + a] = sine / total
+            self.series_forced[slot, 2 * h + 1, e * (_ORDER + 1) + a] = cosine / total
 
     @cython.cfunc
     @cython.nogil
@@ -121,26 +130,28 @@ class Exits(Forced):
         end: cython.Py_ssize_t = steps * g
         w: cython.Py_ssize_t
         i: cython.Py_ssize_t
-        b: cython.int
+        b: cython.Py_ssize_t
         x: cython.double
-        c: cython.double = self.rotation[slot, 0, 0]
-        s: cython.double = self.rotation[slot, 0, 1]
+        c: cython.double
+        s: cython.double
         if begin >= end:
             return
-        for b in range(2):
+        for b in range(2 * self.waves):
             for w in range(begin + g, end + g):
                 self.table_forced[slot, b, w] = 0.0
             for i in range(self.linear):
-                x = self.forced[slot, 0, b, i]
+                x = self.forced[slot, 0, b + b // 2 * 2, i]  # of four rows of a harmonic the first two
                 for w in range(begin, end):
                     self.table_forced[slot, b, w + g] += self.table[slot, i, w] * x
-        for w in range(begin, end):
-            self.table_forced[slot, 0, w + g] += (
-                c * self.table_forced[slot, 0, w] - s * self.table_forced[slot, 1, w]
-            )
-            self.table_forced[slot, 1, w + g] += (
-                s * self.table_forced[slot, 0, w] + c * self.table_forced[slot, 1, w]
-            )
+        for b in range(0, 2 * self.waves, 2):
+            c, s = self.rotation[slot, 0, b], self.rotation[slot, 0, b + 1]
+            for w in range(begin, end):
+                self.table_forced[slot, b, w + g] += (
+                    c * self.table_forced[slot, b, w] - s * self.table_forced[slot, b + 1, w]
+                )
+                self.table_forced[slot, b + 1, w + g] += (
+                    s * self.table_forced[slot, b, w] + c * self.table_forced[slot, b + 1, w]
+                )
         self.watched[slot] = steps
 
     @cython.cfunc
@@ -163,11 +174,14 @@ class Exits(Forced):
         b: cython.double
         c: cython.double
         d: cython.double
-        x: cython.double = y[k, n]
-        other: cython.double = y[k, n + 1]
+        h: cython.Py_ssize_t
         self.make_columns(slot, steps)
         for w in range(wide):
-            seen[w] = self.table_forced[slot, 0, w] * x + self.table_forced[slot, 1, w] * other
+            seen[w] = 0.0
+        for h in range(0, 2 * self.waves, 2):
+            a, b = y[k, n + h], y[k, n + h + 1]
+            for w in range(wide):
+                seen[w] += self.table_forced[slot, h, w] * a + self.table_forced[slot, h + 1, w] * b
         while i + 4 <= n:
             a, b, c, d = y[k, i], y[k, i + 1], y[k, i + 2], y[k, i + 3]
             for w in range(wide):
@@ -197,12 +211,19 @@ class Exits(Forced):
         n: cython.Py_ssize_t = self.linear
         w: cython.Py_ssize_t = e * (_ORDER + 1)
         i: cython.Py_ssize_t
+        h: cython.Py_ssize_t
         j: cython.int
-        x: cython.double = y[k, n]
-        other: cython.double = y[k, n + 1]
+        x: cython.double
+        other: cython.double
         self.expand(slot, e)
         for j in range(_ORDER + 1):
-            powers[e, j] = self.series_forced[slot, 0, w + j] * x + self.series_forced[slot, 1, w + j] * other
+            powers[e, j] = 0.0
+        for h in range(0, 2 * self.waves, 2):
+            x, other = y[k, n + h], y[k, n + h + 1]
+            for j in range(_ORDER + 1):
+                powers[e, j] += (
+                    self.series_forced[slot, h, w + j] * x + self.series_forced[slot, h + 1, w + j] * other
+                )
         for i in range(n):
             x = y[k, i]
             if x != 0.0:

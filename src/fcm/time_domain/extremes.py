@@ -109,8 +109,8 @@ class Scan(Walk):
         """What `_look` tells of the state vectors `ahead`."""
         n: cython.Py_ssize_t = self.flows.linear
         rows, y = np.asarray(self._rows.dense), np.asarray(self.ahead)
-        out, forces = np.asarray(self._values), np.zeros((2, 2, self.flows.size))
-        for b in range(2):
+        out, forces = np.asarray(self._values), np.zeros((2 * self.flows.waves, 2, self.flows.size))
+        for b in range(2 * self.flows.waves):
             forces[b, 0, n + b] = 1.0
             self.flows.extend(slot, forces[b], 1, self.flows.step[slot], forces[b], False)
         term = np.asarray(self.flows.terms)[slot, 1].reshape(n, n)

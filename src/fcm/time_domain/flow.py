@@ -2,10 +2,11 @@
 
 The state vector is
 
-    y = (q, q', f, n, 1, sin(theta), cos(theta)),    d = 2 modes + 2 contacts + 3 numbers,
+    y = (q, q', f, n, 1, sin(h theta), cos(h theta) ...),    d = 2 modes + 2 contacts + 1 + 2 waves numbers,
 
 with the modal displacements and velocities q, q', the friction forces f, the changes n = k_v v of the normal
-loads from their preloads, and the phase angle theta = omega t of the forces. Then y' = A y in every
+loads from their preloads, and the phase angle theta = omega t of the forces at
+each of their harmonics h, of which the first is 1. Then y' = A y in every
 combination of states, forcing and preload included. The forces of the contacts are states of their own:
 k_u (u - w) of a stiff contact, computed from displacements, would lose as many digits as it is stiffer than
 the structure.
@@ -13,7 +14,7 @@ the structure.
 Over a step h = 1 / rate the series of exp(A h) is complete to rounding after `ORDER` terms, whatever A is:
 defective, singular, resonant without damping. Whole steps are powers of exp(A h). The functions that end a
 combination are known on `BLOCK` steps at once from a table of their rows times those powers. The frequency
-enters only the two columns of the forces (`forced`): everything else of a flow is made once for a scene.
+enters only the columns of the forces (`forced`): everything else of a flow is made once for a scene.
 """
 
 from __future__ import annotations
@@ -45,16 +46,26 @@ class Flows(Exits):
         """Move row k of y by 2**j steps."""
         n: cython.Py_ssize_t = self.linear
         i: cython.Py_ssize_t
-        sine: cython.double = y[k, n]
-        cosine: cython.double = y[k, n + 1]
+        h: cython.Py_ssize_t
+        b: cython.Py_ssize_t
+        sine: cython.double
+        cosine: cython.double
+        c: cython.double
+        s: cython.double
         self.reach(slot, j)
         for i in range(n):
-            self.whole[i] = self.forced[slot, j, 0, i] * sine + self.forced[slot, j, 1, i] * cosine
+            self.whole[i] = 0.0
+        for h in range(self.waves):
+            b, sine, cosine = 4 * h, y[k, n + 2 * h], y[k, n + 2 * h + 1]
+            for i in range(n):
+                self.whole[i] += self.forced[slot, j, b, i] * sine + self.forced[slot, j, b + 1, i] * cosine
         self.free(slot, j, y, k)
         for i in range(n):
             y[k, i] = self.whole[i]
-        y[k, n] = self.rotation[slot, j, 0] * sine + self.rotation[slot, j, 1] * cosine
-        y[k, n + 1] = self.rotation[slot, j, 0] * cosine - self.rotation[slot, j, 1] * sine
+        for b in range(0, 2 * self.waves, 2):
+            sine, cosine = y[k, n + b], y[k, n + b + 1]
+            c, s = self.rotation[slot, j, b], self.rotation[slot, j, b + 1]
+            y[k, n + b], y[k, n + b + 1] = c * sine + s * cosine, c * cosine - s * sine
         return 0
 
     @cython.cfunc
@@ -86,15 +97,20 @@ class Flows(Exits):
         n: cython.Py_ssize_t = self.linear
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t
-        x: cython.double = fabs(y[k, n])
-        other: cython.double = fabs(y[k, n + 1])
+        b: cython.Py_ssize_t
+        x: cython.double
+        other: cython.double
         for i in range(n):
-            out[i] = self.sizes_forced[slot, 0, i] * x + self.sizes_forced[slot, 1, i] * other
+            out[i] = 0.0
+        for b in range(0, 2 * self.waves, 2):
+            x, other = fabs(y[k, n + b]), fabs(y[k, n + b + 1])
+            for i in range(n):
+                out[i] += self.sizes_forced[slot, b, i] * x + self.sizes_forced[slot, b + 1, i] * other
+            out[n + b] = out[n + b + 1] = 2.5  # of 1 + x + x**2 / 2, x <= 1 the angle of a step
         for p in range(n):
             x = fabs(y[k, p])
             for i in range(n):
                 out[i] += self.sizes[slot, p, i] * x
-        out[n] = out[n + 1] = 2.5  # of 1 + x + x**2 / 2, x <= 1 the angle of a step
 
     @cython.cfunc
     @cython.nogil

@@ -1,7 +1,7 @@
 cdef class Pool:
-    cdef readonly Py_ssize_t modes, contacts, springs, linear, size, count, clock
-    cdef readonly double omega
-    cdef readonly double[::1] stiffness, damping, mu, k_u, k_v, n_0
+    cdef readonly Py_ssize_t modes, contacts, springs, linear, size, waves, count, clock
+    cdef readonly double omega, highest
+    cdef readonly double[::1] harmonic, stiffness, damping, mu, k_u, k_v, n_0
     cdef readonly double[::1] hold
     cdef readonly double[:, ::1] constant, square, drive, slope, tangential, normal, push_u, push_v, stretch, pull
     cdef readonly signed char[::1] rough, halved

@@ -32,18 +32,18 @@ KINDS = dict.fromkeys(("states", "halved", "goal"), np.int8) | dict.fromkeys(
 )
 
 
-def _shapes(n: int, contacts: int) -> dict[str, tuple[int, ...]]:
-    """What the pool keeps of one flow whose state has n components."""
+def _shapes(n: int, contacts: int, waves: int) -> dict[str, tuple[int, ...]]:
+    """What the pool keeps of one flow whose state has n components, and forces at so many harmonics."""
     e = max(2 * contacts, 1)  # exits: of a contact two at most
     wide = (BLOCK + 1) * WATCHED * e
     return {
         "states": (contacts,), "step": (), "halved": (), "exits": (), "owner": (e,), "goal": (e,),
         "first": (e,), "made_for": (), "used": (), "squared": (), "spelled": (), "row": (e, n),
-        "power": (POWERS, n, n), "forced": (POWERS, 4, n), "rotation": (POWERS, 2), "reached": (),
-        "watched": (), "terms": (ORDER + 1 if n <= SMALL else 0, n * n), "sizes": (n, n),
-        "sizes_forced": (2, n), "table": (n, wide), "table_forced": (2, wide),
-        "push": (2, 4, n), "pushed": (4, ORDER, n), "kick": (e, 4, ORDER), "spread": (e,),
-        "series": (n, e * (ORDER + 1)), "series_forced": (2, e * (ORDER + 1)),
+        "power": (POWERS, n, n), "forced": (POWERS, 4 * waves, n), "rotation": (POWERS, 2 * waves),
+        "reached": (), "watched": (), "terms": (ORDER + 1 if n <= SMALL else 0, n * n), "sizes": (n, n),
+        "sizes_forced": (2 * waves, n), "table": (n, wide), "table_forced": (2 * waves, wide),
+        "push": (2, 4 * waves, n), "pushed": (4 * waves, ORDER, n), "kick": (e, 4 * waves, ORDER),
+        "spread": (e,), "series": (n, e * (ORDER + 1)), "series_forced": (2 * waves, e * (ORDER + 1)),
     }  # fmt: skip
 
 
@@ -56,7 +56,7 @@ class Pool:
     """
 
     def __init__(self, matrices: Matrices) -> None:
-        modal, ports, law, springs = matrices
+        modal, ports, law, springs, harmonics = matrices
         self.stiffness, self.damping, self.hold, self.constant, self.square = (
             np.ascontiguousarray(x, dtype=np.float64) for x in modal
         )
@@ -70,7 +70,9 @@ class Pool:
         self.rough = np.ascontiguousarray(law[4], dtype=np.int8)
         self.modes, self.contacts = self.stiffness.shape[0], self.mu.shape[0]
         self.linear = 2 * self.modes + 2 * self.contacts + 1
-        self.size = self.linear + 2
+        self.harmonic = np.ascontiguousarray(harmonics, dtype=np.float64)
+        self.waves, self.highest = self.harmonic.shape[0], float(np.max(harmonics))
+        self.size = self.linear + 2 * self.waves
         self.omega = 0.0
         self.count, self.clock = 0, 0
         self._pool: dict[str, Any] = {}
@@ -83,7 +85,7 @@ class Pool:
         if omega == self.omega:
             return
         self.omega = omega
-        for b in range(2):
+        for b in range(2 * self.waves):
             for i in range(self.modes):
                 self.drive[b, i] = self.constant[b, i] + self.omega * self.omega * self.square[b, i]
                 self.slope[b, i] = 2.0 * self.omega * self.square[b, i]
@@ -151,7 +153,7 @@ class Pool:
     def _make_room(self, capacity: int) -> None:
         """Arrays for so many flows, with those that are there; typed views of them for the kernels."""
         old, made = self._pool, {}
-        for name, shape in _shapes(self.linear, self.contacts).items():
+        for name, shape in _shapes(self.linear, self.contacts, self.waves).items():
             made[name] = np.zeros((capacity, *shape), KINDS.get(name, np.float64))
             if self.count:
                 made[name][: self.count] = old[name][: self.count]
@@ -180,7 +182,7 @@ class Pool:
         j: cython.Py_ssize_t
         angle: cython.double
         for i in range(self.count):
-            angle = self.omega * self.step[i]
+            angle = self.highest * self.omega * self.step[i]
             if angle > _FITS or (self.halved[i] and 2.0 * angle <= _FITS):
                 continue
             j = 0

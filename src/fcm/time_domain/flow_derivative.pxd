@@ -58,7 +58,7 @@ cdef class Along:
     cdef double[:, ::1] _terms, _grades, _room, _matrix
     cdef int follow(self, Py_ssize_t slot, double position) except -1 nogil
     cdef int _whole(self, Py_ssize_t slot, Py_ssize_t j) except -1 nogil
-    cdef void _rotate(self, double c, double s, double time) noexcept nogil
+    cdef void _rotate(self, Py_ssize_t h, double c, double s, double time) noexcept nogil
     cdef int _times(self, double[:, ::1] matrix, Py_ssize_t rows) except -1 nogil
     cdef void _row_times(self, double[:, ::1] matrix, Py_ssize_t k) noexcept nogil
     cdef int _fraction(self, Py_ssize_t slot, double x, Py_ssize_t orders) except -1 nogil

@@ -1,10 +1,10 @@
 """The derivatives of a motion along one flow, to any position in steps.
 
 Along it the derivative by the start is the exponential of the flow's matrix. The frequency acts on the
-forces alone, which may also grow with it: at a fixed time the derivatives of sin(omega t) and cos(omega t)
-are t cos(omega t) and -t sin(omega t), and that of the columns of the forces is known with the flow. Of the
-motion itself only the angle of the forces is needed. The level of the forces, a factor of sin and cos, acts
-as a start does at which they alone differ.
+forces alone, which may also grow with it: at a fixed time the derivatives of sin(h omega t) and
+cos(h omega t) are h t cos(h omega t) and -h t sin(h omega t), and that of the columns of the forces is known
+with the flow. Of the motion itself only the angle of the forces is needed. The level of the forces, a factor
+of sin and cos, acts as a start does at which they alone differ.
 """
 
 from __future__ import annotations
@@ -69,27 +69,40 @@ class Along:
         n: cython.Py_ssize_t = self.flows.linear
         u: cython.Py_ssize_t = self.unknowns
         i: cython.Py_ssize_t
-        sine: cython.double = self.paced * self.columns[u + 1, n]
-        cosine: cython.double = self.paced * self.columns[u + 1, n + 1]
-        by_sine: cython.double = self.columns[u, n]
-        by_cosine: cython.double = self.columns[u, n + 1]
+        h: cython.Py_ssize_t
+        b: cython.Py_ssize_t
+        sine: cython.double
+        cosine: cython.double
+        by_sine: cython.double
+        by_cosine: cython.double
+        time: cython.double = self.flows.step[slot] * (1 << j)
         self.flows.reach(slot, j)
         self._times(self.flows.power[slot, j], u + 1)
-        for i in range(n):
-            self.columns[u, i] += (
-                (self.flows.forced[slot, j, 0, i] * by_sine + self.flows.forced[slot, j, 1, i] * by_cosine)
-                + self.flows.forced[slot, j, 2, i] * sine
-            ) + self.flows.forced[slot, j, 3, i] * cosine
-        h: cython.double = self.flows.step[slot] * (1 << j)
-        self._rotate(self.flows.rotation[slot, j, 0], self.flows.rotation[slot, j, 1], h)
+        for h in range(self.flows.waves):
+            b = n + 2 * h
+            sine, cosine = self.paced * self.columns[u + 1, b], self.paced * self.columns[u + 1, b + 1]
+            by_sine, by_cosine = self.columns[u, b], self.columns[u, b + 1]
+            b = 4 * h
+            for i in range(n):
+                self.columns[u, i] += (
+                    (
+                        self.flows.forced[slot, j, b, i] * by_sine
+                        + self.flows.forced[slot, j, b + 1, i] * by_cosine
+                    )
+                    + self.flows.forced[slot, j, b + 2, i] * sine
+                ) + self.flows.forced[slot, j, b + 3, i] * cosine
+            b = 2 * h
+            self._rotate(h, self.flows.rotation[slot, j, b], self.flows.rotation[slot, j, b + 1], time)
         return 0
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def _rotate(self, c: cython.double, s: cython.double, time: cython.double) -> cython.void:
-        """Rotate the forces by the angle with that cosine and sine, which takes that time [s]."""
-        n: cython.Py_ssize_t = self.flows.linear
+    def _rotate(
+        self, h: cython.Py_ssize_t, c: cython.double, s: cython.double, time: cython.double
+    ) -> cython.void:
+        """Rotate a harmonic's forces by the angle with that cosine and sine, which takes that time [s]."""
+        n: cython.Py_ssize_t = self.flows.linear + 2 * h
         u: cython.Py_ssize_t = self.unknowns
         k: cython.Py_ssize_t
         sine: cython.double
@@ -97,8 +110,9 @@ class Along:
         for k in range(u, u + 2):
             sine, cosine = self.columns[k, n], self.columns[k, n + 1]
             self.columns[k, n], self.columns[k, n + 1] = c * sine + s * cosine, c * cosine - s * sine
-        self.columns[u, n] += self.paced * time * self.columns[u + 1, n + 1]
-        self.columns[u, n + 1] -= self.paced * time * self.columns[u + 1, n]
+        time *= self.paced * self.flows.harmonic[h]
+        self.columns[u, n] += time * self.columns[u + 1, n + 1]
+        self.columns[u, n + 1] -= time * self.columns[u + 1, n]
 
     @cython.cfunc
     @cython.nogil
@@ -210,25 +224,32 @@ class Along:
         u: cython.Py_ssize_t = self.unknowns
         size: cython.double
         orders: cython.Py_ssize_t = needed(x)
-        h: cython.double = x * self.flows.step[slot]
+        time: cython.double = x * self.flows.step[slot]
+        angle: cython.double
+        h: cython.Py_ssize_t
+        b: cython.Py_ssize_t
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         self._fraction(slot, x, orders)
         for i in range(self.flows.size):
             self._grades[0, i] = self.columns[u, i]
-        self._terms[0, n] = self.paced * self.columns[u + 1, n]
-        self._terms[0, n + 1] = self.paced * self.columns[u + 1, n + 1]
-        for j in range(orders):
-            size = h * self.flows.omega / (j + 1)
-            self._terms[j + 1, n], self._terms[j + 1, n + 1] = (
-                size * self._terms[j, n + 1],
-                -size * self._terms[j, n],
-            )
-        self.flows.extend(slot, self._grades, orders, h, self._terms, True)
+        for h in range(self.flows.waves):
+            b = n + 2 * h
+            self._terms[0, b] = self.paced * self.columns[u + 1, b]
+            self._terms[0, b + 1] = self.paced * self.columns[u + 1, b + 1]
+            for j in range(orders):
+                size = self.flows.harmonic[h] * time * self.flows.omega / (j + 1)
+                self._terms[j + 1, b], self._terms[j + 1, b + 1] = (
+                    size * self._terms[j, b + 1],
+                    -size * self._terms[j, b],
+                )
+        self.flows.extend(slot, self._grades, orders, time, self._terms, True)
         for j in range(orders - 1, -1, -1):
             for i in range(n):
                 self._grades[j, i] += self._grades[j + 1, i]
         for i in range(n):
             self.columns[u, i] = self._grades[0, i]
-        self._rotate(cos(self.flows.omega * h), sin(self.flows.omega * h), h)
+        for h in range(self.flows.waves):
+            angle = self.flows.harmonic[h] * self.flows.omega * time
+            self._rotate(h, cos(angle), sin(angle), time)
         return 0

@@ -1,7 +1,7 @@
 """The columns of the forces, the only ones of a flow that the frequency enters: made anew for each.
 
-A column is what sin(theta) or cos(theta) = 1 alone at the start has done after a step, or after 2**j, and its
-derivative by the frequency.
+A column is what sin(h theta) or cos(h theta) = 1 alone at the start has done after a step, or after 2**j, and
+its derivative by the frequency; there are four for each harmonic h.
 """
 
 from __future__ import annotations
@@ -52,18 +52,28 @@ class Forced(Series):
     @cython.nogil
     @cython.exceptval(check=False)
     def _one_step(self, slot: cython.Py_ssize_t) -> cython.void:
-        """One step from sin(theta) = 1 or cos(theta) = 1 alone, and its derivative by omega.
+        """One step from sin(h theta) = 1 or cos(h theta) = 1 alone, and its derivative by omega.
 
-        The j-th derivative of the forces by time grows as omega**j; what each does is known with the flow.
+        The j-th derivative of the forces by time grows as (h omega)**j; what it does is known with the flow.
         """
+        h: cython.Py_ssize_t
+        self.forced[slot, 0, :, :] = 0.0
+        for h in range(self.waves):
+            self._sum_terms(slot, h)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _sum_terms(self, slot: cython.Py_ssize_t, h: cython.Py_ssize_t) -> cython.void:
+        """The same of one harmonic."""
         j: cython.int
-        x: cython.double = self.omega * self.step[slot]
+        step: cython.double = self.harmonic[h] * self.step[slot]
+        x: cython.double = self.omega * step
         size: cython.double = 1.0
         power: cython.double = 1.0
         before: cython.double = 0.0
-        self.forced[slot, 0, :, :] = 0.0
         for j in range(_ORDER):
-            self._add_term(slot, j, power, j * before * self.step[slot])
+            self._add_term(slot, h, j, power, j * before * step)
             size *= x / (j + 1)
             if size < NOTHING * x:
                 return
@@ -76,10 +86,16 @@ class Forced(Series):
     @cython.nogil
     @cython.exceptval(check=False)
     def _add_term(
-        self, slot: cython.Py_ssize_t, j: cython.int, power: cython.double, slope: cython.double
+        self,
+        slot: cython.Py_ssize_t,
+        h: cython.Py_ssize_t,
+        j: cython.int,
+        power: cython.double,
+        slope: cython.double,
     ) -> cython.void:
         """Add what the j-th derivative does, power times, and by omega, of which that is the slope."""
         i: cython.Py_ssize_t
+        b: cython.Py_ssize_t = 4 * h
         square: cython.double = self.omega * self.omega
         rate: cython.double = 2.0 * self.omega * power
         first: cython.double
@@ -87,18 +103,18 @@ class Forced(Series):
         grade: cython.double
         new: cython.double[:, ::1] = self.forced[slot, 0]
         for i in range(self.linear):
-            first = self.pushed[slot, 0, j, i] + square * self.pushed[slot, 2, j, i]
-            other = self.pushed[slot, 1, j, i] + square * self.pushed[slot, 3, j, i]
-            grade = slope * first + rate * self.pushed[slot, 2, j, i]
-            new[j % 2, i] += power * first
-            new[2 + j % 2, i] += grade
-            grade = slope * other + rate * self.pushed[slot, 3, j, i]
+            first = self.pushed[slot, b, j, i] + square * self.pushed[slot, b + 2, j, i]
+            other = self.pushed[slot, b + 1, j, i] + square * self.pushed[slot, b + 3, j, i]
+            grade = slope * first + rate * self.pushed[slot, b + 2, j, i]
+            new[b + j % 2, i] += power * first
+            new[b + 2 + j % 2, i] += grade
+            grade = slope * other + rate * self.pushed[slot, b + 3, j, i]
             if j % 2:
-                new[0, i] -= power * other
-                new[2, i] -= grade
+                new[b, i] -= power * other
+                new[b + 2, i] -= grade
             else:
-                new[1, i] += power * other
-                new[3, i] += grade
+                new[b + 1, i] += power * other
+                new[b + 3, i] += grade
 
     @cython.cfunc
     @cython.nogil
@@ -106,19 +122,23 @@ class Forced(Series):
     def _sized(self, slot: cython.Py_ssize_t) -> cython.void:
         """The size of the first two terms of that step."""
         i: cython.Py_ssize_t
-        x: cython.double = self.omega * self.step[slot]
+        h: cython.Py_ssize_t
+        b: cython.Py_ssize_t
+        x: cython.double
         square: cython.double = self.omega * self.omega
         sine: cython.double
         cosine: cython.double
-        for i in range(self.linear):
-            sine = self.push[slot, 0, 0, i] + square * self.push[slot, 0, 2, i]
-            cosine = self.push[slot, 0, 1, i] + square * self.push[slot, 0, 3, i]
-            self.sizes_forced[slot, 0, i] = fabs(sine) + 0.5 * fabs(
-                self.push[slot, 1, 0, i] + square * self.push[slot, 1, 2, i] - x * cosine
-            )
-            self.sizes_forced[slot, 1, i] = fabs(cosine) + 0.5 * fabs(
-                self.push[slot, 1, 1, i] + square * self.push[slot, 1, 3, i] + x * sine
-            )
+        for h in range(self.waves):
+            b, x = 4 * h, self.harmonic[h] * self.omega * self.step[slot]
+            for i in range(self.linear):
+                sine = self.push[slot, 0, b, i] + square * self.push[slot, 0, b + 2, i]
+                cosine = self.push[slot, 0, b + 1, i] + square * self.push[slot, 0, b + 3, i]
+                self.sizes_forced[slot, 2 * h, i] = fabs(sine) + 0.5 * fabs(
+                    self.push[slot, 1, b, i] + square * self.push[slot, 1, b + 2, i] - x * cosine
+                )
+                self.sizes_forced[slot, 2 * h + 1, i] = fabs(cosine) + 0.5 * fabs(
+                    self.push[slot, 1, b + 1, i] + square * self.push[slot, 1, b + 3, i] + x * sine
+                )
 
     @cython.cfunc
     @cython.nogil
@@ -126,15 +146,17 @@ class Forced(Series):
     def reach(self, slot: cython.Py_ssize_t, last: cython.Py_ssize_t) -> cython.int:
         """Make the columns of the forces over 1, 2, 4 ... 2**last steps, those that are not made yet."""
         t: cython.double
+        h: cython.Py_ssize_t
         while self.reached[slot] <= last:
             if self.reached[slot] > 0:
                 self._double(slot, self.reached[slot] - 1)
             if self.squared[slot] < self.reached[slot]:
                 with cython.gil:
                     self.next_power(slot)
-            t = self.omega * self.step[slot] * (1 << self.reached[slot])
-            self.rotation[slot, self.reached[slot], 0] = cos(t)
-            self.rotation[slot, self.reached[slot], 1] = sin(t)
+            for h in range(self.waves):
+                t = self.harmonic[h] * self.omega * self.step[slot] * (1 << self.reached[slot])
+                self.rotation[slot, self.reached[slot], 2 * h] = cos(t)
+                self.rotation[slot, self.reached[slot], 2 * h + 1] = sin(t)
             self.reached[slot] += 1
         return 0
 
@@ -145,18 +167,22 @@ class Forced(Series):
         """The columns over twice as many steps: C(2 t) = E C + C R, with the rotation R of the forces."""
         n: cython.Py_ssize_t = self.linear
         i: cython.Py_ssize_t
-        b: cython.int
-        t: cython.double = self.step[slot] * (1 << j)
-        c: cython.double = self.rotation[slot, j, 0]
-        s: cython.double = self.rotation[slot, j, 1]
+        h: cython.Py_ssize_t
+        b: cython.Py_ssize_t
+        t: cython.double
+        c: cython.double
+        s: cython.double
         old: cython.double[:, ::1] = self.forced[slot, j]
         new: cython.double[:, ::1] = self.forced[slot, j + 1]
-        for i in range(n):
-            new[0, i] = c * old[0, i] - s * old[1, i]
-            new[1, i] = s * old[0, i] + c * old[1, i]
-            new[2, i] = c * old[2, i] - s * old[3, i] - t * new[1, i]
-            new[3, i] = s * old[2, i] + c * old[3, i] + t * new[0, i]
-        for b in range(4):
+        for h in range(self.waves):
+            b, t = 4 * h, self.harmonic[h] * self.step[slot] * (1 << j)
+            c, s = self.rotation[slot, j, 2 * h], self.rotation[slot, j, 2 * h + 1]
+            for i in range(n):
+                new[b, i] = c * old[b, i] - s * old[b + 1, i]
+                new[b + 1, i] = s * old[b, i] + c * old[b + 1, i]
+                new[b + 2, i] = c * old[b + 2, i] - s * old[b + 3, i] - t * new[b + 1, i]
+                new[b + 3, i] = s * old[b + 2, i] + c * old[b + 3, i] + t * new[b, i]
+        for b in range(4 * self.waves):
             for i in range(n):
                 self.whole[i] = new[b, i]
             self.free(slot, j, old, b)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import fabs, isfinite
+from cython.cimports.libc.math import cos, fabs, isfinite, sin
 
 from fcm.time_domain.stop_reason import Stopped
 
@@ -50,8 +50,8 @@ class March:
             self.states[0, i] = states[i]
         self.lasts(duration, limit)
 
-    def enters(self, x: cython.double[::1], sine: cython.double, cosine: cython.double) -> bool:
-        """Set y and states from x = (q, q', f) and the phase of the forces; f is brought into its limits.
+    def enters(self, x: cython.double[::1], angle: cython.double, level: cython.double) -> bool:
+        """Set y and states from x = (q, q', f), the forces' angle and level; f is brought into its limits.
 
         Whether all of these numbers are finite.
         """
@@ -60,8 +60,9 @@ class March:
         n: cython.Py_ssize_t = self.flows.linear
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
+        h: cython.Py_ssize_t
         change: cython.double
-        finite: cython.bint = isfinite(sine) and isfinite(cosine)
+        finite: cython.bint = isfinite(angle) and isfinite(level)
         for i in range(2 * m + c):
             self.y[0, i] = x[i]
             finite = finite and isfinite(x[i])
@@ -70,7 +71,10 @@ class March:
             for i in range(m):
                 change += self.flows.normal[j, i] * x[i]
             self.y[0, 2 * m + c + j] = self.flows.k_v[j] * change
-        self.y[0, n - 1], self.y[0, n], self.y[0, n + 1] = 1.0, sine, cosine
+        self.y[0, n - 1] = 1.0
+        for h in range(self.flows.waves):
+            self.y[0, n + 2 * h] = level * sin(self.flows.harmonic[h] * angle)
+            self.y[0, n + 2 * h + 1] = level * cos(self.flows.harmonic[h] * angle)
         for j in range(c):
             self._enter(j)
         return bool(finite)

@@ -122,14 +122,16 @@ class Successor:
         n: cython.Py_ssize_t = self.flows.linear
         i: cython.Py_ssize_t
         w: cython.Py_ssize_t
+        b: cython.Py_ssize_t
         j: cython.int
         zero: cython.double
         self.flows.leave(slot, e, self.y, 0, powers)
         powers[e, 0] = 0.0
         for j in range(1, _LEADING):
             w = e * (_ORDER + 1) + j
-            zero = fabs(self.flows.series_forced[slot, 0, w]) * self._noise[n]
-            zero += fabs(self.flows.series_forced[slot, 1, w]) * self._noise[n + 1]
+            zero = 0.0
+            for b in range(2 * self.flows.waves):
+                zero += fabs(self.flows.series_forced[slot, b, w]) * self._noise[n + b]
             for i in range(n):
                 zero += fabs(self.flows.series[slot, i, w]) * self._noise[i]
             if fabs(powers[e, j]) > zero:

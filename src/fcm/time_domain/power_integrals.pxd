@@ -4,6 +4,6 @@ cdef class Powers(Walk):
     cdef readonly double work, slip, damping, turnover
     cdef readonly double[::1] slips, paths
     cdef bint _everywhere
-    cdef double[:, ::1] _y, _terms
-    cdef double[::1] _sine, _cosine, _static, _damper, _nodes, _weights
+    cdef double[:, ::1] _y, _terms, _wave
+    cdef double[::1] _static, _damper, _nodes, _weights
     cdef void _add(self, double weight) noexcept nogil

@@ -37,8 +37,10 @@ class Powers(Walk):
     Parameters
     ----------
     flows : Flows
-    sine, cosine, static : (mode,)
-        Modal amplitudes of the forces.
+    wave : (2 waves, mode)
+        Modal amplitudes of the forces: of sin(h theta) and cos(h theta) of each of their harmonics h.
+    static : (mode,)
+        Modal steady forces.
     damper : (mode,)
         2 m zeta omega of the modes.
     everywhere : bool
@@ -48,15 +50,14 @@ class Powers(Walk):
     def __init__(
         self,
         flows: Flows,
-        sine: FloatArray,
-        cosine: FloatArray,
+        wave: FloatArray,
         static: FloatArray,
         damper: FloatArray,
         everywhere: bool = True,
     ) -> None:
         Walk.__init__(self, flows)
         self._everywhere = everywhere
-        self._sine, self._cosine, self._static, self._damper = sine, cosine, static, damper
+        self._wave, self._static, self._damper = wave, static, damper
         self._y, self._terms = np.zeros((2, flows.size)), np.zeros((ORDER + 1, flows.size))
         self._nodes, self._weights = _ON_ONE
         self.slips, self.paths = np.zeros((2, flows.contacts))
@@ -108,13 +109,16 @@ class Powers(Walk):
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         state: cython.int
+        push: cython.double
         power: cython.double = 0.0
         loss: cython.double = 0.0
         slip: cython.double = 0.0
         rate: cython.double
         ratio: cython.double
         for i in range(m):
-            push: cython.double = self._sine[i] * self._y[0, n] + self._cosine[i] * self._y[0, n + 1]
+            push = 0.0
+            for j in range(self._wave.shape[0]):
+                push += self._wave[j, i] * self._y[0, n + j]
             power += self._y[0, m + i] * (push + self._static[i])
             loss += self._damper[i] * self._y[0, m + i] * self._y[0, m + i]
         for j in range(self.flows.contacts):

@@ -64,14 +64,18 @@ class Walk:
         """Fill the rows of `ahead` after the first, each time as many as there are."""
         self.flows.reach(slot, DOUBLINGS)
         n, y = self.flows.linear, np.asarray(self.ahead)
-        powers, forced = np.asarray(self.flows.power)[slot], np.asarray(self.flows.forced)[slot]
+        powers, waves = np.asarray(self.flows.power)[slot], self.flows.waves
+        forced = (
+            np.asarray(self.flows.forced)[slot].reshape(-1, waves, 4, n)[:, :, :2].reshape(-1, 2 * waves, n)
+        )
         for j in range(DOUBLINGS + 1):
             k = 1 << j
             last = min(2 * k, SPAN + 1)
             old, new = y[: last - k], y[k:last]
-            new[:, :n] = old[:, :n] @ powers[j] + old[:, n:] @ forced[j, :2]
-            c, s = np.asarray(self.flows.rotation)[slot, j]
-            new[:, n:] = old[:, n:] @ np.array([[c, -s], [s, c]])
+            new[:, :n] = old[:, :n] @ powers[j] + old[:, n:] @ forced[j]
+            for b in range(0, 2 * waves, 2):
+                c, s = np.asarray(self.flows.rotation)[slot, j, b : b + 2]
+                new[:, n + b : n + b + 2] = old[:, n + b : n + b + 2] @ np.array([[c, -s], [s, c]])
 
     @cython.cfunc
     @cython.nogil

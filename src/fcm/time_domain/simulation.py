@@ -103,7 +103,7 @@ def cycles_from(system: System, cycles: float, state: State) -> Iterator[tuple[C
     y, states = entry(system, state)
     for k in range(int(np.ceil(cycles))):
         part = min(1.0, cycles - k)
-        set_angle(y, state.angle)
+        set_angle(system, y, state.angle)
         segments, y, states = march(system, y, states, part * system.period)
         angle = (state.angle + 2.0 * np.pi * (part % 1.0)) % (2.0 * np.pi)
         cycle = Cycle(system, k * system.period, part * system.period, state.angle, segments)

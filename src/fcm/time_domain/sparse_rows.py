@@ -10,7 +10,7 @@ from fcm.model.scene import FloatArray
 
 @cython.cclass
 class Rows:
-    """Rows (row, d - 2) without their zeros, of the state vector without its last two components."""
+    """Rows (row, linear) without their zeros, of the state vector without the forces' phases."""
 
     def __init__(self, rows: FloatArray) -> None:
         places = np.nonzero(rows)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, isfinite, sin
 
 import numpy as np
 
@@ -85,8 +84,8 @@ def entry(system: System, state: State) -> tuple[FloatArray, Codes]:
 
 def entered(system: System, x: FloatArray, angle: float = 0.0) -> March:
     """The march, to go on from x = (q, q', f) at an angle of the forces."""
-    march, level = system.march(), system.level
-    if not (isfinite(angle) and march.enters(x, level * sin(angle), level * cos(angle))):
+    march = system.march()
+    if not march.enters(x, angle, system.level):
         raise SimulationError("the state to start from has numbers that are not finite")
     return march
 
@@ -96,6 +95,7 @@ def leave(system: System, y: FloatArray, angle: float) -> State:
     return State(y[system.q].copy(), y[system.p].copy(), y[system.f].copy(), angle)
 
 
-def set_angle(y: FloatArray, angle: float) -> None:
-    """Set the constant, and the phase angle of the forces."""
-    y[-3:] = 1.0, np.sin(angle), np.cos(angle)
+def set_angle(system: System, y: FloatArray, angle: float) -> None:
+    """Set the phases of the forces by their angle."""
+    angles = angle * np.array(system.harmonics)
+    y[system.linear :: 2], y[system.linear + 1 :: 2] = np.sin(angles), np.cos(angles)

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.model.scene import FloatArray, Scene
-from fcm.structure.loads import loads_of
+from fcm.structure.loads import driven_harmonics, loads_of
 from fcm.time_domain.contact_states import Codes, made
 from fcm.time_domain.directional import Directional
 from fcm.time_domain.equations import has_friction, held_as_springs, held_limits, held_rows, matrices_of
@@ -30,7 +30,6 @@ from fcm.time_domain.steps import Steps
 from fcm.time_domain.variational import Derivative
 
 LETTERS = "SEPN"  # of the codes SEPARATED, STICKING, POSITIVE_SLIP, NEGATIVE_SLIP
-OTHER_HARMONICS = "forces of other harmonics than 1 are not followed in time; the balance has them"
 OWN = ("scene", "omega")  # what systems of a scene do not have in common, or must not keep
 
 
@@ -62,12 +61,12 @@ class System:
         if known := _LATEST.known(scene):
             self.__dict__.update(known)
             return
-        if any(force.harmonic != 1 for force in scene.forces):
-            raise SimulationError(OTHER_HARMONICS)
         self.contacts = scene.contacts
         modal = scene.modal
         m, c = modal.mass.size, len(scene.contacts)
-        self.modes, self.size = m, 2 * m + 2 * c + 3
+        self.harmonics = driven_harmonics(scene)
+        self.modes, self.linear = m, 2 * m + 2 * c + 1
+        self.size = self.linear + 2 * len(self.harmonics)
         self.q, self.p = slice(0, m), slice(m, 2 * m)
         self.f, self.n = slice(2 * m, 2 * m + c), slice(2 * m + c, 2 * m + 2 * c)
         self.unknowns = 2 * m + c  # (q, q', f): the rest follows
@@ -78,7 +77,7 @@ class System:
         shapes = np.abs(modal.shapes).max(axis=1, initial=0.0)
         self.per_unit = np.where(shapes > 0.0, shapes, 1.0)  # displacement by a mode, whatever its unit
         loads = loads_of(scene)
-        self.constant, self.square = modal.shapes @ loads.constant[0], modal.shapes @ loads.square[0]
+        self.constant, self.square = loads.constant @ modal.shapes.T, loads.square @ modal.shapes.T
         self.static: FloatArray = modal.shapes @ loads.static  # modal
         self.stretch, self.pull, pressed = held_as_springs(scene)
         self.steady = self.static + pressed
@@ -91,7 +90,7 @@ class System:
         self._along, self.integrals = Directional(self.flows), Integrals(self.flows)
         none = np.zeros(m)
         self.made = dict[str, Any]()  # what other packages make once for a scene
-        self.slips = Powers(self.flows, none, none, none, none, everywhere=False)
+        self.slips = Powers(self.flows, none[None], none, none, everywhere=False)
         self.displaced, self.limits, self.reported, self.parts = self._scans()
         _LATEST.keep(scene, {name: what for name, what in vars(self).items() if name not in OWN})
 
@@ -110,7 +109,7 @@ class System:
 
     @property
     def wave(self) -> npt.NDArray[np.complex128]:
-        """Modal amplitudes of the harmonic forces, of Im(wave exp(i theta)): (mode,)."""
+        """Modal amplitudes of the forces at each harmonic h, of Im(wave exp(i h theta)): (waves, mode)."""
         wave: npt.NDArray[np.complex128] = self.level * (self.constant + self.omega**2 * self.square)
         return wave
 
@@ -160,7 +159,7 @@ class System:
 
     def _scans(self) -> tuple[Scan, Scan, Scan, Parts]:
         """Of the displacements alone, of the limits of slip, and of all that is reported with its parts."""
-        displacements = np.zeros((self.scene.modal.shapes.shape[1], self.size - 2))
+        displacements = np.zeros((self.scene.modal.shapes.shape[1], self.linear))
         displacements[:, self.q] = self.scene.modal.shapes.T
         parts = displacements, self._force_rows(), held_limits(self), held_rows(self)
         rows = displacements, self.limit_rows, np.concatenate(parts)
@@ -171,18 +170,18 @@ class System:
     def _force_rows(self) -> FloatArray:
         """Rows of k_v v, then of f, of each contact, for y without the forces' angle."""
         c = len(self.contacts)
-        rows = np.zeros((2 * c, self.size - 2))
+        rows = np.zeros((2 * c, self.linear))
         rows[:c, self.n], rows[c:, self.f] = np.eye(c), np.eye(c)
         return rows
 
     def _limit_rows(self) -> FloatArray:
         """Rows of mu n - f and of mu n + f of each contact, for y without the forces' angle."""
         c, each = len(self.contacts), np.arange(len(self.contacts))
-        rows = np.zeros((c, 2, self.size - 2))
+        rows = np.zeros((c, 2, self.linear))
         for i, sign in enumerate((-1.0, 1.0)):
             rows[each, i, self.f.start + each] = sign
             rows[each, i, self.n.start + each], rows[:, i, -1] = self.mu, self.mu * self.preload
-        return rows.reshape(2 * c, self.size - 2)
+        return rows.reshape(2 * c, self.linear)
 
 
 class _Latest(local):

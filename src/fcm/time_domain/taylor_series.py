@@ -73,7 +73,7 @@ class Series(Pool):
             for j in range(self.contacts):
                 contact(self, j, self.states[slot, j], z, a, factor)
             if graded:
-                grade(self, z, a, factor * y[a, self.linear], factor * y[a, self.linear + 1])
+                grade(self, z, a, y, factor)
 
 
 @cython.cfunc
@@ -88,18 +88,24 @@ def structure(
     end: cython.Py_ssize_t = series.linear
     i: cython.Py_ssize_t
     b: cython.Py_ssize_t = a + 1
+    h: cython.Py_ssize_t
     one: cython.double = z[a, end - 1]
     sine: cython.double = z[a, end]
     cosine: cython.double = z[a, end + 1]
     z[b, end - 1] = 0.0
-    z[b, end] = factor * series.omega * cosine
-    z[b, end + 1] = -factor * series.omega * sine
+    for h in range(series.waves):
+        z[b, end + 2 * h] = factor * series.omega * series.harmonic[h] * z[a, end + 2 * h + 1]
+        z[b, end + 2 * h + 1] = -factor * series.omega * series.harmonic[h] * z[a, end + 2 * h]
     for i in range(m):
         z[b, i] = factor * z[a, m + i]
         z[b, m + i] = factor * (
             series.drive[0, i] * sine + series.drive[1, i] * cosine + series.hold[i] * one
             - series.stiffness[i] * z[a, i] - series.damping[i] * z[a, m + i]
         )  # fmt: skip
+    for h in range(2, 2 * series.waves, 2):  # of most scenes there is none
+        sine, cosine = factor * z[a, end + h], factor * z[a, end + h + 1]
+        for i in range(m):
+            z[b, m + i] += series.drive[h, i] * sine + series.drive[h + 1, i] * cosine
 
 
 @cython.cfunc
@@ -161,15 +167,25 @@ def contact(
 @cython.nogil
 @cython.exceptval(check=False)
 def grade(
-    series: Series, z: cython.double[:, ::1], a: cython.Py_ssize_t, sine: cython.double, cosine: cython.double
+    series: Series,
+    z: cython.double[:, ::1],
+    a: cython.Py_ssize_t,
+    y: cython.double[:, ::1],
+    factor: cython.double,
 ) -> cython.void:
-    """Add what the derivative of A by the frequency makes of the forces' phase."""
+    """Add what the derivative of A by the frequency makes of the forces' phase in row a of y."""
     i: cython.Py_ssize_t
+    h: cython.Py_ssize_t
     b: cython.Py_ssize_t = a + 1
-    z[b, series.linear] += cosine
-    z[b, series.linear + 1] -= sine
-    for i in range(series.modes):
-        z[b, series.modes + i] += series.slope[0, i] * sine + series.slope[1, i] * cosine
+    n: cython.Py_ssize_t = series.linear
+    sine: cython.double
+    cosine: cython.double
+    for h in range(series.waves):
+        sine, cosine = factor * y[a, n + 2 * h], factor * y[a, n + 2 * h + 1]
+        z[b, n + 2 * h] += series.harmonic[h] * cosine
+        z[b, n + 2 * h + 1] -= series.harmonic[h] * sine
+        for i in range(series.modes):
+            z[b, series.modes + i] += series.slope[2 * h, i] * sine + series.slope[2 * h + 1, i] * cosine
 
 
 @cython.cfunc

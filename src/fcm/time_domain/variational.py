@@ -58,7 +58,8 @@ class Derivative(Along):
             for j in range(self.flows.contacts):
                 self.columns[k, n + j] = self.flows.k_v[j] * self.flows.normal[j, k]
         self.paced = 0.0 if by_level else 1.0
-        self.columns[self.unknowns, self.flows.linear + 1] = 1.0 - self.paced
+        for k in range(self.flows.waves):
+            self.columns[self.unknowns, self.flows.linear + 2 * k + 1] = 1.0 - self.paced
         self._stand(segments)
 
     @cython.cfunc
