@@ -8,8 +8,10 @@ import pytest
 
 from fcm import load_scene, room
 from fcm.cli.messages import Messages
+from fcm.harmonic_balance.cost_model import seconds_of_curve
 from fcm.response import trace
 from fcm.results.size import SizeOptions, bytes_of_matrices, bytes_of_results, least_points
+from fcm.scene import scene_from_dict
 from fcm.scene.draft import Draft
 
 SCENE = "yang1998-n5"
@@ -55,7 +57,7 @@ def test_results_that_memory_does_not_hold_are_refused(fcm, monkeypatch):
     done = fcm("respond", SCENE, "--max-step", "0.001", "-o", "a.nc")
     assert (
         done.code == 2
-        and "take at least 2" in done.err
+        and "takes at least 2" in done.err
         and "5 kB are free: write the peaks alone" in done.err
     )
     done = fcm("respond", SCENE, "--harmonics", "20", "--peaks-only")
@@ -75,7 +77,56 @@ def test_results_that_the_disk_does_not_hold_are_refused(fcm, monkeypatch, optio
 def test_what_takes_much_is_told(fcm, monkeypatch):
     monkeypatch.setattr("fcm.cli.room_needed.TOLD", 1_000.0)
     done = fcm("respond", SCENE, "--harmonics", "1", "--max-step", "0.5")
-    assert done.code == 0 and "1 curve of 1 contact take at least" in done.err
+    assert done.code == 0 and "1 curve of 1 contact takes at least" in done.err
+
+
+def many(contacts, modes):
+    rng = np.random.default_rng(3)
+    names = [f"{axis}{i}" for i in range(contacts) for axis in "uv"]
+    contact = {"mu": 0.3, "k_u": 1.0, "k_v": 1.0, "n_0": 1.0}
+    return scene_from_dict(
+        {
+            "modal": {
+                "dofs": names,
+                "frequency": np.linspace(1.0, 3.0, modes),
+                "damping": [0.01] * modes,
+                "shapes": rng.standard_normal((modes, 2 * contacts)),
+            },
+            "contact": [
+                contact | {"name": f"c{i}", "tangential": f"u{i}", "normal": f"v{i}"} for i in range(contacts)
+            ],
+            "force": [{"dof": "u0", "amplitude": 1.0}],
+            "response": {"frequency": [0.5, 1.5]},
+        }
+    )
+
+
+def test_the_time_of_a_curve_grows_with_what_is_solved():
+    """With the contacts where few modes answer to them, with their third power where as many do."""
+    few = [seconds_of_curve(many(n, 10), 1) for n in (100, 200)]
+    full = [seconds_of_curve(many(n, 2 * n), 1) for n in (100, 200)]
+    assert 1.9 < few[1] / few[0] < 2.2 and full[1] > 4.0 * few[1]
+    assert seconds_of_curve(many(100, 10), 3) > 2.0 * few[0]
+    assert seconds_of_curve(replace(many(100, 10), max_step=1e-3), 1) > 4.0 * few[0]
+
+
+def test_a_curve_that_takes_long_is_told_before_it_is_begun(fcm, monkeypatch):
+    for options, said in (
+        ((), "less with one harmonic (--harmonics 1), fewer contacts"),
+        (("--harmonics", "1"), "less with fewer contacts or fewer modes"),
+    ):
+        assert "processor time" not in fcm("respond", SCENE, "--harmonics", "1").err
+        monkeypatch.setattr("fcm.cli.room_needed.LONG", 0.0)
+        with monkeypatch.context() as within:
+            within.setattr("fcm.cli.respond.calculated", lambda *_: (_ for _ in ()).throw(MemoryError))
+            first = fcm("respond", SCENE, *options).err.splitlines()[0]
+        assert (
+            first.startswith("1 curve of 1 contact takes at least about 0 s of processor time")
+            and said in first
+        )
+        monkeypatch.undo()
+    monkeypatch.setattr("fcm.cli.room_needed.LONG", 0.0)
+    assert "processor time" not in fcm("respond", SCENE, "--level", "0.5:1", "--at", "1.1").err
 
 
 def test_a_million_draws_without_room_for_them_are_refused_when_read(fcm, monkeypatch):

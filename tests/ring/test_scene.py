@@ -143,6 +143,19 @@ def test_campbell_draws_and_refuses(tmp_path):
     assert code == 2 and err.startswith("fcm: error: yang1998: has no [cyclic]") and "Usage" not in err
 
 
+def test_campbell_needs_no_range(tmp_path):
+    structure = '[structure]\ndofs = ["x"]\nmass = [1.0]\nstiffness = [4.0]\ndamping = 0.01\n'
+    coupling = "coupling = { stiffness = [-1.0] }\n[cyclic]\nsectors = 6\nengine_order = 2\n"
+    (tmp_path / "s.toml").write_text(structure + coupling)
+    found = json.loads(called("plot", "campbell", tmp_path / "s.toml", "--json").out)
+    exact = [np.sqrt(4.0 - 2.0 * np.cos(np.pi * d / 3.0)) for d in range(4)]
+    assert [one["open"] for one in found["diameters"]] == [[pytest.approx(w)] for w in exact]
+    (order,) = found["engine_orders"]
+    assert found["range"] is None and order["speeds"] is None and order["resonances"] is None
+    assert called("plot", "campbell", tmp_path / "s.toml").code == 0
+    assert (tmp_path / "s-campbell.png").stat().st_size > 10_000
+
+
 def test_bars_of_orders_that_meet_one_diameter_stand_side_by_side():
     levels = tuple(np.array([200.0, 700.0]) for _ in range(13))
     orders = (3, 21, 27, 8, 45, 0, 51)

@@ -37,7 +37,42 @@ TURNED = {"normal": {"az": -3.0, "bz": 3.0}}
 def test_two_directions_of_one_place_are_told_what_to_write(other):
     (note,) = (one for one in scene(X, other).notes if SAID in one)
     assert 'contacts "c0" and "c1"' in note
-    assert 'write it once with two directions, as in tangential = ["x", "y"]' in note
+    as_in = "tangential = [{ ax = 1, bx = -1 }, { ay = 1, by = -1 }]"
+    assert f"write it once with two directions, as in {as_in}" in note
+    written = [{"ax": 1, "bx": -1}, {"ay": 1, "by": -1}]
+    assert not any(SAID in one for one in scene({"tangential": written}).notes)
+
+
+def test_two_directions_of_pairs_of_nodes_are_axes():
+    dofs = [f"{node}{axis}" for node in (1, 2) for axis in "xyz"]
+    structure = {
+        "dofs": dofs,
+        "mass": [1.0] * 6,
+        "stiffness": [1.0, 2.0, 3.0, 4.0, 5.0, 6.0],
+        "damping": 0.01,
+    }
+    pairs = [CONTACT | {"name": n, "nodes": [[1, 2]], "tangential": n, "normal": "z"} for n in "xy"]
+    rest = {"force": [{"dof": "1x", "amplitude": 1.0}], "response": {"frequency": [0.5, 1.2]}}
+    (note,) = (
+        one for one in scene_from_dict({"structure": structure, "contact": pairs} | rest).notes if SAID in one
+    )
+    assert note.endswith('as in tangential = ["x", "y"]')
+
+
+@pytest.mark.parametrize(
+    ("contact", "asked"),
+    [
+        (X | {"normal": {"ax": -2.0, "bx": 2.0}}, True),
+        ({"tangential": [{"ax": 1.0}, {"ay": 1.0}], "normal": {"ax": 0.6, "ay": 0.8}}, True),
+        (X | {"normal": {"ax": 1.0, "bx": -1.0}, "k_v": 0.0}, False),  # a constant load
+        (X | {"normal": {"ax": 1.0, "bx": -1.0}, "mu": 0.0}, False),  # no friction
+        (X | {"normal": {"ax": 1.0, "bx": -0.9}}, False),
+        (X, False),
+    ],
+)
+def test_a_normal_along_which_a_contact_slides_is_asked_about(contact, asked):
+    said = [one for one in scene(contact).notes if "is it meant? Its normal load" in one]
+    assert len(said) == asked and all('contact "c0"' in one for one in said)
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from fcm.scene import scene_from_dict
+from fcm.structure.linear import linear_of
 from fcm.structure.receptance import Receptance
 
 
@@ -23,3 +25,32 @@ def test_receptances_and_their_derivatives_are_sums_over_the_modes(ports: int, m
     for weight, re, im in ((compliance, seen.G_re, seen.G_im), (slope, seen.dG_re, seen.dG_im)):
         expected = np.einsum("ik,im,hi->hkm", shapes, shapes, weight)
         assert np.asarray(re) + 1j * np.asarray(im) == pytest.approx(expected, rel=1e-12, abs=1e-13)
+
+
+def test_answers_with_springs_of_few_modes_are_those_of_the_receptance() -> None:
+    """The modes' dynamic stiffness with springs in it, against springs closed on the ports' receptance."""
+    rng = np.random.default_rng(11)
+    contact = {"mu": 0.3, "k_u": 2.0, "k_v": 3.0, "n_0": 1.0}
+    scene = scene_from_dict(
+        {
+            "modal": {
+                "dofs": list("abcdef"),
+                "frequency": [1.0, 2.5],
+                "damping": [0.01, 0.2],
+                "shapes": rng.standard_normal((2, 6)).tolist(),
+            },
+            "contact": [contact | {"name": t, "tangential": t, "normal": n} for t, n in ("ab", "cd", "ef")],
+            "force": [
+                {"dof": "a", "amplitude": 1.0, "phase": 0.4},
+                {"dof": "d", "amplitude": 0.5, "harmonic": 3},
+            ],
+            "response": {"frequency": [0.5, 1.5]},
+        }
+    )
+    linear, held = linear_of(scene), np.array([[2.0, 3.0] * 3, [0.0, 1.0] * 3])
+    omega = np.array([0.7, 1.0])
+    found = linear.answers_with(held, omega)
+    for j, w in enumerate(omega):
+        for k, (G, X) in enumerate(zip(*linear.at(w), strict=True)):
+            for answer, springs in zip(found[:, j, k], held, strict=True):
+                assert answer + G @ (springs * answer) == pytest.approx(X, rel=1e-11)

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Contact, FloatArray
+from fcm.structure.linear import Linear
 
 BEYOND = 3.0  # times the level at which the last contact changes what it does
 GREATEST = 1e4  # level
@@ -64,9 +65,12 @@ def foresee(system: System, frequencies: Sequence[float]) -> None:
 def _with_springs(system: System, frequencies: Sequence[float], held: FloatArray) -> ComplexArray:
     """Of the ports with springs held (case, port): (frequency, case, driven, port)."""
     cases, ports = held.shape
-    found = np.empty((len(frequencies), cases, len(system.linear.driven), ports), dtype=np.complex128)
+    linear = system.linear
+    if type(linear) is Linear and linear.natural.size < ports:
+        return np.moveaxis(linear.answers_with(held, np.array(frequencies, dtype=np.float64)), 0, 1)
+    found = np.empty((len(frequencies), cases, len(linear.driven), ports), dtype=np.complex128)
     for answer, omega in zip(found, frequencies, strict=True):
-        for k, (G, X) in enumerate(zip(*system.linear.at(omega), strict=True)):
+        for k, (G, X) in enumerate(zip(*linear.at(omega), strict=True)):
             for one, springs in zip(answer[:, k], held, strict=True):  # many contacts: large ones
                 matrix = G * springs
                 matrix.flat[:: X.size + 1] += 1.0

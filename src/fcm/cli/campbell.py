@@ -33,11 +33,12 @@ def campbell(messages: Messages, scene: str, output: Path | None, to_json: bool,
 
     Drawn are those with its contacts open and stuck. Bars show the range of frequencies at the engine order
     and its harmonics. Lines show all engine orders at the lowest (dotted) and highest (dashed) speed.
+    Without [response] there are neither.
     Of a mistuned ring it is that of the tuned one.
     """
     from fcm.scene import SceneError, load_scene
 
-    loaded = load_scene(scene, largest_file=largest_file)
+    loaded = load_scene(scene, largest_file=largest_file, solved=False)
     loaded = (loaded if loaded.tuned is None else loaded.tuned).in_use()
     if loaded.ring is None:
         raise SceneError(
@@ -62,7 +63,7 @@ def numbers(scene: Scene) -> dict[str, Any]:
     ring, unit = scene.ring, scene.frequency_unit
     assert ring is not None
     orders = {one.ring.engine_order: one.ring for one in scene.each_curve() if one.ring is not None}
-    span = in_unit(scene.frequency_range, unit).tolist()
+    span = in_unit(scene.frequency_range, unit).tolist() if scene.has_range else None
     diameters = [
         {
             "nodal_diameter": one.number,
@@ -80,7 +81,7 @@ def numbers(scene: Scene) -> dict[str, Any]:
         "engine_orders": [
             {
                 "engine_order": order,
-                "speeds": [end / abs(order) for end in span] if order else None,
+                "speeds": [end / abs(order) for end in span] if order and span else None,
                 "nodal_diameters": [of_order.meets(h) for h in range(MOST_HARMONICS + 1)],
                 "resonances": _resonances(diameters, of_order.meets(1), span),
             }
@@ -90,8 +91,12 @@ def numbers(scene: Scene) -> dict[str, Any]:
     }
 
 
-def _resonances(diameters: list[dict[str, Any]], number: int, span: list[float]) -> dict[str, list[float]]:
-    """Natural frequencies of one diameter within the range."""
+def _resonances(
+    diameters: list[dict[str, Any]], number: int, span: list[float] | None
+) -> dict[str, list[float]] | None:
+    """Natural frequencies of one diameter within the range, if there is one."""
+    if span is None:
+        return None
     met = [one for one in diameters if one["nodal_diameter"] == number]
     low, high = span
     return {k: [f for one in met for f in one[k] if low <= f <= high] for k in ("open", "stuck")}
@@ -109,7 +114,7 @@ def _picture(found: dict[str, Any]) -> Any:
             title=found["title"],
             sectors=found["sectors"],
             engine_orders=tuple(one["engine_order"] for one in found["engine_orders"]),
-            span=(found["range"][0], found["range"][1]),
+            span=None if found["range"] is None else (found["range"][0], found["range"][1]),
             unit=found["frequency_unit"],
             diameters=tuple(one["nodal_diameter"] for one in diameters),
             opened=opened,

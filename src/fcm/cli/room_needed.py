@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,16 +15,18 @@ if TYPE_CHECKING:
     from fcm.model.scene import Scene
 
 TOLD = 500e6  # bytes of results
+LONG = 60.0  # seconds of a curve: of many short ones the first tells
 CSV = 2.5  # times the bytes of netCDF that the digits of a number take
 
 
 def check_room(messages: Messages, scene: Scene, count: int, asked: Asked) -> None:
-    """Refuse what memory or disk cannot hold of so many curves, before any of them is made.
+    """Say what so many curves take where that is much, before any of them is made.
 
     Raises
     ------
     ResponseError
-        With what it takes at the least, what there is, and what takes less.
+        If memory or disk cannot hold them: with what they take at the least, what there is, and what takes
+        less.
     """
     from fcm.response.request import ResponseError
     from fcm.results.size import bytes_of_matrices, bytes_of_results
@@ -33,12 +36,18 @@ def check_room(messages: Messages, scene: Scene, count: int, asked: Asked) -> No
     matrices = bytes_of_matrices(scene, harmonics) if scene.has_range else 0.0
     contacts = len(scene.contacts)
     said = f"{count} curve{'s' * (count > 1)} of {contacts} contact{'s' * (contacts != 1)}"
+    take = "take" if count > 1 else "takes"
     if results + matrices > TOLD:
-        messages.info(f"{said} take at least {room.size(results + matrices)} of memory")
+        messages.info(f"{said} {take} at least {room.size(results + matrices)} of memory")
     if results + matrices > (free := room.memory()):
         raise ResponseError(
-            f"{said} take at least {room.size(results + matrices)} of memory, and {room.size(free)} are "
+            f"{said} {take} at least {room.size(results + matrices)} of memory, and {room.size(free)} are "
             f"free: {_remedy(matrices > results, asked)}"
+        )
+    if (seconds := _seconds_of_curve(scene, len(harmonics), asked)) > LONG:
+        messages.info(
+            f"{'each of ' * (count > 1)}{said} takes at least about {room.duration(seconds)} of processor "
+            f"time: less with {_lighter(harmonics, asked)}; --time-limit ends it"
         )
     for path, times in ((asked.output, 1.0), (asked.csv, CSV)):
         if path is not None and times * results > (left := room.disk(_folder(path))):
@@ -50,6 +59,20 @@ def check_room(messages: Messages, scene: Scene, count: int, asked: Asked) -> No
 
 def _folder(path: Path) -> Path:
     return real(path).parent
+
+
+def _seconds_of_curve(scene: Scene, harmonics: int, asked: Asked) -> float:
+    """About what the shortest run takes that traces a curve; 0 of one that traces none."""
+    from fcm.harmonic_balance.cost_model import seconds_of_curve
+
+    if not scene.has_range or asked.at or asked.level is not None or asked.mode is not None:
+        return 0.0
+    return seconds_of_curve(scene, harmonics)
+
+
+def _lighter(harmonics: Sequence[int], asked: Asked) -> str:
+    one = "" if len(harmonics) == 1 and asked.harmonics else "one harmonic (--harmonics 1), "
+    return f"{one}fewer contacts or fewer modes than half their directions"
 
 
 def _remedy(matrices: bool, asked: Asked) -> str:

@@ -7,14 +7,16 @@ not from a clock: the same scene has the same answer on every machine.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 from fcm.continuation import Path
 from fcm.continuation.follow import Progress
 from fcm.continuation.stepper import Stepper
-from fcm.harmonic_balance.modal_condensation import condensed_size
+from fcm.harmonic_balance.modal_condensation import OPTIONS, condensed_size
 from fcm.harmonic_balance.system import System
+from fcm.model.scene import Scene
 from fcm.scene.rules import MOST_HARMONICS, harmonics_up_to
-from fcm.structure.layout import layout_of
+from fcm.structure.layout import Layout, layout_of
 
 PATIENCE = 30.0  # seconds that all rounds of more and more harmonics may take: levels, branches, errors
 AGAIN = 3.0  # where they are followed a dozen times, as in a search, or with one harmonic more each time
@@ -29,12 +31,48 @@ def seconds_of(system: System, evaluations: int, harmonics: int) -> float:
     A condensed matrix is formed first, see `condensed`, by 2 multiplications for each mode and entry.
     """
     layout = layout_of(len(system.scene.contacts), system.scene.directions_of_contact, harmonics)
-    contacts, width, unknowns = layout.contacts, layout.width, layout.unknowns
     rank = condensed_size(system.yields, layout.ports, harmonics, system.condensing)
+    return evaluations * _evaluation(layout, rank)
+
+
+def _evaluation(layout: Layout, rank: int) -> float:
+    """Seconds of one, solved by a condensed system of a rank, or as it is where that is 0."""
+    contacts, width, unknowns, harmonics = layout.contacts, layout.width, layout.unknowns, layout.harmonics
     solved = rank or unknowns
     cubes = float(solved) ** 3 + 6.0 * rank / (1 + 2 * harmonics) * unknowns * rank
-    each = CYCLE * contacts * (1 + harmonics) + ENTRY * unknowns * (solved + width) + SYSTEM * cubes
-    return evaluations * each
+    return CYCLE * contacts * (1 + harmonics) + ENTRY * unknowns * (solved + width) + SYSTEM * cubes
+
+
+@dataclass(frozen=True)
+class CurveCost:
+    """What the curves of a scene take that were measured, of 50 to 200 contacts with one harmonic.
+
+    evaluations: of a curve. of_point: of each point that it has by its longest step, where these are more.
+    beside: seconds for each of them, contact and coefficient of its motion, of all that comes beside the
+    solution: levels, stability, errors.
+    """
+
+    evaluations: float = 1500.0
+    of_point: float = 7.0
+    beside: float = 2.5e-5
+
+
+def seconds_of_curve(scene: Scene, harmonics: int, cost: CurveCost | None = None) -> float:
+    """About what a curve of a scene takes, told from its sizes alone, before anything is made of it.
+
+    Many contacts are taken as condensed to all modes where these are fewer than half their directions.
+
+    >>> from fcm import load_scene
+    >>> f"{seconds_of_curve(load_scene('yang1998'), 1):.1f}"
+    '0.1'
+    """
+    cost = cost or CurveCost()
+    layout = layout_of(len(scene.contacts), scene.directions_of_contact, harmonics)
+    modes, many = scene.modal.frequency.size, layout.unknowns >= OPTIONS.fewest
+    few = many and scene.ring is None and modes < OPTIONS.share * layout.ports
+    each = _evaluation(layout, modes * (1 + 2 * harmonics) if few else 0)
+    beside = cost.beside * layout.contacts * (1 + harmonics)
+    return max(cost.evaluations, cost.of_point / scene.max_step) * (each + beside)
 
 
 def seconds_with(system: System, evaluations: int, harmonics: int) -> float:

@@ -40,7 +40,7 @@ class Ring:
     title: str
     sectors: int
     engine_orders: tuple[int, ...]
-    span: tuple[float, float]  # range of the excitation
+    span: tuple[float, float] | None  # range of the excitation, if there is one
     unit: str
     diameters: tuple[int, ...]
     opened: tuple[FloatArray, ...]  # (mode,) for each diameter
@@ -88,9 +88,10 @@ def _title(ring: Ring) -> str:
 
 def _top(ring: Ring) -> float:
     """Where the frequency axis ends: above the modes that are of interest."""
-    limit = _BEYOND * ring.span[1]
+    end = 0.0 if ring.span is None else ring.span[1]
+    limit = _BEYOND * end if end else np.inf
     every = np.concatenate((*ring.opened, *ring.stuck))
-    return _ROOM * max(ring.span[1], float(every[every < limit].max(initial=0.0)))
+    return _ROOM * max(end, float(every[every < limit].max(initial=0.0))) or 1.0
 
 
 def _families(axes: Axes, diameters: Sequence[int], frequencies: Sequence[FloatArray], state: str) -> None:
@@ -107,10 +108,15 @@ def _families(axes: Axes, diameters: Sequence[int], frequencies: Sequence[FloatA
 
 
 def _orders(axes: Axes, ring: Ring, top: float) -> None:
-    """For each engine order where its harmonics are, and the line of its highest speed; if alone, of both."""
+    """For each engine order where its harmonics are, and the line of its highest speed; if alone, of both.
+
+    None without a range.
+    """
+    if ring.span is None:
+        return
     shown = ring.engine_orders[:_MOST_ORDERS]
     colours = dict(zip(shown, _colours(len(shown)), strict=True))
-    _bars(axes, ring, colours, top)
+    _bars(axes, ring, ring.span, colours, top)
     for order, colour in colours.items():
         if order:
             low, high = (abs(end / order) for end in ring.span)
@@ -122,9 +128,13 @@ def _orders(axes: Axes, ring: Ring, top: float) -> None:
                 )  # fmt: skip
 
 
-def _bars(axes: Axes, ring: Ring, colours: dict[int, str], top: float) -> None:
+def _bars(axes: Axes, ring: Ring, span: tuple[float, float], colours: dict[int, str], top: float) -> None:
     """Where the harmonics of engine orders are: those that meet one diameter stand beside one another."""
-    placed = [one for x, bars in _met(ring, tuple(colours), top).items() for one in _placed(ring, x, bars)]
+    placed = [
+        one
+        for x, bars in _met(ring.sectors, span, tuple(colours), top).items()
+        for one in _placed(ring, x, bars)
+    ]
     for bar, middle, width in sorted(placed, key=lambda one: tuple(colours).index(one[0].order)):
         axes.bar(
             middle, bar.high - bar.low, width, bar.low, color=colours[bar.order], alpha=0.35, zorder=1,
@@ -183,16 +193,16 @@ def _placed(ring: Ring, x: float, bars: list[Bar]) -> list[tuple[Bar, float, flo
     ]
 
 
-def _met(ring: Ring, orders: Sequence[int], top: float) -> dict[float, list[Bar]]:
+def _met(
+    sectors: int, span: tuple[float, float], orders: Sequence[int], top: float
+) -> dict[float, list[Bar]]:
     """The bars at each nodal diameter, as far as they are seen."""
     met: dict[float, list[Bar]] = {}
     for order in orders:
         for harmonic in range(1, _MOST_HARMONICS + 1):
-            low, high = (harmonic * end for end in ring.span)
+            low, high = (harmonic * end for end in span)
             if low < top:
-                met.setdefault(folded(harmonic * order, ring.sectors), []).append(
-                    Bar(order, harmonic, low, high)
-                )
+                met.setdefault(folded(harmonic * order, sectors), []).append(Bar(order, harmonic, low, high))
     return met
 
 

@@ -49,7 +49,7 @@ from fcm.scene.plane import check_plane, notes_of_planes
 from fcm.scene.questionable_values import questions
 from fcm.scene.schedule import read_schedule, read_start, with_schedule
 from fcm.scene.section import Parts, Section
-from fcm.scene.shared_normal import note_of_shared_normals
+from fcm.scene.shared_normal import note_of_own_normal, note_of_shared_normals
 from fcm.scene.start_note import note_of_start
 from fcm.scene.sweep import combinations, curves_of, read_sweep
 from fcm.scene.told import Told
@@ -219,6 +219,7 @@ def _made(name: str, fields: dict[str, Any], told: Told | None) -> Scene:
             *note_of_harmonics(scene.forces),
             *note_of_start(scene),
             *note_of_shared_normals(scene),
+            *note_of_own_normal(scene),
             *notes_of_planes(scene),
         ),
     )

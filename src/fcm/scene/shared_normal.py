@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from fcm.model.scene import Contact, FloatArray, Scene
-from fcm.scene.errors import counted, quoted
+from fcm.scene.errors import bare, counted, quoted, shown
 
 SAME = 1e-9  # relative: directions that differ by no more are one
 MOST_NAMED = 3  # groups of contacts in the sentence
@@ -25,14 +27,63 @@ def note_of_shared_normals(scene: Scene) -> list[str]:
     doubled = [group for group in groups.values() if _counts_twice(group)]
     if not doubled:
         return []
+    one, other = _two_directions(scene, doubled[0])
     names = "; ".join(" and ".join(quoted(one.name) for one in group[:3]) for group in doubled[:MOST_NAMED])
     more = f"; {counted(len(doubled), 'such place')} in all" if len(doubled) > MOST_NAMED else ""
     return [
         f"contacts {names} have the same normal displacement and different tangential ones{more}: their "
         "preloads and normal stiffnesses add up there, as those of several contacts side by side. If it is "
-        "one contact that slides in a plane, write it once with two directions, as in "
-        'tangential = ["x", "y"]'
+        f"one contact that slides in a plane, write it once with two directions, as in "
+        f"tangential = [{one}, {other}]"
     ]
+
+
+def _two_directions(scene: Scene, group: list[Contact]) -> list[str]:
+    """The first two directions of friction that differ, as the scene can have them: axes of pairs of nodes,
+    or degrees of freedom."""
+    along = {_line(one.tangential): one for one in group if one.mu > 0.0 and one.tangential.any()}
+    first, second = list(along.values())[:2]
+    drafts = () if scene.draft is None else scene.draft.parts["contact"]
+    of_pairs = {one["name"] for one in drafts if "group" in one}
+    if {first.name, second.name} <= of_pairs:
+        return [quoted("x"), quoted("y")]
+    return [as_written(one.tangential, scene.modal.dofs) for one in (first, second)]
+
+
+def as_written(direction: FloatArray, dofs: Sequence[str]) -> str:
+    """A direction (dof,) as a scene has it: a degree of freedom, or a table of weights.
+
+    >>> as_written(np.array([1.0, 0.0]), ["1x", "1y"]), as_written(np.array([1.0, -0.5]), ["1x", "y"])
+    ('"1x"', '{ "1x" = 1, y = -0.5 }')
+    """
+    at = np.flatnonzero(direction).tolist()
+    if len(at) == 1 and direction[at[0]] == 1.0:
+        return quoted(dofs[at[0]])
+    return "{ " + ", ".join(f"{bare(dofs[i])} = {shown(float(direction[i]))}" for i in at) + " }"
+
+
+def note_of_own_normal(scene: Scene) -> list[str]:
+    """One sentence on contacts whose normal displacement is one along which they slide: of a wedge's slope,
+    but most often a name written twice. Nothing is said of a constant normal load (k_v = 0), nor without
+    friction."""
+    rubbing = (one for one in scene.contacts if one.k_v * one.k_u * one.mu != 0.0)
+    found = [one.name for one in rubbing if _presses_as_it_slides(one)]
+    if not found:
+        return []
+    names = " and ".join(map(quoted, found[:MOST_NAMED])) + (" and others" if found[MOST_NAMED:] else "")
+    return [
+        f"the normal displacement of contact {names} is one along which it slides: is it meant? Its normal "
+        "load then changes with its slip. Give another normal, or k_v = 0 where the load is constant"
+    ]
+
+
+def _presses_as_it_slides(contact: Contact) -> bool:
+    """Whether the normal displacement is a combination of the tangential ones."""
+    sliding = np.stack(contact.directions[:-1], axis=1)
+    if not contact.normal.any() or not sliding.any():
+        return False
+    shares = np.linalg.lstsq(sliding, contact.normal, rcond=None)[0]
+    return bool(np.abs(sliding @ shares - contact.normal).max() <= SAME * np.abs(contact.normal).max())
 
 
 def _counts_twice(group: list[Contact]) -> bool:

@@ -35,6 +35,8 @@ _NOTHING = ("None", "null", "nil")  # a key without a value is left out
 _KEY = r'(?:[\w-]+|"[^"]*")(?:\s*\.\s*(?:[\w-]+|"[^"]*"))*'
 _ODD_KEY = r"""^(\s*)([^\s"'=\[{][^"'=\[{]*?)\s*="""
 _VALUE = re.compile(r"([=\[,]\s*)([A-Za-z_0-9][\w:.*/\\ -]*?)(?=\s*(?:[,\]}#]|$))")
+_OF_BASE = re.compile(r"(?<![\w.])0([xXoObB])(\w+)")
+_BASES = {"x": (16, "0123456789abcdef"), "o": (8, "01234567"), "b": (2, "01")}
 _NUMBER = re.compile(r"[-+]?\d[\d_]*(?:\.\d+)?(?:[eE][-+]?\d+)?")
 
 Remedy = Callable[[str], str]  # of a line: the line as it ought to be, or the same
@@ -59,7 +61,8 @@ def slips(text: str) -> list[str]:
     slip: _Slip | None = None
     tries = iter(range(MOST_READ // max(len(text), 1)))
     while (fault := _fault(lines)) and len(said) < MOST_SLIPS:
-        found: tuple[_Slip | str, list[str]] | None = _twice(lines, fault) or _mended(lines, fault, tries)
+        found: tuple[_Slip | str, list[str]] | None = _twice(lines, fault) or _wrong_digit(lines, fault)
+        found = found or _mended(lines, fault, tries)
         if found is None:
             said.append(_unmended(lines, fault))
             break
@@ -191,6 +194,28 @@ def _twice(lines: list[str], fault: _Fault) -> tuple[str, list[str]] | None:
     return f"line {at + 1}, {_plain(line)}: {said}", others
 
 
+def _wrong_digit(lines: list[str], fault: _Fault) -> tuple[str, list[str]] | None:
+    """A number to the base 16, 8 or 2 with a digit that is none of these; it is then left out."""
+    at = min(fault.line if fault.line is not None else len(lines) - 1, len(lines) - 1)
+    line, said = lines[at], list[str]()
+
+    def mend(match: re.Match[str]) -> str:
+        base, digits = _BASES[match[1].lower()]
+        wrong = next((one for one in match[2] if one.lower() not in f"{digits}_"), "")
+        if not wrong:
+            return f"0{match[1].lower()}{match[2]}"
+        said.append(
+            f"{match[0]} begins with 0{match[1]} as a number to the base {base}, and {quoted(wrong)} is no "
+            "digit of it: write a decimal number"
+        )
+        return "0"
+
+    new = _outside(lambda part: _OF_BASE.sub(mend, part))(line)
+    if not said:
+        return None
+    return f"line {at + 1}, {_plain(line)}: {'; '.join(said)}", [*lines[:at], new, *lines[at + 1 :]]
+
+
 def _outside(mend: Remedy) -> Remedy:
     """A remedy that leaves strings and comments alone."""
 
@@ -288,6 +313,10 @@ def _closed(mark: str) -> Remedy:
     return remedy
 
 
+def _in_small_base(part: str) -> str:
+    return _OF_BASE.sub(lambda match: f"0{match[1].lower()}{match[2]}", part)
+
+
 def _statements(line: str) -> str:
     """Two keys with their values, each on a line of its own."""
     return re.sub(rf"(=\s*\S.*?)[\s,;]+({_KEY}\s*=(?!=))", r"\1" + "\n" + r"\2", line, count=1)
@@ -331,6 +360,7 @@ _REMEDIES: tuple[tuple[str, Remedy], ...] = (
     ),
     ("a number is written with a decimal point", _decimal_commas),
     ("a number does not begin with 0", _substituted(r"(?<![\w.+-])([-+]?)0+(?=[1-9])", r"\1")),
+    ("it begins with 0x, 0o or 0b, in small letters", _outside(_in_small_base)),
     ("digits are not parted", _substituted(r"(?<=\d)(?:[ '_]+(?=\d{3}\b)|_+(?!\d))", "")),
     ("a key and its value are parted by =", _of_code(rf"^(\s*{_KEY})\s*(?::=|==|=>|:)\s*", r"\1 = ")),
     ("a key and its value are parted by =", _of_code(rf"([{{,]\s*{_KEY})\s*(?::=|==|:)\s*", r"\1 = ")),

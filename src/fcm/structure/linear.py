@@ -88,6 +88,21 @@ class Linear:
     def _at_forces(self) -> Receptance:
         return self.receptance(np.array(self.driven, dtype=np.float64))
 
+    def answers_with(self, springs: FloatArray, omega: FloatArray) -> ComplexArray:
+        """Answers of the ports (case, point, driven, port) to the forces at frequencies omega (point,) with
+        springs (case, port) for contacts: of the modes' dynamic stiffness with these in it.
+
+        That is as large as the modes are many, where the ports' receptance is as large as these are.
+        """
+        orders = np.array(self.driven, dtype=np.float64)
+        stiffness = dynamic_stiffness(self.natural, self.damping, omega, orders)
+        modal = self.force + self.square * omega[:, None, None] ** 2
+        found = np.empty((len(springs), *modal.shape[:2], self.ports.shape[1]), dtype=np.complex128)
+        for answer, held in zip(found, springs, strict=True):
+            matrix = (stiffness[..., None] * np.eye(self.natural.size)) + (self.ports * held) @ self.ports.T
+            answer[:] = np.linalg.solve(matrix, modal[..., None])[..., 0] @ self.ports
+        return found
+
     def displacements(self, harmonics: FloatArray, omega: FloatArray, force: ComplexArray) -> ComplexArray:
         """Displacements (point, harmonic, dof) that forces on the ports (point, harmonic, port) make."""
         modal = force @ self.ports.T
@@ -145,9 +160,16 @@ def amplitudes(
     natural: FloatArray, damping: FloatArray, omega: FloatArray, harmonics: FloatArray, force: ComplexArray
 ) -> ComplexArray:
     """Modal amplitudes (point, harmonic, mode) under modal forces, at frequencies omega (point,)."""
+    return force / dynamic_stiffness(natural, damping, omega, harmonics)
+
+
+def dynamic_stiffness(
+    natural: FloatArray, damping: FloatArray, omega: FloatArray, harmonics: FloatArray
+) -> ComplexArray:
+    """w_n^2 - w^2 + 2i zeta w_n w of each mode (point, harmonic, mode), nowhere zero, with w = h omega."""
     w = (omega[:, None] * harmonics)[..., None]
     dynamic = (natural - w) * (natural + w) + 2j * damping * natural * w
-    found: ComplexArray = force / np.where(dynamic == 0.0, LEAST_DAMPING * w * w, dynamic)
+    found: ComplexArray = np.where(dynamic == 0.0, LEAST_DAMPING * w * w, dynamic)
     return found
 
 
