@@ -74,6 +74,7 @@ def test_a_number_that_does_not_exist_is_null(fcm, scene, monkeypatch):
         "error": None,
         "stable": None,
         "at_edge": False,
+        "residual_change": None,
     }
     assert fcm("respond", scene).out.splitlines()[1].split()[:2] == ["-", "-"]
 

@@ -31,6 +31,15 @@ def short(value: float | None) -> str:
     return "-" if value is None else f"{value:.1e}"
 
 
+def share_of(change: float) -> str:
+    """A share in percent, two digits; 0 below a thousandth of a percent.
+
+    >>> share_of(0.0234), share_of(1.306), share_of(1e-7)
+    ('2.3 %', '130 %', '0')
+    """
+    return f"{float(f'{100.0 * change:.2g}'):g} %" if change >= 1e-5 else "0"
+
+
 def ranges(harmonics: Sequence[int]) -> str:
     """Harmonics as a range and those beyond it.
 

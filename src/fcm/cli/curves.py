@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from fcm.cli.columns import UNKNOWN, UNSTABLE, aligned, number, ranges, short, swept
+from fcm.cli.columns import UNKNOWN, UNSTABLE, aligned, number, ranges, share_of, short, swept
 from fcm.cli.jump_table import jump_table, untold_table
 from fcm.rotation import MOST_DOFS, greatest_first, is_rotation, unit_of
 
@@ -15,6 +15,8 @@ _AT_REST = "0 the degree of freedom does not move, beside rounding"
 _EDGE = "*"  # beside the frequency of a peak where the range ends
 _UNTOLD = "- unknown error: with more harmonics no peak is near this one, or a higher one is elsewhere"
 _OF_LEVELS = "- unknown error: what more harmonics would change could not be estimated at this peak"
+_RESIDUAL = "residual"  # heads a column of shares
+_OF_RESIDUAL = "residual: up to this share of it the friction that stuck contacts keep may change the peak"
 _MOST_FOLDS = 12  # of which a line has all
 
 
@@ -107,11 +109,15 @@ def _greatest(curves: Sequence[Curve]) -> list[str]:
 
 def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: str, length: str) -> str:
     """What was swept, the peaks, the points, the time, the folds, whether it is whole."""
-    peaks = [text for dof in dofs for text in (f"peak {_with_unit(dof, length)}", f"at {unit}", "error")]
+    ranges_of = [dof for dof in dofs if any(_residual(curve, dof) != "0" for curve in curves)]
+    peaks = []
+    for dof in dofs:
+        more = [_RESIDUAL] if dof in ranges_of else []
+        peaks += [f"peak {_with_unit(dof, length)}", f"at {unit}", "error", *more]
     balanced = ["harmonics"] if any("harmonics" in curve for curve in curves) else []
     folds = "folds at level" if "level_folds" in curves[0] else f"folds at {unit}"
     header = [*names, *peaks, *balanced, "points", "time [s]", folds, ""]
-    rows = [_curve_row(curve, dofs, bool(balanced)) for curve in curves]
+    rows = [_curve_row(curve, dofs, ranges_of, bool(balanced)) for curve in curves]
     lines = [aligned([header, *rows], left=2)]
     if (count := len(curves[0]["peak"])) > len(dofs):
         turning = ", displacements before rotations" if any(map(is_rotation, curves[0]["peak"])) else ""
@@ -125,6 +131,8 @@ def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: st
         lines.append(f"{UNSTABLE} unstable: the motion is not stable there: none stays at this peak")
     if UNKNOWN in marks:
         lines.append(f"{UNKNOWN} stability is unknown there")
+    if ranges_of:
+        lines.append(_OF_RESIDUAL)
     if any(_untold(curve, dof) for curve in curves for dof in dofs):
         lines.append(_OF_LEVELS if "level_folds" in curves[0] else _UNTOLD)
     return "\n".join(lines)
@@ -159,16 +167,27 @@ def _untold(curve: Curve, dof: str) -> bool:
     return "harmonics" in curve and bool(peak.get("amplitude")) and peak.get("error") is None
 
 
-def _curve_row(curve: Curve, dofs: list[str], balanced: bool) -> list[str]:
+def _residual(curve: Curve, dof: str) -> str:
+    """The share of a peak by which residual friction may change it: "0" below a thousandth of a percent."""
+    peak = curve["peak"].get(dof) or {}
+    change = peak.get("residual_change", 0.0)
+    if change is None:
+        return "-" if curve.get("may_not_be_unique") and peak.get("amplitude") else "0"
+    return share_of(change)
+
+
+def _curve_row(curve: Curve, dofs: list[str], ranges_of: list[str], balanced: bool) -> list[str]:
     cells = swept(curve)
     for dof in dofs:
         peak = curve["peak"].get(dof) or {}
         if _at_rest(curve, dof):
-            cells += ["0", "-", "-"]
+            cells += ["0", "-", "-", *(["0"] if dof in ranges_of else [])]
             continue
         at = number(peak.get("frequency")) + (_EDGE if peak.get("at_edge") else "")
         height = number(peak.get("amplitude")) + _stability(curve, dof)
         cells += [height, at, short(peak.get("error"))]
+        if dof in ranges_of:
+            cells.append(_residual(curve, dof))
     if balanced:
         cells.append(ranges(curve["harmonics"]) if "harmonics" in curve else "-")
     folds = _folds(curve.get("level_folds", curve["folds"]))

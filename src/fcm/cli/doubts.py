@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from fcm.cli.columns import share_of
+
 _MOST_STRETCHES = 3  # of frequencies in a sentence
 
 
@@ -116,7 +118,8 @@ def _not_looked_at(curve: Mapping[str, Any]) -> str:
 def maybe_not_unique(summary: Mapping[str, Any]) -> str:
     """Where the motion may be one of many, and how to learn of the others; empty if nowhere."""
     followed = [*summary["curves"], *summary.get("tracked", {}).get("curves", ())]
-    count = sum(curve.get("may_not_be_unique", 0) for curve in followed)
+    untold = [curve for curve in followed if curve.get("may_not_be_unique") and not _range_told(curve)]
+    count = sum(curve["may_not_be_unique"] for curve in untold)
     if not count:
         return ""
     how, of_levels = _how(summary), any("level_folds" in curve for curve in summary["curves"])
@@ -127,6 +130,25 @@ def maybe_not_unique(summary: Mapping[str, Any]) -> str:
         f"at {count} point{'s' * (count > 1)} the motion may be one of many: a contact that never slips "
         f"keeps a friction force that its past decides{tells}"
     )
+
+
+def _range_told(curve: Mapping[str, Any]) -> bool:
+    """Whether it is known of every peak how far it ranges with residual friction."""
+    peaks = [one for one in curve.get("peak", {}).values() if one]
+    return bool(peaks) and all(one.get("residual_change") is not None for one in peaks)
+
+
+def residual_friction(summary: Mapping[str, Any]) -> str:
+    """How far the peaks range with the friction that contacts which always stick keep; empty if none do."""
+    curves = [one for one in summary["curves"] if one.get("may_not_be_unique") and _range_told(one)]
+    if not curves:
+        return ""
+    worst = max(one["residual_change"] for curve in curves for one in curve["peak"].values() if one)
+    share = share_of(worst)
+    changes = "no peak" if share == "0" else f"a peak by at most {share} of it, estimated"
+    tells = f"; {how} tells how far the motions range" if (how := _how(summary)) else ""
+    keeps = "a contact that never slips keeps a friction force that its past decides"
+    return f"{keeps}: it changes {changes}{tells}"
 
 
 def _how(summary: Mapping[str, Any]) -> str:

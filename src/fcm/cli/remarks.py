@@ -15,6 +15,7 @@ from fcm.cli.doubts import (
     maybe_not_unique,
     mirrored,
     nothing_stable,
+    residual_friction,
     short_of_accuracy,
     symmetry_lost,
     tracked_unsure,
@@ -56,6 +57,8 @@ def close(messages: Messages, result: dict[str, Any], defects: list[str], writte
         messages.detail(levels)
     if images := mirrored(result):
         messages.info(images)
+    if ranging := residual_friction(result):
+        messages.info(ranging)
     if many := maybe_not_unique(result):
         messages.info(many)
     if nothing := nothing_stable(result):

@@ -124,6 +124,8 @@ def _curve(
     error = np.array([np.nan if p is None or p.repeats == 0 else 0.0 for p in points])
     stable = error + [p is not None and p.stable for p in points]
     at_top = stability_at_top(amplitude, stable).tolist()
+    untold = undetermined(scene, regime) & ~told
+    residual = _residual(amplitude, others, untold)
     zero = np.where(np.isnan(frequency), np.nan, 0.0)  # neither a table nor a truncation
     cycle = _borne(points, empty)
     curve = replace(
@@ -142,8 +144,11 @@ def _curve(
         error=np.repeat(error[:, None], amplitude.shape[1], axis=1),
         truncation_error=zero,
         complete=not reason,
-        undetermined=int((undetermined(scene, regime) & ~told).sum()),
-        peaks={d: _peak(amplitude[:, i], frequency, error, at_top[i]) for i, d in enumerate(empty.peaks)},
+        undetermined=int(untold.sum()),
+        peaks={
+            d: _peak(amplitude[:, i], frequency, error, at_top[i], residual[:, i])
+            for i, d in enumerate(empty.peaks)
+        },
         orbits=_orbits(points, empty, others, stuck),
     )
     curve.greatest = greatest_of(curve)
@@ -211,8 +216,18 @@ def _short(states: str) -> str:
     return states if len(states) <= LONGEST_REGIME else states[: LONGEST_REGIME - 3] + "..."
 
 
-def _peak(amplitude: FloatArray, frequency: FloatArray, error: FloatArray, stable: float) -> Peak:
+def _residual(amplitude: FloatArray, others: NotUnique, untold: npt.NDArray[np.bool_]) -> FloatArray:
+    """By how much residual friction changes each amplitude (point, dof), relative; NaN where not told."""
+    up, down = others.greatest - amplitude, amplitude - others.least
+    change = np.maximum(up, down) / np.where(amplitude > 0.0, amplitude, 1.0)
+    unknown = untold | (np.isfinite(others.greatest).any(axis=1) & (others.whole != 1.0))
+    return np.where(unknown[:, None], np.nan, np.where(np.isnan(change), 0.0, np.maximum(change, 0.0)))
+
+
+def _peak(
+    amplitude: FloatArray, frequency: FloatArray, error: FloatArray, stable: float, residual: FloatArray
+) -> Peak:
     if not np.isfinite(amplitude).any():
         return Peak(np.nan, np.nan)
     at = int(np.nanargmax(amplitude))
-    return Peak(float(amplitude[at]), float(frequency[at]), float(error[at]), stable)
+    return Peak(float(amplitude[at]), float(frequency[at]), float(error[at]), stable, float(residual[at]))

@@ -19,6 +19,7 @@ from fcm.contact.contact_law import ContactLawError
 from fcm.continuation import Mark
 from fcm.harmonic_balance.planar_quantities import in_plane
 from fcm.harmonic_balance.reported_quantities import Reported, reported_at
+from fcm.harmonic_balance.residual_traction import peak_changes
 from fcm.harmonic_balance.response_quantities import Record, cycles, loops, recorded
 from fcm.harmonic_balance.rounding import with_digits
 from fcm.harmonic_balance.static_equilibrium import RestError
@@ -39,6 +40,7 @@ from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve
 from fcm.run import Interrupted
 from fcm.stability.bifurcations import Inserted, stability, with_points
+from fcm.structure.linear import Linear
 
 METHODS = ("table", "closed-form")
 ROUNDS = 2  # of more harmonics, for the frequencies at which stability is lost: what is left is said
@@ -86,7 +88,7 @@ def _unfinished(so_far: SoFar, scene: Scene) -> Curve:
     stable = [np.full(len(path.z), np.nan) for path in found.traced.branches.paths]
     if found.system.scene is not scene:
         found = of_all(found, scene, np.inf)
-    curve = _curve(_Followed(found, stable, []))
+    curve = _curve(_Followed(found, stable, []), quick=True)
     curve.complete, curve.reason, curve.cause = False, so_far.reason(), Cause.INTERRUPTED
     return curve
 
@@ -166,8 +168,10 @@ def _with_all(followed: _Followed, scene: Scene, accuracy: float) -> _Followed:
     return replace(followed, found=of_all(followed.found, scene, accuracy))
 
 
-def _curve(followed: _Followed) -> Curve:
-    """What was traced as a curve: branches one after the other, with a row of NaN between them."""
+def _curve(followed: _Followed, quick: bool = False) -> Curve:
+    """What was traced as a curve: branches one after the other, with a row of NaN between them.
+
+    quick: without what takes further motions to tell."""
     found, parts = followed.found, followed.stable
     system, paths = found.system, found.traced.branches.paths
     points, rounding = with_digits(system, recorded(system, paths, found.shown))
@@ -185,6 +189,8 @@ def _curve(followed: _Followed) -> Curve:
     stable[far & (stable == 1.0)] = np.nan
     peak = np.full_like(found.peak, np.nan) if followed.exceeded else found.peak
     error = np.maximum(np.concatenate([one.amplitude for one in found.errors]), rounding)
+    open_to_past = undetermined(scene, words)
+    residual = _residual_changes(system, points, words, open_to_past, quick)
     curve = Curve(
         parameters=dict(scene.parameters),
         frequency=pick(points.z[:, -1], rows),
@@ -202,7 +208,7 @@ def _curve(followed: _Followed) -> Curve:
         truncation_error=pick(np.concatenate(truncations), rows),
         complete=not reason,
         reason=reason,
-        peaks=_peaks(scene.modal.dofs, points, peak, rounding, stable),
+        peaks=_peaks(scene.modal.dofs, points, peak, rounding, stable, residual),
         folds=points.z[(points.mark & Mark.FOLD) > 0, -1].tolist(),
         bifurcations=followed.bifurcations,
         seconds=0.0,
@@ -210,7 +216,7 @@ def _curve(followed: _Followed) -> Curve:
         harmonics=system.harmonics,
         harmonic=pick(X, rows) if len(system.harmonics) > 1 else None,
         in_plane=None if plane is None else plane.at(rows),
-        undetermined=int(undetermined(scene, words).sum()),
+        undetermined=int(open_to_past.sum()),
         unsure=[one.omega for one in found.traced.found if not one.complete],
         folds_unsure=list(found.traced.folds_lost),
         symmetry_lost=list(found.traced.symmetry_lost),
@@ -306,18 +312,40 @@ def _between(values: FloatArray, after: Rows) -> FloatArray:
     return np.insert(values, after + 1, means, axis=0)
 
 
+def _residual_changes(
+    system: System,
+    points: Record,
+    words: npt.NDArray[np.str_],
+    undetermined: npt.NDArray[np.bool_],
+    quick: bool,
+) -> FloatArray:
+    """By how much residual friction may change each peak (dof,), see `harmonic_balance.residual_traction`."""
+    top, contacts = points.amplitude.argmax(axis=0), system.scene.contacts
+    if not undetermined[top].any():
+        return np.zeros(top.size)
+    if quick or type(system.linear) is not Linear:
+        return np.where(undetermined[top], np.nan, 0.0)
+    rough = np.array([one.mu * one.k_u > 0.0 for one in contacts], dtype=np.bool_)
+    stuck = (words[top] == "E") & rough & undetermined[top, None]
+    return peak_changes(system, points.z, points.amplitude, top, stuck)
+
+
 def _peaks(
-    dofs: tuple[str, ...], points: Record, error: FloatArray, rounding: FloatArray, stable: FloatArray
+    dofs: tuple[str, ...],
+    points: Record,
+    error: FloatArray,
+    rounding: FloatArray,
+    stable: FloatArray,
+    residual: FloatArray,
 ) -> dict[str, Peak]:
     """Where each degree of freedom is greatest: at a point, for every peak is one."""
     highest, amplitude = points.amplitude.argmax(axis=0), points.amplitude
     at_top = stability_at_top(amplitude, stable).tolist()
-    return {
-        dof: Peak(
-            float(amplitude[i, d]), float(points.z[i, -1]), float(max(error[d], rounding[i, d])), at_top[d]
-        )
-        for d, (dof, i) in enumerate(zip(dofs, highest, strict=True))
-    }
+    found = {}
+    for d, (dof, i) in enumerate(zip(dofs, highest, strict=True)):
+        off = float(max(error[d], rounding[i, d]))
+        found[dof] = Peak(float(amplitude[i, d]), float(points.z[i, -1]), off, at_top[d], float(residual[d]))
+    return found
 
 
 def pick(values: npt.NDArray[Any], rows: Rows) -> npt.NDArray[Any]:

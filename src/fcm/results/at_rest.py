@@ -31,7 +31,7 @@ def without_rounding(curve: Curve, options: RestOptions | None = None) -> Curve:
         name: _still(getattr(curve, name), rest) for name in ("amplitude", "fundamental", "error")
     }
     changed["peaks"] = {
-        dof: Peak(0.0, np.nan, np.nan, peak.stable) if still and np.isfinite(peak.amplitude) else peak
+        dof: Peak(0.0, np.nan, np.nan, peak.stable, 0.0) if still and np.isfinite(peak.amplitude) else peak
         for (dof, peak), still in zip(curve.peaks.items(), rest.tolist(), strict=True)
     }
     if curve.harmonic is not None:

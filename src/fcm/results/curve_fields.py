@@ -76,7 +76,7 @@ def curve_fields(response: Response) -> dict[str, Field]:
     """One value or row for each curve: peaks, folds, whether it is complete."""
     curves, unit = response.curves, response.frequency_unit
     cf_unit = CF_UNIT[unit]
-    peaks = np.array([[c.peaks[d] for d in response.dofs] for c in curves]).reshape(-1, len(response.dofs), 4)
+    peaks = np.array([[c.peaks[d] for d in response.dofs] for c in curves]).reshape(-1, len(response.dofs), 5)
     folds = by_fold(curves, lambda c: in_unit(c.folds, unit))
     complete = np.array([c.complete for c in curves], dtype=np.int8)
     by_dof = ("curve", "dof")
@@ -96,6 +96,15 @@ def curve_fields(response: Response) -> dict[str, Field]:
             by_dof,
             peaks[..., 3],
             {"long_name": "stable of the greatest amplitude", "units": "1"},
+        ),
+        "peak_residual_change": Field(
+            by_dof,
+            peaks[..., 4],
+            {
+                "long_name": "greatest change of peak_amplitude by the residual friction of contacts that "
+                "never slip, relative, estimated",
+                "units": "1",
+            },
         ),
         "fold_frequency": Field(
             ("curve", "fold"),

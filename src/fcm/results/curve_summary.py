@@ -100,6 +100,7 @@ def _peak(curve: Curve, peak: Peak, gist: Gist, unit: str) -> dict[str, Any]:
         "error": peak.error,
         "stable": None if np.isnan(peak.stable) else bool(peak.stable),
         "at_edge": bool(at_edge),
+        "residual_change": peak.residual,
     }
 
 

@@ -17,6 +17,9 @@ class Peak(NamedTuple):
     frequency: float  # [rad/s]
     error: float = np.nan  # estimated, relative, of the amplitude; NaN where it is not known
     stable: float = np.nan  # 1 where small disturbances die out there, 0 where not, NaN where it is not known
+    residual: float = (
+        np.nan
+    )  # greatest change, relative, by the residual friction of contacts that always stick; NaN: not known
 
 
 def stability_at_top(amplitude: FloatArray, stable: FloatArray) -> FloatArray:

@@ -1,0 +1,97 @@
+"""How far a peak ranges with the friction that a contact keeps which sticks all through the cycle."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fcm
+from fcm.response.exact import trace_exact
+from fcm.scene import scene_from_dict
+
+SHOOTING = Path(__file__).parent.parent / "shooting/scenes"
+
+
+def scene(n_0, holding=(), shapes=None, frequency=(1.0, 3.0, 10.0)):
+    """An oscillator a that slides on b with a preload; b, a spring of 9, and c may be held by a contact."""
+    shapes = np.eye(len(frequency)).tolist() if shapes is None else shapes
+    sliding = {"name": "A", "tangential": "a", "normal": {"b": 1.0}, "mu": 0.5, "k_u": 1.0, "k_v": 1.0}
+    names = ["a", "b", "c", "d"][: len(frequency)]
+    return scene_from_dict(
+        {
+            "modal": {
+                "dofs": names, "frequency": list(frequency), "damping": [0.02] * len(names), "shapes": shapes,
+            },
+            "contact": [sliding | {"n_0": n_0}, *holding],
+            "force": [{"dof": "a", "amplitude": 1.0}],
+            "response": {"frequency": [0.8, 1.6], "harmonics": 3},
+        },
+        "held",
+    )  # fmt: skip
+
+
+HELD = {"name": "B", "tangential": "b", "normal": "c", "mu": 0.3, "k_u": 2.0, "k_v": 1.0, "n_0": 1.0}
+
+
+def peak(response, dof="a"):
+    return response.peak_amplitude.sel(dof=dof).item()
+
+
+def test_a_residual_force_shifts_the_preload_of_the_contact_beside():
+    """K b + k_v b + t = 0 with |t| <= mu n of B: the preload of A is n_0 -+ k_v mu n / (K + k_v)."""
+    told = fcm.respond(scene(1.0, [HELD]))
+    at_most = told.peak_residual_change.sel(dof="a").item()
+    shift = 0.3 * 1.0 / (9.0 + 1.0)
+    base, *ends = (peak(fcm.respond(scene(n))) for n in (1.0, 1.0 - shift, 1.0 + shift))
+    assert peak(told) == pytest.approx(base, rel=1e-6)
+    expected = max(abs(end - base) for end in ends) / base
+    assert expected > 0.005 and at_most == pytest.approx(expected, rel=1e-2)
+
+
+def test_in_a_plane_the_residual_force_points_where_it_changes_most():
+    """The normal of A is between two directions in which B may keep a force of any direction."""
+    held = HELD | {"tangential": ["b", "d"]}
+    planar = scene(1.0, [held], frequency=(1.0, 3.0, 10.0, 3.0))
+    first = replace(planar.contacts[0], normal=np.array([0.0, 0.6, 0.0, 0.8]))
+    told = fcm.respond(replace(planar, contacts=(first, *planar.contacts[1:]), draft=None))
+    shift = 0.3 * 1.0 / (9.0 + 1.0)
+    base, *ends = (peak(fcm.respond(scene(n))) for n in (1.0, 1.0 - shift, 1.0 + shift))
+    expected = max(abs(end - base) for end in ends) / base
+    assert told.peak_residual_change.sel(dof="a").item() == pytest.approx(expected, rel=2e-2)
+
+
+def test_nothing_ranges_where_nothing_feels_it_or_all_slip():
+    apart = HELD | {"tangential": "c", "normal": "b"}  # c presses on nothing
+    assert fcm.respond(scene(1.0, [apart])).peak_residual_change.values.max() == pytest.approx(0.0, abs=1e-6)
+    assert fcm.respond(scene(1.0)).peak_residual_change.values.max() == 0.0
+
+
+def test_the_range_holds_the_peaks_of_exact_motions_from_any_start():
+    """With impacts beside, each start of the contact that sticks gives an exact curve of its own."""
+    whole = fcm.load_scene(SHOOTING / "not_unique.toml")
+    given = replace(whole, frequency_range=(1.4, 1.5), harmonics=tuple(range(1, 10)))
+    told = fcm.respond(given)
+    at_most = told.peak_residual_change.sel(dof="v").item()
+    base, starts = peak(told, "v"), (-21.0, -10.0, 0.0, 10.0)
+    found = []
+    for friction in starts:
+        start = replace(whole.start, friction=np.array([0.0, friction]))
+        (curve,) = trace_exact(replace(whole, start=start, frequency_range=(1.4, 1.5), max_step=0.3)).curves
+        found.append(curve.peaks["v"].amplitude)
+    furthest = max(abs(one - base) for one in found) / base
+    assert furthest > 0.5 and at_most == pytest.approx(furthest, rel=0.05)
+
+
+def test_the_run_says_one_number_beside_the_peak(tmp_path, fcm):
+    text = (SHOOTING / "not_unique.toml").read_text().replace("[0.8, 2.2]", "[1.4, 1.5]")
+    (tmp_path / "model.toml").write_text(text.partition("[start]")[0])
+    done = fcm("respond", tmp_path / "model.toml", "--harmonics", "3", "--json")
+    change = max(one["residual_change"] for one in json.loads(done.out)["curves"][0]["peak"].values())
+    assert change > 0.1 and done.err.count("past decides") == 1
+    assert f"by at most {float(f'{100.0 * change:.2g}'):g} % of it" in done.err
+    table = fcm("respond", tmp_path / "model.toml", "--harmonics", "3").out
+    assert "residual" in table and f"{float(f'{100.0 * change:.2g}'):g} %" in table
