@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fcm.accuracy.interpolation import Filled, places, steepness
+from fcm.accuracy.curve_distance import Filled, places, steepness
 
 ALL = np.arange(9)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fcm.accuracy.same_frequency import OtherCurve, rises, shifted
+from fcm.accuracy.curve_distance import OtherCurve, rises, shifted
 
 
 def beside(place, parameter, rate, value, slope, wanted, forward):

@@ -23,7 +23,7 @@ from fcm.contact.plane.forces import PlanarContact
 from fcm.model.scene import Scene
 from fcm.response import trace
 from fcm.table import Table
-from fcm.table.locate import locate
+from fcm.table.tabulated import locate
 
 REPEATS = 7
 Row = tuple[str, Callable[[], object], int]  # what, the call, elements that it handles

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mpmath import mp
 
-from fcm.contact.boundaries import Boundaries
+from fcm.contact.closed_form import Boundaries
 from fcm.contact.limits import regime_boundaries
 from fcm.contact.loop import sequences
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fcm.contact.periodic.forces import PeriodicContact
-from fcm.contact.periodic.measures import Measures
+from fcm.contact.periodic.margins import Measures
 from fcm.harmonic_balance.line_contact import Periodic
 
 from .motions import SINE, STILL, Case, random_case, random_cases

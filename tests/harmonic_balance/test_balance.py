@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fcm.harmonic_balance.force_level import Level
+from fcm.harmonic_balance.homotopy import Level
 from fcm.harmonic_balance.system import System
 
 from ..time_domain.cases import yang

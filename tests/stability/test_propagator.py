@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.linalg import expm
 
-from fcm.stability.propagator import Propagator
+from fcm.stability.disturbance import Propagator
 
 KEY = b"a state"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fcm.structure.forced_modes import ForcedModes
+from fcm.structure.receptance import ForcedModes
 
 RNG = np.random.default_rng(7)
 MODES, PORTS, DOFS, POINTS, HARMONICS = 3, 4, 5, 6, 7

@@ -5,10 +5,9 @@ import pytest
 
 from fcm import fourier_coefficients
 from fcm.table import atlas, build_table, open_table, spline
-from fcm.table.cubic import Cubic
-from fcm.table.locate import locate
 from fcm.table.nodes import PRESETS, all_nodes
 from fcm.table.part import Part
+from fcm.table.tabulated import Cubic, locate
 from fcm.table.vanishing import vanishing_variation
 
 

@@ -10,14 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.budget import Budget
-from fcm.accuracy.displacement import Displacement
-from fcm.accuracy.interpolation import Filled, places, steepness
+from fcm.accuracy.curve_distance import Displacement, Filled, places, shifted, steepness
 from fcm.accuracy.options import PairOptions
 from fcm.accuracy.partner import give_back, lifted_of, partner_of
 from fcm.accuracy.partner_pieces import CurvePiece, distinct, piece_of, piece_through, rates
 from fcm.accuracy.partner_stretch import Piece, Stretches
 from fcm.accuracy.residual import left_out
-from fcm.accuracy.same_frequency import shifted
 from fcm.continuation import Mark, Path
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.reported_quantities import Reported

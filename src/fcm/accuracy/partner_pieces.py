@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from fcm.accuracy.interpolation import places
-from fcm.accuracy.same_frequency import OtherCurve
+from fcm.accuracy.curve_distance import OtherCurve, places
 from fcm.continuation import Path
 from fcm.harmonic_balance.reported_quantities import Reported
 from fcm.model.scene import FloatArray

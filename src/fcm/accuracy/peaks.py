@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from fcm.accuracy.curve_distance import rises
 from fcm.accuracy.partner_curve import Followed, Indices, PartnerCurve
-from fcm.accuracy.same_frequency import rises
 from fcm.continuation import Mark
 from fcm.model.scene import FloatArray
 

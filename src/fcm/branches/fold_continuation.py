@@ -17,9 +17,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fcm.branches.fold_steps import Ending, FoldSteps, Point
 from fcm.branches.options import FOLDS, FoldOptions
-from fcm.branches.surface import Surface
+from fcm.branches.surface import Ending, FoldSteps, Point, Surface
 from fcm.model.scene import FloatArray
 
 

@@ -24,3 +24,5 @@ cdef class Surface:
     cdef bint factor(self) except -1
     cdef double correct(self, double ahead, double aside) except -2
     cdef bint take_tangents(self) except -1
+
+

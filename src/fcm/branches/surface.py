@@ -1,4 +1,4 @@
-r"""The solutions of a balance at all frequencies and levels of the forces: a surface, and its folds.
+"""The solutions of a balance at all frequencies and levels of the forces: a surface, and its folds.
 
 With the displacements x, the frequency omega and the level lambda the n equations F(x, omega, lambda) = 0
 have a surface of solutions, also where they are singular in x alone. A place on it is found in the plane
@@ -13,18 +13,25 @@ Where the surface folds over (omega, lambda), its tangents are not independent i
 
 which is the bordered test function of a fold with a border of two rows (Govaerts, "Numerical Methods for
 Bifurcations of Dynamical Equilibria", 2000, chapters 3 and 4). Its sign changes also at a fold in a corner.
+
+`FoldSteps` are the steps along a curve of folds, see `fcm.branches.fold_continuation`.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from enum import Enum
+from itertools import pairwise
+
 import cython
 import numpy as np
-from cython.cimports.libc.math import fabs, isfinite, sqrt
+from cython.cimports.libc.math import atan2, cos, fabs, isfinite, sin, sqrt
 
-from fcm.branches.options import SURFACE, SurfaceOptions
+from fcm.branches.options import SURFACE, FoldOptions, SurfaceOptions
 from fcm.continuation.dense_solver import Solver
 from fcm.harmonic_balance.dense_jacobian import jacobian_of
 from fcm.harmonic_balance.residual import Balance
+from fcm.model.scene import FloatArray
 
 
 @cython.cclass
@@ -181,3 +188,362 @@ class Surface:
             self.tangents[0, n] * self.tangents[1, n + 1] - self.tangents[0, n + 1] * self.tangents[1, n]
         )
         return isfinite(self.value)
+
+
+PI = cython.declare(cython.double, np.pi)
+
+
+class Ending(Enum):
+    """How a curve of folds ended."""
+
+    RANGE = "it left the range of frequencies"
+    LEVEL = "it left the levels that are looked at"
+    CLOSED = "it came back to where it began"
+    STALLED = "no further fold was found"
+    LONG = "it has too many points"
+
+
+Point = tuple[FloatArray, FloatArray]  # z, and the direction in which the displacements alone change
+
+
+@cython.cclass
+class Side:
+    """A place on one side of the curve: its angle, the test function, the direction of the circle there."""
+
+    angle: cython.double
+    value: cython.double
+    across: cython.double[::1]
+
+    def __init__(self, size: int) -> None:
+        self.angle, self.value, self.across = 0.0, 0.0, np.zeros(size)
+
+
+@cython.cclass
+class Way:
+    """From the centre to a place of the curve: length, angle; directions (n + 2,), in the units of z, to
+    there and across, in the middle of both sides of the curve; the sign of the test function on its left."""
+
+    radius = cython.declare(cython.double, visibility="readonly")
+    angle = cython.declare(cython.double, visibility="readonly")
+    left = cython.declare(cython.double, visibility="readonly")
+    along = cython.declare(cython.double[::1], visibility="readonly")
+    across = cython.declare(cython.double[::1], visibility="readonly")
+
+    def __init__(
+        self,
+        radius: cython.double,
+        angle: cython.double,
+        along: FloatArray,
+        across: FloatArray,
+        left: cython.double,
+    ) -> None:
+        self.radius, self.angle, self.left = radius, angle, left
+        self.along, self.across = along, across
+
+
+@cython.cclass
+class FoldSteps:
+    """`ways` of a start, then `run` by each of them."""
+
+    surface: Surface
+    options: FoldOptions
+    low: cython.double  # of the frequency [rad/s]
+    high: cython.double
+    paid: Callable[[], None]
+    n: cython.int
+    fine: cython.double  # of the options, here for speed
+    upright: cython.double
+    turn: cython.double
+    most_turn: cython.double
+    rounder: cython.double
+
+    def __init__(
+        self,
+        surface: Surface,
+        span: tuple[float, float],
+        options: FoldOptions,
+        paid: Callable[[], None],
+    ) -> None:
+        self.surface, self.options, self.paid = surface, options, paid
+        self.low, self.high, self.n = span[0], span[1], surface.n + 2
+        self.fine, self.upright = options.fine, options.upright
+        self.turn, self.most_turn, self.rounder = options.turn, options.most_turn, options.round
+
+    def ways(self, start: FloatArray, singular: FloatArray) -> list[Way]:
+        """The two ways of the curve from its start."""
+        if not self.begin(start, singular):
+            return []
+        for wider in self.options.wider:
+            found = self.around(self.options.first * wider, 0.0)
+            pairs = [(a, b) for i, a in enumerate(found) for b in found[i + 1 :]]
+            if pairs:
+                opposite = np.argmin([np.cos(one.angle - other.angle) for one, other in pairs])
+                return list(pairs[opposite])
+        return []
+
+    def run(self, start: FloatArray, singular: FloatArray, way: Way) -> tuple[list[Point], Ending]:
+        """From the start on by one of its ways."""
+        options, surface, side = self.options, self.surface, Side(self.n)
+        self.begin(start, singular)
+        self.put(side, way.radius, way.angle)
+        if not surface.recentre(way.along, way.across):
+            return [], Ending.STALLED
+        points = [(np.array(surface.centre), np.array(way.across))]
+        first, turned, retreats = np.array(surface.centre), False, options.retreats
+        before, taken = first, way
+        step: cython.double = options.first
+        bend: cython.double = 0.0
+        for count in range(options.most):
+            found = self.ahead(step, bend, way.left)
+            off: cython.double = 2.0 * self.fine * way.radius
+            while found is None and step > options.shortest:
+                step, bend = 0.3 * step, 0.0
+                if step < 10.0 * off and self.onto(off, way.left):
+                    off *= self.fine
+                if step < options.thin and not turned and self.over(options.thin):
+                    turned, step = True, options.thin
+                found = self.ahead(step, bend, way.left) or self.round(step, way.left)
+            if found is None and retreats and len(points) > 1:  # the last step led to another part
+                retreats, way, step, bend = retreats - 1, taken, 0.3 * way.radius, 0.0
+                points.pop()
+                back: cython.double[::1] = before
+                surface.z[:] = back
+                surface.recentre(way.along, way.across)
+                continue
+            if found is None:
+                return points, Ending.STALLED
+            before, taken, way = np.array(surface.centre), way, found
+            if not surface.recentre(way.along, way.across):
+                return points, Ending.STALLED
+            z = np.array(surface.z)
+            points.append((z, self.singular(way.across)))
+            if count % options.report == 0:
+                self.paid()
+            if not self.low <= surface.z[self.n - 2] <= self.high:
+                return points, Ending.RANGE
+            if not options.within(surface.z[self.n - 1]):
+                return points, Ending.LEVEL
+            if count > 2 and self.passes(first, before, z):
+                return [*points, points[0]], Ending.CLOSED
+            longer: cython.double = min(max(self.turn / max(fabs(way.angle), 1e-3), 0.4), 2.0) * step
+            longer = min(longer, options.longest)
+            bend, step = 0.5 * way.angle * (1.0 + longer / step), longer
+        return points, Ending.LONG
+
+    def begin(self, start: FloatArray, singular: FloatArray) -> bool:
+        """Go to the surface at the start, with the frequency along and a direction across."""
+        other = np.zeros(self.n)
+        other[self.n - 2] = self.high - self.low
+        return bool(self.surface.begin(np.array(start), other, np.array(singular)))
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def put(self, side: Side, radius: cython.double, angle: cython.double) -> cython.int:
+        """A place on a circle about the centre; its value is NaN where there is none on this part."""
+        surface: Surface = self.surface
+        c: cython.double = cos(angle)
+        s: cython.double = sin(angle)
+        length: cython.double = 0.0
+        i: cython.Py_ssize_t
+        side.angle, side.value = angle, np.nan
+        if not surface.put(radius * c, radius * s):
+            surface.z[:] = surface.centre
+            return 0
+        for i in range(self.n):
+            side.across[i] = c * surface.tangents[1, i] - s * surface.tangents[0, i]
+            length += side.across[i] * side.across[i]
+        length = sqrt(length)
+        for i in range(self.n):
+            side.across[i] /= length
+        if length < self.upright:
+            side.value = surface.value
+        return 0
+
+    def around(self, radius: float, left: float) -> list[Way]:
+        """Ways to where the sign changes on a circle, with that sign on the left if one is given."""
+        self.surface.z[:] = self.surface.centre
+        circle, sides, found = self.options.circle, list[Side](), list[Way]()
+        for k in range(circle + 1):
+            side = Side(self.n)
+            self.put(side, radius, 2.0 * PI * k / circle - PI)
+            sides.append(side)
+        for low, high in pairwise(sides):
+            a: Side = low
+            b: Side = high
+            if a.value * b.value < 0.0 and (left == 0.0 or left * b.value > 0.0):
+                angle: cython.double = a.angle
+                again = Side(self.n)
+                self.put(again, radius, angle)
+                way = self.root(radius, again, b)
+                if way is not None:
+                    found.append(way)
+        return found
+
+    @cython.cfunc
+    def root(self, radius: cython.double, low: Side, high: Side) -> object:
+        """The way between two sides, at whose end z is left; None where there is no place on the way."""
+        at: cython.double = high.angle
+        of_low: cython.double = 1.0  # weights of the method of Illinois
+        of_high: cython.double = 1.0
+        now: Side = Side(self.n)
+        while high.angle - low.angle > self.fine:
+            before: cython.double = of_low * low.value
+            after: cython.double = of_high * high.value
+            width: cython.double = high.angle - low.angle
+            slope: cython.double = fabs(high.value - low.value)
+            at = low.angle - before * width / (after - before)
+            at = min(max(at, low.angle + 0.05 * width), high.angle - 0.05 * width)
+            self.put(now, radius, at)
+            if not isfinite(now.value):
+                return None
+            value: cython.double = now.value
+            if now.value * low.value > 0.0:
+                low, now, of_low, of_high = now, Side(self.n), 1.0, 0.5 * of_high
+            else:
+                high, now, of_low, of_high = now, Side(self.n), 0.5 * of_low, 1.0
+            if fabs(value) * width < self.fine * slope:
+                break
+        surface: Surface = self.surface
+        along, across = np.empty(self.n), np.empty(self.n)
+        to: cython.double[::1] = along
+        aside: cython.double[::1] = across
+        i: cython.Py_ssize_t
+        for i in range(self.n):
+            to[i] = surface.z[i] - surface.centre[i]
+            aside[i] = surface.scale[i] * (low.across[i] + high.across[i])
+        return Way(radius, at, along, across, 1.0 if high.value > 0.0 else -1.0)
+
+    @cython.cfunc
+    def ahead(self, step: cython.double, bend: cython.double, left: cython.double) -> object:
+        """The way to the next place, near the angle of a bend; None where it is not found."""
+        most: cython.double = self.most_turn
+        one: Side = Side(self.n)
+        other: Side = Side(self.n)
+        self.surface.z[:] = self.surface.centre
+        self.put(one, step, min(max(bend, -most), most))
+        width: cython.double = max(0.5 * fabs(one.angle), self.turn)
+        while isfinite(one.value):
+            sign: cython.double = one.value * left
+            then: cython.double = one.angle - (width if sign > 0.0 else -width if sign < 0.0 else 0.0)
+            if fabs(then) > most:
+                return None
+            self.put(other, step, then)
+            if one.value * other.value <= 0.0:
+                return (
+                    self.root(step, one, other) if one.angle <= other.angle else self.root(step, other, one)
+                )
+            one, other, width = other, one, 2.0 * width
+        return None
+
+    def onto(self, off: float, left: float) -> bool:
+        """Take for the centre the place on the curve that is no further than that across it; whether it is
+        there. A short step needs a centre that is nearer to the curve than the last step left it."""
+        surface: Surface = self.surface
+        axes = np.array(surface.axes) * np.asarray(surface.scale)
+        side: Side = Side(self.n)
+        surface.z[:] = surface.centre
+        self.put(side, 0.0, 0.0)
+        here: cython.double = side.value
+        angle: cython.double = -0.5 * PI * float(np.sign(here * left))
+        self.put(side, off, angle)
+        if not here * side.value < 0.0:
+            return False
+        low: cython.double = 0.0
+        high: cython.double = off
+        while high - low > self.fine * off:
+            middle: cython.double = 0.5 * (low + high)
+            self.put(side, middle, angle)
+            if side.value * here > 0.0:
+                low = middle
+            else:
+                high = middle
+        return bool(surface.recentre(axes[0], axes[1]))
+
+    def over(self, thin: float) -> bool:
+        """Cross the strip beside the curve if it is as thin as that: take for the centre the place of the
+        curve on its other side, with the way back ahead. Whether it is that thin."""
+        surface: Surface = self.surface
+        axes = np.array(surface.axes) * np.asarray(surface.scale)
+        side: Side = Side(self.n)
+        surface.z[:] = surface.centre
+        self.put(side, thin, 0.5 * PI)
+        here: cython.double = side.value
+        self.put(side, thin, -0.5 * PI)
+        if not here * side.value > 0.0:
+            return False
+        for angle in (0.5 * PI, -0.5 * PI):
+            surface.z[:] = surface.centre
+            high: cython.double = thin
+            low: cython.double = thin
+            while low > self.fine * self.fine * thin:
+                low *= 0.7
+                self.put(side, low, angle)
+                if side.value * here < 0.0:
+                    break
+                high = low
+            else:
+                continue
+            while high - low > self.fine * low:
+                middle: cython.double = 0.5 * (low + high)
+                self.put(side, middle, angle)
+                if side.value * here < 0.0:
+                    low = middle
+                else:
+                    high = middle
+            return bool(surface.recentre(-axes[0], axes[1]))
+        return False
+
+    def round(self, step: float, left: float) -> Way | None:
+        """The way nearest ahead with the same sign on its left, on all of a circle but the way back."""
+        ways = [way for way in self.around(step, left) if abs(way.angle) < 0.8 * PI]
+        if not ways:
+            return None
+        nearest = min(ways, key=lambda way: abs(way.angle))
+        self.put(Side(self.n), step, nearest.angle)
+        return nearest
+
+    @cython.cfunc
+    def singular(self, across: cython.double[::1]) -> object:
+        """The direction in the surface that changes frequency and level least, in the units of z; at a corner
+        that across the curve."""
+        surface: Surface = self.surface
+        i: cython.Py_ssize_t
+        t: cython.double[:, ::1] = surface.tangents
+        a: cython.double = t[0, self.n - 2] ** 2 + t[0, self.n - 1] ** 2
+        b: cython.double = t[0, self.n - 2] * t[1, self.n - 2] + t[0, self.n - 1] * t[1, self.n - 1]
+        c: cython.double = t[1, self.n - 2] ** 2 + t[1, self.n - 1] ** 2
+        # what each direction cos(angle) t_0 + sin(angle) t_1 changes of both is an ellipse
+        spread: cython.double = sqrt(0.25 * (a - c) ** 2 + b * b)
+        if 0.5 * (a + c) - spread > self.rounder * (0.5 * (a + c) + spread):
+            return np.array(across)
+        angle: cython.double = 0.5 * (atan2(2.0 * b, a - c) + PI)
+        way = np.empty(self.n)
+        out: cython.double[::1] = way
+        length: cython.double = 0.0
+        for i in range(self.n):
+            out[i] = cos(angle) * t[0, i] + sin(angle) * t[1, i]
+            length += out[i] * out[i]
+        length = sqrt(length)
+        for i in range(self.n):
+            out[i] *= surface.scale[i] / length
+        return way
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def passes(
+        self, first: cython.double[::1], before: cython.double[::1], after: cython.double[::1]
+    ) -> cython.bint:
+        """Whether a step comes by the first place of a curve."""
+        square: cython.double = 0.0
+        product: cython.double = 0.0
+        off: cython.double = 0.0
+        i: cython.Py_ssize_t
+        for i in range(self.n):
+            way: cython.double = (after[i] - before[i]) / self.surface.scale[i]
+            to: cython.double = (first[i] - before[i]) / self.surface.scale[i]
+            square += way * way
+            product += way * to
+            off += to * to
+        if not 0.0 < product <= square:
+            return False
+        return sqrt(max(off - product * product / square, 0.0)) < 0.3 * sqrt(square)

@@ -13,8 +13,8 @@ from fcm.cli.messages import Messages
 from fcm.run import Progress
 from fcm.table import TableError, open_table
 from fcm.table.build import charts
-from fcm.table.locate import Resolution
 from fcm.table.part import Part, Reach
+from fcm.table.tabulated import Resolution
 
 REPEATS = 3  # the best of so many times is reported
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from fcm.table import Table
-    from fcm.table.locate import Resolution
+    from fcm.table.tabulated import Resolution
 
 DEFAULT_OUTPUT = "table.nc"
 HALF = 0.5  # of the progress bar is for the scene's response, where a part is built for one

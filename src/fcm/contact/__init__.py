@@ -4,9 +4,9 @@ The names below are imported when first used: a balance needs few of them.
 """
 
 import warnings
+from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from fcm.contact import normal_load
 from fcm.on_demand import on_demand
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ _HOME = {
 __getattr__ = on_demand(__name__, _HOME)
 
 
-if normal_load.__file__.endswith(".py"):
+if (kernel := find_spec("fcm.contact.cycle")) and str(kernel.origin).endswith(".py"):
     import multiprocessing
 
     if multiprocessing.parent_process() is None:  # workers need not say it again

@@ -1,5 +1,19 @@
-from fcm.contact.cycle cimport Cycle
-from fcm.contact.coefficient_law cimport CoefficientLaw
+from fcm.contact.cycle cimport Cycle, SlipLimits
+
+cdef class CoefficientLaw:
+    cdef void evaluate(
+        self, double n0_bar, double b_bar, double phi, bint gradient, double[::1] out, Py_ssize_t at
+    ) noexcept nogil
+    cdef void unknown(self, bint gradient, double[::1] out, Py_ssize_t at) noexcept nogil
+    cdef bint _fill(
+        self,
+        const double[::1] n0_bar,
+        const double[::1] b_bar,
+        const double[::1] phi,
+        bint gradient,
+        double[::1] out,
+        Py_ssize_t numbers,
+    ) noexcept
 
 cdef class Integrals(Cycle):
     cdef bint light, gradient
@@ -19,6 +33,12 @@ cdef class Integrals(Cycle):
 
 cdef class ClosedForm(CoefficientLaw):
     cdef Integrals integrals
+    cdef void evaluate(
+        self, double n0_bar, double b_bar, double phi, bint gradient, double[::1] out, Py_ssize_t at
+    ) noexcept nogil
+
+cdef class Boundaries(CoefficientLaw):
+    cdef SlipLimits limits
     cdef void evaluate(
         self, double n0_bar, double b_bar, double phi, bint gradient, double[::1] out, Py_ssize_t at
     ) noexcept nogil

@@ -4,18 +4,86 @@ While the contact slips the force is +-n, while it sticks u - w with w at rest. 
 spans of a cycle of integrals of sines and cosines. The force is continuous in theta: the derivative of the
 integral is the integral of the derivative, +-(dn/dx) in a slip, and in a stick the constant that the contact
 brought into it.
+
+The closed form is one `CoefficientLaw`, a table another. The numbers of a point lie one after the other: F_b,
+F_s, F_c, then the derivatives of each by n0_bar, b_bar and phi, twelve in all. A third gives the `Boundaries`
+between the regimes. A contact is fully open where n0 + b < 0, opens and closes within the cycle where
+n0 - b < 0 < n0 + b, and of the rest slips where n0 - (ell_1 + ell_2) / 2 < 0, the slip limit (25), and sticks
+above. These functions are smooth but for b = 1 at phi = 0 and pi, where ell_1 or ell_2 is a cone.
 """
 
+from __future__ import annotations
+
 import cython
+import numpy as np
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.coefficient_law import CoefficientLaw
-    from cython.cimports.fcm.contact.cycle import PI, Cycle, arc
-    from cython.cimports.fcm.contact.slip_limits import SLIPPING, STUCK, UNKNOWN
+    from cython.cimports.fcm.contact.cycle import PI, SLIPPING, STUCK, UNKNOWN, Cycle, SlipLimits, arc
 else:
-    from fcm.contact.coefficient_law import CoefficientLaw
-    from fcm.contact.cycle import PI, Cycle, arc
-    from fcm.contact.slip_limits import SLIPPING, STUCK, UNKNOWN
+    from fcm.contact.cycle import PI, SLIPPING, STUCK, UNKNOWN, Cycle, SlipLimits, arc
+
+NAN = cython.declare(cython.double, float("nan"))
+
+
+@cython.cclass
+class CoefficientLaw:
+    """Base class; a subclass defines `evaluate`."""
+
+    def evaluate(
+        self,
+        n0_bar: float,
+        b_bar: float,
+        phi: float,
+        gradient: bool,
+        out: cython.double[::1],
+        at: cython.Py_ssize_t,
+    ) -> None:
+        """The numbers of one point to out[at:], the first three or with the gradient all twelve.
+
+        b_bar is not negative. Where an argument is NaN, or b_bar or phi infinite, they are NaN.
+        """
+
+    def unknown(self, gradient: bool, out: cython.double[::1], at: cython.Py_ssize_t) -> None:
+        """NaN for each of the numbers."""
+        i: cython.Py_ssize_t
+        for i in range(12 if gradient else 3):
+            out[at + i] = NAN
+
+    def many(self, n0_bar: object, b_bar: object, phi: object, gradient: cython.bint) -> np.ndarray:
+        """The numbers of many points, shape (3 or 12, ...); the arguments broadcast to the shape of the rest.
+
+        Raises ValueError if an element of b_bar is negative.
+        """
+        n0, b, ph = (np.asarray(x, dtype=np.float64) for x in (n0_bar, b_bar, phi))
+        if not n0.shape == b.shape == ph.shape:
+            n0, b, ph = np.broadcast_arrays(n0, b, ph)
+        shape = n0.shape
+        numbers: cython.Py_ssize_t = 12 if gradient else 3
+        out = np.empty((n0.size, numbers))
+        # ravel copies what is not contiguous; elements of a memoryview, unlike an array's, are plain floats
+        points = n0.ravel().data, b.ravel().data, ph.ravel().data
+        if self._fill(points[0], points[1], points[2], gradient, out.reshape(-1).data, numbers):
+            raise ValueError("b_bar is an amplitude and must not be negative; shift phi by pi instead")
+        return out.T.reshape(numbers, *shape)
+
+    def _fill(
+        self,
+        n0_bar: cython.const[cython.double][::1],  # type: ignore[valid-type]
+        b_bar: cython.const[cython.double][::1],  # type: ignore[valid-type]
+        phi: cython.const[cython.double][::1],  # type: ignore[valid-type]
+        gradient: bool,
+        out: cython.double[::1],
+        numbers: cython.Py_ssize_t,
+    ) -> bool:
+        """Whether an element of b_bar is negative; if none is, all is done."""
+        i: cython.Py_ssize_t
+        with cython.nogil:
+            for i in range(b_bar.shape[0]):
+                if b_bar[i] < 0.0:
+                    return True
+                self.evaluate(n0_bar[i], b_bar[i], phi[i], gradient, out, i * numbers)
+        return False
+
 
 LIGHT = cython.declare(cython.double, 0.01)  # loads below are integrated as forces, see `Integrals`
 
@@ -225,3 +293,40 @@ class ClosedForm(CoefficientLaw):
                 self.integrals.c_b,
                 self.integrals.c_phi,
             )
+
+
+@cython.cclass
+class Boundaries(CoefficientLaw):
+    """n0 + b, n0 - b and n0 - (ell_1 + ell_2) / 2, laid out as coefficients and their gradients."""
+
+    def __init__(self) -> None:
+        self.limits = SlipLimits()
+
+    def evaluate(
+        self,
+        n0_bar: float,
+        b_bar: float,
+        phi: float,
+        gradient: bool,
+        out: cython.double[::1],
+        at: cython.Py_ssize_t,
+    ) -> None:
+        """See `CoefficientLaw`."""
+        i: cython.Py_ssize_t
+        if self.limits.behaviour(n0_bar, b_bar, phi) == UNKNOWN:
+            self.unknown(gradient, out, at)
+            return
+        out[at] = self.limits.n0 + self.limits.b
+        out[at + 1] = self.limits.n0 - self.limits.b
+        out[at + 2] = 0.5 * (self.limits.upper_N - self.limits.lower_P)
+        if gradient:
+            for i in range(3):
+                out[at + 3 + 3 * i] = 1.0
+            out[at + 4], out[at + 5] = 1.0, 0.0
+            out[at + 7], out[at + 8] = -1.0, 0.0
+            # d ell / d(b, phi) by the directions theta_P and theta_N, which stay bounded
+            cos_phi: float = self.limits.cos_phi
+            sin_phi: float = self.limits.sin_phi
+            cosines: float = self.limits.cos_P + self.limits.cos_N
+            out[at + 10] = 0.5 * (cos_phi * (self.limits.sin_P + self.limits.sin_N) + sin_phi * cosines)
+            out[at + 11] = 0.5 * (self.limits.cos_P - self.limits.cos_N)

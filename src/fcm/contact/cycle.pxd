@@ -1,6 +1,12 @@
-from fcm.contact.slip_limits cimport SlipLimits
-
+cdef int UNKNOWN, STUCK, SLIPPING, OPEN
 cdef double PI
+
+cdef class SlipLimits:
+    cdef double n0, b, sin_phi, cos_phi
+    cdef double ell_1, ell_2, sin_P, cos_P, sin_N, cos_N, lower_P, upper_N
+    cdef int behaviour(self, double n0_bar, double b_bar, double phi) noexcept nogil
+    cdef double stuck_force(self) noexcept nogil
+    cdef void _limits(self, double phi) noexcept nogil
 
 cdef class Cycle(SlipLimits):
     cdef bint opens
@@ -26,3 +32,12 @@ cdef class Cycle(SlipLimits):
 cdef double angle_from(double sin_0, double cos_0, double sin_1, double cos_1) noexcept nogil
 cdef double beyond_sine(double y, double sine) noexcept nogil
 cdef (double, double, double) arc(double y) noexcept nogil
+
+cdef class Sequence(Cycle):
+    cdef int count
+    cdef double side_shown, last_slip, state, since
+    cdef double[:, ::1] regions
+    cdef void of(self, double n0_bar, double b_bar, double phi) noexcept nogil
+    cdef void take(self) noexcept nogil
+    cdef double _seen(self) noexcept nogil
+    cdef void _region(self, int letter, double since, double w) noexcept nogil

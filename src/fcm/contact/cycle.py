@@ -1,21 +1,94 @@
 """Kernel: one steady cycle of the contact, event by event in closed form (sections 3.2 to 3.4, appendix).
 
-Positive slip is the lower limit of w, see `slip_limits`, pushing it up, so it ends at theta_P, where that
-limit is greatest; negative slip is the upper limit pushing w down, and ends at theta_N. Between consecutive
-extremes of the two limits the whole of sections 3.2.1 to 3.2.4 is one clip, ``w_end = max(lower, min(w_start,
-upper))``, and at most one slip, which lasts until the end of that *span*. A cycle has at most three spans:
-those ended by theta_P, by theta_N, and by the separation (or by theta_N again when the contact never opens).
-Nothing has to be searched for, and a rounding error can shift an event but never choose a wrong sequence by
-more than that.
+While the contact is closed, |f| <= n says that the slip motion w = u - f lies between
+
+    lower(theta) = sin(theta) - n(theta) =  ell_1 cos(theta - theta_P) - n0_bar
+    upper(theta) = sin(theta) + n(theta) = -ell_2 cos(theta - theta_N) + n0_bar
+
+Where the greatest of the lower limit is no more than the least of the upper one, it sticks (`SlipLimits`).
+
+Positive slip is the lower limit pushing w up, so it ends at theta_P, where that limit is greatest; negative
+slip is the upper limit pushing w down, and ends at theta_N. Between consecutive extremes of the two limits
+the whole of sections 3.2.1 to 3.2.4 is one clip, ``w_end = max(lower, min(w_start, upper))``, and at most one
+slip, which lasts until the end of that *span*. A cycle has at most three spans: those ended by theta_P, by
+theta_N, and by the separation (or by theta_N again when the contact never opens). Nothing has to be searched
+for, and a rounding error can shift an event but never choose a wrong sequence by more than that (`Cycle`).
+
+The states of the cycle, as a word and with the angles at which they begin, are a `Sequence`.
 """
 
-import cython
-from cython.cimports.libc.math import atan2, cos, fabs, sin, sqrt
+from __future__ import annotations
 
-if cython.compiled:
-    from cython.cimports.fcm.contact.slip_limits import SLIPPING, SlipLimits
-else:
-    from fcm.contact.slip_limits import SLIPPING, SlipLimits
+import cython
+import numpy as np
+from cython.cimports.libc.math import atan2, cos, fabs, hypot, isfinite, isnan, sin, sqrt
+
+LARGEST = cython.declare(cython.double, 1e300)  # beyond, sums of a few terms would overflow
+FARTHEST = cython.declare(cython.double, 1e304)  # preloads beyond, infinite ones too, are this
+SHRINK = cython.declare(cython.double, 2.0**-32)  # both by this, where b is beyond LARGEST
+
+# what a contact does over a cycle, by the numbers that `periodic` has for it as well
+OPEN = cython.declare(cython.int, 0)  # below n0 = -b
+UNKNOWN = cython.declare(cython.int, 3)  # an argument is no number
+STUCK = cython.declare(cython.int, 4)  # above the slip limit (25)
+SLIPPING = cython.declare(cython.int, 5)
+
+
+@cython.cclass
+class SlipLimits:
+    """`behaviour` takes the arguments of a contact and says what it does.
+
+    n0 and b are the preload and the amplitude of the load as they are calculated with; ell_1 and ell_2 the
+    amplitudes of the limits, lower_P the greatest of the lower one, at theta_P, upper_N the least of the
+    upper one, at theta_N.
+    """
+
+    def behaviour(self, n0_bar: float, b_bar: float, phi: float) -> cython.int:
+        """What a contact does. An infinite n0_bar is as any very large one."""
+        if isnan(n0_bar) or not isfinite(b_bar) or not isfinite(phi):
+            return UNKNOWN
+        # above LARGEST only the ratio matters: the spacing of float64 is far more than 1 there
+        shrink: float = SHRINK if b_bar > LARGEST else 1.0
+        self.n0 = min(max(n0_bar * shrink, -FARTHEST), FARTHEST)
+        self.b = b_bar * shrink
+        self._limits(phi)
+        if self.n0 <= -self.b or (self.b == 0.0 and self.n0 <= 0.0):
+            return OPEN
+        if self.n0 >= self.b and self.lower_P <= self.upper_N:
+            return STUCK
+        return SLIPPING
+
+    def stuck_force(self) -> cython.double:
+        """Mean force of a contact that never slips: the admissible one nearest to zero."""
+        return min(max(0.0, -self.upper_N), max(-self.lower_P, -self.upper_N))
+
+    def _limits(self, phi: float) -> None:
+        """Amplitudes ell_1, ell_2 of (A9) and the directions of theta_P, theta_N, for every phi.
+
+        theta_P = atan2(1 - b cos phi, -b sin phi) and theta_N = atan2(-(1 + b cos phi), -b sin phi) are the
+        branch-free forms of (A4), (A5). Only their sines and cosines are needed. Where an amplitude vanishes
+        (b = 1 at phi = 0 or pi) the limit is constant, and any angle serves.
+        """
+        b: float = self.b
+        sin_half: float = sin(0.5 * phi)
+        cos_half: float = cos(0.5 * phi)
+        self.sin_phi = 2.0 * sin_half * cos_half
+        self.cos_phi = (cos_half - sin_half) * (cos_half + sin_half)
+        # 1 -+ b cos(phi), written so that nothing cancels near b = 1 with phi near 0 or pi
+        minus: float = (1.0 - b) + 2.0 * b * sin_half * sin_half
+        plus: float = (1.0 - b) + 2.0 * b * cos_half * cos_half
+        side: float = b * self.sin_phi
+        self.ell_1, self.ell_2 = hypot(minus, side), hypot(plus, side)
+        self.sin_P, self.cos_P, self.sin_N, self.cos_N = 1.0, 0.0, -1.0, 0.0
+        if self.ell_1 > 0.0:
+            self.sin_P, self.cos_P = minus / self.ell_1, -side / self.ell_1
+        if self.ell_2 > 0.0:
+            self.sin_N, self.cos_N = -plus / self.ell_2, -side / self.ell_2
+        # the extremes of the limits, by ell - b without the cancellation at large b
+        twice: float = 2.0 * b * self.cos_phi
+        self.lower_P = (1.0 - twice) / (self.ell_1 + b) - (self.n0 - b)
+        self.upper_N = (self.n0 - b) - (1.0 + twice) / (self.ell_2 + b)
+
 
 PI = cython.declare(cython.double, 3.141592653589793)
 
@@ -197,3 +270,98 @@ class Cycle(SlipLimits):
             self.begin_cos = self.end_cos - self.end_cos * self.versine + self.end_sin * self.sin
         self.take()
         self.span += 1
+
+
+NAN = cython.declare(cython.double, float("nan"))
+# A slip that moves w by less than this, a stick shorter than this, is below what float64 can tell from none.
+INVISIBLE = cython.declare(cython.double, 1e-15)
+
+LETTER_E = cython.declare(cython.int, ord("E"))
+LETTER_P = cython.declare(cython.int, ord("P"))
+LETTER_N = cython.declare(cython.int, ord("N"))
+LETTER_S = cython.declare(cython.int, ord("S"))
+MOST = cython.declare(cython.int, 7)  # states of a cycle, and one more
+
+
+@cython.cclass
+class Sequence(Cycle):
+    """The regions of a cycle that float64 can tell from none, and those without which the others cannot be.
+
+    Between opposite slips there is always a stick, however short. A stick after a slip ends in the opposite
+    slip: the limit that pushed w is past its extreme, and w must leave it to be at the other one at the end.
+
+    ``regions`` has a row for each, ``count`` in all: its letter, its angle since the first begins, and w
+    while it sticks. ``state`` is +1 in positive slip, -1 in negative slip, 0 in stick, 2 in separation.
+    """
+
+    def __init__(self) -> None:
+        self.regions = np.empty((MOST, 3))
+
+    def of(self, n0_bar: float, b_bar: float, phi: float) -> None:
+        """Fill the regions; none where an argument is no number."""
+        self.count = 0
+        behaviour: cython.int = self.find(n0_bar, b_bar, phi)
+        if behaviour == STUCK:
+            self._region(LETTER_E, 0.0, -self.stuck_force())
+        elif behaviour == OPEN:
+            self._region(LETTER_S, 0.0, NAN)
+        elif behaviour == SLIPPING and self.opens and self.state == 0.0 and self.last_slip != 0.0:
+            self._region(LETTER_N if self.last_slip > 0.0 else LETTER_P, self.since, NAN)
+
+    def take(self) -> None:
+        """Adds the regions of a span."""
+        if self.span == 0:
+            self.since, self.last_slip = 2.0 * (PI - self.theta_1), 0.0
+            self.state = 2.0 if self.opens else -1.0
+            if self.opens:
+                self._region(LETTER_S, 0.0, NAN)
+        side: float = self._seen()
+        slip: float = self.slip if side == self.side else 0.0
+        stick: float = self.length - (self.slip if side != 0.0 else 0.0)
+        if self.state != 0.0 and (stick > INVISIBLE or (side != 0.0 and self.state == -side)):
+            self._region(LETTER_E, self.since, self.w_start)
+            self.state = 0.0
+        self.since += self.length
+        if side != 0.0 and side != self.state:
+            self._region(LETTER_P if side > 0.0 else LETTER_N, self.since - slip, NAN)
+        if side != 0.0:
+            self.state = self.last_slip = side
+
+    def _seen(self) -> float:
+        """Side of the slip in a span, 0 where there is none to be seen."""
+        if self.opens:
+            return self.side if fabs(self.w_end - self.w_start) > INVISIBLE else 0.0
+        if self.lower_P - self.upper_N <= INVISIBLE:  # there are both slips, equally large, or none
+            return 0.0
+        return 1.0 if self.span == 0 else -1.0
+
+    def _region(self, letter: cython.int, since: float, w: float) -> None:
+        self.regions[self.count, 0], self.regions[self.count, 1], self.regions[self.count, 2] = (
+            letter,
+            since,
+            w,
+        )
+        self.count += 1
+
+    def loop(
+        self, n0_bar: cython.double, b_bar: cython.double, phi: cython.double
+    ) -> tuple[float, np.ndarray]:
+        """Angle at which the first region begins [rad], and the regions (region, 3); arguments all finite."""
+        self.of(n0_bar, b_bar, phi)
+        at: float = 0.0
+        if self.count > 1:
+            at = atan2(self.end_sin, self.end_cos) if self.opens else atan2(self.first_sin, self.first_cos)
+        return at, np.array(self.regions[: self.count])
+
+    def words(self, points: cython.double[:, ::1]) -> np.ndarray:
+        """The words of many contacts, (point,); rows (3, point) of n0_bar, b_bar, phi."""
+        i: cython.Py_ssize_t
+        k: cython.int
+        letters = np.zeros((points.shape[1], MOST - 1), dtype=np.uint32)
+        out: cython.uint[:, ::1] = letters
+        with cython.nogil:
+            for i in range(points.shape[1]):
+                self.of(points[0, i], points[1, i], points[2, i])
+                for k in range(min(self.count, MOST - 1)):
+                    out[i, k] = cython.cast(cython.uint, self.regions[k, 0])
+        return letters.view(f"U{MOST - 1}")[:, 0]

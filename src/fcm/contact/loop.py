@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from fcm.contact.cycle import Sequence
 from fcm.contact.limits import FloatArray
 from fcm.contact.pieces import friction, piece_at
-from fcm.contact.sequence import Sequence
 
 
 @dataclass(frozen=True)

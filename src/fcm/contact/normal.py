@@ -6,7 +6,6 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
-from fcm.contact.normal_load import normal_loads
 
 
 def normal_coefficients(n0_star: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
@@ -49,9 +48,13 @@ def normal_gradients(n0_star: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
     return dN_b, dN_s
 
 
-def _numbers(n0_star: npt.ArrayLike) -> FloatArray:
-    """Coefficients and derivatives, shape (4, ...)."""
+def _numbers(n0_star: npt.ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """N_b, N_s, equations (30) and (31), and their derivatives by n0_star, each of its shape."""
     at = np.asarray(n0_star, dtype=np.float64)
-    numbers = np.empty((4, at.size))
-    normal_loads(at.ravel(), numbers)
-    return numbers.reshape(4, *at.shape)
+    inside = np.clip(at, -1.0, 1.0)
+    # 1 +- n0_star are exact where they are small, and carry theta_1 to full accuracy at both ends
+    closed, open_ = np.sqrt(1.0 + inside), np.sqrt(1.0 - inside)
+    theta_1 = 2.0 * np.arctan2(closed, open_)
+    sin_1 = closed * open_
+    N_b = np.where(np.abs(at) > 1.0, np.maximum(at, 0.0), (sin_1 + inside * theta_1) / np.pi)
+    return N_b, (inside * sin_1 + theta_1) / np.pi, theta_1 / np.pi, 2.0 * sin_1 / np.pi

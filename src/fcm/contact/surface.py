@@ -80,7 +80,7 @@ def boundaries(b_bar: FloatArray, phi: float) -> dict[str, FloatArray]:
 
 @dataclass(frozen=True)
 class Edges:
-    """The lines of `boundaries` across a plane."""
+    """The lines of `Boundaries` across a plane."""
 
     b_bar: FloatArray  # (j,) [-]
     n0_bar: dict[str, FloatArray]  # for each line (j,) [-]

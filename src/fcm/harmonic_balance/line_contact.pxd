@@ -1,6 +1,5 @@
 from fcm.contact.periodic.forces cimport PeriodicContact
-from fcm.contact.periodic.margins cimport Margins
-from fcm.contact.periodic.measures cimport Measures
+from fcm.contact.periodic.margins cimport Margins, Measures
 from fcm.harmonic_balance.contact_law cimport Law
 
 cdef class Periodic(Law):

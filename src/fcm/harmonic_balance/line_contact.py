@@ -6,19 +6,16 @@ import cython
 import numpy as np
 
 from fcm.contact.periodic.forces import PeriodicContact
-from fcm.contact.periodic.margins import Margins
-from fcm.contact.periodic.measures import Measures
+from fcm.contact.periodic.margins import Margins, Measures
 from fcm.harmonic_balance.contact_law import Law
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.cycle import TWO_PI
+    from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
     from cython.cimports.fcm.contact.periodic.motion import MIXED
-    from cython.cimports.fcm.contact.periodic.slider import NEGATIVE, POSITIVE, SEPARATION, STICK
     from cython.cimports.fcm.continuation.problem import NONE
 else:
-    from fcm.contact.periodic.cycle import TWO_PI
+    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
     from fcm.contact.periodic.motion import MIXED
-    from fcm.contact.periodic.slider import NEGATIVE, POSITIVE, SEPARATION, STICK
     from fcm.continuation.problem import NONE
 
 

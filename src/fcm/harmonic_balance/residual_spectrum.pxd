@@ -1,4 +1,4 @@
-from fcm.structure.forced_modes cimport ForcedModes
+from fcm.structure.receptance cimport ForcedModes
 
 cdef class FurtherHarmonics:
     cdef readonly object system

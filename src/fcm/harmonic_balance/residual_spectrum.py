@@ -20,7 +20,7 @@ from cython.cimports.libc.math import fabs, floor
 from fcm.harmonic_balance.contact_law import Law
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
-from fcm.structure.forced_modes import ForcedModes
+from fcm.structure.receptance import ForcedModes
 
 HIGHEST = 50  # harmonic that is looked at, and that a balance may have
 AHEAD = 1.5  # times the highest of a balance that is looked at in any case: to have all is not to be exact

@@ -25,9 +25,8 @@ from fcm.harmonic_balance.response_quantities import Record
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Force
 from fcm.structure.linear import Linear, amplitudes, linear_of
-from fcm.structure.receptance import Receptance
+from fcm.structure.receptance import Receptance, TravellingReceptance
 from fcm.structure.ring import RingLinear, Wave
-from fcm.structure.travelling import TravellingReceptance
 
 STIFF = 1e4  # k |G| of a contact from which digits are counted
 EPS = 2.2e-16  # of float64

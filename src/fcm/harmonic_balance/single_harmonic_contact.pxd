@@ -1,4 +1,4 @@
-from fcm.contact.coefficient_law cimport CoefficientLaw
+from fcm.contact.closed_form cimport CoefficientLaw
 from fcm.harmonic_balance.contact_law cimport Law
 
 cdef class SingleHarmonic(Law):

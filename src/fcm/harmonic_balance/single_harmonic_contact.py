@@ -6,7 +6,7 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import atan2, hypot, sqrt
 
-from fcm.contact.coefficient_law import CoefficientLaw
+from fcm.contact.closed_form import CoefficientLaw
 from fcm.harmonic_balance.contact_law import Law
 
 PI = cython.declare(cython.double, 3.141592653589793)

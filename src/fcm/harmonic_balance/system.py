@@ -11,14 +11,13 @@ from functools import cached_property
 
 import numpy as np
 
-from fcm.contact.closed_form import ClosedForm
-from fcm.contact.coefficient_law import CoefficientLaw
+from fcm.contact.closed_form import ClosedForm, CoefficientLaw
 from fcm.contact.periodic.workspace import periodic_contact
 from fcm.contact.plane.workspace import planar_contact
 from fcm.continuation.stepper import Stepper
 from fcm.harmonic_balance.contact_law import Law
-from fcm.harmonic_balance.displacement import Displacements
-from fcm.harmonic_balance.force_level import Level
+from fcm.harmonic_balance.displacement import Displacements, TravellingDisplacements
+from fcm.harmonic_balance.homotopy import Level
 from fcm.harmonic_balance.line_contact import Periodic
 from fcm.harmonic_balance.modal_condensation import (
     OPTIONS,
@@ -31,14 +30,12 @@ from fcm.harmonic_balance.planar_contact import Planar
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.sampled import SampledLaw
 from fcm.harmonic_balance.single_harmonic_contact import SingleHarmonic
-from fcm.harmonic_balance.travelling_wave import TravellingDisplacements
 from fcm.harmonic_balance.work_budget import Work
 from fcm.model.scene import FloatArray, Scene
 from fcm.structure.layout import Layout, layout_of
 from fcm.structure.linear import ComplexArray, Linear, linear_of
-from fcm.structure.receptance import Receptance
+from fcm.structure.receptance import Receptance, TravellingReceptance
 from fcm.structure.ring import RingLinear
-from fcm.structure.travelling import TravellingReceptance
 from fcm.table.lookup import Table
 
 SMALL = 20  # contacts times harmonics, up to which workspaces are kept for the next system

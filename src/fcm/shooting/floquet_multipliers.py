@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from fcm.stability.disturbance import Stiffness
 from fcm.stability.eigenvalues import eigenvalues
 from fcm.stability.many_monodromy import ManyMonodromy
 from fcm.stability.monodromy import Monodromy
 from fcm.stability.multipliers import MANY_CONTACTS
-from fcm.stability.stiffness import Stiffness
 from fcm.time_domain.segment_sequence import SegmentSequence
 from fcm.time_domain.segments import Segments
 from fcm.time_domain.system import System

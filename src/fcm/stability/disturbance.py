@@ -1,4 +1,4 @@
-r"""How small disturbances of a periodic motion go on from one event to the next.
+"""How small disturbances of a periodic motion go on from one event to the next.
 
 Between two events no contact changes its state, and the disturbances of the modal coordinates, their rates by
 the angle and the places of the sliders obey
@@ -6,20 +6,361 @@ the angle and the places of the sliders obey
     (q, q', w)' = (q', image w - K q - D q', 0)
 
 with constant coefficients: they are carried by the exponential of that system.
+
+Stiffness K is that of the modes with contacts of which each sticks, slips or is open, in the angle
+theta = omega t, with modes of mass 1 and w the places where the sliders that stick have come to rest
+(`Stiffness`). Of many modes that system is decomposed by its eigenvalues. In time, not in angle, it does not
+depend on the frequency,
+
+    q' = v,    v' = -K q - D v + B w,
+
+so that is done once for each state that comes up again, for all that is followed of a curve (`Propagator`).
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import cython
 import numpy as np
-from cython.cimports.libc.math import ceil
+import numpy.typing as npt
+from cython.cimports.libc.math import ceil, cos, expm1, fabs, sin, sqrt
 
-from fcm.stability.propagator import Propagator
+from fcm.model.scene import FloatArray
 
 if cython.compiled:
-    from cython.cimports.fcm.stability.stiffness import Stiffness
+    from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
 else:
-    from fcm.stability.stiffness import Stiffness
+    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
+
+STATES = 256  # of the contacts that are remembered, or fewer:
+NUMBERS = 4_000_000  # as many as these are in their matrices
+
+
+@cython.cclass
+class Stiffness:
+    """`at` a frequency, `assemble` states of the contacts; `make` then K (mode, mode), image (mode, contact).
+
+    damping (mode,) is the diagonal of D; rate bounds how fast the motion turns, per radian. Modes that follow
+    without delay are given by their flexibility (port, port), with contacts in series.
+    """
+
+    def __init__(
+        self,
+        shapes: npt.NDArray[np.float64],
+        natural: npt.NDArray[np.float64],
+        damping: npt.NDArray[np.float64],
+        flexibility: npt.NDArray[np.float64] | None,
+        contact: npt.NDArray[np.float64],
+    ) -> None:
+        modes, ports = shapes.shape
+        contacts = ports // 2
+        self.modes, self.contacts = modes, contacts
+        self.shapes, self.contact = np.ascontiguousarray(shapes), np.ascontiguousarray(contact)
+        self.natural, self.ratio = np.array(natural), np.array(damping)
+        self.soft = flexibility is not None
+        self.flexibility = np.zeros((ports, ports)) if flexibility is None else flexibility
+        self.S, self.B = np.zeros((ports, ports)), np.zeros((ports, contacts))
+        self.seen, self.W = self.shapes, np.zeros((ports, contacts))
+        self.known: dict[bytes, tuple[FloatArray, ...]] = {}
+        self.most = min(STATES, NUMBERS // max(ports * (2 * ports + modes), 1))
+        self.K, self.image = np.zeros((modes, modes)), np.zeros((modes, contacts))
+        self.work, self.damping = np.zeros((modes, ports)), np.zeros(modes)
+        self.omega, self.rate, self.made = 1.0, 1.0, False
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def at(self, omega: cython.double) -> cython.int:
+        """Take a frequency."""
+        i: cython.Py_ssize_t
+        self.omega, self.made = omega, False
+        for i in range(self.modes):
+            self.damping[i] = 2.0 * self.ratio[i] * self.natural[i] / omega
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def assemble(self, state: cython.int[::1], key: bytes) -> cython.int:
+        """Take states of the contacts, known by a key; K, image and rate are made when they are needed."""
+        self.made = False
+        if not self.soft:
+            self.contacts_alone(state)
+            return 0
+        if key not in self.known:
+            if len(self.known) >= self.most:
+                self.known.clear()
+            self.S, self.B = np.empty_like(self.S), np.empty_like(self.B)
+            self.contacts_alone(state)
+            self.known[key] = self.softened()
+        self.S, self.B, self.seen, self.W = self.known[key]
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def make(self) -> cython.int:
+        """Fill K, image and rate."""
+        if not self.made:
+            self.condense()
+            self.modal()
+            self.made = True
+        return 0
+
+    def system(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """K, D (mode,) and image."""
+        self.make()
+        return np.asarray(self.K), np.asarray(self.damping), np.asarray(self.image)
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def contacts_alone(self, state: cython.int[::1]) -> cython.void:
+        """Forces on the ports S d - B w of the displacements d of the ports."""
+        c: cython.int
+        self.S[:, :] = 0.0
+        self.B[:, :] = 0.0
+        for c in range(self.contacts):
+            if state[c] != SEPARATION:
+                self.S[2 * c + 1, 2 * c + 1] = self.contact[c, 2]
+            if state[c] == STICK:
+                self.S[2 * c, 2 * c] = self.B[2 * c, c] = self.contact[c, 1]
+            elif state[c] == POSITIVE:
+                self.S[2 * c, 2 * c + 1] = self.contact[c, 0] * self.contact[c, 2]
+            elif state[c] == NEGATIVE:
+                self.S[2 * c, 2 * c + 1] = -self.contact[c, 0] * self.contact[c, 2]
+
+    def softened(self) -> tuple[FloatArray, ...]:
+        """S, B, and displacements of the ports by modes (mode, port) and by places (port, contact).
+
+        In series with the flexibility C: d = P q - C (S d - B w) = T P q + W w.
+        """
+        S, B, C = np.asarray(self.S), np.asarray(self.B), self.flexibility
+        T = np.linalg.inv(np.eye(S.shape[0]) + C @ S)
+        W = T @ C @ B
+        return S @ T, B - S @ W, np.ascontiguousarray(np.asarray(self.shapes) @ T.T), W
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def condense(self) -> cython.void:
+        """Forces of the ports on the modes, over omega^2."""
+        c: cython.int
+        i: cython.Py_ssize_t
+        p: cython.Py_ssize_t
+        q: cython.Py_ssize_t
+        unit: cython.double = 1.0 / (self.omega * self.omega)
+        total: cython.double
+        for i in range(self.modes):
+            for q in range(2 * self.contacts):
+                total = 0.0
+                for p in range(2 * self.contacts):
+                    total += self.shapes[i, p] * self.S[p, q]
+                self.work[i, q] = total * unit
+            for c in range(self.contacts):
+                total = 0.0
+                for p in range(2 * self.contacts):
+                    total += self.shapes[i, p] * self.B[p, c]
+                self.image[i, c] = total * unit
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def modal(self) -> cython.void:
+        """K, and the rate from two bounds of its eigenvalues.
+
+        They are the greatest sum of a row; and that of a mode alone, with the norm of what the contacts add.
+        """
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        q: cython.Py_ssize_t
+        own: cython.double
+        held: cython.double
+        total: cython.double
+        rows: cython.double = 0.0
+        alone: cython.double = 0.0
+        squares: cython.double = 0.0
+        damped: cython.double = 0.0
+        for i in range(self.modes):
+            own = self.natural[i] / self.omega
+            own *= own
+            total = 0.0
+            for j in range(self.modes):
+                held = 0.0
+                for q in range(2 * self.contacts):
+                    held += self.work[i, q] * self.shapes[j, q]
+                squares += held * held
+                self.K[i, j] = held + own if i == j else held
+                total += fabs(self.K[i, j])
+            rows, alone, damped = max(rows, total), max(alone, own), max(damped, self.damping[i])
+        self.rate = sqrt(min(rows, alone + sqrt(squares))) + damped
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def displacement(
+        self, port: cython.Py_ssize_t, X: cython.double[:, ::1], out: cython.double[::1]
+    ) -> cython.int:
+        """Of a port, for the columns (q, q', w) of X."""
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        weight: cython.double
+        for k in range(out.shape[0]):
+            out[k] = 0.0
+        for i in range(self.modes):
+            weight = self.seen[i, port]
+            for k in range(out.shape[0]):
+                out[k] += weight * X[i, k]
+        if self.soft:
+            for i in range(self.contacts):
+                weight = self.W[port, i]
+                for k in range(out.shape[0]):
+                    out[k] += weight * X[2 * self.modes + i, k]
+        return 0
+
+
+MOST = cython.declare(cython.int, 256)  # states that are remembered
+WORST = 1e6  # condition of the eigenvectors, beyond which they are not used
+
+ComplexArray = npt.NDArray[np.complex128]
+
+
+@cython.cclass
+class Parts:
+    """A disturbance as the sum of those that grow by exp(value time), one value of each pair.
+
+    values (value,); real and imaginary parts side by side of share (2 values, 2 modes) of (q, v), and of
+    driven (2 values, contact) of the places, None where no contact sticks; back (2 modes, 2 values).
+    """
+
+    def __init__(
+        self, values: ComplexArray, share: FloatArray, driven: FloatArray | None, back: FloatArray
+    ) -> None:
+        self.re, self.im = np.array(values.real), np.array(values.imag)
+        self.share, self.driven, self.back = share, driven, back
+        self.modes, self.count = len(back) // 2, len(values)
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def carry(self, time: cython.double, omega: cython.double, X: FloatArray) -> cython.int:
+        """Replace the rows (q, dq / dangle) of X, above those of w, by what they are after a time."""
+        rows: cython.double[:, :] = X
+        m: cython.Py_ssize_t = self.modes
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        for i in range(m, 2 * m):
+            for k in range(rows.shape[1]):
+                rows[i, k] *= omega
+        moving = X[: 2 * m]
+        parts = np.matmul(self.share, moving)
+        self.grow(time, parts, None if self.driven is None else np.matmul(self.driven, X[2 * m :]))
+        np.matmul(self.back, parts, out=moving)
+        for i in range(m, 2 * m):
+            for k in range(rows.shape[1]):
+                rows[i, k] /= omega
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def grow(
+        self, time: cython.double, part: cython.double[:, ::1], drive: cython.double[:, ::1]
+    ) -> cython.void:
+        """The parts (2 values, column), of which the places drive some, or None, after a time.
+
+        What is driven grows by (exp(value time) - 1) / value, of no value by the time.
+        """
+        i: cython.Py_ssize_t
+        re: cython.double
+        im: cython.double
+        for i in range(self.count):
+            less: cython.double = expm1(self.re[i] * time)
+            half: cython.double = sin(0.5 * self.im[i] * time)
+            re = less * cos(self.im[i] * time) - 2.0 * half * half
+            im = (1.0 + less) * sin(self.im[i] * time)
+            turn(part[2 * i], part[2 * i + 1], part[2 * i], part[2 * i + 1], re, im)
+            if drive is not None:
+                still: cython.bint = self.re[i] == 0.0 and self.im[i] == 0.0
+                re = time if still else re
+                turn(part[2 * i], part[2 * i + 1], drive[2 * i], drive[2 * i + 1], re, im)
+
+
+class Propagator:
+    """States by their keys, each seen once before it is decomposed."""
+
+    def __init__(self) -> None:
+        self.known: dict[bytes, Parts | None] = {}
+        self.seen: set[bytes] = set()
+
+    def through(
+        self,
+        key: bytes,
+        angle: float,
+        omega: float,
+        system: Callable[[], tuple[FloatArray, FloatArray, FloatArray]],
+        X: FloatArray,
+    ) -> bool:
+        """Carry the rows (q, dq / dangle) of X, above those of w, through an angle; false if it cannot yet.
+
+        system makes K, D (mode,) and B of derivatives by the angle.
+        """
+        parts = self._parts(key, omega, system)
+        if parts is None:
+            return False
+        parts.carry(angle / omega, omega, X)
+        return True
+
+    def _parts(
+        self, key: bytes, omega: float, system: Callable[[], tuple[FloatArray, FloatArray, FloatArray]]
+    ) -> Parts | None:
+        if key in self.known:
+            return self.known[key]
+        if key not in self.seen or len(self.known) >= MOST:
+            self.seen.add(key)
+            return None
+        K, D, B = system()
+        m = len(D)
+        A = np.zeros((2 * m, 2 * m))
+        A[:m, m:] = np.eye(m)
+        A[m:, :m], A[m:, m:] = -omega * omega * K, -np.diag(omega * D)
+        self.known[key] = _decomposed(A, np.vstack((np.zeros_like(B), omega * omega * B)))
+        return self.known[key]
+
+
+def _decomposed(A: FloatArray, B: FloatArray) -> Parts | None:
+    """None where the eigenvectors are nearly dependent."""
+    try:
+        values, vectors = np.linalg.eig(A)
+        unit = np.repeat([1.0, np.abs(values).max()], len(A) // 2)[:, None]  # of places and velocities
+        if not np.linalg.cond(vectors / unit) < WORST:
+            return None
+        inverse = np.linalg.inv(vectors / unit) / unit.T
+    except np.linalg.LinAlgError:
+        return None
+    one = values.imag >= 0.0
+    values, vectors, inverse = values[one].astype(np.complex128), vectors[:, one], inverse[one]
+    pair = np.where(values.imag > 0.0, 2.0, 1.0)
+    driven = _real((inverse @ B) / np.where(values == 0.0, 1.0, values)[:, None]) if B.any() else None
+    return Parts(values, _real(inverse), driven, _real(np.conj(vectors * pair).T).T.copy())
+
+
+def _real(rows: ComplexArray) -> FloatArray:
+    """(value, n) as (2 values, n): real and imaginary parts side by side."""
+    return np.stack((rows.real, rows.imag), axis=1).reshape(2 * len(rows), -1)
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def turn(
+    re: cython.double[::1],
+    im: cython.double[::1],
+    by_re: cython.double[::1],
+    by_im: cython.double[::1],
+    times: cython.double,
+    times_im: cython.double,
+) -> cython.void:
+    """Add (times + i times_im) (by_re + i by_im) to re + i im, which it may be."""
+    k: cython.Py_ssize_t
+    one: cython.double
+    other: cython.double
+    for k in range(re.shape[0]):
+        one, other = by_re[k], by_im[k]
+        re[k] += times * one - times_im * other
+        im[k] += times * other + times_im * one
+
 
 REACH = cython.declare(cython.double, 6.0)  # of a step, in radians of the fastest motion
 SMALL = cython.declare(cython.double, 1e-13)  # bound of the last term of the series, relative to the first

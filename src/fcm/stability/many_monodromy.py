@@ -26,12 +26,10 @@ import numpy.typing as npt
 from cython.cimports.libc.math import ceil, fabs, sqrt
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.cycle import TWO_PI
-    from cython.cimports.fcm.contact.periodic.slider import NEGATIVE, POSITIVE, SEPARATION, STICK
+    from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
     from cython.cimports.fcm.stability.state_sequence import StateSequence
 else:
-    from fcm.contact.periodic.cycle import TWO_PI
-    from fcm.contact.periodic.slider import NEGATIVE, POSITIVE, SEPARATION, STICK
+    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
     from fcm.stability.state_sequence import StateSequence
 
 REACH = cython.declare(cython.double, 3.0)  # of a step, in radians of the fastest motion

@@ -7,3 +7,12 @@ cdef class Monodromy(Disturbances):
     cpdef int follow(self, double omega) except -1
     cdef int begin(self) except -1
     cdef int happen(self, int e) except -1
+
+cdef class RingMonodromy(Monodromy):
+    cdef double part, start
+    cdef object renumber, source
+    cdef int first
+    cdef int[::1] memory
+    cpdef int follow(self, double omega) except -1
+    cdef void widest(self) noexcept
+    cdef int begin(self) except -1

@@ -22,15 +22,14 @@ import numpy.typing as npt
 
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
-from fcm.stability.balanced_sequence import BalancedSequence
+from fcm.stability.disturbance import Propagator, Stiffness
 from fcm.stability.eigenvalues import eigenvalues
 from fcm.stability.force_harmonics import PORTS, Finer, beyond
 from fcm.stability.many_monodromy import ManyMonodromy
 from fcm.stability.monodromy import Monodromy
 from fcm.stability.planar_monodromy import PlanarMonodromy, PlanarSequence
-from fcm.stability.propagator import Propagator
 from fcm.stability.rebalanced import Refined
-from fcm.stability.stiffness import Stiffness
+from fcm.stability.state_sequence import BalancedSequence
 from fcm.stability.verdict import PASSIVE, UNKNOWN, Spectrum, Verdict, doubtful, either, even, meeting
 
 FEW = 24  # modes; with more, those far above the excitation follow without delay
@@ -97,7 +96,7 @@ class Multipliers:
     def _followed(self) -> list[Followed]:
         """The finer motion and that of the balanced harmonics."""
         fine, plain = self.states
-        if isinstance(fine, PlanarSequence) or isinstance(plain, PlanarSequence):
+        if isinstance(fine, PlanarSequence) and isinstance(plain, PlanarSequence):
             linear = self.system.linear
             structure = linear.ports, linear.natural, linear.damping, self.far
             return [Followed(one, PlanarMonodromy(*structure, one)) for one in (fine, plain)]

@@ -17,12 +17,12 @@ import numpy.typing as npt
 from fcm.harmonic_balance.system import System
 from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray
-from fcm.stability.balanced_sequence import BalancedSequence
+from fcm.stability.disturbance import Stiffness
 from fcm.stability.force_harmonics import Finer, beyond
+from fcm.stability.monodromy import RingMonodromy
 from fcm.stability.multipliers import Followed, Multipliers, far_above
 from fcm.stability.planar_monodromy import PlanarMonodromy, PlanarSequence
-from fcm.stability.ring_monodromy import RingMonodromy
-from fcm.stability.stiffness import Stiffness
+from fcm.stability.state_sequence import BalancedSequence
 from fcm.stability.verdict import Verdict
 from fcm.structure.ring import RingLinear
 

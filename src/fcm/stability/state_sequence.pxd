@@ -1,3 +1,6 @@
+from fcm.contact.periodic.cycle cimport Cycle
+from fcm.contact.periodic.motion cimport Motion
+
 cdef int FREE
 
 cdef class StateSequence:
@@ -8,3 +11,14 @@ cdef class StateSequence:
     cdef void occurs(self, double angle, int c, int into, double along) noexcept
     cdef void sort(self) noexcept
     cdef void begin(self) noexcept
+
+cdef class BalancedSequence(StateSequence):
+    cdef readonly Motion motion
+    cdef readonly Cycle cycle
+    cdef readonly int width, moving, held
+    cdef public bint yielding
+    cdef readonly double[:, ::1] contact
+    cpdef bint find_events(self, double[::1] x) except -1
+    cdef bint contact_cycle(self, double[::1] x, int c) noexcept
+    cdef bint opens(self) noexcept
+    cdef double limit_at(self, int p) noexcept

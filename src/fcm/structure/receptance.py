@@ -1,10 +1,19 @@
-r"""The structure seen from its contacts: receptances at every harmonic of a frequency, modes summed out.
+"""The structure seen from its contacts: receptances at every harmonic of a frequency, modes summed out.
 
 With modes of mass 1, shapes P on the ports, those of the first contact first, and x = Re(X exp(i h omega t)),
 
     G(h omega) = sum_i P_i P_i^T c_i,    c_i = 1 / (w_i^2 - (h omega)^2 + 2 i zeta_i w_i h omega)
 
 and the derivatives by omega.
+
+Of a ring in which a wave travels there is one structure for each harmonic. Harmonic h of the motion of sector
+k is X_h exp(i h k phi), so it meets the modes of one nodal diameter, with complex shapes P on the ports, in
+which the next sector counts exp(i h phi) times (`TravellingReceptance`):
+
+    G(h omega) = sum_i P_i P_i^H c_i = A + B + i (D - D^T),    P = a + i b
+
+with the blocks A = sum a a^T c, B = sum b b^T c and D = sum b a^T c of a receptance with real shapes on twice
+as many ports, (a, b).
 """
 
 from __future__ import annotations
@@ -12,6 +21,7 @@ from __future__ import annotations
 import cython
 import numpy as np
 import numpy.typing as npt
+from cython.cimports.libc.math import sqrt
 
 from fcm.structure.layout import Layout
 
@@ -251,3 +261,143 @@ class Receptance:
                 self.X_im[n, k] += self.shapes[i, k] * q_im
                 self.dX_re[n, k] += self.shapes[i, k] * d_re
                 self.dX_im[n, k] += self.shapes[i, k] * d_im
+
+
+@cython.cclass
+class TravellingReceptance(Receptance):
+    """`waves` (harmonic,): of each harmonic the receptance on (a, b), of that harmonic alone."""
+
+    def __init__(
+        self,
+        waves: list[Receptance],
+        static: npt.NDArray[np.float64],
+        harmonics: npt.NDArray[np.float64],
+        contacts: cython.int,
+        driven: tuple[int, ...],
+    ) -> None:
+        shapes, none = np.zeros((0, len(static))), np.zeros(0)
+        push = np.zeros((len(driven), 0), dtype=np.complex128)
+        Receptance.__init__(self, shapes, none, none, push, static, harmonics, True, contacts, driven)
+        self.waves = waves
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def at(self, omega: cython.double) -> cython.int:
+        """Fill the arrays for a frequency."""
+        j: cython.int
+        if omega == self.omega:
+            return 0
+        self.omega = omega
+        for j in range(self.count):
+            wave: Receptance = self.waves[j]
+            wave.at(omega)
+            self.from_real(j, wave)
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def from_real(self, j: cython.int, wave: Receptance) -> cython.void:
+        """One harmonic from its real blocks."""
+        n: cython.Py_ssize_t = self.ports
+        k: cython.int = self.forced[j]
+        p: cython.Py_ssize_t
+        q: cython.Py_ssize_t
+        for p in range(n):
+            for q in range(n):
+                self.G_re[j, p, q] = (
+                    wave.G_re[0, p, q] + wave.G_re[0, n + p, n + q]
+                    - wave.G_im[0, n + p, q] + wave.G_im[0, p, n + q]
+                )  # fmt: skip
+                self.G_im[j, p, q] = (
+                    wave.G_im[0, p, q] + wave.G_im[0, n + p, n + q]
+                    + wave.G_re[0, n + p, q] - wave.G_re[0, p, n + q]
+                )  # fmt: skip
+                self.dG_re[j, p, q] = (
+                    wave.dG_re[0, p, q] + wave.dG_re[0, n + p, n + q]
+                    - wave.dG_im[0, n + p, q] + wave.dG_im[0, p, n + q]
+                )  # fmt: skip
+                self.dG_im[j, p, q] = (
+                    wave.dG_im[0, p, q] + wave.dG_im[0, n + p, n + q]
+                    + wave.dG_re[0, n + p, q] - wave.dG_re[0, p, n + q]
+                )  # fmt: skip
+            if k >= 0:
+                self.X_re[k, p] = wave.X_re[0, p] - wave.X_im[0, n + p]
+                self.X_im[k, p] = wave.X_im[0, p] + wave.X_re[0, n + p]
+                self.dX_re[k, p] = wave.dX_re[0, p] - wave.dX_im[0, n + p]
+                self.dX_im[k, p] = wave.dX_im[0, p] + wave.dX_re[0, n + p]
+
+
+@cython.cclass
+class ForcedModes:
+    """Modes of mass 1 with shapes on the ports (mode, port) and on the degrees of freedom (mode, dof)."""
+
+    def __init__(
+        self,
+        natural: npt.NDArray[np.float64],
+        damping: npt.NDArray[np.float64],
+        ports: npt.NDArray[np.float64],
+        dofs: npt.NDArray[np.float64],
+    ) -> None:
+        self.natural, self.rate = np.array(natural), 2.0 * np.asarray(damping) * natural
+        self.ports, self.dofs = np.ascontiguousarray(ports), np.ascontiguousarray(dofs)
+        self.q_re, self.q_im = np.zeros((2, len(natural)))
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def shares(
+        self,
+        harmonics: cython.Py_ssize_t[::1],
+        omega: cython.double,
+        force: cython.double[:, :, ::1],
+        size: cython.double[::1],
+        out: cython.double[::1],
+    ) -> cython.int:
+        """Greatest amplitude over the size of a degree of freedom, of some harmonics: (harmonic,).
+
+        force (harmonic, port, 2): real and imaginary parts; size (dof,), where 0 does not count; harmonic 1
+        is the first of both.
+        """
+        k: cython.Py_ssize_t
+        for k in range(harmonics.shape[0]):
+            h: cython.Py_ssize_t = harmonics[k]
+            self.move(h * omega, force[h - 1])
+            out[h - 1] = self.greatest(size)
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def move(self, w: cython.double, force: cython.double[:, ::1]) -> cython.void:
+        """The modes under the forces on the ports (port, 2) of a frequency."""
+        m: cython.Py_ssize_t
+        p: cython.Py_ssize_t
+        for m in range(self.natural.shape[0]):
+            f_re: cython.double = 0.0
+            f_im: cython.double = 0.0
+            for p in range(self.ports.shape[1]):
+                f_re += self.ports[m, p] * force[p, 0]
+                f_im += self.ports[m, p] * force[p, 1]
+            re: cython.double = (self.natural[m] - w) * (self.natural[m] + w)
+            im: cython.double = self.rate[m] * w
+            if re == 0.0 and im == 0.0:
+                re = LEAST_DAMPING * w * w
+            square: cython.double = re * re + im * im
+            self.q_re[m] = (f_re * re + f_im * im) / square
+            self.q_im[m] = (f_im * re - f_re * im) / square
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def greatest(self, size: cython.double[::1]) -> cython.double:
+        """Of the amplitudes over sizes (dof,)."""
+        m: cython.Py_ssize_t
+        d: cython.Py_ssize_t
+        most: cython.double = 0.0
+        for d in range(self.dofs.shape[1]):
+            if size[d] > 0.0:
+                re: cython.double = 0.0
+                im: cython.double = 0.0
+                for m in range(self.natural.shape[0]):
+                    re += self.dofs[m, d] * self.q_re[m]
+                    im += self.dofs[m, d] * self.q_im[m]
+                re, im = re / size[d], im / size[d]
+                most = max(most, re * re + im * im)
+        return sqrt(most)

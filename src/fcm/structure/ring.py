@@ -12,8 +12,7 @@ from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray
 from fcm.structure.linear import FROM_SINE, Linear, amplitudes, attached_to, with_springs
 from fcm.structure.loads import Loads
-from fcm.structure.receptance import Receptance
-from fcm.structure.travelling import TravellingReceptance
+from fcm.structure.receptance import Receptance, TravellingReceptance
 
 ComplexArray = npt.NDArray[np.complex128]
 

@@ -27,7 +27,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.table.constants import CONE, FOLD_U, FOLD_Z, LARGEST_B, TIP
-from fcm.table.locate import slip_geometry
+from fcm.table.tabulated import slip_geometry
 
 FloatArray = npt.NDArray[np.float64]
 

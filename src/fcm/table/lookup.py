@@ -9,10 +9,8 @@ import numpy.typing as npt
 
 from fcm.table import spline
 from fcm.table.atlas import FloatArray
-from fcm.table.cubic import Cubic
-from fcm.table.locate import Resolution
 from fcm.table.part import Part, frame
-from fcm.table.tabulated import Tabulated
+from fcm.table.tabulated import Cubic, Resolution, Tabulated
 
 Coefficients = npt.NDArray[np.float32]
 

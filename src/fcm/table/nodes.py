@@ -8,8 +8,8 @@ import numpy as np
 
 from fcm.table import atlas
 from fcm.table.atlas import FloatArray
-from fcm.table.locate import Resolution
 from fcm.table.part import Part
+from fcm.table.tabulated import Resolution
 
 PRESETS: dict[str, Resolution] = {"default": (65, 17, 81, 71), "fast": (25, 9, 37, 29)}
 LEAST, MOST = 5, 2000  # nodes on an axis: what a spline needs, and more than anybody does

@@ -12,8 +12,7 @@ import numpy as np
 
 from fcm.table import atlas
 from fcm.table.atlas import FloatArray
-from fcm.table.locate import NODES_BETWEEN, Resolution, locate
-from fcm.table.tabulated import Frame
+from fcm.table.tabulated import NODES_BETWEEN, Frame, Resolution, locate
 
 MARGIN = 1  # nodes around those reached: a solver's path is another with another table
 GUARD = 6  # nodes at a cut side, beyond which the splines are those through all nodes, to 1e-7

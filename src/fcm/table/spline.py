@@ -1,4 +1,4 @@
-r"""Tensor-product cubic B-splines on unit-spaced nodes: interpolation; `cubic` evaluates them.
+r"""Tensor-product cubic B-splines on unit-spaced nodes: interpolation; `Cubic` evaluates them.
 
 On an axis with n nodes a spline is ``sum_k c_k B(q - k)`` with n + 2 coefficients and, for q = i + f,
 

@@ -18,12 +18,11 @@ from fcm.contact import fourier_coefficients
 from fcm.table import spline
 from fcm.table.atlas import FloatArray
 from fcm.table.build import charts
-from fcm.table.cubic import Cubic
 from fcm.table.error import sample
-from fcm.table.locate import NODES_BETWEEN, Resolution, locate
 from fcm.table.lookup import Table
 from fcm.table.nodes import PRESETS
 from fcm.table.part import Part
+from fcm.table.tabulated import NODES_BETWEEN, Cubic, Resolution, locate
 
 BOX = 3.0  # |n0_bar| and b_bar are at most this on a rectilinear grid; phi is in [0, pi]
 SHARES = (0.25, 0.35, 0.5, 0.7, 1.0)  # of the nodes of the default table, along each axis

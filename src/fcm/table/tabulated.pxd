@@ -1,7 +1,34 @@
-from fcm.contact.closed_form cimport ClosedForm
-from fcm.contact.coefficient_law cimport CoefficientLaw
-from fcm.table.cubic cimport Cubic
-from fcm.table.locate cimport Place
+from fcm.contact.closed_form cimport ClosedForm, CoefficientLaw
+
+cdef class Place:
+    # of the table
+    cdef double span_1, span_2, span_x, span_z
+    cdef int first_slip
+    # of the point
+    cdef double sin_half, cos_half, sin_phi, cos_phi
+    cdef double ell_1, ell_2, low, high, width
+    cdef double sign, u, x, z, scale, mean, closed
+    # the chain rule
+    cdef double u_n, u_b, u_phi, x_b, x_phi, z_phi, scale_b, scale_phi, mean_n, mean_b, mean_phi
+
+    cdef void find(self, double n0, double b, double phi, bint gradient) noexcept nogil
+    cdef void set_phase(self, double phi) noexcept nogil
+    cdef void geometry(self, double b_bar) noexcept nogil
+    cdef void _variation(self, double b) noexcept nogil
+    cdef void _phase(self, double phi) noexcept nogil
+    cdef void _separation(self, double n0, double b, bint gradient) noexcept nogil
+    cdef void _slip(self, double b, double excess, bint gradient) noexcept nogil
+    cdef void _slip_slopes(self, double b, double t, double by_t) noexcept nogil
+
+cdef class Cubic:
+    cdef const float[::1] coefficients
+    cdef Py_ssize_t step_u, step_x, last
+    cdef void evaluate(
+        self, double u, double x, double z, bint gradient, double[::1] out, Py_ssize_t at
+    ) noexcept nogil
+
+cdef (double, double, double, double) weights(double f) noexcept nogil
+cdef (double, double, double, double) slopes(double f) noexcept nogil
 
 cdef class Frame:
     cdef const double[:, ::1] low, high, here

@@ -8,13 +8,11 @@ from cython.cimports.libc.math import fabs
 from fcm.model.scene import FloatArray
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.cycle import TWO_PI
-    from cython.cimports.fcm.contact.periodic.slider import NEGATIVE, POSITIVE, SEPARATION, STICK
+    from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
     from cython.cimports.fcm.stability.state_sequence import FREE, StateSequence
     from cython.cimports.fcm.time_domain.segments import Segments
 else:
-    from fcm.contact.periodic.cycle import TWO_PI
-    from fcm.contact.periodic.slider import NEGATIVE, POSITIVE, SEPARATION, STICK
+    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
     from fcm.stability.state_sequence import FREE, StateSequence
     from fcm.time_domain.segments import Segments
 

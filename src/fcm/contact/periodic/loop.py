@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from fcm.contact.periodic.coefficients import ComplexArray, FloatArray, one_motion
 from fcm.contact.periodic.cycle import Cycle
-from fcm.contact.periodic.measures import Measures
+from fcm.contact.periodic.margins import Measures
 from fcm.contact.pieces import friction, piece_at
 
 # A state shorter than this [rad], or a slip that moves w by less of its greatest extent, is rounding.

@@ -1,8 +1,14 @@
-from fcm.contact.periodic.nodes cimport Nodes
-
-cdef int LOAD, LOAD_RATE, LOWER, LOWER_RATE, UPPER, UPPER_RATE, FORCE, FORCE_RATE, REACH
-cdef int OPEN, CLOSED, MIXED, UNKNOWN
+cdef int LOAD, LOAD_RATE, LOWER, LOWER_RATE, UPPER, UPPER_RATE, FORCE, FORCE_RATE, REACH, OPEN, CLOSED, MIXED, UNKNOWN
 cdef double EPSILON
+
+cdef class Nodes:
+    cdef readonly int highest, nodes
+    cdef readonly bint alone
+    cdef readonly double step, first
+    cdef readonly double[:, ::1] node_cos, node_sin
+    cdef int few, many, before
+    cdef bint fundamental
+    cdef void take_nodes(self, int moving) noexcept nogil
 
 cdef class Motion(Nodes):
     cdef readonly int count, moving

@@ -18,13 +18,13 @@ import numpy as np
 from cython.cimports.libc.math import fabs, hypot, sqrt
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.crossings import Crossings
+    from cython.cimports.fcm.contact.periodic.events import Crossings
     from cython.cimports.fcm.contact.periodic.motion import CLOSED, LOAD, LOAD_RATE, MIXED, OPEN, UNKNOWN
     from cython.cimports.fcm.contact.plane.cycle import STUCK, UNSOLVED, Cycle
     from cython.cimports.fcm.contact.plane.motion import SCAN
     from cython.cimports.fcm.contact.plane.slider import SLIP, STICK
 else:
-    from fcm.contact.periodic.crossings import Crossings
+    from fcm.contact.periodic.events import Crossings
     from fcm.contact.periodic.motion import CLOSED, LOAD, LOAD_RATE, MIXED, OPEN, UNKNOWN
     from fcm.contact.plane.cycle import STUCK, UNSOLVED, Cycle
     from fcm.contact.plane.motion import SCAN

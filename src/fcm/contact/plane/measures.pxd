@@ -1,4 +1,4 @@
-from fcm.contact.periodic.crossings cimport Crossings
+from fcm.contact.periodic.events cimport Crossings
 from fcm.contact.plane.cycle cimport Cycle
 from fcm.contact.plane.motion cimport PlaneMotion
 

@@ -7,13 +7,13 @@ import numpy as np
 from cython.cimports.libc.math import hypot
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.crossings import Crossings
+    from cython.cimports.fcm.contact.periodic.events import Crossings
     from cython.cimports.fcm.contact.periodic.motion import LOAD, LOAD_RATE, MIXED, OPEN
     from cython.cimports.fcm.contact.plane.cycle import STUCK, Cycle
     from cython.cimports.fcm.contact.plane.motion import SCAN
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK
 else:
-    from fcm.contact.periodic.crossings import Crossings
+    from fcm.contact.periodic.events import Crossings
     from fcm.contact.periodic.motion import LOAD, LOAD_RATE, MIXED, OPEN
     from fcm.contact.plane.cycle import STUCK, Cycle
     from fcm.contact.plane.motion import SCAN

@@ -1,1 +1,0 @@
-from fcm.branches.surface cimport Surface
