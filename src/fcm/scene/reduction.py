@@ -109,7 +109,9 @@ def _kept(matrices: Matrices, found: Reduced, damping: Damping) -> str:
     """What is kept of the structure, and how far it is off."""
     rows, added = len(matrices.dofs), found.modes.count - found.kept
     verb = "is" if found.kept == 1 else "are"
-    text = f"structure: {counted(found.kept, 'mode')} of {rows} degrees of freedom {verb} kept"
+    text = (
+        f"structure: {counted(found.kept, 'mode')} of {rows} degree{'s' * (rows != 1)} of freedom {verb} kept"
+    )
     every = not np.isfinite(found.beyond)
     if every and not added:
         return f"{text}, all that there are"

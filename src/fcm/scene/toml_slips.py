@@ -11,6 +11,7 @@ import re
 import tomllib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from math import pi
 
 from fcm.scene.errors import quoted
 from fcm.scene.keys import LISTS
@@ -30,13 +31,23 @@ _QUOTES = dict.fromkeys(map(ord, "“”„‟«»″"), '"') | dict.fromkeys(ma
 _SIGNS = {0x2212: "-", 0x2013: "-", 0x2014: "-", 0xFF0C: ",", 0xFF1D: "=", 0x066B: "."}
 _BLANKS = dict.fromkeys([0xA0, 0x2007, 0x2009, 0x202F, 0x3000], " ") | dict.fromkeys([0xFEFF, 0x200B], "")
 _WORDS = {"True": "true", "TRUE": "true", "False": "false", "FALSE": "false", "yes": "true", "no": "false",
-          "on": "true", "off": "false", "Inf": "inf", "NaN": "nan"}  # fmt: skip
+          "on": "true", "off": "false", "Inf": "inf", "Infinity": "inf", "infinity": "inf",
+          "NaN": "nan"}  # fmt: skip
 _NOTHING = ("None", "null", "nil")  # a key without a value is left out
 _KEY = r'(?:[\w-]+|"[^"]*")(?:\s*\.\s*(?:[\w-]+|"[^"]*"))*'
 _ODD_KEY = r"""^(\s*)([^\s"'=\[{][^"'=\[{]*?)\s*="""
 _VALUE = re.compile(r"([=\[,]\s*)([A-Za-z_0-9][\w:.*/\\ -]*?)(?=\s*(?:[,\]}#]|$))")
+_NEARLY = re.compile(
+    r"\d+(?:\.\d+)?[eE][-+]?(?:\d+\.\d+)?"
+)  # a number but for its exponent, which may be any
 _OF_BASE = re.compile(r"(?<![\w.])0([xXoObB])(\w+)")
 _BASES = {"x": (16, "0123456789abcdef"), "o": (8, "01234567"), "b": (2, "01")}
+_THOUSANDS = r"(?<=\d),(?=\d{3}(?:,\d{3})*\.\d)|(?<=\d),(?=\d{3},\d{3}\b)|(?<=\d,\d{3}),(?=\d{3}\b)"
+_PI = re.compile("pi|π")
+_EXPONENT = re.compile(r"[eEdDqQ]\d*")  # no unit
+_CALCULATED = re.compile(
+    r"([=\[,]\s*)([-+]?\d+(?:\.\d*)?|[-+]?pi|[-+]?π)\s*(/|\*\*?|\^)\s*([-+]?\d+(?:\.\d*)?|pi|π)(?=\s*(?:[,\]}]|$))"
+)
 _NUMBER = re.compile(r"[-+]?\d[\d_]*(?:\.\d+)?(?:[eE][-+]?\d+)?")
 
 Remedy = Callable[[str], str]  # of a line: the line as it ought to be, or the same
@@ -260,7 +271,7 @@ def _header(line: str) -> str:
     """[name], or [[name]] of what there may be several of."""
     code, comment = _code(line)
     match = re.fullmatch(rf"\s*\[*\s*({_KEY})\s*\]*", code)
-    if not match or not code.lstrip().startswith("["):
+    if not match or not (code.lstrip().startswith("[") or code.endswith("]")):
         return line
     return (f"[[{match[1]}]]" if match[1] in LISTS else f"[{match[1]}]") + comment
 
@@ -284,6 +295,8 @@ def _value_of_word(match: re.Match[str]) -> str:
     before, word = match[1], match[2].rstrip()
     if word in ("true", "false", "inf", "nan", *_NOTHING) or all(map(_NUMBER.fullmatch, word.split())):
         return match[0]
+    if _NEARLY.fullmatch(word):
+        return match[0]
     return before + (f"'{word}'" if "\\" in word else f'"{word}"')
 
 
@@ -291,7 +304,7 @@ def _units(line: str) -> str:
     """Numbers without what stands behind them; an angle in degrees is a string."""
 
     def mend(match: re.Match[str]) -> str:
-        if at_node(match[0].strip()):
+        if at_node(match[0].strip()) or _EXPONENT.fullmatch(match[2]):
             return match[0]
         if match[2] == "%":
             return f"{float(match[1]) / 100.0:.12g}"
@@ -315,6 +328,20 @@ def _closed(mark: str) -> Remedy:
 
 def _in_small_base(part: str) -> str:
     return _OF_BASE.sub(lambda match: f"0{match[1].lower()}{match[2]}", part)
+
+
+def _calculated(part: str) -> str:
+    """A quotient, product or power of two numbers as what it comes to."""
+
+    def come_to(match: re.Match[str]) -> str:
+        one, other = (float(_PI.sub(repr(pi), match[i])) for i in (2, 4))
+        try:
+            found = one / other if match[3] == "/" else one * other if match[3] == "*" else one**other
+        except ArithmeticError:
+            return match[0]
+        return match[0] if isinstance(found, complex) else f"{match[1]}{found!r}"
+
+    return _CALCULATED.sub(come_to, part)
 
 
 def _statements(line: str) -> str:
@@ -358,10 +385,24 @@ _REMEDIES: tuple[tuple[str, Remedy], ...] = (
         "an exponent begins with e",
         _substituted(r"(?<![\w.])([-+]?)\.(\d+)[dDqQ]([-+]?\d+)(?!\w)", r"\g<1>0.\2e\3"),
     ),
+    ("digits are not parted", _substituted(_THOUSANDS, "")),
     ("a number is written with a decimal point", _decimal_commas),
-    ("a number does not begin with 0", _substituted(r"(?<![\w.+-])([-+]?)0+(?=[1-9])", r"\1")),
-    ("it begins with 0x, 0o or 0b, in small letters", _outside(_in_small_base)),
+    (
+        "an exponent has no blank before it",
+        _substituted(r"(?<![\w.])(\d+(?:\.\d+)?[eE]?)[ \t]+(?=[eE][-+]?\d)", r"\1"),
+    ),
+    (
+        "an exponent has no blank before it",
+        _substituted(r"(?<![\w.])(\d+(?:\.\d+)?[eE])[ \t]+(?=[-+]?\d)", r"\1"),
+    ),
+    (
+        "an exponent is a whole number",
+        _substituted(r"(?<![\w.])(\d+(?:\.\d+)?[eE][-+]?\d+)\.0*(?!\d)", r"\1"),
+    ),
+    ("a number is not calculated", _outside(_calculated)),
     ("digits are not parted", _substituted(r"(?<=\d)(?:[ '_]+(?=\d{3}\b)|_+(?!\d))", "")),
+    ("a number does not begin with 0", _substituted(r"(?<![\w.+-])([-+]?)0+(?=\d)", r"\1")),
+    ("it begins with 0x, 0o or 0b, in small letters", _outside(_in_small_base)),
     ("a key and its value are parted by =", _of_code(rf"^(\s*{_KEY})\s*(?::=|==|=>|:)\s*", r"\1 = ")),
     ("a key and its value are parted by =", _of_code(rf"([{{,]\s*{_KEY})\s*(?::=|==|:)\s*", r"\1 = ")),
     ("a list is in brackets", _outside(lambda part: re.sub(r"=\s*\(([^()]*)\)", r"= [\1]", part))),
@@ -379,13 +420,13 @@ _REMEDIES: tuple[tuple[str, Remedy], ...] = (
     ("nothing follows a value", _of_code(r"[\s,;]+$", "")),
     ("there is no comma behind the last", _of_code(r",\s*}$", " }")),
     ("there is a bracket too many", _of_code(r"[\]}]$", "")),
-    ("the quote at its end is missing", _closed('"')),
-    ("the quote at its end is missing", _closed("'")),
-    ("the quote before it is missing", _of_code(r"=\s*([^\"'=]+)\"$", r'= "\1"')),
     ("a bracket is missing at its end", _closed("]")),
     ("a bracket is missing at its end", _closed("]]")),
     ("a bracket is missing at its end", _closed(" }")),
     ("a bracket is missing at its end", _closed(" }]")),
+    ("the quote at its end is missing", _closed('"')),
+    ("the quote at its end is missing", _closed("'")),
+    ("the quote before it is missing", _of_code(r"=\s*([^\"'=]+)\"$", r'= "\1"')),
     ("a comma is missing at its end", _closed(",")),
     ("a key and its value are parted by =", _of_code(rf"^(\s*{_KEY})\s+(?=[\"'\[{{\w.+-])", r"\1 = ")),
 )
