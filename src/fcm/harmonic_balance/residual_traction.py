@@ -7,8 +7,8 @@ by
     dA = sum_i g_i . dt_i,    |k_u u~_i + t_i| <= mu n_i  at every angle
 
 so that it changes most where each t_i is at its limit, along g_i or against it. Both members of the family
-are balanced exactly, the limits those of their own motion, and their peaks found. As g changes on the way,
-this is an estimate and no bound; where g has turned at the end, the limits along the new one are tried, too.
+are balanced exactly, with the limits of their own motion and along its g, and their peaks found. As others
+may be further off, this is an estimate and no bound.
 
 On a line t_i is a number and its limits an interval; in a plane it is a vector, within what all discs share.
 """
@@ -40,14 +40,16 @@ class TractionOptions:
     far : float
         Where the slider begins that comes to rest at its limit, in the size of its motion and its limits.
     felt : float
-        Part of the greatest derivative, below which a contact's traction is left as it is.
+        Part of the peak, below which what a contact's traction changes of it is nothing.
     shorter, longer, shortest : float
         Times a step that the next is, where it led to no motion, and where it did, along the curve and on the
         way to the limits; and the part of that way below which none does.
     rounds : int
-        Times that the limits are sought along the derivatives at the member found last.
-    turned : float
-        Part of the tractions that have to go to other limits for another round.
+        Times that the limits are sought, of the motion and along the derivatives at the member found last.
+    settled : float
+        Part of the greatest traction, by which one may miss its limit.
+    sticks : float
+        Part of its springs' forces, by which those of a contact that always sticks may differ from them.
     step, looks, height : float, int, float
         First length along the curve, points at most, and relative accuracy of the height, of a peak.
     beside : float
@@ -61,8 +63,9 @@ class TractionOptions:
     shorter: float = 0.25
     longer: float = 2.0
     shortest: float = 1e-4
-    rounds: int = 3
-    turned: float = 1e-2
+    rounds: int = 6
+    settled: float = 1e-2
+    sticks: float = 1e-9
     step: float = 1e-2
     looks: int = 40
     height: float = 1e-6
@@ -73,44 +76,60 @@ class TractionOptions:
 TRACTION = TractionOptions()
 
 
-class Begun(Law):
-    """A contact that began elsewhere than unstressed: its slider rests there, or as near as its limits allow.
+class Holding(Law):
+    """A contact; one that is held always sticks, with a mean friction force that is given.
 
-    start (direction,): the tangential displacement at which it began.
+    held, mean (direction,): whether it is, and that force.
     """
 
     def __init__(self, law: Periodic | Planar) -> None:
         super().__init__(law.width, law.directions, law.margins, law.mu, law.k_u, law.k_v, law.n_0)
-        self.kernel, self.start = law.kernel, np.zeros(law.directions - 1)
-        self.force, self.tangent = np.zeros(law.width), law.kernel.jacobian
+        self.kernel, self.held, self.mean = law.kernel, False, np.zeros(law.directions - 1)
+        self.force, self.tangent = np.zeros(law.width), np.zeros((law.width, law.width))
+        springs = np.append(np.full(law.directions - 1, law.k_u), law.k_v)
+        waves = np.tile(np.repeat(springs, 2), (law.width - law.directions) // (2 * law.directions))
+        self.springs = np.concatenate((0.0 * springs[:-1], springs[-1:], waves))
         self.without_margins()
 
     def evaluate(self, x: FloatArray, first: int) -> int:
         """Forces and tangent."""
         block = np.ascontiguousarray(np.asarray(x)[first : first + self.width])
-        self.kernel.at(block, self.mu, self.k_u, self.k_v, self.n_0, *self.start.tolist())
-        self.force[:] = self.kernel.forces
+        if self.held:
+            self.force[:] = self.springs * block
+            self.force[: self.directions - 1] = self.mean
+            self.force[self.directions - 1] += self.n_0 - max(self.n_0, 0.0)
+            self.tangent[:, :] = np.diag(self.springs)
+            return 0
+        self.kernel.at(block, self.mu, self.k_u, self.k_v, self.n_0)
+        self.force[:], self.tangent[:, :] = self.kernel.forces, self.kernel.jacobian
         self.force[self.directions - 1] -= max(self.n_0, 0.0)
         return 0
 
+    def mean_from(self, block: FloatArray, start: FloatArray) -> FloatArray | None:
+        """The mean friction force that it keeps which began at a place; None where it slips or opens."""
+        self.kernel.at(block, self.mu, self.k_u, self.k_v, self.n_0, *start.tolist())
+        force, spring = np.array(self.kernel.forces), (self.springs * block)[self.directions :]
+        off = np.abs(force[self.directions :] - spring).max()
+        return force[: start.size] if off <= TRACTION.sticks * np.abs(spring).max() else None
+
 
 class _Members:
-    """A balance whose contacts begin where they are told to, and its peaks from a given one on.
-
-    start (contact, direction) is what is asked for; that of contacts which do not always stick has no effect.
-    """
+    """A balance some of whose contacts are held by given forces, and its peaks from a given one on."""
 
     def __init__(self, system: System, options: TractionOptions) -> None:
         self.system, self.options = system, options
         self.balance: Balance = system.balance()
-        self.begun = [Begun(law) for law in system.exact_laws(system.harmonics)]  # type: ignore[arg-type]
-        self.balance.laws = list(self.begun)
+        self.laws = [Holding(law) for law in system.exact_laws(system.harmonics)]  # type: ignore[arg-type]
+        self.balance.laws = list(self.laws)
         self.newton = Newton(self.balance)
         self.scale = np.ones(self.balance.unknowns + 1)
 
-    def put(self, start: FloatArray) -> None:
-        for law, one in zip(self.begun, start, strict=True):
-            law.start[:] = one
+    def hold(self, contacts: npt.NDArray[np.intp], mean: FloatArray) -> None:
+        """Hold some contacts, and no others, by mean friction forces (contact, direction)."""
+        for law in self.laws:
+            law.held = False
+        for i, one in zip(contacts.tolist(), mean, strict=True):
+            self.laws[i].held, self.laws[i].mean = True, np.array(one)
 
     def solved(self, guess: FloatArray, row: FloatArray) -> FloatArray | None:
         """The point in the plane across a row, in scaled coordinates; the tangent is then that there."""
@@ -210,100 +229,105 @@ class _Family:
 
     def __init__(self, members: _Members, z: FloatArray, stuck: BoolArray, dof: int, edge: bool) -> None:
         self.members, self.options, self.dof, self.edge = members, members.options, dof, edge
-        self.contacts = np.flatnonzero(stuck)
-        directions = members.system.layout.directions
-        each = directions * self.contacts[:, None] + np.arange(directions - 1)
-        self.ports, self.along = each.ravel(), directions - 1
+        self.contacts, directions = np.flatnonzero(stuck), members.system.layout.directions
+        self.along = directions - 1
+        self.ports = (directions * self.contacts[:, None] + np.arange(self.along)).ravel()
         contacts = [members.system.scene.contacts[i] for i in self.contacts]
-        on_line = np.array([[False] + [c.second is None] * (self.along - 1) for c in contacts])
-        self.fixed = on_line.ravel()  # directions that a contact has not, beside others in a plane
+        self.fixed = np.zeros((len(contacts), self.along), dtype=np.bool_)  # beside others in a plane
+        self.fixed[:, 1:] = np.array([c.second is None for c in contacts])[:, None]
+        members.hold(self.contacts[:0], np.zeros((0, self.along)))
         self.z, self.row = z, members.begin(z, edge)
-        self.none = np.zeros((len(members.begun), self.along))
 
     def change(self) -> FloatArray:
         """By how much the amplitudes (dof,) change at most, relative; NaN where no motion was found."""
         members = self.members
-        members.put(self.none)
+        nothing = np.full(members.balance.outputs, np.nan)
         base = None if self.row is None else self._top(self.z, self.row)
         if base is None or self.row is None:
-            return np.full(members.balance.outputs, np.nan)
-        row = self.row if self.edge else np.array(members.newton.tangent)
+            return nothing
+        row = self._row(self.row)
         before = members.heights(base, row)[0]
+        own = self._limits(base, np.zeros((self.contacts.size, self.along)))
+        if own is None:
+            return nothing
         most = np.zeros(before.size)
         for sense in (1.0, -1.0):
-            after = self._extreme(base, row, sense)
+            after = self._extreme(base, row, own, sense)
             if after is None:
-                return np.full(before.size, np.nan)
+                return nothing
             most = np.maximum(most, np.abs(after - before) / np.where(before > 0.0, before, 1.0))
         return most
+
+    def _row(self, row: FloatArray) -> FloatArray:
+        return row if self.edge else np.array(self.members.newton.tangent)
 
     def _top(self, z: FloatArray, row: FloatArray) -> FloatArray | None:
         return self.members.solved(z, row) if self.edge else self.members.top(z, row, self.dof)
 
-    def _extreme(self, base: FloatArray, row: FloatArray, sense: float) -> FloatArray | None:
+    def _extreme(self, z: FloatArray, row: FloatArray, mean: FloatArray, sense: float) -> FloatArray | None:
         """Amplitudes (dof,) of the member with the greatest, or the least, peak."""
-        members, z, begin = self.members, base, self.none
-        members.put(begin)
-        best = members.heights(base, row)[0]
+        members = self.members
+        members.hold(self.contacts, mean)
+        best = members.heights(z, row)[0]
         for _ in range(self.options.rounds):
-            limits = self._limits(z, row, sense, begin)
-            if limits is None:
-                break
-            found = self._moved(z, row, begin, limits)
+            by = members.derivatives(z, row, self.ports)[:, self.dof].reshape(-1, self.along)
+            by[self.fixed] = 0.0
+            size = np.linalg.norm(by, axis=1, keepdims=True)
+            room = size[:, 0] @ np.array([self._reach(i, z) for i in self.contacts.tolist()])
+            if room <= self.options.felt * best[self.dof]:
+                return best
+            limits = self._limits(z, -sense * by / np.where(size > 0.0, size, 1.0))
+            if limits is None:  # one slips there
+                return best
+            limits = np.where(size > 0.0, limits, mean)
+            if np.abs(limits - mean).max() <= self.options.settled * np.abs(limits).max():
+                return best
+            found = self._moved(z, row, mean, limits)
             if found is None:
                 return None
-            z, begin = found, limits
-            row = row if self.edge else np.array(members.newton.tangent)
+            z, mean, row = found, limits, self._row(row)
             height = members.heights(z, row)[0]
             if sense * (height[self.dof] - best[self.dof]) <= 0.0:
-                break
+                return best
             best = height
         return best
 
-    def _limits(self, z: FloatArray, row: FloatArray, sense: float, begin: FloatArray) -> FloatArray | None:
-        """Where sliders begin that come to rest at the limits of steepest change; None if they do already."""
+    def _limits(self, z: FloatArray, towards: FloatArray) -> FloatArray | None:
+        """The mean friction forces (contact, direction) of sliders that began unstressed, or far beyond their
+        limits towards a side (contact, direction)."""
         members, layout = self.members, self.members.system.layout
-        slopes = members.derivatives(z, row, self.ports)[:, self.dof]
-        slopes[self.fixed] = 0.0
-        by = sense * slopes.reshape(-1, self.along)
-        size = np.linalg.norm(by, axis=1)
-        weight = size * np.array([self._reach(i, z) for i in self.contacts.tolist()])
-        height = abs(members.heights(z, row)[0][self.dof])
-        moves = (size > 0.0) & (weight > self.options.felt * height)
-        if not moves.any():
-            return None
-        limits = begin.copy()
-        for k in np.flatnonzero(moves).tolist():
-            i = int(self.contacts[k])
-            mean = z[layout.mean_at].reshape(-1, layout.directions)[i, :-1]
-            far = self.options.far * self._reach(i, z) / members.begun[i].k_u
-            limits[i] = mean - far * by[k] / size[k]
-        if begin is self.none:
-            return limits
-        ahead = [float(by[k] @ (begin[self.contacts[k]])) for k in np.flatnonzero(moves)]
-        return limits if float(np.mean(np.array(ahead) > 0.0)) > self.options.turned else None
+        blocks = layout.blocks(z[None])[0]
+        found = np.zeros_like(towards)
+        for k, i in enumerate(self.contacts.tolist()):
+            block = np.ascontiguousarray(blocks[i])
+            far = self.options.far * self._reach(i, z) / members.laws[i].k_u
+            start = block[: self.along] + far * towards[k] if towards[k].any() else np.zeros(self.along)
+            one = members.laws[i].mean_from(block, start)
+            if one is None:
+                return None
+            found[k] = one
+        return found
 
     def _reach(self, i: int, z: FloatArray) -> float:
         """A force that the friction of a contact does not exceed."""
-        law, layout = self.members.begun[i], self.members.system.layout
+        law, layout = self.members.laws[i], self.members.system.layout
         x = np.abs(layout.blocks(z[None])[0, i])
         normal = x[layout.directions - 1] + x[layout.directions :].sum()
         return float(law.mu * (abs(law.n_0) + law.k_v * normal) + law.k_u * x.sum())
 
     def _moved(self, z: FloatArray, row: FloatArray, begin: FloatArray, end: FloatArray) -> FloatArray | None:
-        """The peak with sliders that begin elsewhere, in as many steps as it takes."""
+        """The peak with other forces, in as many steps as it takes."""
         members, done, share = self.members, 0.0, 1.0
         while done < 1.0:
             reach = min(done + share, 1.0)
-            members.put(begin + reach * (end - begin))
+            members.hold(self.contacts, begin + reach * (end - begin))
             found = self._top(z, row)
             if found is None:
                 share *= self.options.shorter
                 if share < self.options.shortest:
                     return None
                 continue
-            z, done, share = found, reach, share * self.options.longer
-            row = row if self.edge else np.array(members.newton.tangent)
+            z, done, share, row = found, reach, share * self.options.longer, self._row(row)
         return z
 
 
