@@ -268,7 +268,7 @@ class _Family:
         """Amplitudes (dof,) of the member with the greatest, or the least, peak."""
         members = self.members
         members.hold(self.contacts, mean)
-        best = members.heights(z, row)[0]
+        best, moved = members.heights(z, row)[0], False
         for _ in range(self.options.rounds):
             by = members.derivatives(z, row, self.ports)[:, self.dof].reshape(-1, self.along)
             by[self.fixed] = 0.0
@@ -284,7 +284,8 @@ class _Family:
                 return best
             found = self._moved(z, row, mean, limits)
             if found is None:
-                return None
+                return best if moved else None
+            moved = True
             z, mean, row = found, limits, self._row(row)
             height = members.heights(z, row)[0]
             if sense * (height[self.dof] - best[self.dof]) <= 0.0:
