@@ -14,9 +14,8 @@ from fcm.time_domain import simulate
 from fcm.time_domain.contact_states import made
 from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.cycle_measures import extremes_by, measure
-from fcm.time_domain.extremes import Scan
-from fcm.time_domain.first_crossing import first_descent_of
-from fcm.time_domain.sparse_rows import Rows
+from fcm.time_domain.event_detection import first_descent_of
+from fcm.time_domain.extremes import Rows, Scan
 from fcm.time_domain.system import System
 
 from .cases import SCENES, one_mode, two_contacts, yang
@@ -192,7 +191,7 @@ def test_flows_that_were_used_longest_ago_make_room(monkeypatch):
     """The motion is the same with room for eight flows as with room for all."""
     scene = two_contacts()
     whole = simulate(scene, 1.3, 20)
-    monkeypatch.setattr("fcm.time_domain.flow_cache.MOST_BYTES", 1)
+    monkeypatch.setattr("fcm.time_domain.segments.MOST_BYTES", 1)
     little = simulate(replace(scene), 1.3, 20)  # a scene of its own, with flows of its own
     assert whole.cycles[0].system.flows.count > 8 == little.cycles[0].system.flows.count
     assert np.array_equal(whole.end.q, little.end.q)

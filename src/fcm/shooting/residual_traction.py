@@ -15,8 +15,7 @@ import numpy as np
 from fcm.model.scene import Contact, FloatArray, Scene
 from fcm.shooting.period_derivative import derivative_at
 from fcm.time_domain.cycle_measures import Extreme, extremes_by
-from fcm.time_domain.flow_cache import NEGATIVE_SLIP, POSITIVE_SLIP, SEPARATED, STICKING
-from fcm.time_domain.segments import Segments
+from fcm.time_domain.segments import NEGATIVE_SLIP, POSITIVE_SLIP, SEPARATED, STICKING, Segments
 from fcm.time_domain.state import State
 from fcm.time_domain.system import System
 

@@ -96,12 +96,13 @@ class Multipliers:
     def _followed(self) -> list[Followed]:
         """The finer motion and that of the balanced harmonics."""
         fine, plain = self.states
-        if isinstance(fine, PlanarSequence) and isinstance(plain, PlanarSequence):
-            linear = self.system.linear
-            structure = linear.ports, linear.natural, linear.damping, self.far
-            return [Followed(one, PlanarMonodromy(*structure, one)) for one in (fine, plain)]
-        make = _many if len(self.contact) >= MANY_CONTACTS else _few
-        return make(self.system, self.far, self.contact, (fine, plain))
+        if isinstance(fine, BalancedSequence) and isinstance(plain, BalancedSequence):
+            make = _many if len(self.contact) >= MANY_CONTACTS else _few
+            return make(self.system, self.far, self.contact, (fine, plain))
+        linear = self.system.linear
+        structure = linear.ports, linear.natural, linear.damping, self.far
+        planar = (one for one in self.states if isinstance(one, PlanarSequence))
+        return [Followed(one, PlanarMonodromy(*structure, one)) for one in planar]
 
     def of(self, z: FloatArray) -> list[complex] | None:
         """The multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""

@@ -1,5 +1,12 @@
-from fcm.time_domain.sparse_rows cimport Rows
 from fcm.time_domain.segment_walk cimport Walk
+
+cdef class Rows:
+    cdef readonly Py_ssize_t count
+    cdef double[::1] entry
+    cdef double[:, ::1] dense
+    cdef Py_ssize_t[::1] column, first, used
+    cdef double dot(self, Py_ssize_t r, double[:, ::1] y, Py_ssize_t k) noexcept nogil
+    cdef void all(self, double[:, ::1] y, Py_ssize_t k, double[:, ::1] out, Py_ssize_t b) noexcept nogil
 
 cdef class Scan(Walk):
     cdef readonly double[::1] greatest, least

@@ -1,7 +1,22 @@
-from fcm.time_domain.flow cimport Flows
 from fcm.time_domain.event_detection cimport Lookout
+from fcm.time_domain.flow cimport Flows
 from fcm.time_domain.segments cimport Segments
-from fcm.time_domain.next_states cimport Successor
+
+cdef class Successor:
+    cdef readonly Flows flows
+    cdef Lookout ahead
+    cdef double[:, ::1] y
+    cdef signed char[:, ::1] states
+    cdef Py_ssize_t _passes
+    cdef bint _fresh
+    cdef double[::1] _noise
+    cdef signed char[::1] _failed
+    cdef void begins(self) noexcept
+    cdef void rounded(self, double[:, ::1] y) noexcept nogil
+    cdef int settle(self) except -1 nogil
+    cdef bint _fails(self, Py_ssize_t slot) noexcept nogil
+    cdef void _switch(self, Py_ssize_t slot) noexcept nogil
+    cdef void _descends(self, Py_ssize_t slot, Py_ssize_t e) noexcept nogil
 
 cdef class March:
     cdef readonly Flows flows

@@ -1,19 +1,21 @@
-"""Through the segments of a motion, one after the other."""
+"""Through the segments of a motion, one after the other, or step by step, each step as a polynomial.
+
+`sample` has the motion at given instants.
+"""
 
 from __future__ import annotations
 
 import cython
 import numpy as np
 
-from fcm.time_domain.flow_cache import SMALL
+from fcm.time_domain.segments import ORDER, SMALL
 
 if cython.compiled:
-    from cython.cimports.fcm.time_domain.flow import Flows
+    from cython.cimports.fcm.time_domain.flow import Flows, summed
     from cython.cimports.fcm.time_domain.segments import Segments
 else:
-    from fcm.time_domain.flow import Flows
+    from fcm.time_domain.flow import Flows, summed
     from fcm.time_domain.segments import Segments
-
 
 DENSE = 32  # components from which many steps are sooner made at once, by BLAS
 DOUBLINGS = 7  # of the steps that are made at once
@@ -83,3 +85,95 @@ class Walk:
     def visit(self, slot: cython.Py_ssize_t) -> cython.int:
         """Along the segment `at`, whose flow is in that place of the pool."""
         return 0
+
+
+MISSING = -1
+
+
+@cython.cclass
+class Steps:
+    """The steps of segments: from `time` [s] on, y is the sum of terms[j] x**j, x to `length` of `h` [s]."""
+
+    def __init__(self, flows: Flows, segments: Segments) -> None:
+        self.flows, self.segments = flows, segments
+        self.y, self.terms = np.zeros((1, flows.size)), np.zeros((ORDER + 1, flows.size))
+        self.at, self.slot, self.left, self.length = -1, -1, 0.0, 0.0
+        self.time, self.h = 0.0, 1.0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(-2, check=False)
+    def next(self) -> cython.int:
+        """Go to the next step: 1 if there is one, 0 at the end, -1 if segment at + 1 has no flow yet."""
+        i: cython.Py_ssize_t
+        slot: cython.Py_ssize_t
+        self.left -= self.length
+        if self.left > 0.0:
+            summed(self.terms, self.length, self.y, 0)
+            self.time += self.h
+        else:
+            while self.at + 1 < self.segments.count and self.segments.length[self.at + 1] <= 0.0:
+                self.at += 1
+            if self.at + 1 >= self.segments.count:
+                self.left = self.length = 0.0
+                return 0
+            slot = self.flows.find(self.segments.states, self.at + 1)
+            if slot < 0:
+                self.left = self.length = 0.0
+                return -1
+            self.flows.refresh(slot)
+            self.at += 1
+            self.slot, self.h = slot, self.flows.step[slot]
+            self.left, self.time = self.segments.length[self.at], self.segments.start[self.at]
+            for i in range(self.flows.size):
+                self.y[0, i] = self.segments.y[self.at, i]
+        self.length = min(self.left, 1.0)
+        self.flows.taylor(self.slot, self.y, 0, self.terms)
+        return 1
+
+
+_ORDER = cython.declare(cython.int, 19)
+
+
+def sample(
+    steps: Steps, times: cython.double[::1], out: cython.double[:, ::1], done: cython.Py_ssize_t
+) -> int:
+    """State vectors at increasing times [s], into the rows of out from `done` on; returns how many there are.
+
+    Fewer than all where a flow is missing; the last step serves later times too.
+    """
+    with cython.nogil:
+        done = _sample(steps, times, out, done)
+    return int(done)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(-1, check=False)
+def _sample(
+    steps: Steps, times: cython.double[::1], out: cython.double[:, ::1], done: cython.Py_ssize_t
+) -> cython.Py_ssize_t:
+    stopped: cython.int
+    until: cython.double
+    x: cython.double
+    i: cython.Py_ssize_t
+    j: cython.int
+    while done < times.shape[0]:
+        stopped = steps.next()
+        if stopped != 1:
+            return done
+        last: cython.bint = steps.left <= 1.0
+        until = steps.time + steps.h * steps.length
+        if last and steps.at + 1 < steps.segments.count:
+            until = steps.segments.start[steps.at + 1]
+        while done < times.shape[0] and (
+            times[done] < until or (last and steps.at + 1 == steps.segments.count)
+        ):
+            x = (times[done] - steps.time) / steps.h
+            for i in range(steps.flows.size):
+                out[done, i] = steps.terms[_ORDER, i]
+            for j in range(_ORDER - 1, -1, -1):
+                for i in range(steps.flows.size):
+                    out[done, i] = out[done, i] * x + steps.terms[j, i]
+            done += 1
+    return done

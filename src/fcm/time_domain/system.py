@@ -15,19 +15,15 @@ import numpy.typing as npt
 from fcm.model.scene import FloatArray, Scene
 from fcm.structure.loads import driven_harmonics, loads_of
 from fcm.time_domain.contact_states import Codes, made
-from fcm.time_domain.directional import Directional
 from fcm.time_domain.equations import has_friction, held_as_springs, held_limits, held_rows, matrices_of
 from fcm.time_domain.errors import SimulationError
-from fcm.time_domain.extremes import Scan
+from fcm.time_domain.extremes import Rows, Scan
 from fcm.time_domain.flow import Flows
-from fcm.time_domain.fourier_integrals import Integrals
+from fcm.time_domain.integrals import Integrals, Powers
 from fcm.time_domain.integrator import March
-from fcm.time_domain.power_integrals import Powers
-from fcm.time_domain.segment_walk import Walk
+from fcm.time_domain.segment_walk import Steps, Walk
 from fcm.time_domain.segments import Segments
-from fcm.time_domain.sparse_rows import Rows
-from fcm.time_domain.steps import Steps
-from fcm.time_domain.variational import Derivative
+from fcm.time_domain.variational import Derivative, Directional
 
 LETTERS = "SEPN"  # of the codes SEPARATED, STICKING, POSITIVE_SLIP, NEGATIVE_SLIP
 OWN = ("scene", "omega")  # what systems of a scene do not have in common, or must not keep
