@@ -6,6 +6,7 @@ import numpy as np
 
 from fcm import planar_forces, planar_gradients
 from fcm.contact.plane.forces import PlanarContact
+from fcm.contact.plane.options import FINE
 
 from .motions import decaying
 
@@ -54,7 +55,7 @@ def kernel(case, outputs=None):
     for i, one in enumerate((case.u_x, case.u_y, case.v)):
         x[: one.size, i] = one
     harmonics = list(range(1, count))
-    contact = PlanarContact(harmonics, list(range(1, (outputs or count - 1) + 1)))
+    contact = PlanarContact(harmonics, list(range(1, (outputs or count - 1) + 1)), options=FINE)
     return contact, np.concatenate((x[0].real, x[1:].view(float).ravel()))
 
 

@@ -33,7 +33,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.plane.forces import PlanarContact
-from fcm.contact.plane.loop import between, visible
+from fcm.contact.plane.loop import directions as slip_directions
+from fcm.contact.plane.loop import visible
 from fcm.model.scene import FloatArray
 
 IntArray = npt.NDArray[np.intp]
@@ -72,7 +73,7 @@ class Cycle:
 
     begin: FloatArray  # (state,), rising from the first
     state: list[str]
-    panels: FloatArray  # (panel, 4 + s): as `Slider.record`
+    panels: FloatArray  # (panel, 5 + s): as `Slider.record`
     place: FloatArray  # (state, 2) of the slider, where it rests
     waves: npt.NDArray[np.complex128]  # (harmonic, 3) of u_x, u_y and r
     numbers: FloatArray  # (harmonic,)
@@ -106,9 +107,7 @@ class Cycle:
         first = self.panels[0, 0]
         t = first + np.mod(theta - first, TWO_PI)
         panel = self.panels[np.searchsorted(self.panels[:, 0], t, side="right") - 1]
-        tangent = between(panel[:, 4:], np.clip((t - panel[:, 0]) / panel[:, 1], 0.0, 1.0))
-        turned = np.exp(2j * np.arctan(tangent)) * (panel[:, 2] + 1j * panel[:, 3])
-        return np.stack((turned.real, turned.imag), axis=-1)
+        return slip_directions(panel, t)
 
 
 @dataclass

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.plane.forces import PlanarContact
+from fcm.contact.plane.options import FINE
 
 ComplexArray = npt.NDArray[np.complex128]
 FloatArray = npt.NDArray[np.float64]
@@ -202,7 +203,9 @@ class _Motion(NamedTuple):
 
     def evaluate(self, gradient: bool) -> tuple[FloatArray, FloatArray]:
         """Forces (point, equation), and if wanted their derivatives (point, equation, unknown)."""
-        contact = PlanarContact(list(range(1, self.harmonics)), list(range(1, self.outputs + 1)))
+        contact = PlanarContact(
+            list(range(1, self.harmonics)), list(range(1, self.outputs + 1)), options=FINE
+        )
         count = self.unknowns.shape[0]
         forces = np.empty((count, contact.equations))
         jacobian = np.empty((count if gradient else 0, contact.equations, contact.unknowns))

@@ -6,6 +6,8 @@ from fcm.contact.plane.slider cimport Slider
 cdef int STUCK, UNSOLVED
 
 cdef class Cycle:
+    cdef double double_point, slight, hardly, inside
+    cdef int most_periods
     cdef readonly PlaneMotion motion
     cdef readonly Slider slider
     cdef readonly Resting resting

@@ -30,13 +30,6 @@ UNSOLVED = cython.declare(cython.int, 5)
 
 TWO_PI = cython.declare(cython.double, 6.283185307179586)
 EPSILON = cython.declare(cython.double, 2.220446049250313e-16)
-PERIODS = cython.declare(cython.int, 100)
-# Of the radius, by which a slider may be off after a period that nothing improves: at the slip limit itself
-# the fixed point is double, and as uncertain as the square root of the rounding.
-DOUBLE = cython.declare(cython.double, 1e-9)
-SLIGHT = cython.declare(cython.double, 0.02)  # of the radius, by which the discs of a slider miss one place
-HARDLY = cython.declare(cython.double, 1e-3)  # a way in a period that is summed, and no difference of places
-INSIDE = cython.declare(cython.double, 0.1)  # and by which it lies within one of them, at least
 CLOSES = cython.declare(cython.int, 0)
 OPENS = cython.declare(cython.int, 1)
 
@@ -54,6 +47,14 @@ class Cycle:
     """
 
     def __init__(self, motion: PlaneMotion, outputs: list[int], most_panels: int) -> None:
+        given = motion.options
+        self.most_periods, self.double_point, self.slight, self.hardly = (
+            given.periods,
+            given.double_point,
+            given.slight,
+            given.hardly,
+        )
+        self.inside = given.inside
         self.motion = motion
         self.slider = Slider(motion, outputs, most_panels)
         self.resting = Resting(motion)
@@ -162,10 +163,10 @@ class Cycle:
         w_y: float = self.motion.value[SCAN, 1] - r * self.motion.value[SCAN, 4]
         # a slider that slips hardly at all, and sticks between, is drawn ever so slowly to the place that the
         # discs miss least
-        if self.resting.overlap < SLIGHT * self.motion.reach:
+        if self.resting.overlap < self.slight * self.motion.reach:
             self.resting.encloses(True)
             self.resting.farthest(self.resting.w_x, self.resting.w_y)
-            least = -INSIDE * self.motion.reach
+            least = -self.inside * self.motion.reach
             for j in range(self.resting.nodes):
                 if self.resting.gap[j] < least:
                     least = self.resting.gap[j]
@@ -181,7 +182,7 @@ class Cycle:
         self.slider.gathering, self.slider.varying, self.slider.gradient = False, True, False
         self.slider.derivatives.take(0, 2)
         self.sides = 0
-        for i in range(PERIODS):
+        for i in range(self.most_periods):
             self.periods = i + 1
             change = self.period(begin, w_x, w_y)
             if self.slider.failed:
@@ -195,7 +196,7 @@ class Cycle:
             c: float = -self.slider.derivatives.w_y[0]
             d: float = 1.0 - self.slider.derivatives.w_y[1]
             by: float = a * d - b * c
-            hardly: cython.bint = self.slider.gone < HARDLY * self.motion.reach and fabs(by) > 1e-13
+            hardly: cython.bint = self.slider.gone < self.hardly * self.motion.reach and fabs(by) > 1e-13
             if change <= fine + rounding and not (
                 hardly and hypot(d * x - b * y, a * y - c * x) > (fine + rounding) * fabs(by)
             ):
@@ -214,7 +215,7 @@ class Cycle:
                 before = 2.0 * change if change < before else 1e300
                 w_x, w_y = (self.place_x, self.place_y) if bounded else (w_x + x, w_y + y)
         else:
-            if nearest > DOUBLE * self.motion.reach:
+            if nearest > self.double_point * self.motion.reach:
                 return UNSOLVED
             w_x, w_y = nearest_x, nearest_y
         self.slider.gathering, self.slider.varying, self.slider.gradient = True, gradient, gradient
@@ -274,7 +275,7 @@ class Cycle:
             self.slider.derivatives.start()
         self.slider.enter(begin, w_x, w_y)
         self.slider.advance(begin + TWO_PI, False)
-        if self.slider.gone < HARDLY * self.motion.reach:
+        if self.slider.gone < self.hardly * self.motion.reach:
             self.moved_x, self.moved_y = self.slider.gone_x, self.slider.gone_y
         else:
             self.moved_x, self.moved_y = self.slider.w_x - w_x, self.slider.w_y - w_y

@@ -17,18 +17,27 @@ from __future__ import annotations
 
 import cython
 import numpy as np
+import numpy.typing as npt
 from cython.cimports.libc.math import cos, fabs, sin
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.plane.derivatives import carry_eight
     from cython.cimports.fcm.contact.plane.motion import SCAN
-    from cython.cimports.fcm.contact.plane.panel import Panel
+    from cython.cimports.fcm.contact.plane.panel import STAGES, Panel
     from cython.cimports.fcm.contact.plane.sums import CONTACT, SLIPS_X, SLIPS_Y, STICKS, Sums
 else:
     from fcm.contact.plane.motion import SCAN
-    from fcm.contact.plane.panel import Panel
+    from fcm.contact.plane.panel import STAGES, Panel
     from fcm.contact.plane.sums import CONTACT, SLIPS_X, SLIPS_Y, STICKS, Sums
 
 PI = cython.declare(cython.double, 3.141592653589793)
+
+
+def _whole_lines(rows: int, width: int) -> npt.NDArray[np.float64]:
+    """Zeros (rows, width) that begin where a line of the processor's memory does."""
+    room = np.zeros(rows * width + 8)
+    first = -room.ctypes.data // 8 % 8
+    return room[first : first + rows * width].reshape(rows, width)
 
 
 @cython.cclass
@@ -50,7 +59,14 @@ class Derivatives:
         self.unknowns = 3 + 6 * self.motion.count
         self.jacobian = np.zeros((3 + 6 * self.outputs, self.unknowns))
         self.turn, self.w_x, self.w_y, self.u_x, self.u_y, self.r = np.zeros((6, self.unknowns))
-        self.block = np.zeros((panel.stages, self.unknowns))
+        motion_of = {h: k for k, h in enumerate(np.asarray(self.motion.number).tolist())}
+        self.rows = 2 + 4 * self.outputs
+        self.width = (self.unknowns + 7) // 8 * 8  # whole registers
+        self.block, self.gathered = _whole_lines(STAGES, self.width), _whole_lines(self.rows, self.width)
+        # of an output that is a harmonic of the motion, its place among them
+        self.place = np.array([motion_of.get(h, -1) for h in outputs], dtype=np.intc)
+        self.known = bool(np.all(np.asarray(self.place) >= 0))
+        self.weight = np.zeros((self.rows, STAGES))
         self.low, self.high = 0, self.unknowns
 
     def fill(self, value: float) -> None:
@@ -60,6 +76,9 @@ class Derivatives:
         for i in range(3 + 6 * self.outputs):
             for j in range(self.unknowns):
                 self.jacobian[i, j] = value
+        for i in range(self.rows):
+            for j in range(self.width):
+                self.gathered[i, j] = 0.0
 
     def take(self, low: cython.int, high: cython.int) -> None:
         """The columns that are made, from a slider at rest that nothing has moved."""
@@ -153,7 +172,6 @@ class Derivatives:
         i: cython.int
         j: cython.int
         k: cython.int
-        s: cython.int = self.panel.stages
         part: float
         from_start: float
         across_x: float
@@ -161,11 +179,12 @@ class Derivatives:
         of_reach: float
         c: float
         d: float
-        for i in range(s):
+        for i in range(STAGES):
             t: float = self.panel.tangent[i + 1]
             part = 1.0 + t * t
-            r: float = max(self.motion.value[i + 1, 2], 0.0)
-            from_start = -r * self.panel.slopes[i + 1, 0] / self.panel.length
+            from_start = -0.5 * self.panel.r[i] * self.panel.slopes[i + 1, 0]
+            for j in range(self.low):
+                self.block[i, j] = 0.0
             for j in range(self.low, self.high):
                 self.block[i, j] = from_start * self.turn[j]
             if self.high < 3:
@@ -183,73 +202,74 @@ class Derivatives:
                 self.block[i, j + 1] -= across_x * c
                 self.block[i, j + 2] -= across_y * d
                 self.block[i, j + 3] -= across_y * c
-        self.solve()
-        part = 2.0 / (1.0 + self.panel.tangent[s] * self.panel.tangent[s])
-        for j in range(self.low, self.high):
-            self.turn[j] = part * self.block[s - 1, j]
         if gather:
-            self.gather()
+            self.weigh()
+        if not cython.compiled or not carry_eight(
+            cython.address(self.panel.matrix[0]),
+            cython.address(self.block[0, 0]),
+            self.width,
+            self.high,
+            cython.address(self.weight[0, 0]),
+            cython.address(self.gathered[0, 0]),
+            self.rows if gather else 0,
+        ):
+            self.solve(gather)
+        part = 2.0 / (1.0 + self.panel.tangent[STAGES] * self.panel.tangent[STAGES])
+        for j in range(self.low, self.high):
+            self.turn[j] = part * self.block[STAGES - 1, j]
 
-    def solve(self) -> None:
-        """`block` becomes the derivatives of t at the nodes."""
+    def solve(self, gather: bool) -> None:
+        """`block` becomes the derivatives of t at the nodes; if wanted what they add is gathered."""
         i: cython.int
         j: cython.int
         p: cython.int
-        s: cython.int = self.panel.stages
         by: float
-        for i in range(s):
-            p = self.panel.pivot[i]
-            if p != i:
-                for j in range(self.low, self.high):
-                    self.block[i, j], self.block[p, j] = self.block[p, j], self.block[i, j]
-        for i in range(s):
+        for i in range(STAGES):
             for p in range(i):
-                by = self.panel.matrix[i, p]
+                by = self.panel.matrix[STAGES * i + p]
                 for j in range(self.low, self.high):
                     self.block[i, j] -= by * self.block[p, j]
-        for i in range(s - 1, -1, -1):
-            for p in range(i + 1, s):
-                by = self.panel.matrix[i, p]
+        for i in range(STAGES - 1, -1, -1):
+            for p in range(i + 1, STAGES):
+                by = self.panel.matrix[STAGES * i + p]
                 for j in range(self.low, self.high):
                     self.block[i, j] -= by * self.block[p, j]
-            by = 1.0 / self.panel.matrix[i, i]
+            by = self.panel.matrix[STAGES * i + i]
             for j in range(self.low, self.high):
                 self.block[i, j] *= by
+        if gather:
+            for p in range(self.rows):
+                for i in range(STAGES):
+                    by = self.weight[p, i]
+                    for j in range(self.low, self.high):
+                        self.gathered[p, j] += by * self.block[i, j]
 
-    def gather(self) -> None:
-        """Add R xi e_perp exp(-i h theta), integrated over the panel, to the derivatives of the friction."""
+    def weigh(self) -> None:
+        """`weight`: what derivatives of t at the nodes add to R xi e_perp exp(-i h theta), integrated."""
         i: cython.int
-        j: cython.int
         m: cython.int
-        h: cython.int
-        row: cython.Py_ssize_t
+        row: cython.int
         w: float
         x: float
         y: float
-        xc: float
-        xs: float
-        yc: float
-        ys: float
-        for i in range(self.panel.stages):
+        c: float
+        s: float
+        for i in range(STAGES):
             t: float = self.panel.tangent[i + 1]
-            w = self.panel.weight[i] * self.panel.length * 2.0 / (1.0 + t * t) / PI
+            w = self.panel.weight[i] * self.panel.speed[i] * 2.0 / (1.0 + t * t) / PI
             w *= max(self.motion.value[i + 1, 2], 0.0)
             x, y = -w * self.panel.e_y[i], w * self.panel.e_x[i]
-            for j in range(self.low, self.high):
-                self.jacobian[0, j] += 0.5 * x * self.block[i, j]
-                self.jacobian[1, j] += 0.5 * y * self.block[i, j]
-            self.sums.powers(0, self.motion.value[i + 1, 9], self.motion.value[i + 1, 10])
+            self.weight[0, i], self.weight[1, i] = 0.5 * x, 0.5 * y
+            if not self.known:
+                self.sums.powers(0, self.motion.value[i + 1, 9], self.motion.value[i + 1, 10])
             for m in range(self.outputs):
-                h = self.output[m]
-                row = 3 + 6 * m
-                xc, xs = x * self.sums.power_cos[0, h], -x * self.sums.power_sin[0, h]
-                yc, ys = y * self.sums.power_cos[0, h], -y * self.sums.power_sin[0, h]
-                for j in range(self.low, self.high):
-                    w = self.block[i, j]
-                    self.jacobian[row, j] += xc * w
-                    self.jacobian[row + 1, j] += xs * w
-                    self.jacobian[row + 2, j] += yc * w
-                    self.jacobian[row + 3, j] += ys * w
+                if self.known:
+                    c, s = self.motion.cos[i + 1, self.place[m]], self.motion.sin[i + 1, self.place[m]]
+                else:
+                    c, s = self.sums.power_cos[0, self.output[m]], self.sums.power_sin[0, self.output[m]]
+                row = 2 + 4 * m
+                self.weight[row, i], self.weight[row + 1, i] = x * c, -x * s
+                self.weight[row + 2, i], self.weight[row + 3, i] = y * c, -y * s
 
     def stick(self, begin: float, end: float) -> None:
         """Take from the derivatives of the friction what the place of the slider adds to them."""
@@ -334,6 +354,11 @@ class Derivatives:
         """Give the slider at the start the derivatives that it has at the end; W = P(W_0) of a period."""
         i: cython.Py_ssize_t
         j: cython.int
+        row: cython.Py_ssize_t
+        for i in range(self.rows):
+            row = i if i < 2 else 3 + 6 * ((i - 2) // 4) + (i - 2) % 4
+            for j in range(self.unknowns):
+                self.jacobian[row, j] += self.gathered[i, j]
         a: float = 1.0 - self.w_x[0]
         b: float = -self.w_x[1]
         c: float = -self.w_y[0]

@@ -13,16 +13,19 @@ if cython.compiled:
     from cython.cimports.fcm.contact.periodic.motion import CLOSED, MIXED, UNKNOWN
     from cython.cimports.fcm.contact.plane.cycle import STUCK, UNSOLVED, Cycle
     from cython.cimports.fcm.contact.plane.motion import LOAD, REACH, SCAN, PlaneMotion, X, Y
+    from cython.cimports.fcm.contact.plane.panel import STAGES
     from cython.cimports.fcm.contact.plane.sums import CONTACT, SLIPS_X, SLIPS_Y, STICKS
 else:
     from fcm.contact.periodic.motion import CLOSED, MIXED, UNKNOWN
     from fcm.contact.plane.cycle import STUCK, UNSOLVED, Cycle
     from fcm.contact.plane.motion import LOAD, REACH, SCAN, PlaneMotion, X, Y
+    from fcm.contact.plane.panel import STAGES
     from fcm.contact.plane.sums import CONTACT, SLIPS_X, SLIPS_Y, STICKS
+
+from fcm.contact.plane.options import OPTIONS, PlanarOptions
 
 PI = cython.declare(cython.double, 3.141592653589793)
 NAN = cython.declare(cython.double, float("nan"))
-STAGES = 8  # of a panel
 
 
 @cython.cclass
@@ -35,6 +38,8 @@ class PlanarContact:
         Harmonics of the displacements, and of the forces; the mean is always one.
     most_panels : int
         How many panels of slip are recorded, for a loop.
+    options : PlanarOptions, optional
+        How exactly the motion is followed.
 
     Notes
     -----
@@ -47,8 +52,14 @@ class PlanarContact:
     `forces` and `jacobian`. Each thread needs one of its own.
     """
 
-    def __init__(self, harmonics: list[int], outputs: list[int], most_panels: int = 0) -> None:
-        self.motion = PlaneMotion(harmonics, STAGES)
+    def __init__(
+        self,
+        harmonics: list[int],
+        outputs: list[int],
+        most_panels: int = 0,
+        options: PlanarOptions = OPTIONS,
+    ) -> None:
+        self.motion = PlaneMotion(harmonics, STAGES, options)
         self.cycle = Cycle(self.motion, outputs, most_panels)
         self.sums, self.derivatives = self.cycle.slider.sums, self.cycle.slider.derivatives
         self.output, self.outputs = np.array(outputs, dtype=np.intc), len(outputs)
@@ -148,6 +159,7 @@ class PlanarContact:
             if gradient:
                 self.stick_gradient(s_x, s_y)
         elif self.kind == MIXED:
+            self.sums.total()
             self.slip()
             if gradient:
                 self.derivatives.settle(self.cycle.behaviour == CLOSED)

@@ -8,12 +8,12 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.plane.coefficients import ComplexArray, FloatArray, one_motion
-from fcm.contact.plane.forces import STAGES, PlanarContact
-from fcm.contact.plane.radau import radau
+from fcm.contact.plane.forces import PlanarContact
+from fcm.contact.plane.options import FINEST
+from fcm.contact.plane.radau import STAGES, radau
 
 INVISIBLE = 1e-12  # [rad] a state that is shorter is rounding
 LETTERS = "EPS"  # by the kernel's states
-TOLERANCE = 1e-11  # of the panels, whose polynomials are read between their ends
 PANELS = 1000  # that are recorded at first
 DENSE = 64  # angles to a harmonic at which the greatest force is looked for
 
@@ -54,7 +54,7 @@ class PlanarLoop:
     slip_path: float
     greatest_force: float
     _since: FloatArray = field(repr=False)  # angles from the first on
-    _panels: FloatArray = field(repr=False)  # (panel, 4 + s): as `Slider.record`
+    _panels: FloatArray = field(repr=False)  # (panel, 5 + s): as `Slider.record`
 
     def displacement(self, theta: npt.ArrayLike) -> FloatArray:
         """u_x and u_y [length] at each angle theta [rad], (..., 2)."""
@@ -82,10 +82,7 @@ class PlanarLoop:
         begin = self._panels[:, 0]
         t = begin[0] + np.mod(angle[slips] - begin[0], 2.0 * np.pi)
         at = np.searchsorted(begin, t, side="right") - 1
-        panel = self._panels[at]
-        tangent = between(panel[:, 4:], np.clip((t - panel[:, 0]) / panel[:, 1], 0.0, 1.0))
-        turned = np.exp(2j * np.arctan(tangent)) * (panel[:, 2] + 1j * panel[:, 3])
-        found[slips] = np.stack((turned.real, turned.imag), axis=-1)
+        found[slips] = directions(self._panels[at], t)
         return found
 
     def force(self, theta: npt.ArrayLike) -> FloatArray:
@@ -184,8 +181,7 @@ def _solved(harmonics: list[int], x: FloatArray, parameters: FloatArray) -> Plan
     """The kernel with the steady cycle, all panels of which are recorded."""
     most = PANELS
     while True:
-        contact = PlanarContact(harmonics, harmonics, most)
-        contact.cycle.slider.tolerance = TOLERANCE
+        contact = PlanarContact(harmonics, harmonics, most, FINEST)
         contact.at(x, *parameters)
         if np.isnan(contact.forces).any():
             raise RuntimeError("no steady cycle of the motion was found")
@@ -222,6 +218,17 @@ def _greatest(loop: PlanarLoop, harmonics: int) -> float:
     best = theta[np.argmax(size)]
     near = best + np.linspace(-step, step, 201)
     return float(max(size.max(), np.hypot(*np.moveaxis(loop.force(near), -1, 0)).max()))
+
+
+def directions(panels: FloatArray, theta: FloatArray) -> FloatArray:
+    """Of slip (point, 2), at an angle of each of these panels (point, 5 + s): as `Slider.record`."""
+    begin, length, left = panels[:, 0], panels[:, 1], panels[:, 4]
+    part = np.clip((theta - begin) / length, 0.0, 1.0)
+    graded = left > 0.0
+    gone = part[graded] * length[graded] / left[graded]
+    part[graded] = np.log1p(-gone) / np.log1p(-length[graded] / left[graded])
+    turned = np.exp(2j * np.arctan(between(panels[:, 5:], part))) * (panels[:, 2] + 1j * panels[:, 3])
+    return np.stack((turned.real, turned.imag), axis=-1)
 
 
 def between(tangent: FloatArray, part: FloatArray) -> FloatArray:

@@ -4,6 +4,7 @@ from fcm.contact.plane.motion cimport PlaneMotion
 from fcm.contact.plane.resting cimport Resting
 
 cdef class PlanarMargins:
+    cdef double steps
     cdef readonly PlaneMotion motion
     cdef readonly Cycle cycle
     cdef readonly Resting resting

@@ -42,9 +42,6 @@ MAXIMUM = cython.declare(cython.int, 8)
 FIXED = cython.declare(cython.int, 5)  # kinds of which there is one each
 PAST = cython.declare(cython.double, 1.0)  # a margin of which only the sign is known
 FAR = cython.declare(cython.double, 1e300)
-STEPS = cython.declare(
-    cython.double, 12.0
-)  # to a radian of the highest harmonic, between which one is sought
 
 
 @cython.cclass
@@ -55,6 +52,8 @@ class PlanarMargins:
     """
 
     def __init__(self, cycle: Cycle) -> None:
+        given = cycle.motion.options
+        self.steps = given.steps
         self.cycle, self.motion, self.resting = cycle, cycle.motion, cycle.resting
         self.crossings = Crossings(cycle.motion.normal)
         self.most, self.count = FIXED + self.crossings.capacity + 4 * cycle.motion.highest + 4, 0
@@ -221,7 +220,7 @@ class PlanarMargins:
     def within(self, p: cython.int, end: float) -> None:
         """The discs within a stick that come nearest to its slider."""
         begin: float = self.cycle.slider.begin[p]
-        step: float = 1.0 / (STEPS * max(self.motion.highest, 1))
+        step: float = 1.0 / (self.steps * max(self.motion.highest, 1))
         steps: cython.int = cython.cast(cython.int, (end - begin) / step) + 2
         i: cython.int
         step = (end - begin) / steps

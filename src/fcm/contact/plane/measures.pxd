@@ -3,6 +3,7 @@ from fcm.contact.plane.cycle cimport Cycle
 from fcm.contact.plane.motion cimport PlaneMotion
 
 cdef class PlanarMeasures:
+    cdef double invisible, steps
     cdef readonly PlaneMotion motion
     cdef readonly Cycle cycle
     cdef readonly Crossings crossings

@@ -20,8 +20,6 @@ else:
     from fcm.contact.plane.slider import SEPARATION, SLIP, STICK
 
 TWO_PI = cython.declare(cython.double, 6.283185307179586)
-INVISIBLE = cython.declare(cython.double, 1e-12)  # [rad] a state that is shorter is rounding
-STEPS = cython.declare(cython.double, 12.0)  # to a radian of the highest harmonic; parabolas between them
 
 
 @cython.cclass
@@ -39,6 +37,8 @@ class PlanarMeasures:
     """
 
     def __init__(self, cycle: Cycle) -> None:
+        given = cycle.motion.options
+        self.invisible, self.steps = given.invisible, given.steps
         self.cycle, self.motion = cycle, cycle.motion
         self.crossings = Crossings(cycle.motion.normal)
         self.greatest_load = self.greatest_friction = self.dissipation = self.slip_path = 0.0
@@ -81,7 +81,7 @@ class PlanarMeasures:
             end: float = self.cycle.slider.begin[0 if p + 1 == n else p + 1]
             while end <= begin:
                 end += TWO_PI
-            step: float = 1.0 / (STEPS * max(self.motion.highest, 1))
+            step: float = 1.0 / (self.steps * max(self.motion.highest, 1))
             steps: cython.int = cython.cast(cython.int, (end - begin) / step) + 2
             step = (end - begin) / steps
             older: float = self.force(p, begin)
@@ -126,13 +126,13 @@ class PlanarMeasures:
         first: cython.int = 0
         n: cython.int = self.cycle.slider.pieces
         for p in range(n):
-            if self.cycle.slider.state[p] == STICK and (n == 1 or self.length(p) > INVISIBLE):
+            if self.cycle.slider.state[p] == STICK and (n == 1 or self.length(p) > self.invisible):
                 first = p
                 break
         self.pieces = 0
         for i in range(n):
             p = (first + i) % n
-            if n > 1 and self.length(p) < INVISIBLE:
+            if n > 1 and self.length(p) < self.invisible:
                 continue
             state = self.cycle.slider.state[p]
             if state == SLIP and not rubs:

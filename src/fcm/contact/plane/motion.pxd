@@ -3,6 +3,8 @@ from fcm.contact.periodic.motion cimport Motion
 cdef int X, Y, REACH, LOAD, SCAN, ROWS
 
 cdef class PlaneMotion:
+    cdef readonly object options
+    cdef double smooth, faint
     cdef readonly Motion normal
     cdef readonly int count, highest, moving, stages
     cdef readonly double scale, load_scale, ratio, preload, mean_x, mean_y, size, reach

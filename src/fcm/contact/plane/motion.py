@@ -18,6 +18,8 @@ if cython.compiled:
 else:
     from fcm.contact.periodic.motion import UNKNOWN, Motion
 
+from fcm.contact.plane.options import PlanarOptions
+
 # Rows of coefficients; `value` has those of X, Y and REACH, then their first and their second derivatives.
 X = cython.declare(cython.int, 0)
 Y = cython.declare(cython.int, 1)
@@ -28,8 +30,6 @@ SCAN = cython.declare(cython.int, 0)  # the slot of single angles; those of a pa
 
 BOUNDS = cython.declare(cython.int, 5)  # orders of derivatives that are bounded
 LEAST = cython.declare(cython.double, 1e-290)  # what is smaller counts as nothing
-SMOOTH = cython.declare(cython.double, 1e-14)  # of a disc beside the motion, which is then as none
-FAINT = cython.declare(cython.double, 1e-150)  # motion that is smaller than its mean by that is nothing
 
 
 @cython.cclass
@@ -53,7 +53,9 @@ class PlaneMotion:
         which `bend` adds; cosine and sine of the angle.
     """
 
-    def __init__(self, harmonics: list[int], stages: int) -> None:
+    def __init__(self, harmonics: list[int], stages: int, options: PlanarOptions) -> None:
+        self.options = given = options
+        self.smooth, self.faint = given.smooth, given.faint
         numbers, self.count = np.array(harmonics, dtype=np.intc), len(harmonics)
         self.normal = Motion(harmonics)
         self.highest, self.stages = max(harmonics, default=0), stages
@@ -103,8 +105,8 @@ class PlaneMotion:
         if not (isfinite(n_0) and isfinite(mu)):
             return UNKNOWN
         self.preload = n_0 + k_v * float(x[first + 2])
-        self.load_scale = max(k_v * variation, FAINT * fabs(self.preload), LEAST)
-        away: float = FAINT * k_u * max(fabs(x[first]), fabs(x[first + 1]))
+        self.load_scale = max(k_v * variation, self.faint * fabs(self.preload), LEAST)
+        away: float = self.faint * k_u * max(fabs(x[first]), fabs(x[first + 1]))
         self.scale = max(k_u * motion, mu * self.load_scale, away, LEAST)
         if not (isfinite(self.scale) and isfinite(self.preload) and isfinite(k_u) and isfinite(k_v)):
             return UNKNOWN
@@ -150,7 +152,7 @@ class PlaneMotion:
 
     def rubs(self) -> bool:
         """Whether there is friction that is more than rounding beside the motion."""
-        rubs: bool = self.reach > SMOOTH * self.size
+        rubs: bool = self.reach > self.smooth * self.size
         return rubs
 
     def place(self, slot: cython.int, theta: float) -> None:

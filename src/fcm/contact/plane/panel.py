@@ -22,21 +22,18 @@ from __future__ import annotations
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import fabs
+from cython.cimports.libc.math import exp, fabs, log
 
 if cython.compiled:
     from cython.cimports.fcm.contact.plane.motion import SCAN, PlaneMotion
+    from cython.cimports.fcm.contact.plane.panel import eliminate_eight
 else:
     from fcm.contact.plane.motion import SCAN, PlaneMotion
+    from fcm.contact.plane.radau import STAGES
 
 from fcm.contact.plane.radau import radau
 
 EPSILON = cython.declare(cython.double, 2.220446049250313e-16)
-CONVERGED = cython.declare(cython.double, 1e-9)  # a change of t after which the next is rounding
-STEPS = cython.declare(cython.int, 12)  # of Newton's method; where it takes more, the panel is too long
-STEEPEST = cython.declare(cython.double, 0.6)  # t at the end, to begin with
-WIDEST = cython.declare(cython.double, 1.2)  # of t: directions within 100 degrees of the start
-GROWTH = cython.declare(cython.double, 2.0)  # exponent by which directions may part in a panel
 
 
 @cython.cclass
@@ -47,6 +44,11 @@ class Panel:
     ----------
     theta, length, start_x, start_y
         The angle [rad] at which it begins, how long it is, and the direction there.
+    left, fade
+        0 if its nodes are Radau's in the angle. Else how far from its beginning the contact opens [rad], and
+        the logarithm by which that falls: they are in the logarithm of what is left.
+    speed (s,)
+        Of the angle by the part of the panel, at the nodes: `length`, or `fade` times what is left.
     tangent (s + 1,), change (s,), rate (s,)
         t at the start and at the nodes; its derivative by the angle, and that of alpha, at the nodes.
     e_x, e_y, along (s,), push (s + 1,)
@@ -56,126 +58,164 @@ class Panel:
     """
 
     def __init__(self, motion: PlaneMotion) -> None:
-        rule = radau(motion.stages)
-        s = motion.stages
-        self.motion, self.stages = motion, s
+        given = motion.options
+        self.converged, self.most_steps, self.steepest, self.widest = (
+            given.converged,
+            given.newton,
+            given.steepest,
+            given.widest,
+        )
+        self.before, self.growth = given.before, given.growth
+        rule = radau(STAGES)
+        self.motion = motion
         self.node, self.weight, self.slopes, self.tail, self.bary = (
             np.concatenate(([0.0], rule.nodes)), rule.weights, np.ascontiguousarray(rule.slopes), rule.tail,
             rule.bary,
         )  # fmt: skip
-        self.tangent, self.push = np.zeros((2, s + 1))
-        self.change, self.rate, self.e_x, self.e_y, self.along, self.right = np.zeros((6, s))
-        self.matrix, self.pivot = np.zeros((s, s)), np.zeros(s, dtype=np.intc)
-        self.theta = self.length = self.start_x = self.start_y = self.noise = 0.0
-
-    def solve(self, theta: float, length: float, e_x: float, e_y: float, rate: float) -> bool:
-        """Take a panel from a direction on, that turns at about a rate; False if it is too long for that."""
-        j: cython.int
-        self.theta, self.length, self.start_x, self.start_y = theta, length, e_x, e_y
-        self.noise = 4.0 * EPSILON * (self.motion.motion_bound[1] + self.motion.reach_bound[1])
-        for j in range(self.stages):
-            self.motion.place(j + 1, theta + length * self.node[j + 1])
-        slope: float = max(min(0.5 * rate * length, STEEPEST), -STEEPEST)
-        return self.newton(slope) and self.finish()
-
-    def newton(self, start: float) -> bool:
-        """The collocated Riccati equation by Newton's method, from a straight line on."""
+        self.tangent, self.push = np.zeros((2, STAGES + 1))
+        self.change, self.rate, self.e_x, self.e_y, self.along = np.zeros((5, STAGES))
+        self.theta = self.length = self.start_x = self.start_y = self.noise = self.left = self.fade = 0.0
+        self.speed = np.zeros(STAGES)
+        if not cython.compiled:
+            self.matrix, self.inner = np.zeros((2, STAGES * STAGES))
+            self.right, self.a, self.b, self.r = np.zeros((4, STAGES))
         i: cython.int
         j: cython.int
+        for i in range(STAGES):
+            for j in range(STAGES):
+                self.inner[STAGES * j + i] = self.slopes[i + 1, j + 1]
+
+    def solve(
+        self,
+        theta: float,
+        length: float,
+        left: float,
+        e_x: float,
+        e_y: float,
+        rate: float,
+        bend: float,
+    ) -> bool:
+        """Take a panel from a direction on, with about alpha' and alpha'' there; False if it is too long."""
+        i: cython.int
+        gone: float
+        self.theta, self.length, self.start_x, self.start_y = theta, length, e_x, e_y
+        self.left = left if length < left else 0.0
+        self.fade = -log(1.0 - length / left) if length < left else 0.0
+        self.noise = 4.0 * EPSILON * (self.motion.motion_bound[1] + self.motion.reach_bound[1])
+        for i in range(STAGES):
+            gone, self.speed[i] = self.gone(self.node[i + 1])
+            self.motion.place(i + 1, theta + gone)
+            x_1: float = self.motion.value[i + 1, 3]
+            y_1: float = self.motion.value[i + 1, 4]
+            self.a[i] = e_x * x_1 + e_y * y_1
+            self.b[i] = e_x * y_1 - e_y * x_1
+            self.r[i] = 2.0 * max(self.motion.value[i + 1, 2], 0.0) / self.speed[i]
+        if self.fade > 0.0:
+            bend = self.fade * self.fade * left * (bend * left - rate)
+            rate *= self.fade * left
+        else:
+            bend, rate = bend * length * length, rate * length
+        slope: float = max(min(0.5 * rate, self.steepest), -self.steepest)
+        bend = max(min(0.25 * bend, self.steepest), -self.steepest)
+        return self.newton(slope, bend) and self.finish()
+
+    def gone(self, part: float) -> tuple[float, float]:
+        """How far a part of the panel is from its beginning [rad], and the speed of the angle there."""
+        remains: float
+        if self.fade > 0.0:
+            remains = self.left * exp(-self.fade * part)
+            return self.left - remains, self.fade * remains
+        return self.length * part, self.length
+
+    def newton(self, slope: float, bend: float) -> bool:
+        """The collocated Riccati equation by Newton's method, from a parabola on."""
+        i: cython.int
         step: cython.int
-        s: cython.int = self.stages
-        a: float
-        b: float
-        r: float
-        t: float
-        slope: float
         most: float
-        for j in range(s + 1):
-            self.tangent[j] = start * self.node[j]
-        for step in range(STEPS):  # noqa: B007
-            for i in range(s):
-                x_1: float = self.motion.value[i + 1, 3]
-                y_1: float = self.motion.value[i + 1, 4]
-                a = self.start_x * x_1 + self.start_y * y_1
-                b = self.start_x * y_1 - self.start_y * x_1
-                r = 2.0 * max(self.motion.value[i + 1, 2], 0.0) / self.length
-                t = self.tangent[i + 1]
-                slope = 0.0
-                for j in range(s):
-                    slope += self.slopes[i + 1, j + 1] * self.tangent[j + 1]
-                    self.matrix[i, j] = r * self.slopes[i + 1, j + 1]
-                self.matrix[i, i] += 2.0 * (a + b * t)
-                self.right[i] = b - t * (2.0 * a + b * t) - r * slope
-            if not self.factor():
+        for i in range(STAGES + 1):
+            self.tangent[i] = self.node[i] * (slope + self.node[i] * bend)
+        for step in range(self.most_steps):  # noqa: B007
+            self.residual()
+            if not self.eliminate():
                 return False
-            self.back()
             most = 0.0
-            for i in range(s):
+            for i in range(STAGES):
                 self.tangent[i + 1] += self.right[i]
                 most = max(most, fabs(self.right[i]))
-                if not fabs(self.tangent[i + 1]) < WIDEST:
+                if not fabs(self.tangent[i + 1]) < self.widest:
                     return False
-            if most < CONVERGED:
+            if most < self.converged:
                 return True
         return False
 
-    def factor(self) -> bool:
-        """`matrix` as L and U, rows exchanged; False if it is singular."""
+    def refresh(self) -> bool:
+        """`matrix` once more, of t as it has become: derivatives need it to the square of its last change."""
+        self.residual()
+        done: bool = self.eliminate()
+        return done
+
+    def residual(self) -> None:
+        """`right`, what is missing of the equation at the nodes, and its derivatives, `matrix`."""
+        i: cython.int
+        j: cython.int
+        for i in range(STAGES):
+            self.right[i] = 0.0
+        for j in range(STAGES):
+            t: float = self.tangent[j + 1]
+            for i in range(STAGES):
+                self.right[i] += self.inner[STAGES * j + i] * t
+        for i in range(STAGES):
+            r: float = self.r[i]
+            for j in range(STAGES):
+                self.matrix[STAGES * i + j] = r * self.slopes[i + 1, j + 1]
+            t = self.tangent[i + 1]
+            across: float = self.a[i] + self.b[i] * t
+            self.matrix[STAGES * i + i] += 2.0 * across
+            self.right[i] = self.b[i] - t * (self.a[i] + across) - r * self.right[i]
+
+    def eliminate(self) -> bool:
+        """`matrix` becomes its factors L and U, the diagonal inverted, `right` the solution; False: singular.
+
+        Rows are not exchanged: of the derivatives of Radau's rule, and positive numbers on the diagonal, no
+        pivot is small.
+        """
         i: cython.int
         j: cython.int
         k: cython.int
-        p: cython.int
-        s: cython.int = self.stages
         part: float
-        for k in range(s):
-            p = k
-            for i in range(k + 1, s):
-                if fabs(self.matrix[i, k]) > fabs(self.matrix[p, k]):
-                    p = i
-            self.pivot[k] = p
-            if not fabs(self.matrix[p, k]) > 0.0:
+        if cython.compiled:
+            i = eliminate_eight(cython.address(self.matrix[0]), cython.address(self.right[0]))
+            if i >= 0:
+                return i > 0
+        for k in range(STAGES):
+            if not fabs(self.matrix[STAGES * k + k]) > 1e-300:
                 return False
-            if p != k:
-                for j in range(s):
-                    self.matrix[k, j], self.matrix[p, j] = self.matrix[p, j], self.matrix[k, j]
-            part = 1.0 / self.matrix[k, k]
-            for i in range(k + 1, s):
-                self.matrix[i, k] *= part
-                for j in range(k + 1, s):
-                    self.matrix[i, j] -= self.matrix[i, k] * self.matrix[k, j]
+            self.matrix[STAGES * k + k] = 1.0 / self.matrix[STAGES * k + k]
+            for i in range(k + 1, STAGES):
+                part = self.matrix[STAGES * i + k] * self.matrix[STAGES * k + k]
+                self.matrix[STAGES * i + k] = part
+                self.right[i] -= part * self.right[k]
+                for j in range(k + 1, STAGES):
+                    self.matrix[STAGES * i + j] -= part * self.matrix[STAGES * k + j]
+        for k in range(STAGES - 1, -1, -1):
+            self.right[k] *= self.matrix[STAGES * k + k]
+            for i in range(k):
+                self.right[i] -= self.matrix[STAGES * i + k] * self.right[k]
         return True
-
-    def back(self) -> None:
-        """`right` becomes the solution."""
-        i: cython.int
-        j: cython.int
-        s: cython.int = self.stages
-        for i in range(s):
-            j = self.pivot[i]
-            if j != i:
-                self.right[i], self.right[j] = self.right[j], self.right[i]
-        for i in range(s):
-            for j in range(i):
-                self.right[i] -= self.matrix[i, j] * self.right[j]
-        for i in range(s - 1, -1, -1):
-            for j in range(i + 1, s):
-                self.right[i] -= self.matrix[i, j] * self.right[j]
-            self.right[i] /= self.matrix[i, i]
 
     def finish(self) -> bool:
         """Directions and lambda at the nodes; False where directions part more than the panel can follow."""
         i: cython.int
         j: cython.int
-        s: cython.int = self.stages
-        for i in range(s):
+        for i in range(STAGES):
             t: float = self.tangent[i + 1]
             part: float = 1.0 / (1.0 + t * t)
             c: float = (1.0 - t * t) * part
             d: float = 2.0 * t * part
             slope: float = 0.0
-            for j in range(s):
+            for j in range(STAGES):
                 slope += self.slopes[i + 1, j + 1] * self.tangent[j + 1]
-            self.change[i] = slope / self.length
+            self.change[i] = slope / self.speed[i]
             self.rate[i] = 2.0 * self.change[i] * part
             self.e_x[i] = self.start_x * c - self.start_y * d
             self.e_y[i] = self.start_y * c + self.start_x * d
@@ -183,17 +223,22 @@ class Panel:
                 self.e_x[i] * self.motion.value[i + 1, 3] + self.e_y[i] * self.motion.value[i + 1, 4]
             )
             self.push[i + 1] = self.along[i] - self.motion.value[i + 1, 5]
-            if -self.along[i] * self.length > GROWTH * max(self.motion.value[i + 1, 2], 0.0):
+            if -self.along[i] * self.speed[i] > self.growth * max(self.motion.value[i + 1, 2], 0.0):
                 return False
         return True
 
     def rest(self) -> float:
-        """The last coefficient of t in Legendre's polynomials: what the polynomial leaves out is like it."""
+        """The last coefficient of t in Legendre's polynomials: what the polynomial leaves out is like it.
+
+        The last may vanish by chance; then the one before it tells, of which that is about a tenth.
+        """
         j: cython.int
-        total: float = 0.0
-        for j in range(self.stages):
-            total += self.tail[j + 1] * self.tangent[j + 1]
-        rest: float = fabs(total)
+        before: float = 0.0
+        last: float = 0.0
+        for j in range(STAGES):
+            before += self.tail[0, j + 1] * self.tangent[j + 1]
+            last += self.tail[1, j + 1] * self.tangent[j + 1]
+        rest: float = max(fabs(last), self.before * fabs(before))
         return rest
 
     def end_of_slip(self) -> float:
@@ -203,7 +248,7 @@ class Panel:
         if f_0 <= 0.0 and self.push[1] <= self.noise:
             return 0.0
         d_0: float = self.slope_at(0)
-        for j in range(self.stages):
+        for j in range(STAGES):
             h: float = self.node[j + 1] - self.node[j]
             f_1: float = self.push[j + 1] - self.noise
             d_1: float = self.slope_at(j + 1)
@@ -224,7 +269,7 @@ class Panel:
         """The derivative of lambda by the part of the panel, at the start or at a node."""
         k: cython.int
         slope: float = 0.0
-        for k in range(self.stages + 1):
+        for k in range(STAGES + 1):
             slope += self.slopes[j, k] * self.push[k]
         return slope
 
@@ -233,7 +278,7 @@ class Panel:
         k: cython.int
         total: float = 0.0
         t: float = 0.0
-        for k in range(self.stages + 1):
+        for k in range(STAGES + 1):
             apart: float = x - self.node[k]
             if apart == 0.0:
                 t, total = self.tangent[k], 1.0
@@ -244,7 +289,8 @@ class Panel:
         part: float = 1.0 / (1.0 + t * t)
         e_x: float = (self.start_x * (1.0 - t * t) - self.start_y * 2.0 * t) * part
         e_y: float = (self.start_y * (1.0 - t * t) + self.start_x * 2.0 * t) * part
-        self.motion.place(SCAN, self.theta + x * self.length)
+        gone, speed = self.gone(x)
+        self.motion.place(SCAN, self.theta + gone)
         self.motion.bend(SCAN)
         across: float = e_x * self.motion.value[SCAN, 4] - e_y * self.motion.value[SCAN, 3]
         value: float = e_x * self.motion.value[SCAN, 3] + e_y * self.motion.value[SCAN, 4]
@@ -252,7 +298,7 @@ class Panel:
         slope -= self.motion.value[SCAN, 8]
         if self.motion.value[SCAN, 2] > 0.0:
             slope += across * across / self.motion.value[SCAN, 2]
-        return value - self.motion.value[SCAN, 5] - self.noise, slope * self.length
+        return value - self.motion.value[SCAN, 5] - self.noise, slope * speed
 
     def root(self, low: float, high: float) -> float:
         """Where lambda vanishes, between parts at which it is positive and negative: Newton, bracketed."""

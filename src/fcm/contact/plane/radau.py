@@ -8,6 +8,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+STAGES = 8  # points of a panel, as panel.pxd says in C
+
 FloatArray = npt.NDArray[np.float64]
 
 
@@ -20,8 +22,8 @@ class Radau(NamedTuple):
         The rule is exact for polynomials of degree 2 s - 2.
     slopes : ndarray, shape (s + 1, s + 1)
         Derivatives at 0 and at the nodes, from the values there.
-    tail : ndarray, shape (s + 1,)
-        The coefficient of Legendre's polynomial of degree s.
+    tail : ndarray, shape (2, s + 1)
+        The coefficients of Legendre's polynomials of degree s - 1 and s.
     bary : ndarray, shape (s + 1,)
         Weights of the barycentric formula (Berrut and Trefethen, 2004).
     """
@@ -57,7 +59,7 @@ def radau(stages: int) -> Radau:
     slopes = bary / bary[:, None] / apart
     np.fill_diagonal(slopes, 0.0)
     np.fill_diagonal(slopes, -slopes.sum(axis=1))
-    tail = np.linalg.inv(_legendre(x, stages))[-1]
+    tail: FloatArray = np.linalg.inv(_legendre(x, stages))[-2:]
     return Radau(nodes, vectors[0] ** 2, slopes, tail, bary)
 
 

@@ -1,6 +1,8 @@
 from fcm.contact.plane.motion cimport PlaneMotion
 
 cdef class Resting:
+    cdef double same
+    cdef int exchanges
     cdef readonly PlaneMotion motion
     cdef readonly int nodes, held
     cdef readonly double step, w_x, w_y, overlap, beyond, angle

@@ -23,8 +23,6 @@ else:
 TWO_PI = cython.declare(cython.double, 6.283185307179586)
 FIRST = cython.declare(cython.double, 0.1171)  # of a step: nodes lie beside the multiples of pi / 2
 EPSILON = cython.declare(cython.double, 2.220446049250313e-16)
-EXCHANGES = cython.declare(cython.int, 100)
-SAME = cython.declare(cython.double, 1e-6)  # [rad] half of what is between two discs that are one
 FAR = cython.declare(cython.double, 1e300)
 
 
@@ -46,6 +44,8 @@ class Resting:
     """
 
     def __init__(self, motion: PlaneMotion) -> None:
+        given = motion.options
+        self.exchanges, self.same = given.exchanges, given.same
         self.motion = motion
         self.nodes = 12 * max(motion.highest, 1) + 3
         self.step = TWO_PI / self.nodes
@@ -81,7 +81,7 @@ class Resting:
         self.sample()
         self.held, self.overlap = 0, -FAR
         self.w_x = self.w_y = 0.0
-        for i in range(EXCHANGES):  # noqa: B007
+        for i in range(self.exchanges):  # noqa: B007
             self.farthest(self.w_x, self.w_y)
             if self.beyond <= (self.overlap if exact else max(0.0, self.overlap)) + rounding:
                 break
@@ -98,7 +98,7 @@ class Resting:
         rounding: float = 4.0 * EPSILON * (self.motion.size + self.motion.reach)
         self.held = 0
         self.w_x, self.w_y = s_x, s_y
-        for i in range(EXCHANGES):  # noqa: B007
+        for i in range(self.exchanges):  # noqa: B007
             self.farthest(self.w_x, self.w_y)
             if self.beyond <= rounding:
                 break
@@ -116,7 +116,7 @@ class Resting:
         i: cython.int
         for i in range(self.held):
             self.sharpen_one(i, self.w_x, self.w_y)
-        if self.held == 2 and fabs(sin(0.5 * (self.basis[1, 3] - self.basis[0, 3]))) < SAME:
+        if self.held == 2 and fabs(sin(0.5 * (self.basis[1, 3] - self.basis[0, 3]))) < self.same:
             self.held = 1  # one disc, from two sides
         if self.held == 1:
             self.sharpen_one(0, s_x, s_y)

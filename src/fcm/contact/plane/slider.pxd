@@ -6,6 +6,7 @@ from fcm.contact.plane.derivatives cimport Derivatives
 cdef int STICK, SLIP, SEPARATION
 
 cdef class Slider:
+    cdef double shortest, least_step, on_edge, negligible, near, ends, deepest, nothing, light, shrink, grow, safety
     cdef readonly PlaneMotion motion
     cdef readonly Panel panel
     cdef readonly Sums sums
@@ -24,6 +25,9 @@ cdef class Slider:
     cdef void close(self, double theta) noexcept nogil
     cdef void advance(self, double end, bint opens) noexcept nogil
     cdef void slide(self, double end, bint opens) noexcept nogil
+    cdef double turning(self, int slot, double rate) noexcept nogil
+    cdef double scaled(self, double length, double left, double by) noexcept nogil
+    cdef double stray(self, double end) noexcept nogil
     cdef double realign(self, double push) noexcept nogil
     cdef void accept(self) noexcept nogil
     cdef void halt(self) noexcept nogil

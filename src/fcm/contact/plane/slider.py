@@ -10,17 +10,17 @@ from __future__ import annotations
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import fabs, hypot
+from cython.cimports.libc.math import exp, fabs, hypot
 
 if cython.compiled:
     from cython.cimports.fcm.contact.plane.derivatives import Derivatives
     from cython.cimports.fcm.contact.plane.motion import SCAN, PlaneMotion
-    from cython.cimports.fcm.contact.plane.panel import Panel
+    from cython.cimports.fcm.contact.plane.panel import STAGES, Panel
     from cython.cimports.fcm.contact.plane.sums import Sums
 else:
     from fcm.contact.plane.derivatives import Derivatives
     from fcm.contact.plane.motion import SCAN, PlaneMotion
-    from fcm.contact.plane.panel import Panel
+    from fcm.contact.plane.panel import STAGES, Panel
     from fcm.contact.plane.sums import Sums
 
 STICK = cython.declare(cython.int, 0)  # states
@@ -30,18 +30,6 @@ SEPARATION = cython.declare(cython.int, 2)
 EPSILON = cython.declare(cython.double, 2.220446049250313e-16)
 VALUE_ERROR = cython.declare(cython.double, 1.0 / 384.0)  # of a cubic, over step**4 and its fourth derivative
 SLOPE_ERROR = cython.declare(cython.double, 3.0**0.5 / 216.0)  # of its slope, over step**3
-SHORTEST = cython.declare(cython.double, 1e-13)  # [rad] of a step, or of a slip
-FIRST_STEP = cython.declare(
-    cython.double, 1e-8
-)  # [rad] at least, from the start of a stick; doubled while no slip follows it
-ON_EDGE = cython.declare(cython.double, 1e-12)  # of the square of the radius, by which g is below zero
-NEGLIGIBLE = cython.declare(cython.double, 1e-10)  # [rad] before it opens: the force there adds nothing
-NOTHING = cython.declare(cython.double, 1e-12)  # of its bound, a radius that is none
-SHORT = cython.declare(cython.double, 10.0)  # times the length, where the load is small: of derivatives
-RESOLVED = cython.declare(cython.double, 4.0)  # [rad] of the highest exp(i m theta), integrated to 1e-12
-SHRINK = cython.declare(cython.double, 0.2)  # factors of the next length of a panel
-GROW = cython.declare(cython.double, 2.5)
-SAFETY = cython.declare(cython.double, 0.7)
 
 
 @cython.cclass
@@ -63,13 +51,28 @@ class Slider:
         What the last coefficient of a panel may be, times the radius over its bound, or the length.
     varying, gathering, gradient
         Whether derivatives are carried along, the forces summed, and their Jacobian.
-    record (panel, 4 + s), panels
-        Of each panel while forces are summed: angle, length, direction at the start, t at the nodes.
+    record (panel, 5 + s), panels
+        Of each panel while forces are summed: angle, length, direction at the start, what is left to the
+        angle at which the contact opens, or 0, t at the nodes; see `Panel`.
     failed
         Whether a slip or the pieces came to no end.
     """
 
     def __init__(self, motion: PlaneMotion, outputs: list[int], most_panels: int) -> None:
+        given = motion.options
+        self.shortest, self.least_step, self.on_edge, self.negligible = (
+            given.shortest,
+            given.first_step,
+            given.on_edge,
+            given.negligible,
+        )
+        self.near, self.ends, self.deepest, self.nothing = (
+            given.near,
+            given.ends,
+            given.deepest,
+            given.nothing,
+        )
+        self.light, self.shrink, self.grow, self.safety = given.light, given.shrink, given.grow, given.safety
         self.motion = motion
         self.panel = Panel(motion)
         self.sums = Sums(motion, max(outputs, default=0))
@@ -77,14 +80,14 @@ class Slider:
         self.capacity = 64 + 32 * max(motion.highest, 1)
         self.state = np.zeros(self.capacity, dtype=np.intc)
         self.begin, self.rest_x, self.rest_y = np.zeros((3, self.capacity))
-        self.record, self.most_panels = np.zeros((most_panels, 4 + motion.stages)), most_panels
+        self.record, self.most_panels = np.zeros((most_panels, 5 + STAGES)), most_panels
         self.pieces = self.panels = 0
         self.theta = self.w_x = self.w_y = self.e_x = self.e_y = self.next_length = 0.0
         self.gone_x = self.gone_y = self.gone = 0.0
         self.gap = self.gap_slope = self.noise = self.stalled = 0.0
-        self.first_step = FIRST_STEP
-        self.tolerance = 1e-8
-        self.longest = RESOLVED / max(self.sums.highest, 1)
+        self.first_step = self.least_step
+        self.tolerance = given.tolerance
+        self.longest = given.resolved / max(self.sums.highest, 1)
         self.sliding = self.varying = self.gathering = self.gradient = self.failed = False
 
     def add(self, state: cython.int) -> None:
@@ -185,42 +188,62 @@ class Slider:
         push: float = self.push()
         r: float = self.motion.value[SCAN, 2]
         rate: float = 0.0
-        if r > NOTHING * self.motion.reach:
+        bend: float = 0.0
+        if r > self.nothing * self.motion.reach:
             rate = self.e_x * self.motion.value[SCAN, 4] - self.e_y * self.motion.value[SCAN, 3]
             rate /= r
+            self.motion.bend(SCAN)
+            bend = self.turning(SCAN, rate)
+        near: float = self.near / max(self.motion.highest, 1)
         while self.theta < end and not self.failed:
-            if r <= NOTHING * self.motion.reach:
+            if r <= self.nothing * self.motion.reach:
                 push = self.realign(push)
             left = end - self.theta
-            if left < (NEGLIGIBLE if opens else SHORTEST):
+            if left < (self.negligible if opens else self.shortest):
                 self.theta = end
                 return
+            graded: cython.bint = opens and r > self.nothing * self.motion.reach and left < near
+            if graded and self.stray(end) * r * left < self.ends * self.tolerance * self.motion.reach:
+                graded = False
+                self.next_length = left
             length = min(self.next_length, left, self.longest)
-            if length > 0.6 * left and length < left:
+            if graded:
+                length = min(length, self.deepest * left)
+            elif length > 0.6 * left and length < left:
                 length = 0.6 * left
             for tries in range(200):  # noqa: B007
                 rest = 1e300
-                if self.panel.solve(self.theta, length, self.e_x, self.e_y, rate):
+                if self.panel.solve(
+                    self.theta, length, left if graded else 0.0, self.e_x, self.e_y, rate, bend
+                ):
                     rest = self.panel.rest()
                     rest *= max(
-                        max(r, self.motion.value[self.panel.stages, 2]) / self.motion.reach,
-                        min(SHORT * length, 1.0),
+                        max(r, self.motion.value[STAGES, 2]) / self.motion.reach,
+                        min(self.light * length, 1.0),
                     )
                     if rest <= self.tolerance:
                         break
-                part = (self.tolerance / rest) ** (1.0 / self.panel.stages) if rest < 1e300 else 0.0
-                length *= min(max(SAFETY * part, SHRINK), 0.7)
+                part = (self.tolerance / rest) ** (1.0 / STAGES) if rest < 1e300 else 0.0
+                if length == left and opens:
+                    graded, length = True, self.deepest * left
+                    continue
+                length = self.scaled(length, left, min(max(self.safety * part, self.shrink), 0.7))
             else:
                 self.failed = True
                 return
-            part = (self.tolerance / max(rest, 1e-300)) ** (1.0 / self.panel.stages)
-            self.next_length = length * min(max(SAFETY * part, SHRINK), GROW)
+            part = (self.tolerance / max(rest, 1e-300)) ** (1.0 / STAGES)
+            self.next_length = self.scaled(
+                length, left - length, min(max(self.safety * part, self.shrink), self.grow)
+            )
             self.panel.push[0] = push
             part = self.panel.end_of_slip()
             if part <= 1.0:
-                if part * length > SHORTEST:
-                    if not self.panel.solve(self.theta, part * length, self.e_x, self.e_y, rate):
-                        self.next_length = 0.5 * part * length
+                part, _ = self.panel.gone(part)
+                if part > self.shortest:
+                    if not self.panel.solve(
+                        self.theta, part, left if graded else 0.0, self.e_x, self.e_y, rate, bend
+                    ):
+                        self.next_length = 0.5 * part
                         continue
                     self.accept()
                 elif self.theta == begin:
@@ -228,9 +251,38 @@ class Slider:
                     self.pieces = before
                 self.halt()
                 return
-            push, r = self.panel.push[self.panel.stages], self.motion.value[self.panel.stages, 2]
-            rate = self.panel.rate[self.panel.stages - 1]
+            push, r = self.panel.push[STAGES], self.motion.value[STAGES, 2]
+            rate = self.panel.rate[STAGES - 1]
             self.accept()
+            bend = 0.0
+            if r > self.nothing * self.motion.reach:
+                self.motion.bend(STAGES)
+                bend = self.turning(STAGES, rate)
+
+    def turning(self, slot: cython.int, rate: float) -> float:
+        """alpha'' at an angle that has its place and bend: of R alpha' = e_perp . U'."""
+        bend: float = self.e_x * self.motion.value[slot, 7] - self.e_y * self.motion.value[slot, 6]
+        along: float = self.e_x * self.motion.value[slot, 3] + self.e_y * self.motion.value[slot, 4]
+        bend -= (along + self.motion.value[slot, 5]) * rate
+        bend /= self.motion.value[slot, 2]
+        return bend
+
+    def scaled(self, length: float, left: float, by: float) -> float:
+        """A length times a factor; if the panel was graded, of what is then left, so many times as deep."""
+        if self.panel.fade > 0.0:
+            return left * (1.0 - exp(-by * self.panel.fade))
+        return by * length
+
+    def stray(self, end: float) -> float:
+        """How far the direction is from that in which it will be when the contact opens."""
+        self.motion.place(SCAN, end)
+        x_1: float = self.motion.value[SCAN, 3]
+        y_1: float = self.motion.value[SCAN, 4]
+        speed: float = hypot(x_1, y_1)
+        if not speed > 0.0:
+            return 1.0
+        stray: float = hypot(self.e_x - x_1 / speed, self.e_y - y_1 / speed)
+        return stray
 
     def realign(self, push: float) -> float:
         """Where the disc is nothing, the direction is that of the motion; lambda there."""
@@ -248,13 +300,12 @@ class Slider:
     def accept(self) -> None:
         """The end of the panel is the present angle."""
         i: cython.int
-        s: cython.int = self.panel.stages
-        self.theta, self.first_step = self.panel.theta + self.panel.length, FIRST_STEP
-        self.e_x, self.e_y = self.panel.e_x[s - 1], self.panel.e_y[s - 1]
+        self.theta, self.first_step = self.panel.theta + self.panel.length, self.least_step
+        self.e_x, self.e_y = self.panel.e_x[STAGES - 1], self.panel.e_y[STAGES - 1]
         size: float = 1.0 / hypot(self.e_x, self.e_y)
         self.e_x, self.e_y = self.e_x * size, self.e_y * size
-        for i in range(s):
-            way: float = self.panel.weight[i] * self.panel.length * self.panel.push[i + 1]
+        for i in range(STAGES):
+            way: float = self.panel.weight[i] * self.panel.speed[i] * self.panel.push[i + 1]
             self.gone += way
             self.gone_x += way * self.panel.e_x[i]
             self.gone_y += way * self.panel.e_y[i]
@@ -265,10 +316,12 @@ class Slider:
                 self.record[self.panels, 2], self.record[self.panels, 3] = (
                     self.panel.start_x, self.panel.start_y,
                 )  # fmt: skip
-                for i in range(s):
-                    self.record[self.panels, 4 + i] = self.panel.tangent[i + 1]
+                self.record[self.panels, 4] = self.panel.left
+                for i in range(STAGES):
+                    self.record[self.panels, 5 + i] = self.panel.tangent[i + 1]
             self.panels += 1
         if self.varying:
+            self.panel.refresh()
             self.derivatives.carry(self.gathering and self.gradient)
 
     def halt(self) -> None:
@@ -330,12 +383,12 @@ class Slider:
         g: float = self.gap
         d: float = self.gap_slope
         # on the edge of its disc, from where g falls as bend / 2 times the square
-        if g > -noise - ON_EDGE * r * r:
+        if g > -noise - self.on_edge * r * r:
             rate: float = 16.0 * EPSILON * size * (self.motion.motion_bound[1] + self.motion.reach_bound[1])
             if (
                 d > rate
                 and begin != self.stalled
-                and (bend >= 0.0 or d * d > -2.0 * bend * (noise + ON_EDGE * r * r))
+                and (bend >= 0.0 or d * d > -2.0 * bend * (noise + self.on_edge * r * r))
             ):
                 self.release(begin, begin)
                 return
@@ -360,11 +413,14 @@ class Slider:
             rises: bool = min(d, middle, self.gap_slope) > slope
             falls: bool = max(d, middle, self.gap_slope) < -slope
             if self.gap > self.noise:
-                if rises or h < SHORTEST or high <= low:
+                if rises or h < self.shortest or high <= low:
                     self.release(begin, self.meet(low, high))
                     return
             elif (
-                rises or falls or max(g, b_1, b_2, self.gap) + value <= min(noise, self.noise) or h < SHORTEST
+                rises
+                or falls
+                or max(g, b_1, b_2, self.gap) + value <= min(noise, self.noise)
+                or h < self.shortest
             ):
                 low, g, d, noise = high, self.gap, self.gap_slope, self.noise
                 length *= 2.0

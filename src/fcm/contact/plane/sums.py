@@ -14,10 +14,11 @@ from cython.cimports.libc.math import cos, sin
 
 if cython.compiled:
     from cython.cimports.fcm.contact.plane.motion import PlaneMotion
-    from cython.cimports.fcm.contact.plane.panel import Panel
+    from cython.cimports.fcm.contact.plane.panel import STAGES, Panel
+    from cython.cimports.fcm.contact.plane.sums import turn_eight
 else:
     from fcm.contact.plane.motion import PlaneMotion
-    from fcm.contact.plane.panel import Panel
+    from fcm.contact.plane.panel import STAGES, Panel
 
 # Functions of the angle by which exp(-i m theta) is multiplied
 STICKS = cython.declare(cython.int, 0)  # 1 while it sticks
@@ -48,6 +49,10 @@ class Sums:
         self.held_x_re, self.held_x_im, self.held_y_re, self.held_y_im = np.zeros((4, most + 1))
         self.reciprocal = 1.0 / np.maximum(np.arange(self.highest + 1), 1)
         self.work = self.path = self.re = self.im = 0.0
+        # of the slips, each node of a panel by itself: direction x and y times cosine and sine
+        self.lanes = np.zeros((4 * (self.highest + 1), STAGES))
+        if not cython.compiled:
+            self.x, self.y, self.c, self.s = np.zeros((4, STAGES))
 
     def begin(self) -> None:
         """Nothing yet."""
@@ -56,6 +61,9 @@ class Sums:
         for p in range(4):
             for m in range(self.highest + 1):
                 self.cos_sum[p, m] = self.sin_sum[p, m] = 0.0
+        for m in range(4 * (self.highest + 1)):
+            for p in range(STAGES):
+                self.lanes[m, p] = 0.0
         for m in range(self.most + 1):
             self.held_x_re[m] = self.held_x_im[m] = self.held_y_re[m] = self.held_y_im[m] = 0.0
         self.work = self.path = 0.0
@@ -102,32 +110,46 @@ class Sums:
                 self.held_y_im[m] -= w_y * s
 
     def slip(self, panel: Panel) -> None:
-        """Add a panel of slip."""
+        """Add a panel of slip, to `lanes`."""
         i: cython.int
         m: cython.int
-        x: float
-        y: float
         w: float
         c: float
-        s: float
-        for i in range(panel.stages):
-            w = panel.weight[i] * panel.length
-            x, y = w * panel.e_x[i], w * panel.e_y[i]
+        d: float
+        for i in range(STAGES):
+            w = panel.weight[i] * panel.speed[i]
+            self.x[i], self.y[i] = w * panel.e_x[i], w * panel.e_y[i]
+            self.c[i], self.s[i] = self.motion.value[i + 1, 9], self.motion.value[i + 1, 10]
             w *= panel.push[i + 1]
             self.path += w
             self.work += w * max(self.motion.value[i + 1, 2], 0.0)
-            c_1: float = self.motion.value[i + 1, 9]
-            s_1: float = self.motion.value[i + 1, 10]
+        if cython.compiled and turn_eight(
+            cython.address(self.x[0]), cython.address(self.y[0]), cython.address(self.c[0]),
+            cython.address(self.s[0]), cython.address(self.lanes[0, 0]), self.highest,
+        ):  # fmt: skip
+            return
+        for i in range(STAGES):
             c = 1.0
-            s = 0.0
+            d = 0.0
             for m in range(self.highest + 1):
-                self.cos_sum[SLIPS_X, m] += x * c
-                self.sin_sum[SLIPS_X, m] += x * s
-                self.cos_sum[SLIPS_Y, m] += y * c
-                self.sin_sum[SLIPS_Y, m] += y * s
-                w = c * c_1 - s * s_1
-                s = s * c_1 + c * s_1
+                self.lanes[4 * m, i] += self.x[i] * c
+                self.lanes[4 * m + 1, i] += self.x[i] * d
+                self.lanes[4 * m + 2, i] += self.y[i] * c
+                self.lanes[4 * m + 3, i] += self.y[i] * d
+                w = c * self.c[i] - d * self.s[i]
+                d = d * self.c[i] + c * self.s[i]
                 c = w
+
+    def total(self) -> None:
+        """The sums over slips from those of each node."""
+        m: cython.int
+        i: cython.int
+        for m in range(self.highest + 1):
+            for i in range(STAGES):
+                self.cos_sum[SLIPS_X, m] += self.lanes[4 * m, i]
+                self.sin_sum[SLIPS_X, m] += self.lanes[4 * m + 1, i]
+                self.cos_sum[SLIPS_Y, m] += self.lanes[4 * m + 2, i]
+                self.sin_sum[SLIPS_Y, m] += self.lanes[4 * m + 3, i]
 
     def product(self, h: cython.int, which: cython.int, row: cython.int) -> None:
         """`re`, `im`: the integral of a row of the motion times a function times exp(-i h theta)."""
