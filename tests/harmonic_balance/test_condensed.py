@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fcm.branches.linear_limits import foresee
-from fcm.continuation import Events, follow
+from fcm.continuation import Events, Mark, follow
 from fcm.continuation.corrector import Newton
 from fcm.harmonic_balance import rounding
 from fcm.harmonic_balance.dense_jacobian import jacobian_of
@@ -280,3 +280,10 @@ def test_rounding_between_points_that_are_looked_at_is_the_greater_of_theirs(mon
     for a, b in itertools.pairwise(looked):
         between = some[a + 1 : b]
         np.testing.assert_array_equal(between, np.tile(np.maximum(every[a], every[b]), (len(between), 1)))
+
+
+def test_degrees_of_freedom_that_are_greatest_together_have_one_point():
+    problem = System(strip(contacts=30), (1,), condensing=CONDENSED).balance()
+    path = follow(problem, np.append(np.zeros(problem.unknowns), 0.9), (0.9, 1.5))
+    peaks = path.parameter[path.where(Mark.PEAK)]
+    assert 1 < len(peaks) < problem.outputs and np.unique(peaks).size == len(peaks)

@@ -99,7 +99,7 @@ def errors_along(
         more = system.harmonics
         return Errors(none, none[:, 0], known, none[0], size, of_folds, share, more, borne, borne[0], own)
     partner = PartnerCurve(system, path, shown, more, options, budget or Budget(options.seconds))
-    change = partner.everywhere(np.union1d(special, met))
+    change = partner.everywhere(np.union1d(partner.apart(special), np.union1d(folds, met)))
     followed = partner.followed(change)
     compared, dofs = partner.compared(change), shown.amplitude.shape[1]
     shift = partner.shifts(compared, followed)

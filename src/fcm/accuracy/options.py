@@ -42,6 +42,8 @@ class PairOptions:
         The same that all points may take that are moved to the partner, those that are found too.
     step : float
         Longest along the partner.
+    high : float
+        Part of an amplitude, to which a peak of the partner is known where many have their own.
     beyond : float
         Times the width of a stretch, how far beyond it the partner is followed.
     tries : int
@@ -103,6 +105,7 @@ class PairOptions:
     part: float = 0.3
     unnoticed: float = 0.4
     step: float = 0.1
+    high: float = 1e-5
     beyond: float = 1.0
     tries: int = 8
     same: float = 0.02

@@ -142,6 +142,14 @@ class PartnerCurve:
             )
         return self.interpolated(np.arange(count))
 
+    def apart(self, points: Indices) -> Indices:
+        """Those of points, in order, that are not next to another of them.
+
+        Of many degrees of freedom each has its own peak; what the partner has at one is interpolated to the
+        next.
+        """
+        return points[distinct(self.place[points], self._near)]
+
     def done(self) -> None:
         """Give back what the next curve can use."""
         give_back(self.finding.lifted, self.system, self.more)

@@ -16,6 +16,7 @@ from fcm.accuracy.options import PairOptions
 from fcm.branches.force_level import NEAR, solutions
 from fcm.continuation import Events, FollowOptions, Path, Status
 from fcm.continuation.follow import Follower
+from fcm.continuation.options import EventOptions
 from fcm.continuation.stepper import Stepper
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.normal_plane_prolongation import Lifted
@@ -172,7 +173,8 @@ class Stretches:
                 raise SpentError
 
         wanted = Events((float(end.z[-1]),) if end else ())
-        follower = Follower(stepper.problem, span, wanted, FollowOptions(self.options.step), pay, stepper)
+        options = FollowOptions(self.options.step, events=EventOptions(high_of_many=self.options.high))
+        follower = Follower(stepper.problem, span, wanted, options, pay, stepper)
         if not follower.begin(begin.z, forward):
             path = follower.path(Status.STALLED)
         else:

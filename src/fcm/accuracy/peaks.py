@@ -51,14 +51,16 @@ def rise_beside(partner: PartnerCurve, moved: FloatArray, places: Indices) -> Fl
 
 def _highest(partner: PartnerCurve, change: FloatArray) -> tuple[FloatArray, Indices]:
     """Changes (point, dof) and where (dof,) with them the partner is highest of the points where it is found:
-    also at those near the highest that are expected to be higher, as an interpolated one may be."""
+    also at those near the highest that are expected to be higher, as an interpolated one may be, by more than
+    nothing."""
     change, count, near = change.copy(), len(change), np.arange(-NEAR, NEAR + 1)[:, None]
     while True:
         expected = partner.amplitude + partner.unit * change
         value = np.where(partner.known[:, None] & np.isfinite(change), expected, 0.0)
         places = value.argmax(axis=0)
         d, around = np.arange(len(places)), np.clip(places + near, 0, count - 1)
-        higher = ~partner.known[around] & (expected[around, d] > value[places, d])
+        least = value[places, d] * (1.0 + partner.options.nothing)
+        higher = ~partner.known[around] & (expected[around, d] > least)
         if not higher.any():
             return change, places
         new = np.unique(around[higher])

@@ -273,7 +273,9 @@ def within(stepper: Stepper, limit: float, values: list[float], greatest: FloatA
     for k in peaks:
         if not costly or may_exceed(stepper, k, most[k]):
             events += located(stepper, PEAK, k, limit, Mark.PEAK, looks)
-    return sorted((event for event in events if event.length <= limit), key=lambda event: event.length)
+    # several outputs may be greatest at the same point
+    distinct = {(event.length, event.mark): event for event in events if event.length <= limit}
+    return sorted(distinct.values(), key=lambda event: event.length)
 
 
 def located(

@@ -24,10 +24,6 @@ class ExtremumOptions:
 
     Attributes
     ----------
-    high, high_of_many : float
-        Of an output, to which a peak is known; and where each of many outputs has its own, at a point each.
-    outputs : int
-        So many are many.
     turned, corner : float
         Of the parameter, to which a fold is known; and to which one in a corner is.
     better : float
@@ -42,9 +38,6 @@ class ExtremumOptions:
         Cosine of a turn, below which a length is no measure of the way.
     """
 
-    high: float = 1e-11
-    high_of_many: float = 1e-7
-    outputs: int = 24
     turned: float = 1e-15
     corner: float = 1e-13
     better: float = 0.25
@@ -74,8 +67,8 @@ class ExtremumSearch:
 
     def __init__(self, stepper: Stepper, options: ExtremumOptions = EXTREMUM) -> None:
         self.options = options
-        many = stepper.problem.outputs >= options.outputs
-        self.high = options.high_of_many if many else options.high
+        events = stepper.options.events
+        self.high = events.high_of_many if stepper.problem.outputs >= events.outputs else events.high
         self.stepper, self.scale = stepper, np.array(stepper.newton.scale)
         self.known = [self._sample(0.0, stepper.here), self._sample(stepper.step, stepper.there)]
 

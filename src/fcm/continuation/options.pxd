@@ -10,8 +10,8 @@ cdef class StepOptions:
     cdef readonly tuple back
 
 cdef class EventOptions:
-    cdef readonly int most
-    cdef readonly double fine, enclosed, rise, nearly_greatest, even, doubtful, blurred, same, same_way, landing
+    cdef readonly int most, outputs
+    cdef readonly double high, high_of_many, fine, enclosed, rise, nearly_greatest, even, doubtful, blurred, same, same_way, landing
 
 cdef class SwitchingOptions:
     cdef readonly int most, further, pieces, many

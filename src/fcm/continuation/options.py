@@ -159,6 +159,11 @@ class EventOptions:
         Part of the lesser slope at the ends: a cubic less steep between them may hide a way back.
     blurred : float
         A step this short tells more of rounding than of a way back.
+    high, high_of_many : float
+        Part of an output, to which a peak is known where points are costly; and where each of many outputs
+        has its own, at a point each.
+    outputs : int
+        So many are many.
     same : float
         Part of the greatest unknown: points closer than this are one.
     same_way : float
@@ -175,6 +180,9 @@ class EventOptions:
     even: cython.double = 0.2
     doubtful: cython.double = 0.25
     blurred: cython.double = 1e-4
+    high: cython.double = 1e-11
+    high_of_many: cython.double = 5e-7
+    outputs: cython.int = 24
     same: cython.double = 1e-6
     same_way: cython.double = 0.5
     landing: cython.double = 0.25

@@ -33,7 +33,11 @@ def answer(balance: Balance, force: FloatArray) -> FloatArray:
     """G F: the displacements (unknown, ...) that forces (unknown, ...) of the contacts take away."""
     seen, (mean, first) = balance.seen, places(balance)
     if balance.condensed is not None:
-        return balance.condensed.answer.to(force)
+        columns = np.ascontiguousarray(force.reshape(len(force), -1).T)
+        found = np.empty_like(columns)
+        for column, moved in zip(columns, found, strict=True):
+            balance.condensed.answer.to(column, moved)
+        return found.T.reshape(force.shape)
     out = np.empty_like(force)
     out[mean] = np.asarray(seen.static) @ force[mean]
     G = np.asarray(seen.G_re) + 1j * np.asarray(seen.G_im)

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fcm.continuation.dense_solver import Solver
-from fcm.harmonic_balance.modal_receptance import ModalAnswer
+from fcm.harmonic_balance.modal_equations import ModalAnswer, as_springs
 from fcm.model.scene import FloatArray
 from fcm.structure.receptance import Receptance
 
@@ -53,8 +53,8 @@ class HeldContacts:
     """`choose` at the tangents first, then `factor` and `solve` the system condensed to `size - 1` forces.
 
     springs (port,): of all contacts stuck; counted (contact,): what of their normal springs is counted to
-    the structure in the means. Tangents are (contact, part port, part port), the parts being the mean and the
-    real and imaginary part of each harmonic.
+    the structure in the means. Tangents are (contact, width, width), laid out as the unknowns of a contact; a
+    part is the mean, or the real or imaginary part of a harmonic.
     """
 
     def __init__(
@@ -69,8 +69,10 @@ class HeldContacts:
         self.place, self.flexibility, self.options = answer.place, flexibility, options
         self.contacts, self.parts = counted.size, answer.place.shape[0]
         self.each = springs.size // counted.size
+        self.order = answer.place[:, : self.each].ravel()  # of a contact's unknowns: part by part
         self.springs = springs.reshape(self.contacts, self.each)
-        self.slight = options.slight * self.springs.max(axis=1)[:, None, None]
+        self.slight = options.slight * self.springs.max(axis=1)
+        self.is_stuck, self.is_open = np.zeros((2, self.contacts), dtype=np.uint8)
         counts = np.zeros_like(self.springs)
         counts[:, -1] = counted
         # diagonals of the tangents (contact, part, port) of contacts that stay open, or stuck
@@ -84,24 +86,25 @@ class HeldContacts:
     def choose(self, tangent: FloatArray, most: int) -> bool:
         """Whether the condensed system is no larger than the most at tangents; it is ready to be factored
         then."""
-        diagonal = tangent.diagonal(axis1=1, axis2=2).reshape(self.stuck.shape)
-        as_stuck, as_open = (
-            (np.abs(diagonal - linear) <= self.slight).all(axis=1) for linear in (self.stuck, self.open)
-        )
-        stuck, apart = as_stuck.all(axis=1), as_open.all(axis=1)
+        stuck, apart = self.is_stuck.view(np.bool_), self.is_open.view(np.bool_)
+        for linear, states in ((self.stuck, self.is_stuck), (self.open, self.is_open)):
+            as_springs(tangent, self.order, linear, self.slight, states)
         if self.closed is None:
             self._on_springs(~apart | stuck)
         elif int((np.where(self.closed, apart, stuck) & (stuck != apart)).sum()) > self.options.others:
             self._on_springs(np.where(stuck | apart, stuck, self.closed))
         assert self.closed is not None
-        others = np.flatnonzero(~np.where(self.closed[:, None], as_stuck, as_open).all(axis=1))
+        others = np.flatnonzero(~np.where(self.closed, stuck, apart))
         if self.parts * others.size >= most or not self.lost < self.options.lost:
             return False
-        D = tangent[others].reshape(others.size, self.parts, self.each, self.parts, self.each)
+        ordered = tangent[others[:, None, None], self.order[:, None], self.order]
+        D = ordered.reshape(others.size, self.parts, self.each, self.parts, self.each)
         part, port = np.arange(self.parts)[:, None], np.arange(self.each)
         linear = np.where(self.closed[others, None, None], self.stuck[others], self.open[others])
         D[:, part, port, part, port] -= linear
-        which, port = np.nonzero((np.abs(D) > self.slight[others, :, :, None, None]).any(axis=(1, 3, 4)))
+        which, port = np.nonzero(
+            (np.abs(D) > self.slight[others, None, None, None, None]).any(axis=(1, 3, 4))
+        )
         self.ports, self.D = others[which] * self.each + port, D[which, :, port]
         self.size = self.parts * self.ports.size + 1
         return self.size <= most

@@ -20,14 +20,12 @@ condensed to, see `fcm.harmonic_balance.held_contacts`.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from fcm.continuation.dense_solver import Solver
 from fcm.harmonic_balance.held_contacts import HeldContacts
-from fcm.harmonic_balance.modal_receptance import ModalAnswer
+from fcm.harmonic_balance.modal_equations import ModalAnswer, ModalEquations
 from fcm.model.scene import FloatArray
 from fcm.structure.receptance import Receptance
 
@@ -107,28 +105,21 @@ class Condensed:
         options: CondensedOptions = OPTIONS,
     ) -> None:
         self.answer, self.tangent, self.options = ModalAnswer(seen, flexibility), tangent, options
-        self.seen, self.flexibility, self.parts = seen, flexibility, 1 + 2 * seen.count
-        self.contacts, self.width = tangent.shape[0], tangent.shape[1]
-        self.each = seen.ports // self.contacts
-        self.order = self.answer.place[:, : self.each].ravel()  # of a contact's unknowns: part by part
+        self.equations = ModalEquations(self.answer, tangent, options.corrections)
         self.ranking = np.argsort(-yields, kind="stable")
         self.take(modes_taken(yields, seen.ports, options))
         self.held = HeldContacts(self.answer, flexibility, springs, counted)
-        self.holds = False  # whether the system is condensed to the forces of contacts
-        self.by, self.row, self.scale = np.empty(0), np.empty(0), np.empty(0)
+        self.row, self.scale = np.zeros((2, tangent.shape[0] * tangent.shape[1] + 1))
+
+    @property
+    def holds(self) -> bool:
+        """Whether the system is condensed to the forces of contacts."""
+        return self.equations.held is not None
 
     def take(self, modes: int) -> None:
         """Condense to so many modes."""
-        self.modes = modes = min(max(modes, 1), self.ranking.size)
-        self.rank, chosen = self.parts * modes, np.sort(self.ranking[:modes])
-        self.chosen, self.shapes = chosen, np.ascontiguousarray(self.answer.shapes[chosen])
-        self.mean = self.flexibility[np.ix_(chosen, chosen)]
-        self.along = np.ascontiguousarray(self.shapes.T.reshape(self.contacts, self.each, modes))
-        self.solver = Solver(self.rank + 1)
-        # forces on ports by modes: by contact (part port part, mode), by port; and on the modes
-        self.by_mode = np.empty((self.contacts, self.each * self.parts**2, modes))
-        self.by_port = np.empty((self.seen.ports, self.parts * self.rank))
-        self.on_modes = np.empty((modes, self.parts, self.rank))
+        self.modes = min(max(modes, 1), self.ranking.size)
+        self.equations.take(np.sort(self.ranking[: self.modes]))
 
     @np.errstate(invalid="ignore", over="ignore")  # where Newton's method has gone astray
     def factor(self, row: FloatArray, by: FloatArray, scale: FloatArray) -> float:
@@ -136,49 +127,35 @@ class Condensed:
 
         by (unknown,) is the derivative by the parameter.
         """
-        self.by, self.row, self.scale = by.copy(), row / scale, scale.copy()
-        self.ordered = self.tangent[:, self.order[:, None], self.order]
-        self.holds = self.held.choose(self.ordered, self.rank)
-        return self.held.factor(self.row, self.by) if self.holds else self._factor()
-
-    def _factor(self) -> float:
-        rank, matrix = self.rank, np.asarray(self.solver.matrix)
-        np.matmul(self.ordered.reshape(self.contacts, -1, self.each), self.along, out=self.by_mode)
-        sorted_by_port = self.by_mode.reshape(self.contacts, self.parts, self.each, rank).transpose(
-            0, 2, 1, 3
-        )
-        self.by_port.reshape(self.contacts, self.each, self.parts, rank)[:] = sorted_by_port
-        np.matmul(self.shapes, self.by_port, out=self.on_modes.reshape(self.modes, -1))
-        self._answered(self.on_modes, matrix)
-        matrix[np.arange(rank), np.arange(rank)] += 1.0
-        column = np.empty((rank, 1))
-        self._answered(self._pushed(self.by)[:, :, None], column)
-        matrix[:rank, rank] = column[:, 0]
-        row, last = self._parts(self.row[:-1]), self.row[-1]
-        matrix[rank, :rank] = -(row @ self.shapes.T).ravel()
-        matrix[rank, rank] = last - self.row[:-1] @ self.by
-        return self.solver.orientation if self.solver.factor() else 0.0
+        np.divide(row, scale, out=self.row)
+        self.scale[:] = scale
+        self.equations.close(row, by, scale)
+        if self.held.choose(self.tangent, self.equations.rank):
+            self.equations.held = self.held
+            return self.held.factor(self.row, by)
+        self.equations.held = None
+        return float(self.equations.factor())
 
     @np.errstate(invalid="ignore", over="ignore")
     def solve(self, right: FloatArray) -> None:
         """Replace a right side (unknown + 1,) in units of scale by the solution in these."""
-        whole = right.copy()
-        whole[:-1] *= self.scale[:-1]
-        found = self._condensed(whole)
+        whole, found, options = right * self.scale, np.empty_like(right), self.options
+        whole[-1] = right[-1]
+        self.equations.condensed(whole, found)
         enough = self._enough(whole, found)
         while (self.holds or self.modes < self.ranking.size) and np.isfinite(found).all():
-            change = self._condensed(whole - self._image(found))
-            moved, small = self._corrected(change / self.scale, enough)
-            found += moved * self.scale
-            if small:
+            if self.equations.correct(whole, found, enough, options.corrections) <= enough:
                 break
             if not self.holds:
                 self.take(2 * self.modes)
-            self.holds = False
-            self._factor()
+            self.equations.held = None
+            self.equations.factor()
             if self.modes == self.ranking.size:  # that is the system itself
-                found += self._condensed(whole - self._image(found))
-        right[:] = found / self.scale
+                left, change = np.empty((2, right.size))
+                self.equations.image(found, left)
+                self.equations.condensed(whole - left, change)
+                found += change
+        np.divide(found, self.scale, out=right)
 
     def _enough(self, right: FloatArray, found: FloatArray) -> float:
         """What a correction of a solution may leave, in units of scale; of a direction, which is no step,
@@ -186,84 +163,3 @@ class Condensed:
         size, options = float(np.linalg.norm(found / self.scale)), self.options
         step = min(size, 1.0) if right[:-1].any() else 0.0
         return max(options.accurate * max(size, options.least), options.inexact * step * step)
-
-    def _corrected(self, change: FloatArray, enough: float) -> tuple[FloatArray, bool]:
-        """What a correction by the condensed system, in units of scale, comes to with all modes.
-
-        By the generalised minimal residuals (Saad and Schultz 1986), and whether these are small enough.
-        """
-        most, size = self.options.corrections, float(np.linalg.norm(change))
-        if size <= enough:
-            return change, True
-        basis, R = np.empty((most + 1, change.size)), np.zeros((most, most))
-        basis[0] = change / size
-        turns, right = list[tuple[float, float]](), [size]  # of the planes in which R is made triangular
-        left, taken = size, 0
-        for k in range(most):
-            new = self._condensed(self._image(basis[k] * self.scale)) / self.scale
-            column = basis[: k + 1] @ new
-            new -= column @ basis[: k + 1]
-            further = float(np.linalg.norm(new))
-            column = column.tolist()
-            for i, (c, s) in enumerate(turns):
-                column[i : i + 2] = c * column[i] + s * column[i + 1], c * column[i + 1] - s * column[i]
-            long = math.hypot(column[k], further)
-            if not 0.0 < long < math.inf:
-                break
-            c, s = column[k] / long, further / long
-            column[k] = long
-            turns.append((c, s))
-            right[k:] = [c * right[k], -s * right[k]]
-            R[: k + 1, k], left, taken = column, abs(right[k + 1]), k + 1
-            if not left > enough or further == 0.0:
-                break
-            basis[k + 1] = new / further
-        part = np.linalg.solve(R[:taken, :taken], right[:taken])
-        moved: FloatArray = part @ basis[:taken]
-        return moved, not left > enough
-
-    def _condensed(self, right: FloatArray) -> FloatArray:
-        """The solution with the modes that are condensed to alone, or beside contacts that are held."""
-        if self.holds:
-            return self.held.solve(right)
-        reduced, column = np.asarray(self.solver.right), np.empty((self.rank, 1))
-        self._answered(self._pushed(right[:-1])[:, :, None], column)
-        reduced[:-1], reduced[-1] = column[:, 0], right[-1] - self.row[:-1] @ right[:-1]
-        self.solver.solve()
-        y = reduced[:-1].reshape(self.parts, self.modes)
-        found = np.empty_like(right)
-        found[:-1] = right[:-1] - self.by * reduced[-1]
-        found[self.answer.place] -= y @ self.shapes
-        found[-1] = reduced[-1]
-        return found
-
-    def _image(self, x: FloatArray) -> FloatArray:
-        """What the whole system makes of x (unknown + 1,)."""
-        out = np.empty_like(x)
-        out[:-1] = x[:-1] + self.answer.to(self._forces(x[:-1])) + self.by * x[-1]
-        out[-1] = self.row @ x
-        return out
-
-    def _forces(self, x: FloatArray) -> FloatArray:
-        """The change of the contacts' forces, (unknown,)."""
-        force: FloatArray = (self.tangent @ x.reshape(self.contacts, self.width, 1)).ravel()
-        return force
-
-    def _parts(self, x: FloatArray) -> FloatArray:
-        return x[self.answer.place]  # type: ignore[no-any-return]
-
-    def _pushed(self, x: FloatArray) -> FloatArray:
-        """Forces on the modes (mode, part) of what the contacts' forces change by x (unknown,)."""
-        return self.shapes @ self._parts(self._forces(x)).T
-
-    def _answered(self, force: FloatArray, out: FloatArray) -> None:
-        """Fill the first columns of out with the modes' answer to forces (mode, part, column)."""
-        m, columns = self.modes, force.shape[2]
-        c_re, c_im = np.asarray(self.seen.c_re)[:, self.chosen], np.asarray(self.seen.c_im)[:, self.chosen]
-        out[:m, :columns] = self.mean @ force[:, 0]
-        for j in range(self.seen.count):
-            re, im = force[:, 1 + 2 * j], force[:, 2 + 2 * j]
-            first = (1 + 2 * j) * m
-            c, d = c_re[j][:, None], c_im[j][:, None]
-            out[first : first + m, :columns] = c * re - d * im
-            out[first + m : first + 2 * m, :columns] = d * re + c * im

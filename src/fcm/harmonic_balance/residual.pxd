@@ -1,6 +1,7 @@
 from fcm.continuation.problem cimport Problem
 from fcm.harmonic_balance.displacement cimport Displacements
 from fcm.harmonic_balance.contact_law cimport Law
+from fcm.harmonic_balance.modal_equations cimport ModalAnswer
 from fcm.structure.receptance cimport Receptance
 
 cdef class Balance(Problem):
@@ -8,6 +9,7 @@ cdef class Balance(Problem):
     cdef public Displacements shown
     cdef public list laws
     cdef public object condensed
+    cdef ModalAnswer answer
     cdef public object layout
     cdef public int contacts
     cdef public int directions

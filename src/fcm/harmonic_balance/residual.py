@@ -31,6 +31,7 @@ if cython.compiled:
         times_tangents,
     )
     from cython.cimports.fcm.harmonic_balance.contact_law import KINDS, Law
+    from cython.cimports.fcm.harmonic_balance.modal_equations import ModalAnswer
 else:
     from fcm.continuation.problem import NONE, Problem
     from fcm.harmonic_balance.compliance import (
@@ -41,6 +42,7 @@ else:
         times_tangents,
     )
     from fcm.harmonic_balance.contact_law import KINDS, Law
+    from fcm.harmonic_balance.modal_equations import ModalAnswer
 
 OWN_FLOOR = cython.declare(cython.double, 0.1)  # a unit is at least this much of its own maximum,
 OTHER_FLOOR = cython.declare(cython.double, 1e-6)  # and of the greatest
@@ -71,8 +73,13 @@ class Balance(Problem):
         self.force, self.now, self.rate, self.by_frequency = np.zeros((4, self.unknowns))
         self.evaluated = np.zeros(self.unknowns + 1)
         self.tangent = np.zeros((len(laws), width, width))
-        self.condensed: Condensed | None = None  # of the rank, whoever gives that
+        self.condensed: Condensed | None = None  # of the rank, see `condense`
+        self.answer: ModalAnswer | None = None  # then
         self.largest, self.size = np.zeros(layout.ports), np.zeros(layout.ports)
+
+    def condense(self, condensed: Condensed) -> None:
+        """Solve the systems of Newton's method, of which there is a rank, by this."""
+        self.condensed, self.answer = condensed, condensed.answer
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -104,7 +111,8 @@ class Balance(Problem):
         if self.condensed is None:
             times_forces(self.seen, self.force, self.residual)
         else:
-            np.asarray(self.residual)[:] = self.condensed.answer.to(np.asarray(self.force))
+            assert self.answer is not None
+            self.answer.to(self.force, self.residual)
         for p in range(self.ports):
             self.residual[self.seen.mean_at[p]] -= self.share * self.rest[p]
         less_external(self.seen, self.load, self.residual)
@@ -121,7 +129,8 @@ class Balance(Problem):
         if self.condensed is None:
             slope(self.seen, self.force, self.load, self.by_frequency)
             return 0
-        np.asarray(self.by_frequency)[:] = self.condensed.answer.rate(np.asarray(self.force))
+        assert self.answer is not None
+        self.answer.rate(self.force, self.by_frequency)
         less_external_slopes(self.seen, self.load, self.by_frequency)
         return 0
 

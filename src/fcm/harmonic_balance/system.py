@@ -175,7 +175,7 @@ class System:
         if rank:
             tangent, options = np.asarray(balance.tangent), self.condensing
             stuck, counted = self.springs(stuck=True), linear.counted
-            balance.condensed = Condensed(seen, linear.flexibility, tangent, yields, stuck, counted, options)
+            balance.condense(Condensed(seen, linear.flexibility, tangent, yields, stuck, counted, options))
         if self.scene.loads:
             balance.rest[:] = linear.ports.T @ linear.flexibility @ linear.load
             shown.rest[:] = linear.dofs.T @ linear.flexibility @ linear.load
