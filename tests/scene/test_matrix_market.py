@@ -95,11 +95,19 @@ def test_what_scipy_writes_of_complex_numbers(tmp_path):
             REAL + "2 2 2\n1 3 1\n0 1 1\n",
             ["line 3: entry (1, 3) is not within the 2 rows", "line 4: entry (0, 1)"],
         ),
-        (SYMMETRIC + "2 2 4\n1 1 1\n1 2 5\n2 1 5\n2 2 1\n", ["line 4: entry (1, 2) is above the diagonal"]),
-        (SYMMETRIC + "2 2 1\n1 2 5\n", ["of a symmetric matrix the lower triangle alone is given"]),
         (
-            SYMMETRIC.replace("symm", "skew-symm") + "2 2 1\n2 2 5\n",
-            ["entry (2, 2) is not below the diagonal"],
+            SYMMETRIC + "2 2 4\n1 1 1\n1 2 5\n2 1 5\n2 2 1\n",
+            [
+                "line 4: entry (1, 2) is above the diagonal; of a symmetric matrix the lower triangle alone "
+                "is given: leave it out, or write general in line 1"
+            ],
+        ),
+        (
+            SYMMETRIC + "2 2 3\n1 1 1\n1 2 5\n2 2 1\n",
+            [
+                "line 4: entry (1, 2) is above the diagonal; of a symmetric matrix the lower triangle alone "
+                "is given: write it as (2, 1)"
+            ],
         ),
         (SYMMETRIC + "2 3 1\n2 1 5\n", ["line 2: a symmetric matrix of 2 rows has 3 columns"]),
         (REAL + "2 2 3\n2 1 5\n1 1 1\n2 1 6\n", ["line 5: entry (2, 1) is there already, in line 3"]),

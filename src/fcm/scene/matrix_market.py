@@ -236,16 +236,26 @@ def _outside(found: Entries, head: _Head) -> list[tuple[int, str]]:
 
 
 def _across(found: Entries, head: _Head) -> list[tuple[int, str]]:
-    """Entries that a symmetry gives already."""
+    """Entries that a symmetry gives already, or would if they were on the other side of the diagonal."""
     if not head.indices or head.symmetry == "general":
         return []
     row, column = found["row"], found["column"]
     skew = head.symmetry == "skew-symmetric"
     wrong = (row <= column) if skew else (row < column)
     where = "is not below the diagonal" if skew else "is above the diagonal"
-    said = f"{where}; of a {head.symmetry} matrix the lower triangle alone is given: leave it out, or write"
+    said = f"{where}; of a {head.symmetry} matrix the lower triangle alone is given"
+    at = np.flatnonzero(wrong)
+    mirrored = row[at] + column[at] * (head.rows + 1)
+    twice = np.isin(mirrored, (column + row * (head.rows + 1))[~wrong]) | (row[at] == column[at]) | skew
     return [
-        (int(k), f"entry ({row[k]}, {column[k]}) {said} general in line 1") for k in np.flatnonzero(wrong)
+        (
+            int(k),
+            f"entry ({row[k]}, {column[k]}) {said}: "
+            + (
+                "leave it out, or write general in line 1" if both else f"write it as ({column[k]}, {row[k]})"
+            ),
+        )
+        for k, both in zip(at, twice.tolist(), strict=True)
     ]
 
 
