@@ -472,7 +472,7 @@ def test_modes_that_nothing_moves_are_left_out():
         modal.dofs, np.ones(2), np.array([1.0, 3.0]), np.full(2, 0.02), np.vstack((modal.shapes, np.zeros(2)))
     )
     response = trace_exact(replace(scene, modal=still))
-    assert response.left_out == ["1 mode of 2: neither a force nor a contact moves them (no effect)"]
+    assert response.left_out == ["1 mode of 2: neither a force nor a contact moves it (no effect)"]
     np.testing.assert_array_equal(response.curves[0].amplitude, curve_of(scene).amplitude)
 
 

@@ -71,8 +71,9 @@ def _without_still_modes(curves: tuple[Scene, ...]) -> tuple[tuple[Scene, ...], 
     if not moved.any() or moved.all():
         return curves, []
     lighter = _with_modals(curves, {id(s.modal): _some_modes(s.modal, moved) for s in curves})
-    what = f"{counted(int((~moved).sum()), 'mode')} of {moved.size}"
-    return lighter, [f"{what}: neither a force nor a contact moves them (no effect)"]
+    still = int((~moved).sum())
+    what, them = f"{counted(still, 'mode')} of {moved.size}", "it" if still == 1 else "them"
+    return lighter, [f"{what}: neither a force nor a contact moves {them} (no effect)"]
 
 
 def _static(lighter: Lighter, tolerance: float, highest: int) -> Lighter:
