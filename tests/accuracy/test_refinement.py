@@ -80,6 +80,25 @@ def test_peaks_are_as_accurate_as_was_asked_for(case, accuracy):
     assert np.abs(found.shown[0].amplitude.max(axis=0) / true - 1.0).max() < 1.5 * accuracy
 
 
+def test_a_degree_of_freedom_that_never_moves_changes_no_harmonics():
+    """Its amplitude was taken for infinite, and the shares of all for none: one harmonic was enough."""
+    alone = scene("yang1998-n5", 5)
+    modal = replace(
+        alone.modal,
+        dofs=(*alone.modal.dofs, "still"),
+        shapes=np.column_stack((alone.modal.shapes, np.zeros(len(alone.modal.mass)))),
+    )
+    contacts = tuple(
+        replace(one, tangential=np.append(one.tangential, 0.0), normal=np.append(one.normal, 0.0))
+        for one in alone.contacts
+    )
+    forces = tuple(replace(one, direction=np.append(one.direction, 0.0)) for one in alone.forces)
+    beside = replace(alone, modal=modal, contacts=contacts, forces=forces)
+    found, other = (accurate(System(one), 1e-3) for one in (alone, beside))
+    assert len(found.system.harmonics) > 1
+    assert other.system.harmonics == found.system.harmonics
+
+
 def test_harmonics_are_chosen_by_need():
     """At n_0 = -5 the ninth meets the mode at 10 rad/s; the fourth to eighth do next to nothing."""
     found = accurate(System(scene("yang1998", -5)), 2e-3)

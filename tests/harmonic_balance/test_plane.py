@@ -318,7 +318,9 @@ def test_the_onset_of_slip_on_a_straight_way_is_that_of_a_line():
 ROTATING = {"span": (0.6, 1.8), "n_0": 2.0, "mu": 0.4, "k_u": 1.0, "damping": 0.02, "force": (1.0, 1.0, 0.0)}
 
 
-def rotating(lag=QUARTER, frequency=(1.0, 1.0, 10.0), coupled=0.0, second=False, harmonics=1, **more):
+def rotating(
+    lag=QUARTER, frequency=(1.0, 1.0, 10.0), coupled=0.0, second=False, harmonics=1, optimum=None, **more
+):
     """Two isotropic modes under a force that turns, and how that may be spoilt, as a scene."""
     given = ROTATING | more
     shapes, natural = np.eye(3), list(frequency)
@@ -338,7 +340,7 @@ def rotating(lag=QUARTER, frequency=(1.0, 1.0, 10.0), coupled=0.0, second=False,
         "force": forces + ([{"dof": "z", "amplitude": z}] if z else []),
         "response": {"frequency": list(given["span"]), "harmonics": harmonics},
     }  # fmt: skip
-    return scene_from_dict(data)
+    return scene_from_dict(data | ({"optimum": optimum} if optimum else {}))
 
 
 @pytest.mark.parametrize(

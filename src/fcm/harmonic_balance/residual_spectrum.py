@@ -15,7 +15,7 @@ from collections.abc import Sequence
 import cython
 import numpy as np
 import numpy.typing as npt
-from cython.cimports.libc.math import fabs, floor
+from cython.cimports.libc.math import fabs, floor, isfinite
 
 from fcm.harmonic_balance.contact_law import Law
 from fcm.harmonic_balance.system import System
@@ -66,8 +66,9 @@ class FurtherHarmonics:
     ) -> FloatArray:
         """Share of the amplitude (point, dof) that each harmonic left out would have: (point, harmonic).
 
-        Of motions z (point, unknown + 1) the greatest of all degrees of freedom; zero for known harmonics,
-        those of the balance unless others are given: then, for harmonics of the balance, what they have.
+        Of motions z (point, unknown + 1) the greatest of all degrees of freedom of finite amplitude;
+        zero for known harmonics, those of the balance unless others are given: then, for harmonics of the
+        balance, what they have.
         """
         found, own = np.zeros((len(z), self.highest)), self.others
         if known is not None:
@@ -176,7 +177,8 @@ class FurtherHarmonics:
                     self.force[h, c * self.directions + k, 0] = law.force[at]
                     self.force[h, c * self.directions + k, 1] = law.force[at + 1]
         for k in range(self.size.shape[0]):
-            most = max(most, amplitude[k])
+            if isfinite(amplitude[k]):  # infinite: of a degree of freedom that does not count
+                most = max(most, amplitude[k])
         for k in range(self.size.shape[0]):
             self.size[k] = max(amplitude[k], self.least * most)
         if self.modes is None:
