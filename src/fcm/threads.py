@@ -6,7 +6,9 @@ Threads that wait for one another made a large scene ten times slower on a machi
 from __future__ import annotations
 
 import os
+import sys
 import threading
+from functools import lru_cache
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -59,6 +61,13 @@ class one_thread:  # noqa: N801
 
 
 def _limited() -> Any:
-    from threadpoolctl import threadpool_limits
+    return _libraries(len(sys.modules)).limit(limits=1, user_api="blas")
 
-    return threadpool_limits(1, user_api="blas")
+
+@lru_cache(maxsize=1)
+def _libraries(_: int) -> Any:
+    """Those that this process has loaded; to look for them takes a millisecond, and is done again only when
+    more modules have been imported."""
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()
