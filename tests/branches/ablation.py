@@ -8,13 +8,12 @@ Each mechanism is switched off in turn, and what changes is printed: peaks, bran
 
 import sys
 from contextlib import contextmanager
-from importlib import import_module
 from unittest.mock import patch
 
 import numpy as np
 
 from fcm.accuracy import outline, refinement
-from fcm.response import all_branches
+from fcm.response import refined
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.scene import load_scene
@@ -22,22 +21,21 @@ from fcm.scene import load_scene
 from ..response.random_scenes import random_scene
 
 ACCURACY, SAME = 1e-2, 1e-5
-trace = import_module("fcm.response.trace")  # not the function of that name
 
 # what is put in the place of what, where it is called
 OFF = {
-    "folds followed": [(all_branches, "with_isolas", lambda system, found: found)],
+    "folds followed": [(refined, "with_isolas", lambda system, found: found)],
     "branch points": [
-        (all_branches, "with_branching", lambda system, found: found),
-        (all_branches, "symmetry_lost", lambda system, found: ()),
+        (refined, "with_branching", lambda system, found: found),
+        (refined, "symmetry_lost", lambda system, found: ()),
     ],
     "prolongation": [
         (outline, "near", lambda before, harmonics: []),
         (refinement, "near", lambda before, harmonics: []),
     ],
-    "levels below peaks": [(all_branches, "with_levels_below_peaks", lambda found, accuracy: found)],
+    "levels below peaks": [(refined, "with_levels_below_peaks", lambda found, accuracy: found)],
     "levels where nothing is stable": [
-        (trace, "with_levels_where_unstable", lambda found, stable, accuracy: (found, False))
+        (refined, "with_levels_where_unstable", lambda found, stable, accuracy: (found, False))
     ],
     "low harmonics": [(refinement, "with_low_harmonics", lambda system, found: system.harmonics)],
 }

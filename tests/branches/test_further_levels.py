@@ -1,7 +1,6 @@
 """Frequencies at which no motion that was found is stable, and what is missed there."""
 
 from dataclasses import replace
-from importlib import import_module
 from pathlib import Path as File
 
 import numpy as np
@@ -9,7 +8,7 @@ import pytest
 
 from fcm.branches.force_level import solutions
 from fcm.branches.options import LEVELS
-from fcm.response import further_levels, trace
+from fcm.response import further_levels, refined, trace
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.scene import load_scene, scene_from_dict
@@ -110,8 +109,7 @@ def test_ranges_are_looked_at_the_widest_first_as_long_as_it_may_take_and_the_ot
     every = traced_curve(scene, Request(tuple(range(1, 6)), 1e-2)).summary()
     few = replace(LEVELS, share=0.05, unnoticed=0.0)
     whole = further_levels.with_levels_where_unstable
-    module = import_module("fcm.response.trace")
-    monkeypatch.setattr(module, "with_levels_where_unstable", lambda *args: whole(*args, few))
+    monkeypatch.setattr(refined, "with_levels_where_unstable", lambda *args: whole(*args, few))
     some = traced_curve(scene, Request(tuple(range(1, 6)), 1e-2)).summary()
     left, none = some["no_stable_motion_not_looked_at"], every.get("no_stable_motion_not_looked_at", [])
     assert len(none) < len(left) <= len(some["no_stable_motion"])

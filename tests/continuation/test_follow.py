@@ -143,41 +143,6 @@ def test_a_corner_at_which_it_goes_on(step):
     assert path.z[-1, 0] == pytest.approx(2.75, abs=1e-10)
 
 
-class Above(Planar):
-    """The slope is 0.1 up to p = 1 and beyond p = 3, -0.1 between; approximately x is 1e-9 p^2 higher."""
-
-    def __init__(self):
-        Problem.__init__(self, 2, 2, 1)
-        self.coarse, self.above = True, 0.0
-
-    def f(self, x, p):
-        slope, zero = (0.1, 0.0) if p < 1.0 else (-0.1, 2.0) if p < 3.0 else (0.1, 4.0)
-        off, rise = self.above * p * p, 2.0 * self.above * p
-        return x - slope * (p - zero) - off, 1.0, -slope - rise
-
-    def bound(self, z):
-        self.margin[0], self.margin[1] = z[2] - 1.0, z[2] - 3.0
-        return 0
-
-    def refine(self, exact):
-        self.above = 0.0 if exact else 1e-9
-        return 0
-
-
-@pytest.mark.parametrize("step", STEPS)
-def test_a_corner_has_the_shift_of_the_step_that_led_there(step):
-    """In the plane normal to a line of slope k in x and y, p in units of 2, one that is higher by d is
-    d sqrt(2 / (1 + 8 k^2)) away; at a corner that plane is of the piece before, and tilted by its angle."""
-    path = follow(Above(), start(0.05, 0.5), (0.5, 4.0), options=FollowOptions(step))
-    assert path.status is Status.COMPLETE
-    corners = path.where(Mark.CORNER)
-    assert path.parameter[corners] == pytest.approx([1.0, 3.0])
-    away = 1e-9 * path.parameter[corners] ** 2 * np.sqrt(2.0 / 1.08)
-    tilted = (0.02 + 0.25) / (0.25 - 0.02)  # 1 / cosine of the angle
-    assert np.all(path.shift[corners] > 0.99 * away)
-    assert np.all(path.shift[corners] < 1.01 * tilted * away)
-
-
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("wide", [0.0, 1e-12, 1e-10, 3e-9])
 def test_a_piece_that_is_all_but_nothing_is_part_of_a_corner(step, wide):

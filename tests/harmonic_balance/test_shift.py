@@ -1,32 +1,39 @@
-"""What the closed form changes of the points that the table leads to."""
+"""How far the table's solutions are from those of the closed form."""
 
 import numpy as np
-import pytest
 
 import fcm
 from fcm.branches.trace import traced
+from fcm.continuation import Mark
 from fcm.continuation.corrector import Newton
+from fcm.harmonic_balance.response_quantities import recorded, table_errors
 from fcm.harmonic_balance.system import System
 
+BESIDE_CORNERS = 8  # points, which are moved otherwise
 
-def test_the_shift_is_the_distance_to_the_solution_by_the_table_alone_and_none_where_nothing_slips():
+
+def test_the_error_is_the_distance_to_the_solution_by_the_table_alone_and_none_where_nothing_slips():
     scene, table = fcm.load_scene("yang1998-n5"), fcm.open_table()
-    path = traced(System(scene, (1,), table)).branches.paths[0]
-    newton = Newton(System(scene, (1,), table, corrected=False).balance())
-    problem, found, nothing = newton.problem, [], 0
-    plain = path.mark == 0  # what happens within a step has the shift of its end
-    for z, direction, shift in zip(path.z[plain], path.direction[plain], path.shift[plain], strict=True):
+    system = System(scene, (1,), table)
+    points = recorded(system, traced(system).branches.paths)
+    newton, problem = Newton(balance := System(scene, (1,), table, corrected=False).balance()), balance
+    corners = np.flatnonzero(points.mark & (Mark.CORNER | Mark.END))
+    error, found, nothing = table_errors(system, points), [], 0
+    for i, (z, direction) in enumerate(zip(points.z, points.tangent, strict=True)):
+        if np.abs(i - corners).min() < BESIDE_CORNERS:
+            continue
         problem.measure(z)
         newton.z[:], newton.scale[:] = z, problem.scale
         row = direction / np.asarray(problem.scale)
         newton.row[:] = row / np.linalg.norm(row)
         assert newton.correct(1e-3)
-        if problem.laws[0].mixed:
-            found.append((shift, newton.moved))
-        else:
-            assert newton.moved < 1e-12 and shift == 0.0
+        if points.linear[i]:
+            assert newton.moved < 1e-12 and error[i] == 0.0
             nothing += 1
-    shifts, distances = np.array(found).T
-    assert nothing > 20 and len(found) > 100
-    assert np.median(shifts / distances) == pytest.approx(1.0, rel=0.02)
-    assert 0.5 * distances.max() < shifts.max() < 2.0 * distances.max()
+        else:
+            found.append((error[i], newton.moved * np.sqrt(system.layout.ports)))
+    errors, distances = np.array(found).T
+    assert nothing > 10 and len(found) > 100
+    # one step misses what the table's splines bend by: at one point in forty that is much
+    assert np.quantile(np.abs(errors / distances - 1.0), 0.95) < 0.02
+    assert 0.5 * distances.max() < errors.max() < 2.0 * distances.max()

@@ -204,6 +204,6 @@ class Stretches:
 def _part(path: Path, rows: slice) -> Path:
     """Some points of a path."""
     return Path(
-        path.z[rows], path.direction[rows], path.mark[rows], path.orientation[rows], path.shift[rows],
+        path.z[rows], path.direction[rows], path.mark[rows], path.orientation[rows],
         path.status, path.evaluations,
     )  # fmt: skip

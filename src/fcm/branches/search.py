@@ -92,6 +92,5 @@ def _half(path: Path) -> Path:
         direction=path.direction[half],
         mark=path.mark[half],
         orientation=path.orientation[half],
-        shift=path.shift[half],
         status=Status.COMPLETE,
     )

@@ -142,19 +142,18 @@ class Event(NamedTuple):
     z: FloatArray
     direction: FloatArray
     orientation: float
-    shift: float  # from the approximate equations to the exact ones
 
 
 def found(stepper: Stepper, length: float, mark: int, point: Point) -> Event:
     """A point to keep."""
     direction = np.asarray(stepper.newton.scale) * np.asarray(point.tangent)
-    return Event(length, mark, np.array(point.z), direction, point.orientation, stepper.there.shift)
+    return Event(length, mark, np.array(point.z), direction, point.orientation)
 
 
 def seen(stepper: Stepper, poll: Sample, mark: int) -> Event:
     """A look to keep."""
     scale = np.asarray(stepper.newton.scale)
-    return Event(poll.at, mark, scale * poll.z, scale * poll.tangent, poll.orientation, stepper.there.shift)
+    return Event(poll.at, mark, scale * poll.z, scale * poll.tangent, poll.orientation)
 
 
 def first_margin(stepper: Stepper) -> float:
@@ -330,7 +329,7 @@ def enclosed(stepper: Stepper) -> Event:
     at = low.at + part * (high.at - low.at)
     tangent = low.tangent + part * turn
     here = stepper.here
-    return Event(at, Mark.FOLD, scale * z, scale * tangent, here.orientation, stepper.there.shift)
+    return Event(at, Mark.FOLD, scale * z, scale * tangent, here.orientation)
 
 
 def passings(stepper: Stepper, value: float, fold: Event | None) -> list[Event]:

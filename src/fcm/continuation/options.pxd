@@ -1,7 +1,7 @@
 cdef class NewtonOptions:
     cdef readonly int iterations, chords, kept, halves
     cdef readonly double close, preliminary, small, exact, rough, left, chord, shrinking, brief, hopeless
-    cdef readonly double slight, coarsest, astray, roundings
+    cdef readonly double slight, coarsest, roundings
 
 cdef class StepOptions:
     cdef readonly double first, shortest, cosine, sharp, far, turn, miss, uneven, uneven_times, shrink, grow

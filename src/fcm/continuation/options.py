@@ -52,8 +52,6 @@ class NewtonOptions:
         Part of the greatest first step: a second step this short is no sign of failure.
     coarsest : float
         A longer step is none that rounding makes.
-    astray : float
-        Part of a step, by which exact equations may move a point that approximate ones have found.
     roundings : float
         A step no longer than so many of rounding may be one.
     """
@@ -74,7 +72,6 @@ class NewtonOptions:
     hopeless: cython.double = 0.5
     slight: cython.double = 0.02
     coarsest: cython.double = 1e-6
-    astray: cython.double = 0.3
     roundings: cython.double = 8.0
 
 

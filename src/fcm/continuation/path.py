@@ -46,7 +46,6 @@ class Path:
     direction: FloatArray  # (point, unknown + 1) along the curve, in the units of z
     mark: npt.NDArray[np.int64]  # (point,) of `Mark`, joined
     orientation: FloatArray  # (point,) sign of the determinant of the equations closed by the direction
-    shift: FloatArray  # (point,) from the approximate equations, if there are any, to the exact ones
     status: Status
     evaluations: int  # of the equations, to follow it
     ended_by: int = -1  # which of the functions that were to end it did
@@ -68,7 +67,6 @@ class Path:
             direction=-self.direction[::-1].copy(),
             mark=self.mark[::-1],
             orientation=-self.orientation[::-1],
-            shift=self.shift[::-1],
         )
 
     def then(self, other: Path) -> Path:
@@ -78,7 +76,6 @@ class Path:
             direction=np.concatenate((self.direction, other.direction[1:])),
             mark=np.concatenate((self.mark[:-1], self.mark[-1:] | other.mark[:1], other.mark[1:])),
             orientation=np.concatenate((self.orientation, other.orientation[1:])),
-            shift=np.concatenate((self.shift, other.shift[1:])),
             status=other.status,
             evaluations=self.evaluations + other.evaluations,
         )

@@ -13,7 +13,6 @@ cdef class Point:
     cdef public double[::1] output
     cdef public double[::1] growth
     cdef public double orientation
-    cdef public double shift
     cdef bint inclined
     cdef int bounded(self, Problem problem) except -1
     cdef int like(self, Point other, double unit) except -1

@@ -27,7 +27,7 @@ class Point:
         self.kind = np.zeros(problem.margins, dtype=np.intc)
         self.slope = np.zeros(problem.margins)  # of the margins, along a unit of length
         self.output, self.growth = np.zeros(problem.outputs), np.zeros(problem.outputs)
-        self.orientation, self.shift, self.group = 0.0, 0.0, problem.group
+        self.orientation, self.group = 0.0, problem.group
         self.inclined = False  # whether the slopes are those there
 
     @cython.cfunc
@@ -42,7 +42,7 @@ class Point:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def like(self, other: Point, unit: cython.double) -> cython.int:
-        """Take everything but the shift from another point, whose unit of length is so many of the new."""
+        """Take everything from another point, whose unit of length is so many of the new."""
         i: cython.Py_ssize_t
         self.orientation, self.inclined = other.orientation, other.inclined
         for i in range(other.z.shape[0]):

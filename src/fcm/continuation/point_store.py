@@ -21,14 +21,14 @@ class Points(NamedTuple):
     z: FloatArray  # (point, unknown + 1)
     direction: FloatArray
     mark: npt.NDArray[np.int64]  # (point,)
-    rest: FloatArray  # (point, 2) orientation, shift
+    orientation: FloatArray  # (point,)
 
 
 class Stored(NamedTuple):
     """The points of a store: those before the last do not change any more, and are not copied."""
 
     before: Points
-    last: tuple[FloatArray, FloatArray, int, float, float]  # to be put again
+    last: tuple[FloatArray, FloatArray, int, float]  # to be put again
 
     @property
     def number(self) -> int:
@@ -38,18 +38,16 @@ class Stored(NamedTuple):
 
 @cython.cclass
 class PointStore:
-    """count points: z, direction (point, unknown + 1), mark, orientation, shift (point,), as of a `Path`."""
+    """count points: z, direction (point, unknown + 1), mark, orientation (point,), as of a `Path`."""
 
     def __init__(self, size: cython.int) -> None:
         self.count, self.size = 0, size
         self.z, self.direction = np.empty((ROOM, size)), np.empty((ROOM, size))
-        self.mark, self.rest = np.empty(ROOM, dtype=np.int64), np.empty((ROOM, 2))
+        self.mark, self.orientation = np.empty(ROOM, dtype=np.int64), np.empty(ROOM)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def add(
-        self, point: Point, scale: cython.double[::1], mark: cython.long, shift: cython.double
-    ) -> cython.int:
+    def add(self, point: Point, scale: cython.double[::1], mark: cython.long) -> cython.int:
         """Keep a point, with lengths in units of scale."""
         i: cython.Py_ssize_t
         self.widen()
@@ -57,7 +55,7 @@ class PointStore:
             self.z[self.count, i] = point.z[i]
             self.direction[self.count, i] = scale[i] * point.tangent[i]
         self.mark[self.count] = mark
-        self.rest[self.count, 0], self.rest[self.count, 1] = point.orientation, shift
+        self.orientation[self.count] = point.orientation
         self.count += 1
         return 0
 
@@ -69,13 +67,12 @@ class PointStore:
         direction: cython.double[::1],
         mark: cython.long,
         orientation: cython.double,
-        shift: cython.double,
     ) -> cython.int:
         """Keep a point."""
         self.widen()
         self.z[self.count, :], self.direction[self.count, :] = z, direction
         self.mark[self.count] = mark
-        self.rest[self.count, 0], self.rest[self.count, 1] = orientation, shift
+        self.orientation[self.count] = orientation
         self.count += 1
         return 0
 
@@ -86,18 +83,17 @@ class PointStore:
         if self.count < self.mark.shape[0]:
             return 0
         self.z, self.direction = _twice(self.z), _twice(self.direction)
-        self.mark, self.rest = _twice(self.mark), _twice(self.rest)
+        self.mark, self.orientation = _twice(self.mark), _twice(self.orientation)
         return 0
 
     def last(self) -> FloatArray:
         """The last point."""
         return np.array(self.z[self.count - 1])
 
-    def tail(self) -> tuple[FloatArray, FloatArray, int, float, float]:
+    def tail(self) -> tuple[FloatArray, FloatArray, int, float]:
         """A copy of the last point, to be put again."""
         k = self.count - 1
-        rest = float(self.rest[k, 0]), float(self.rest[k, 1])
-        return self.last(), np.array(self.direction[k]), int(self.mark[k]), *rest
+        return self.last(), np.array(self.direction[k]), int(self.mark[k]), float(self.orientation[k])
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -140,7 +136,7 @@ class PointStore:
     def close(self) -> None:
         """End at the first point."""
         first = np.array(self.z[0]), np.array(self.direction[0])
-        self.put(*first, self.mark[0], self.rest[0, 0], self.rest[0, 1])
+        self.put(*first, self.mark[0], self.orientation[0])
 
     def points(self) -> Points:
         """The points as they are now."""
@@ -148,7 +144,7 @@ class PointStore:
 
     def _first(self, count: int) -> Points:
         z, direction = np.asarray(self.z)[:count], np.asarray(self.direction)[:count]
-        return Points(z, direction, np.asarray(self.mark)[:count], np.asarray(self.rest)[:count])
+        return Points(z, direction, np.asarray(self.mark)[:count], np.asarray(self.orientation)[:count])
 
     def state(self) -> Stored:
         """The points as they will be kept, whatever comes after."""
@@ -157,19 +153,18 @@ class PointStore:
     def restore(self, kept: Stored) -> None:
         """Have these points and no others."""
         self.count = 0
-        for z, direction, mark, rest in zip(*kept.before, strict=True):
-            self.put(np.array(z), np.array(direction), mark, rest[0], rest[1])
+        for z, direction, mark, orientation in zip(*kept.before, strict=True):
+            self.put(np.array(z), np.array(direction), mark, orientation)
         self.put(*kept.last)
 
     def path(self, status: Status, evaluations: int) -> Path:
         """The points as they are."""
-        z, direction, mark, rest = self.points()
+        z, direction, mark, orientation = self.points()
         return Path(
             z=np.array(z),
             direction=np.array(direction),
             mark=np.array(mark),
-            orientation=np.array(rest[:, 0]),
-            shift=np.array(rest[:, 1]),
+            orientation=np.array(orientation),
             status=status,
             evaluations=evaluations,
         )

@@ -7,7 +7,6 @@ cdef class Problem:
     cdef public int outputs
     cdef public int rank
     cdef public int group
-    cdef public bint coarse
     cdef public bint labelled
     cdef public bint rooted
     cdef public bint costly
@@ -24,8 +23,6 @@ cdef class Problem:
     cpdef int probe(self, double[::1] z) except -1
     cpdef int measure(self, double[::1] z) except -1
     cpdef int bound(self, double[::1] z) except -1
-    cpdef int refine(self, bint exact) except -1
-    cpdef bint differs(self) except -1
     cpdef int report(self, double[::1] z, double[::1] direction) except -1
     cpdef double factor(self, double[::1] row, double[::1] scale) except -2.0
     cpdef int solve(self, double[::1] right) except -1

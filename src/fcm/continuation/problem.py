@@ -27,7 +27,6 @@ class Problem:
     itself. Then jacobian is (n, 1), the derivative by the parameter alone; see `factor` and `solve`.
     group: margins of so many in a row belong together; one is never the same as one of another group.
     unbounded: growth of the solution, in units of its size at the start, that only an undamped resonance has.
-    coarse: whether there are approximate equations, with which each point is sought first; see `refine`.
     costly: whether there are so many unknowns that every point counts: slight corners are stepped over,
     peaks and folds sought between all points of a step that are known.
     rooted: whether a margin may begin as a root of the distance from a corner, so that `Newton` halves steps.
@@ -38,7 +37,7 @@ class Problem:
         self, unknowns: cython.int, margins: cython.int, outputs: cython.int, rank: cython.int = 0
     ) -> None:
         self.unknowns, self.margins, self.outputs, self.rank = unknowns, margins, outputs, rank
-        self.coarse, self.labelled, self.unbounded = False, False, BOUNDLESS
+        self.labelled, self.unbounded = False, BOUNDLESS
         self.rooted = False
         self.group, self.costly = margins, unknowns >= DEAR
         self.residual = np.zeros(unknowns)
@@ -76,18 +75,6 @@ class Problem:
         NONE where there is none. Margins may come and go, and stand in any order.
         """
         return 0
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def refine(self, exact: cython.bint) -> cython.int:
-        """Evaluate the equations themselves from now on, or approximate ones."""
-        return 0
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def differs(self) -> cython.bint:
-        """Whether the approximate equations are others than these, where either was evaluated last."""
-        return True
 
     @cython.ccall
     @cython.exceptval(-1, check=False)

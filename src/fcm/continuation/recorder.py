@@ -56,7 +56,7 @@ class Recorder:
         here.z[self.n] = parameter
         self.interior = self.low < parameter < self.high
         self.first, self.head = np.array(here.z), np.array(here.tangent)
-        self.store.add(here, self.stepper.newton.scale, 0 if self.interior else END, self.stepper.there.shift)
+        self.store.add(here, self.stepper.newton.scale, 0 if self.interior else END)
 
     def resumes(self, checkpoint: Checkpoint) -> None:
         """Have the points that were kept, and no others."""
@@ -85,7 +85,7 @@ class Recorder:
             mark: cython.long = event.mark
             ends: cython.bint = mark & STATION and event.z[self.n] in (self.low, self.high)
             mark = END if ends else mark
-            self.store.put(event.z, event.direction, mark, event.orientation, event.shift)
+            self.store.put(event.z, event.direction, mark, event.orientation)
             if mark & STATION and self.been():
                 self.around = True
             self.stopped = self.stopped or bool(mark & self.last)
@@ -100,7 +100,7 @@ class Recorder:
             return self.end()
         far = length > stepper.options.step.shortest
         if far and stepper.put(length, False, False) and stepper.sharpen(False, False):
-            self.store.add(stepper.between, stepper.newton.scale, 0, stepper.there.shift)
+            self.store.add(stepper.between, stepper.newton.scale, 0)
         self.stopped, self.ended_by = True, number
         return Status.EVENT
 
@@ -128,7 +128,7 @@ class Recorder:
     @cython.exceptval(-1, check=False)
     def add(self, mark: cython.long) -> cython.int:
         """Keep the point there."""
-        return self.store.add(self.stepper.there, self.stepper.newton.scale, mark, self.stepper.there.shift)
+        return self.store.add(self.stepper.there, self.stepper.newton.scale, mark)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -137,7 +137,7 @@ class Recorder:
         mark: cython.long = CORNER
         if self.store.ends_at(point):
             mark |= self.store.drop()
-        return self.store.add(point, self.stepper.newton.scale, mark, self.stepper.there.shift)
+        return self.store.add(point, self.stepper.newton.scale, mark)
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -196,7 +196,7 @@ def earlier(stepper: Stepper, store: PointStore, points: int) -> bool:
     row = kept.direction[i] / np.asarray(stepper.problem.scale)
     if not stepper.begin(kept.z[i], row / np.linalg.norm(row)):
         return False
-    if stepper.here.orientation != kept.rest[i, 0]:
+    if stepper.here.orientation != kept.orientation[i]:
         return False
     store.cut(i + 1)
     return True

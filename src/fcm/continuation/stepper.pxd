@@ -28,7 +28,6 @@ cdef class Stepper:
     cdef int incline(self) except -1
     cdef bint exactly(self) except -1
     cdef bint found(self, double step) except -1
-    cdef bint twice(self, double step) except -1
     cdef bint roughly(self, double step, double close) except -1
     cpdef bint put(self, double at, bint margins, bint outputs) except -1
     cpdef bint near(self, double at, double[::1] guess) except -1

@@ -20,8 +20,6 @@ if cython.compiled:
 else:
     from fcm.continuation.predictor import FLAT, Predictor, along
 
-NAN = cython.declare(cython.double, float("nan"))
-
 
 @cython.cclass
 class Stepper:
@@ -52,7 +50,7 @@ class Stepper:
     @cython.exceptval(-1, check=False)
     def begin(self, z: cython.double[::1], row: cython.double[::1]) -> cython.int:
         """Start from near z, moved to the curve in the plane of row; 0 if there is no curve."""
-        self.past, self.here.shift, self.there.shift, self.between.shift = 0.0, 0.0, 0.0, 0.0
+        self.past = 0.0
         self.here.slope[:] = 0.0
         self.problem.measure(z)
         self.newton.scale[:] = self.problem.scale
@@ -123,11 +121,9 @@ class Stepper:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def found(self, step: cython.double) -> cython.bint:
-        """Correct the point there, with the approximate equations first if there are any."""
+        """Correct the point there."""
         if self.problem.labelled and step > self.options.step.sharp:
             return self.newton.correct(step, self.misled * step)
-        if self.problem.coarse and self.twice(step):
-            return True
         return self.roughly(step, self.close)
 
     @cython.cfunc
@@ -138,31 +134,6 @@ class Stepper:
         found: cython.bint = self.newton.correct(step)
         self.newton.close = self.options.newton.close
         return found
-
-    @cython.cfunc
-    @cython.exceptval(-1, check=False)
-    def twice(self, step: cython.double) -> cython.bint:
-        """Correct the point there with the approximate equations, then with the exact ones.
-
-        What those change is its shift; NaN where the approximate ones had no solution. Where both are the
-        same there is nothing to change; whether they are is as it was where they were evaluated last, mostly.
-        """
-        exact: cython.double = self.options.newton.close
-        close: cython.double = self.options.newton.preliminary if self.problem.differs() else exact
-        self.problem.refine(False)
-        near: cython.bint = (
-            self.roughly(step, close) and self.newton.moved < self.options.newton.astray * step
-        )
-        self.problem.refine(True)
-        self.there.shift = 0.0
-        if near and close == exact and not self.problem.differs():
-            return True
-        if near and self.newton.correct(step) and self.newton.moved < self.options.newton.astray * step:
-            self.there.shift = self.newton.moved if self.problem.differs() else 0.0
-            return True
-        self.newton.z[:] = self.guess
-        self.there.shift = NAN
-        return False
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -248,11 +219,10 @@ class Stepper:
     @cython.exceptval(-1, check=False)
     def shorten(self, at: cython.double) -> cython.bint:
         """Make the point at a length from here the one there, with the direction that it has exactly
-        there; the shift of the step stays."""
+        there."""
         if not self.put(at, False, False) or not self.sharpen(True, True):
             return False
         self.step, self.cosine = at, along(self.here.tangent, self.between.tangent)
-        self.between.shift = self.there.shift
         self.there, self.between = self.between, self.there
         return True
 

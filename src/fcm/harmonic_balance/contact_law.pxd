@@ -20,7 +20,6 @@ cdef class Law:
     cdef public double[::1] borne
     cpdef int evaluate(self, double[::1] x, Py_ssize_t first) except -1
     cpdef int probe(self, double[::1] x, Py_ssize_t first) except -1
-    cpdef int refine(self, bint exact) except -1
     cpdef int bound(self, double[::1] x, Py_ssize_t first) except -1
     cpdef int resist(self) except -1
     cpdef int cycle(self, double[::1] x, Py_ssize_t first) except -1

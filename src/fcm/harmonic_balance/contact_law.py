@@ -90,12 +90,6 @@ class Law:
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def refine(self, exact: cython.bint) -> cython.int:
-        """Evaluate the law itself from now on, or an approximation of it if it has one."""
-        return 0
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
     def resist(self) -> cython.int:
         """Fill `resistance`, of the motion that was evaluated last."""
         return 0

@@ -236,27 +236,6 @@ class Balance(Problem):
         return 0
 
     @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def refine(self, exact: cython.bint) -> cython.int:
-        """All contacts with their exact laws, or with what they have in the place of them."""
-        c: cython.Py_ssize_t
-        for c in range(self.contacts):
-            law: Law = self.laws[c]
-            law.refine(exact)
-        return 0
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def differs(self) -> cython.bint:
-        """Whether a contact slips or separates: coefficients are of these alone."""
-        c: cython.Py_ssize_t
-        for c in range(self.contacts):
-            law: Law = self.laws[c]
-            if law.mixed:
-                return True
-        return False
-
-    @cython.ccall
     @cython.exceptval(-2.0, check=False)
     def factor(self, row: cython.double[::1], scale: cython.double[::1]) -> cython.double:
         by = np.asarray(self.jacobian)[:, 0]

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from fcm.contact.loop import sequences
 from fcm.continuation import Path
+from fcm.continuation.distance import distances
 from fcm.harmonic_balance.points import Points, cycles_of
 from fcm.harmonic_balance.reported_quantities import Reported, reported
 from fcm.harmonic_balance.system import System
@@ -38,7 +39,7 @@ class Record:
     force: FloatArray  # (point, unknown) of the contacts, laid out as the unknowns
     tangent: FloatArray  # (point, unknown + 1) along the path
     orientation: FloatArray  # (point,)
-    shift: FloatArray  # (point,) from the table to the closed form, relative to the unknowns' size
+    linear: npt.NDArray[np.bool_]  # (point,) where no contact slips or separates
 
 
 def recorded(system: System, paths: Sequence[Path], shown: Sequence[Reported] | None = None) -> Record:
@@ -46,15 +47,28 @@ def recorded(system: System, paths: Sequence[Path], shown: Sequence[Reported] | 
     z = np.concatenate([path.z for path in paths])
     if shown is None:
         shown = [reported(system, path) for path in paths]
-    X, mean, amplitude, force = (
-        _joined([getattr(one, name) for one in shown]) for name in ("X", "mean", "amplitude", "force")
+    X, mean, amplitude, force, linear = (
+        _joined([getattr(one, name) for one in shown])
+        for name in ("X", "mean", "amplitude", "force", "linear")
     )
     number = np.repeat(np.arange(len(paths)), [path.z.shape[0] for path in paths])
-    names = ("mark", "direction", "orientation", "shift")
-    mark, tangent, orientation, shift = (np.concatenate([getattr(p, name) for p in paths]) for name in names)
+    names = ("mark", "direction", "orientation")
+    mark, tangent, orientation = (np.concatenate([getattr(p, name) for p in paths]) for name in names)
+    return Record(number, z, mark, X, mean, amplitude, force, tangent, orientation, linear)
+
+
+def table_errors(system: System, points: Record) -> FloatArray:
+    """By how much (point,) the table's own solutions differ, relative to the unknowns' size: one Newton step
+    of its balance; 0 where no contact slips or separates, or no table is used."""
+    error = np.zeros(points.path.size)
+    if system.tabled is None:
+        return error
+    system.tabled.afresh()
+    slips = ~points.linear
+    z, tangent = (np.ascontiguousarray(of[slips]) for of in (points.z, points.tangent))
     # a unit of the unknowns is their size times the root of their number
-    shift = shift * np.sqrt(system.layout.ports)
-    return Record(number, z, mark, X, mean, amplitude, force, tangent, orientation, shift)
+    error[slips] = distances(system.tabled.stepper.newton, z, tangent) * np.sqrt(system.layout.ports)
+    return error
 
 
 def _joined(parts: list[npt.NDArray[Any]]) -> npt.NDArray[Any]:

@@ -3,8 +3,6 @@ from fcm.harmonic_balance.contact_law cimport Law
 
 cdef class SingleHarmonic(Law):
     cdef public CoefficientLaw coefficients
-    cdef public CoefficientLaw exact
-    cdef public CoefficientLaw coarse
     cdef double[::1] numbers
     cdef double[:, ::1] slopes
     cdef double least, most

@@ -22,20 +22,19 @@ LEAST = cython.declare(cython.int, 4)
 class SingleHarmonic(Law):
     """Forces (27) and (29) with their derivatives by u_0, v_0, U, V.
 
-    Exact coefficients (a closed form), and coarse ones (a table), which may be the same.
+    Its coefficients are a law's: the closed form, or a table.
     """
 
     def __init__(
         self,
-        exact: CoefficientLaw,
-        coarse: CoefficientLaw,
+        coefficients: CoefficientLaw,
         mu: cython.double,
         k_u: cython.double,
         k_v: cython.double,
         n_0: cython.double,
     ) -> None:
         Law.__init__(self, 6, 2, 5, mu, k_u, k_v, n_0)
-        self.exact, self.coarse, self.coefficients = exact, coarse, exact
+        self.coefficients = coefficients
         self.numbers, self.slopes = np.zeros(12), np.zeros((3, 6))
         self.least, self.most = 0.0, 0.0  # see `limits`
 
@@ -55,12 +54,6 @@ class SingleHarmonic(Law):
             elif self.margin[CLOSES] > 0.0:
                 self.mixed = True
                 self.slipping(x, first, b)
-        return 0
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def refine(self, exact: cython.bint) -> cython.int:
-        self.coefficients = self.exact if exact else self.coarse
         return 0
 
     @cython.ccall

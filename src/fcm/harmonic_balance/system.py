@@ -48,8 +48,8 @@ class System:
 
     The harmonics of its forces are balanced whatever harmonics are asked for.
 
-    With one harmonic the curves can be followed by a table: each point is then corrected with the closed
-    form, unless that is left out. condensing says when the linear systems of many contacts are condensed.
+    With one harmonic the coefficients of a table may be the contacts' law, see `tabled`: that of this balance
+    if it is not corrected. condensing says when the linear systems of many contacts are condensed.
     """
 
     scene: Scene
@@ -58,7 +58,7 @@ class System:
     corrected: bool = True
     condensing: CondensedOptions = OPTIONS
     linear: Linear = field(init=False)
-    coarse: CoefficientLaw = field(init=False)  # the table's
+    coefficients: CoefficientLaw = field(init=False)  # the table's, or the closed form's
     on_ports: dict[float, ComplexArray] = field(init=False, default_factory=dict)  # see `linear_contacts`
     kept: dict[object, object] = field(init=False, default_factory=dict)  # known of its contacts' states
     work: Work = field(init=False, default_factory=Work, compare=False)
@@ -66,7 +66,7 @@ class System:
     def __post_init__(self) -> None:
         object.__setattr__(self, "linear", linear_of(self.scene))
         object.__setattr__(self, "harmonics", self._with_driven(self.harmonics))
-        object.__setattr__(self, "coarse", ClosedForm() if self.table is None else self.table.law())
+        object.__setattr__(self, "coefficients", ClosedForm() if self.table is None else self.table.law())
 
     def with_harmonics(self, harmonics: tuple[int, ...]) -> System:
         """The same with other harmonics."""
@@ -99,7 +99,7 @@ class System:
     def _with(self, **other: object) -> System:
         found = object.__new__(type(self))
         found.__dict__.update(vars(self), **other)
-        for made in ("_workspace", "unit", "normal", "yields", "layout"):
+        for made in ("_workspace", "unit", "normal", "yields", "layout", "tabled"):
             found.__dict__.pop(made, None)
         return found
 
@@ -179,9 +179,6 @@ class System:
         if self.scene.loads:
             balance.rest[:] = linear.ports.T @ linear.flexibility @ linear.load
             shown.rest[:] = linear.dofs.T @ linear.flexibility @ linear.load
-        # where solving takes the time the closed form costs no more than the table
-        tabled = self.table is not None and not rank
-        balance.coarse = tabled and self.corrected and self.harmonics == (1,) and self._of_one_harmonic
         return balance
 
     @cached_property
@@ -193,6 +190,17 @@ class System:
         springs = self.springs(stuck=True)
         return yielding(linear.natural, linear.ports, linear.flexibility, springs, highest)
 
+    @cached_property
+    def tabled(self) -> System | None:
+        """The balance by the table, whose solutions are told how far they are off; None without a table.
+
+        Where solving takes the time the closed form costs no more than a table, and none is looked at.
+        """
+        with_one = self.harmonics == (1,) and self._of_one_harmonic
+        if self.table is None or not self.corrected or not with_one or self.looking.rank:
+            return None
+        return self._with(corrected=False)
+
     @property
     def _of_one_harmonic(self) -> bool:
         """Whether all contacts have a law of one harmonic."""
@@ -202,9 +210,8 @@ class System:
         """The contacts; those on a line with one harmonic in closed form, or by the table."""
         if self.harmonics != (1,) or not self._of_one_harmonic:
             return self.exact_laws(self.harmonics)
-        exact = ClosedForm() if self.corrected else self.coarse
-        contacts = self.scene.contacts
-        return [SingleHarmonic(exact, self.coarse, c.mu, c.k_u, c.k_v, c.n_0) for c in contacts]
+        of = ClosedForm() if self.corrected else self.coefficients
+        return [SingleHarmonic(of, c.mu, c.k_u, c.k_v, c.n_0) for c in self.scene.contacts]
 
     def exact_laws(self, outputs: tuple[int, ...]) -> list[Law]:
         """The contacts with the exact forces of the motion, of which some harmonics are asked for."""

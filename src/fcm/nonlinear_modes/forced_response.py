@@ -83,5 +83,5 @@ def _between(mode: Mode, i: int, level: float) -> FloatArray | None:
 
 def _points(mode: Mode, z: FloatArray) -> Mode:
     none = np.zeros(len(z))
-    path = Path(z, np.zeros_like(z), none.astype(np.int64), none, none, mode.path.status, 0)
+    path = Path(z, np.zeros_like(z), none.astype(np.int64), none, mode.path.status, 0)
     return mode_at(mode.system, mode.problem, path)

@@ -93,9 +93,9 @@ class Released:
             _each(self.point, before.z),
             _each(self.way, before.direction),
             before.mark,
-            before.rest * [sense, 1.0],
+            sense * before.orientation,
         )
-        end = self.point(last[0]), self.way(last[1]), last[2], sense * last[3], last[4]
+        end = self.point(last[0]), self.way(last[1]), last[2], sense * last[3]
         return checkpoint._replace(
             kept=Stored(points, end),
             start=self.point(checkpoint.start),

@@ -24,8 +24,8 @@ class ResponseError(ValueError):
 class Request:
     """How a curve is traced: with given harmonics, or with as many as an accuracy takes.
 
-    With one harmonic it is followed with the coefficients of a table, if there is one; unless they are not to
-    be corrected, its points are solutions with the closed form.
+    With one harmonic and a table it is told how far the table's own solutions are from the points, which are
+    solutions with the closed form; unless they are not to be corrected: then they are the table's.
     """
 
     harmonics: tuple[int, ...] | None = (1,)

@@ -59,8 +59,8 @@ def trace(
     scene : Scene
         From `fcm.load_scene`; one curve for each combination of its swept values.
     method : {"table", "closed-form"}
-        Coefficients that the solver uses on its way. Either way every point is then corrected with the
-        closed form; the shift is its `table_error`.
+        Coefficients of one harmonic. Either way the points are solutions with the closed form; with a table
+        it is looked up at each of them, and how far its own solution is from there is its `table_error`.
     table : optional
         An open table; the shipped one by default.
     progress : optional
@@ -177,7 +177,7 @@ class _Sweep:
         return response
 
     def _table(self, lighter: Lighter) -> Table | None:
-        """What the curves are followed with; a table only if a contact needs it."""
+        """What is looked up at the points of the curves; a table only if a contact needs it."""
         if self.method != "table" or self.table is not None:
             return self.table
         if lighter.idle_table:

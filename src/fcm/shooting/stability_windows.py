@@ -107,7 +107,6 @@ def with_windows(problem: OrbitProblem, path: Path, points: Sequence[Point]) -> 
         direction=filled(path.direction, [one.direction for one in found]),
         orientation=filled(path.orientation, [one.orientation for one in found]),
         mark=np.insert(path.mark, behind, np.zeros(len(found), dtype=np.int64)),
-        shift=filled(path.shift, [0.0] * len(found)),
     )
     return whole, [k + i for i, k in enumerate(behind)]
 

@@ -64,5 +64,4 @@ def with_points(path: Path, inserted: Sequence[Inserted]) -> Path:
         direction=np.insert(path.direction, at, [one.direction for one in inserted], axis=0),
         mark=np.insert(path.mark, at, [one.mark for one in inserted]),
         orientation=np.insert(path.orientation, at, [one.orientation for one in inserted]),
-        shift=np.insert(path.shift, at, path.shift[at - 1]),
     )

@@ -1,0 +1,188 @@
+"""A response with every branch and its stability, and the harmonics that an accuracy takes for all of it.
+
+What was traced is looked at in stages: its branches, the events on them, the degrees of freedom that it was
+not followed by. Each tells which harmonics it lacks; with these all is traced again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.accuracy.refinement import Accurate, Keep, enlarged, finer
+from fcm.accuracy.stability_limits import Lost, lost_along, moved
+from fcm.accuracy.stability_validity import astray
+from fcm.branches.branch_points import all_up_to
+from fcm.branches.search import symmetry_lost, with_branching, with_isolas
+from fcm.harmonic_balance.reported_quantities import Reported, reported_at
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray, Scene
+from fcm.response.further_levels import with_levels_below_peaks, with_levels_where_unstable, with_traced
+from fcm.response.master_dofs import of_all
+from fcm.stability.bifurcations import Inserted, stability, with_points
+
+ROUNDS = 4  # of more harmonics: what then is left is said
+
+Rows = npt.NDArray[np.intp]
+Harmonics = tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Refined:
+    """A response, its events, and whether each of its points is stable.
+
+    Attributes
+    ----------
+    found : Accurate
+        The response, of the degrees of freedom that it was followed by.
+    stable : list of array (point,)
+        For each path; 1 stable, 0 not, NaN not known.
+    lost : list of Lost
+        How far the frequencies are off at which stability changes without a fold, where harmonics are chosen.
+    exceeded : bool
+        Whether more harmonics have a higher branch, where they are given.
+    bifurcations : list of (str, float)
+        How stability changes without a fold, and where [rad/s].
+    every : Accurate
+        The response of all degrees of freedom.
+    """
+
+    found: Accurate
+    stable: list[FloatArray] = field(default_factory=list)
+    lost: list[Lost] = field(default_factory=list)
+    exceeded: bool = False
+    bifurcations: list[tuple[str, float]] = field(default_factory=list)
+    every: Accurate | None = None
+
+
+# the response, the one before with fewer harmonics, the accuracy (None: the harmonics are given), the scene
+# with all degrees of freedom; to the response with more of it known, and the harmonics that this takes
+Stage = Callable[[Refined, Refined | None, float | None, Scene], tuple[Refined, Harmonics]]
+
+
+def refined(found: Accurate, accuracy: float | None, scene: Scene, keep: Keep) -> Refined:
+    """A response that was traced with every branch, its events, and all degrees of freedom of a scene.
+
+    With an accuracy also with the harmonics that these take, unless that takes longer than is worth it.
+    What there is is told to keep, before more is traced.
+    """
+    now, before = Refined(found), None
+    stages: Sequence[Stage] = (_with_branches, _with_events, _with_all_dofs)
+    for left in reversed(range(ROUNDS + 1)):
+        again = None
+        for stage in stages:
+            now, more = stage(now, before, accuracy, scene)
+            if accuracy is not None and left and more != now.found.system.harmonics:
+                keep(now.found, now.found.worst, more)
+                again = finer(now.found, more, accuracy)
+                if again is not None:
+                    break
+        if again is None:
+            break
+        keep(again, again.worst, ())
+        now, before = Refined(again), now
+    return now
+
+
+def _with_branches(
+    now: Refined, _: Refined | None, accuracy: float | None, __: Scene
+) -> tuple[Refined, Harmonics]:
+    """With what levels below its peaks, its folds and its branch points lead to."""
+    known, most = now.found.traced, _most(accuracy)
+    found = with_levels_below_peaks(now.found, most)
+    traced = with_branching(found.system, with_isolas(found.system, found.traced))
+    found = found if traced is found.traced else with_traced(found, traced, most)
+    lost = symmetry_lost(found.system, found.traced)
+    if lost:
+        found = replace(found, traced=replace(found.traced, symmetry_lost=lost))
+        return replace(now, found=found), all_up_to(found.system).harmonics
+    more = enlarged(found, most) if traced is not known and not found.agrees else found.system.harmonics
+    return replace(now, found=found), more
+
+
+def _with_events(
+    now: Refined, before: Refined | None, accuracy: float | None, _: Scene
+) -> tuple[Refined, Harmonics]:
+    """With its stability, the points where that changes, and what levels lead to where nothing is stable."""
+    now = _with_stability(now, accuracy)
+    found, exceeded = with_levels_where_unstable(now.found, now.stable, _most(accuracy))
+    now = _with_stability(replace(now, found=found, exceeded=exceeded), accuracy)
+    if before is not None:
+        now = replace(now, lost=moved(now.lost, before.lost))
+    off = (one for one in now.lost if not one.error <= _most(accuracy))
+    more = {h for one in off for h in one.harmonics} | set(now.found.system.harmonics)
+    return now, tuple(sorted(more))
+
+
+def _with_all_dofs(
+    now: Refined, _: Refined | None, accuracy: float | None, scene: Scene
+) -> tuple[Refined, Harmonics]:
+    """Of all degrees of freedom of a scene, if only those that lead were followed."""
+    found, most = now.found, _most(accuracy)
+    if found.system.scene is scene:
+        return replace(now, every=found), found.system.harmonics
+    every = of_all(found, scene, most)
+    short = found.reached and not every.reached
+    return replace(now, every=every), enlarged(every, most) if short else found.system.harmonics
+
+
+def _most(accuracy: float | None) -> float:
+    return np.inf if accuracy is None else accuracy
+
+
+def _with_stability(now: Refined, accuracy: float | None) -> Refined:
+    """With points where stability changes between folds, and whether each point is stable, for the branches
+    of which that is not known yet.
+
+    With an accuracy, and how far it is from where more harmonics have these; not of a curve that has not come
+    to it, and is said not to: of that nothing is looked for where it has long lost that of more harmonics.
+    """
+    found, stable, lost = now.found, list(now.stable), list(now.lost)
+    bifurcations = list(now.bifurcations)
+    short, known = accuracy is not None and not found.reached, len(stable)
+    every = found.traced.branches.paths
+    paths, shown, errors = list(every[:known]), list(found.shown[:known]), list(found.errors[:known])
+    for path, seen, error in zip(every[known:], found.shown[known:], found.errors[known:], strict=True):
+        judged = stability(found.system, path, astray(error.believed) if short else None)
+        inserted = judged.inserted
+        bifurcations += [(one.kind.value, one.frequency) for one in judged.crossings]
+        if accuracy is not None and not short:
+            lost += lost_along(found.system, path, judged.crossings, accuracy)
+        if not inserted:
+            paths.append(path)
+            shown.append(seen)
+            errors.append(error)
+            stable.append(judged.stable)
+            continue
+        after = np.array([one.after for one in inserted], dtype=np.intp)
+        paths.append(with_points(path, inserted))
+        shown.append(_with_reported(found.system, seen, inserted, after))
+        errors.append(
+            replace(
+                error,
+                amplitude=_between(error.amplitude, after),
+                truncation=_between(error.truncation, after),
+                met=np.insert(error.met, after + 1, error.met[after]),
+                borne=_between(error.borne, after),
+            )
+        )
+        stable.append(np.insert(judged.stable, after + 1, [one.stable for one in inserted]))
+    branches = replace(found.traced.branches, paths=tuple(paths))
+    traced = replace(found.traced, branches=branches)
+    found = replace(found, traced=traced, shown=tuple(shown), errors=tuple(errors))
+    return replace(now, found=found, stable=stable, lost=lost, bifurcations=bifurcations)
+
+
+def _with_reported(system: System, known: Reported, inserted: Sequence[Inserted], after: Rows) -> Reported:
+    """With what is reported of points inserted after some others."""
+    z, direction = (np.array([getattr(one, name) for one in inserted]) for name in ("z", "direction"))
+    return known.with_rows(after, reported_at(system, z, direction))
+
+
+def _between(values: FloatArray, after: Rows) -> FloatArray:
+    """With the means of neighbours inserted after some rows."""
+    means = 0.5 * (values[after] + values[np.minimum(after + 1, len(values) - 1)])
+    return np.insert(values, after + 1, means, axis=0)
