@@ -10,6 +10,25 @@ from fcm.plot.interface import draw_interface, greatest_takers, points_of, read_
 from ..harmonic_balance.strips import strip
 from ..program import called
 
+SCENE = """modal = {{ dofs = {dofs}, frequency = [1.0], damping = [0.05], shapes = [{shapes}] }}
+response = {{ frequency = [1.0, 3.0], harmonics = 1 }}
+force = [{{ dof = "1x", amplitude = 0.01 }}]
+[[contact]]
+name = "joint"
+nodes = "pairs.csv"
+tangential = "x"
+normal = "z"
+mu = 0.3
+k_u = 0.1
+k_v = 0.1
+n_0 = 5.0
+"""
+
+
+def _dofs(nodes):
+    names = [f"{node}{axis}" for node in range(1, nodes + 1) for axis in "xz"]
+    return {"dofs": names, "shapes": [1.0 + 0.1 * k for k in range(len(names))]}
+
 
 @pytest.fixture(scope="module")
 def file(tmp_path_factory):
@@ -116,26 +135,37 @@ def test_the_command_writes_a_picture_and_lists_contacts(file, fcm):
     assert fcm("plot", "contacts", path, *many).code == 2
 
 
+def test_curves_of_a_sweep_are_columns_each_at_its_own_peak(tmp_path, fcm):
+    scene = SCENE + '[sweep]\n"force.1x.amplitude" = [0.01, 5.0, 20.0]\n'
+    (tmp_path / "pairs.csv").write_text("node,other\n1,\n2,\n")
+    (tmp_path / "model.toml").write_text(scene.format(**_dofs(2)))
+    output = tmp_path / "a.nc"
+    assert fcm("respond", tmp_path / "model.toml", "-o", output).code == 0
+    read = read_interface(output)
+    points = [point for curve in (0, 2) for (point,) in [points_of(read, (), curve)]]
+    with netCDF4.Dataset(output) as data:
+        tops = [float(np.max(data["amplitude"][k])) for k in (0, 2)]
+        at = []
+        for k, top in zip((0, 2), tops, strict=True):
+            at.append(data["frequency"][k][np.any(data["amplitude"][k] == top, axis=1)])
+    assert [one.frequency for one in points] == [float(one[0]) for one in at]
+    assert points[0].borne[0].sum() == 0.0 < points[1].borne[0].sum()  # the first sticks
+    figure = draw_interface(read, points)
+    heads = [axes.get_title() for axes in figure.axes[:2]]
+    assert "0.01" in heads[0] and "20" in heads[1]
+    done = fcm("plot", "contacts", output, "--curve", "0", "--curve", "2", "-o", tmp_path / "a.svg")
+    assert done.code == 0 and "curve 0; 2" in done.err and "curve 2; 2" in done.err
+    few = [word for k in (0, 1, 2) for word in ("--curve", k)]
+    many = [word for at in ("1.2", "1.3", "1.4") for word in ("--at", at)]
+    assert "ask for 9 points" in fcm("plot", "contacts", output, *few, *many).err
+
+
 def test_contacts_of_node_pairs_are_drawn_where_they_are(tmp_path):
     """Coordinates of the scene's file of pairs, seen in the plane of the contacts: distances are kept."""
     corners = np.array([[0.0, 0.0, 2.0], [3.0, 0.0, 2.0], [3.0, 4.0, 2.0], [0.0, 1.0, 2.0]])
     rows = [f"{k + 1},,{x},{y},{z}" for k, (x, y, z) in enumerate(corners)]
     (tmp_path / "pairs.csv").write_text("\n".join(["node,other,x,y,z", *rows]))
-    dofs = [f"{node}{axis}" for node in range(1, 5) for axis in "xz"]
-    shapes = [1.0 + 0.1 * k for k in range(len(dofs))]
-    scene = f"""modal = {{ dofs = {dofs}, frequency = [1.0], damping = [0.05], shapes = [{shapes}] }}
-response = {{ frequency = [1.0, 3.0], harmonics = 1 }}
-force = [{{ dof = "1x", amplitude = 0.01 }}]
-[[contact]]
-name = "joint"
-nodes = "pairs.csv"
-tangential = "x"
-normal = "z"
-mu = 0.3
-k_u = 0.1
-k_v = 0.1
-n_0 = 5.0
-"""
+    scene = SCENE.format(**_dofs(4))
     (tmp_path / "model.toml").write_text(scene)
     output = tmp_path / "a.nc"
     assert called("respond", tmp_path / "model.toml", "-o", output).code == 0

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.linalg
 
 import fcm
 from fcm.harmonic_balance.static_equilibrium import RestError, rest_of
@@ -243,3 +244,43 @@ def test_the_linear_response_grows_with_the_forces():
     for omega in (0.8, 1.7):
         one, other = (linear_response(each, np.array([omega]), springs) for each in (scene, YANG))
         assert one == pytest.approx(omega**2 * other, rel=1e-12)
+
+
+def test_bolts_press_a_joint_together_where_it_does_not_open():
+    """A beam on unilateral springs: those in contact bear the loads, by an active set of linear statics."""
+    nodes, k_v, bolts = 9, 50.0, {2: 3.0, 4: 5.0}
+    bend = np.diff(np.eye(nodes), 2, axis=0)
+    K = 40.0 * bend.T @ bend + 1e-9 * np.eye(nodes)  # nothing else holds it
+    square, shapes = np.linalg.eigh(K)
+    force = np.zeros(nodes)
+    force[list(bolts)] = list(bolts.values())
+    closed, before = np.ones(nodes, dtype=bool), None
+    while before is None or (closed != before).any():
+        v = np.linalg.solve(K + np.diag(k_v * closed), force)
+        before, closed = closed, v > 0.0
+    assert 0 < closed.sum() < nodes and k_v * v[closed].sum() == pytest.approx(8.0, rel=1e-6)
+    scene = scene_from_dict(
+        {
+            "modal": {
+                "dofs": [f"{i}z" for i in range(nodes)] + ["x"],
+                "frequency": [*np.sqrt(square), 3.0],
+                "damping": [0.02] * (nodes + 1),
+                "shapes": scipy.linalg.block_diag(shapes.T, 1.0),
+            },
+            "contact": [
+                {"name": f"c{i}", "tangential": "x", "normal": f"{i}z", "mu": 0.3, "k_u": 1.0, "k_v": k_v,
+                 "n_0": 0.0} for i in range(nodes)
+            ],
+            "load": [{"dof": f"{i}z", "force": one} for i, one in bolts.items()],
+            "force": [{"dof": "x", "amplitude": 1e-4}],
+            "response": {"frequency": [3.0, 5.0], "harmonics": 1},
+        },
+        "bolts",
+    )  # fmt: skip
+    rest = rest_of(scene)[0] @ scene.modal.shapes
+    assert rest[:nodes] == pytest.approx(v, rel=1e-6, abs=1e-9)
+    found = fcm.respond(scene)
+    pressed = found.greatest_normal_force.values[0, 0]  # the load does not vary
+    assert pressed == pytest.approx(np.where(closed, k_v * v, 0.0), rel=1e-6, abs=1e-9)
+    stick = np.sqrt(9.0 + closed.sum())  # of each closed contact k_u
+    assert found.peak_frequency.sel(dof="x").item() == pytest.approx(stick, rel=1e-3)

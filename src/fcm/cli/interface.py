@@ -21,7 +21,10 @@ HEAD = ("contact", "state", "energy", "of all", "slip path", "normal force")
     "--at", type=FiniteRange(min=0.0), multiple=True, metavar="F",
     help="The frequency, in the file's unit; several make a film strip.  [default: of the greatest peak]",
 )  # fmt: skip
-@click.option("--curve", type=click.IntRange(min=0), default=0, show_default=True, help="Of a sweep.")
+@click.option(
+    "--curve", "curves", type=click.IntRange(min=0), multiple=True, metavar="K", default=(0,),
+    show_default="0", help="Of a sweep, counted from 0; several make a film strip.",
+)  # fmt: skip
 @click.option(
     "--places", type=click.Path(exists=True, dir_okay=False, readable=True, path_type=Path), metavar="PLACES",
     help="A text file with a line NAME X Y for each contact.  [default: places of node sets, or a row]",
@@ -32,7 +35,7 @@ def contacts(
     file: Path,
     output: Path | None,
     at: tuple[float, ...],
-    curve: int,
+    curves: tuple[int, ...],
     places: Path | None,
 ) -> None:
     """Draw what the contacts do of FILE, the netCDF file of `fcm respond -o FILE`.
@@ -50,17 +53,21 @@ def contacts(
     )
 
     output = picture_of(file, output, "-contacts.png", places, page=True)
-    if len(at) > MOST:
-        raise click.UsageError(f"--at is given {len(at)} times; a picture has room for {MOST}.")
+    count = max(len(at), 1) * len(curves)
+    if count > MOST:
+        options = " and ".join(name for name, given in (("--at", at), ("--curve", curves)) if len(given) > 1)
+        raise click.UsageError(f"{options} ask for {count} points; a picture has room for {MOST}.")
     read = read_interface(file)
-    points = points_of(read, at, curve)
+    points = [point for curve in curves for point in points_of(read, at, curve)]
     where = read.places if places is None else read_places(places, read.contacts)
-    for point in points:
+    each = [curve for curve in curves for _ in at or (0.0,)]
+    for point, curve in zip(points, each, strict=True):
         rows = [HEAD, *greatest_takers(read, point, MOST_ROWS)]
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         for row in rows:
             messages.info("  ".join(word.rjust(width) for word, width in zip(row, widths, strict=True)))
-        messages.info(f"at {point.frequency:.6g} {read.unit}; {len(read.contacts)} contacts")
+        of = f", curve {curve}" if len(read.frequency) > 1 else ""
+        messages.info(f"at {point.frequency:.6g} {read.unit}{of}; {len(read.contacts)} contacts")
     if is_page(output):
         from fcm.plot.interactive import contacts_page
 

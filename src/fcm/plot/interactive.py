@@ -124,7 +124,7 @@ def contacts_page(
     shown = [_of_contacts(points, k, head, tops[k], places is None) for k, head in enumerate(heads)]
     frequencies = [
         {
-            "label": f"{one.frequency:.6g} {file.unit}{_doubt(one.stable)}",
+            "label": f"{one.curve} {one.frequency:.6g} {file.unit}{_doubt(one.stable)}".strip(),
             "method": "restyle",
             "args": [{"visible": [j == i for j in range(len(points))]}],
         }

@@ -11,8 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.plot.errors import PlotError
+from fcm.plot.labels import curve_label
 from fcm.plot.pairs import plane_view
-from fcm.plot.read import FloatArray, floats, opened
+from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
 from fcm.plot.style import TWO_COLUMNS, WIDTH, house_style, new_figure
 
@@ -33,7 +34,7 @@ _SIZE = (4.0, 60.0)  # [point^2] of a mark, for many contacts and for few
 _ROOM = 0.06  # around the interface, as part of its greater extent
 _BAR, _ABOVE = 1.2, 0.35  # [inch] beside the panels for a bar of colours, and above each
 _HEIGHTS = (3.5, 11.0)  # [inch] of a figure
-MOST = 6  # frequencies in a picture
+MOST = 6  # points in a picture
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,7 @@ class InterfaceFile:
     borne: FloatArray  # (3, curve, point, contact): energy, slip path, greatest normal force
     units: tuple[str, str, str]  # of these, where the file says them
     places: FloatArray | None = None  # (contact, 2) in the plane of the contacts, where the file says them
+    names: tuple[str, ...] = ()  # of the curves of a sweep: the values of each
 
 
 @dataclass(frozen=True)
@@ -62,6 +64,7 @@ class InterfacePoint:
     stable: float
     state: npt.NDArray[np.intp]
     borne: FloatArray  # (3, contact)
+    curve: str = ""  # its name, where there are several
 
 
 @apart
@@ -82,10 +85,14 @@ def read_interface(path: Path) -> InterfaceFile:
         unit = str(getattr(data, "frequency_unit", "rad/s"))
         places = _places(variables)
         energy, slip, normal = (str(getattr(variables[name], "units", "")) for name in names)
+        swept = swept_values(variables)
+        units_of = swept_units(variables, swept)
     if not contacts:
         raise PlotError(f"{path}: its scene has no contacts")
     units = energy, slip, normal
-    of_contacts = contacts, dofs, frequency, amplitude, stable, states, borne, units, places
+    values = [{key: float(one[k]) for key, one in swept.items()} for k in range(len(frequency))]
+    curves = tuple(curve_label(one, units=units_of) for one in values) if swept else ()
+    of_contacts = contacts, dofs, frequency, amplitude, stable, states, borne, units, places, curves
     return InterfaceFile(path, unit, *of_contacts)
 
 
@@ -142,7 +149,8 @@ def _point(file: InterfaceFile, curve: int, k: int) -> InterfacePoint:
     always = words == "S"
     state = np.where(always, 3, np.where(opens, 2, np.where(slips, 1, 0)))
     omega, stable = float(file.frequency[curve, k]), float(file.stable[curve, k])
-    return InterfacePoint(omega, stable, state.astype(np.intp), file.borne[:, curve, k])
+    name = file.names[curve] if len(file.names) > 1 else ""
+    return InterfacePoint(omega, stable, state.astype(np.intp), file.borne[:, curve, k], name)
 
 
 def greatest_takers(file: InterfaceFile, point: InterfacePoint, most: int) -> list[tuple[str, ...]]:
@@ -226,7 +234,8 @@ def draw_interface(
             stays = {0.0: ", unstable"}.get(
                 point.stable, "" if point.stable == 1.0 else ", stability unknown"
             )
-            grid[0, column].set_title(f"{point.frequency:.6g} {file.unit}{stays}", fontsize=8)
+            head = f"{point.curve}\n" if point.curve else ""
+            grid[0, column].set_title(f"{head}{point.frequency:.6g} {file.unit}{stays}", fontsize=8)
         for row, (title, unit) in enumerate(zip(titles, file.units, strict=True)):
             values = np.array([point.borne[row] for point in points])
             top = float(np.nanmax(values, initial=0.0)) or 1.0
