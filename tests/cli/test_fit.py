@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 import xarray
 
+from fcm.fit.solve import Problem, Reached
 from fcm.response import trace
+from fcm.response.fit import _fits
 from fcm.scene.load import load_scene
 
 from ..oscillator import oscillator
-from ..program import called, python
+from ..program import called
 
 RANGE = "[response]\nfrequency = [0.9, 1.6]\nharmonics = 1\n"
 TRUE = {"contact.shroud.k_u": 1.0, "modal.damping.0": 0.02}
@@ -97,30 +99,92 @@ def test_numbers_of_which_a_product_alone_matters_are_not_told_apart(measured):
 
 
 @pytest.mark.parametrize(
-    "option", [("--method", "exact"), ("--mode", "1", "--level", "1:2"), ("--resume", "-o", "x.nc")]
+    "option", [("--method", "exact"), ("--mode", "1", "--level", "1:2"), ("--sensitivity",)]
 )
 def test_what_means_nothing_with_a_fit_is_refused(measured, option):
     done = called("respond", measured(points=5), *option)
     assert done.code == 2 and "is of no use with [fit]" in done.err
 
 
+class Evaluations:
+    """Counts those of a fit, and interrupts in one of them."""
+
+    def __init__(self, monkeypatch):
+        self.count, self.stop, whole = 0, None, Problem._parts
+
+        def counted(problem, x):
+            self.count += 1
+            if self.count == self.stop:
+                raise KeyboardInterrupt
+            return whole(problem, x)
+
+        monkeypatch.setattr(Problem, "_parts", counted)
+
+    def of(self, *arguments, stop=None):
+        """A run, and how many it took."""
+        self.count, self.stop = 0, stop
+        return called("respond", *arguments, "--json"), self.count
+
+
 @pytest.mark.slow
-def test_an_interrupted_fit_tells_the_best_so_far(measured, tmp_path):
-    """By a limit of time: what is told then says that it is not the end."""
-    path = measured(points=12)
-    code = (
-        "import fcm.fit.solve as s, fcm.cli.__main__ as m\n"
-        "least = s.Problem.least\n"
-        "def once(self, x, evaluations, told=[]):\n"
-        "    told.append(1)\n"
-        "    if len(told) > 1: raise KeyboardInterrupt\n"
-        "    return least(self, x, evaluations)\n"
-        "s.Problem.least = once\n"
-        "m.run()\n"
-    )
-    done = python("-c", code, "respond", str(path), "--json")
-    assert done.code in (3, 130), done.err
-    found = json.loads(done.out)["fitted"]
-    assert found["interrupted"] and found["numbers"]["contact.shroud.k_u"]["value"] == pytest.approx(
-        1.0, rel=0.1
-    )
+def test_a_fit_interrupted_anywhere_tells_the_best_so_far_and_is_gone_on_with(
+    measured, tmp_path, monkeypatch
+):
+    """It was begun afresh: nothing of a fit was kept, and before the end of a start nothing was told."""
+    path, evaluations = measured(points=12), Evaluations(monkeypatch)
+    whole, most = evaluations.of(path)
+    expected = json.loads(whole.out)["fitted"]["numbers"]
+    for stop in (3, most // 2, most - 1):
+        out = tmp_path / f"{stop}.nc"
+        done, _ = evaluations.of(path, "-o", out, stop=stop)
+        assert done.code == 3 and "continue with --resume" in done.err
+        found = json.loads(done.out)["fitted"]
+        assert found["interrupted"] and not found["final"]
+        assert "those told are the best so far" in done.err
+        with xarray.open_dataset(out) as data:
+            assert data.fitted_value.values == pytest.approx(
+                [one["value"] for one in found["numbers"].values()]
+            )
+        again, count = evaluations.of(path, "-o", out, "--resume")
+        assert again.code == 0, again.err
+        told = json.loads(again.out)["fitted"]
+        assert told["final"] and not told["interrupted"] and not list(tmp_path.glob("*.unfinished"))
+        for key, one in expected.items():
+            assert told["numbers"][key]["value"] == pytest.approx(one["value"], rel=1e-5)
+        assert count < most if stop < most // 2 else count <= most // 2 + 8
+
+
+def test_numbers_found_are_told_where_their_response_is_interrupted(measured, tmp_path, monkeypatch):
+    """They were lost."""
+
+    def stop(*_, **__):
+        raise KeyboardInterrupt
+
+    path, out = measured(points=8), tmp_path / "out.nc"
+    with monkeypatch.context() as patched:
+        patched.setattr("fcm.response.fit.trace", stop)
+        done = called("respond", path, "-o", out, "--json")
+    assert done.code == 3 and "before the response with the numbers found was traced" in done.err
+    first = json.loads(done.out)["fitted"]
+    assert first["final"] and first["interrupted"]
+    evaluations = Evaluations(monkeypatch)
+    again, count = evaluations.of(path, "-o", out, "--resume")
+    assert again.code == 0 and count < 10  # of one each where the searches have come to
+    told = json.loads(again.out)["fitted"]
+    assert told["numbers"] == first["numbers"]
+
+
+def test_what_is_kept_of_other_data_is_not_gone_on_with(measured, tmp_path, monkeypatch):
+    path, out, evaluations = measured(points=8), tmp_path / "out.nc", Evaluations(monkeypatch)
+    assert evaluations.of(path, "-o", out, stop=6)[0].code == 3
+    (tmp_path / "data.csv").write_text("frequency,amplitude\n1.1,2.0\n1.2,4.0\n1.3,2.0\n")
+    done, _ = evaluations.of(path, "-o", out, "--resume", stop=4)
+    assert "it is of another scene" in done.err
+
+
+def test_work_that_no_search_can_have_left_is_passed_over(measured, tmp_path):
+    """As of unfinished work that something else has written."""
+    good = Reached(np.array([0.5, 0.02]), 1.0)
+    assert _fits(2, [good]) and _fits(2, [Reached(None, np.inf)])
+    wrong = [Reached(np.array([0.5]), 1.0), Reached(np.array([0.5, np.nan]), 1.0), Reached("x", 1.0)]
+    assert not any(_fits(2, [one]) for one in [*wrong, good.x, None]) and not _fits(2, good)

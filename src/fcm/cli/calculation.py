@@ -38,7 +38,7 @@ def _response(messages: Messages, scene: Scene, asked: Asked, run: dict[str, Any
         _say_outside(messages, asked.table, table)
         return response
     if scene.fit is not None:
-        balanced = _balanced(asked) | {key: run[key] for key in ("jobs", "place")}
+        balanced = _balanced(asked) | {key: run[key] for key in ("jobs", "place", "keep")}
         return fit.fitted(messages, scene, asked.method, balanced)
     if asked.method == "exact" and (scene.has_range or asked.at):
         options = {**run, "tolerance": _tolerance(asked), "only": asked.only}

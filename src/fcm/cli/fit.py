@@ -23,7 +23,7 @@ def check_scene(scene: Scene, asked: Asked) -> None:
         raise click.UsageError("--method exact is of no use with [fit]: it is the balance that is fitted.")
     given = {
         "--track": asked.track, "--mode": asked.mode, "--level": asked.level, "--at": asked.at,
-        "--resume": asked.resume, "--sensitivity": asked.sensitivity,
+        "--sensitivity": asked.sensitivity,
     }  # fmt: skip
     for option, value in given.items():
         if value:
@@ -82,5 +82,8 @@ def doubts(result: Mapping[str, Any]) -> list[str]:
 def incomplete(result: Mapping[str, Any]) -> str:
     """Why the numbers are not the best; empty if they are."""
     found = result.get("fitted")
-    stopped = found is not None and found["interrupted"]
-    return "interrupted before the numbers were found: those told are the best so far" if stopped else ""
+    if found is None or not found["interrupted"]:
+        return ""
+    if found["final"]:
+        return "interrupted before the response with the numbers found was traced"
+    return "interrupted before the numbers were found: those told are the best so far"

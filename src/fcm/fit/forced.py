@@ -146,7 +146,7 @@ def forced_rows(
     y = measured_points(data) / units
     residual, by_number = np.empty(y.shape), np.zeros((*y.shape, len(keys)))
     unreached = np.zeros(data.points)
-    for level, rows in _by_level(data.level, options.levels):
+    for level, rows in _by_level(data.level, options):
         curve = _curve(scene, level, harmonics, observed)
         for i in rows:
             nearest = Nearest(observed, units[i], y[i], float(data.level[i]))
@@ -171,9 +171,14 @@ def _units(data: Measured, errors: Errors) -> FloatArray:
     return np.column_stack(parts)
 
 
-def _by_level(level: FloatArray, most: int) -> list[tuple[float, npt.NDArray[np.intp]]]:
-    """Levels of the forces to trace, and the points that begin from each: those next to it."""
+def _by_level(level: FloatArray, options: FitOptions) -> list[tuple[float, npt.NDArray[np.intp]]]:
+    """Levels of the forces to trace, and the points that begin from each: those next to it.
+
+    Each point is solved at its own level then, so that the levels traced only have to be near.
+    """
     apart = np.unique(level)
+    steps = np.log(apart[-1] / apart[0]) / np.log(options.level_step)
+    most = min(options.levels, 1 + int(np.ceil(steps)))
     if apart.size > most:
         apart = np.geomspace(apart[0], apart[-1], most)
     nearest = np.abs(np.log(level[:, None] / apart)).argmin(axis=1)

@@ -23,7 +23,8 @@ class FitOptions:
     starting, finishing : evaluations of a start, and of a finalist.
     margin : of the range that is traced, on both sides of the data, relative to their width.
     span : from which part of a number to which multiple it may go without bounds.
-    levels : of the forces that are traced where every point has its own.
+    levels, level_step : of the forces that are traced where every point has its own: at most so many,
+        and no nearer to one another than by this ratio.
     effect : rate in units of the errors, by a factor e of a number, below which it has none.
     untold : standard error of a number, relative, from which it is not told.
     alike : correlation from which two numbers may not be told apart.
@@ -51,6 +52,7 @@ class FitOptions:
     margin: float = 0.1
     span: float = 100.0
     levels: int = 9
+    level_step: float = 1.2
     effect: float = 1e-3
     untold: float = 0.5
     alike: float = 0.98

@@ -1,10 +1,15 @@
-"""Least squares from several starts: blurred first, which finds the way, then with the errors as stated."""
+"""Least squares from several starts: blurred first, which finds the way, then with the errors as stated.
+
+A fit is a series of searches, each by its number in that series. What a search has come to is kept, where
+there is a place for it: a fit that goes on does not make those again that are finished, and begins the one
+that was interrupted where it was best.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +24,28 @@ from fcm.fit.weights import reweighted
 from fcm.model.scene import FloatArray, Measured
 
 Tell = Callable[[float, str], None]
+STARTS = 0.7  # share of the bar that is over when the starts are
+
+
+@dataclass(frozen=True)
+class Reached:
+    """Unknowns that a search has come to, and their cost; None where there is no response at its start."""
+
+    x: FloatArray | None
+    cost: float
+
+
+class Kept(Protocol):
+    """Searches of an earlier run by their number: the finished ones, and how far others were; and of this."""
+
+    finished: dict[int, list[Any]]
+    states: dict[int, list[Any]]
+
+    def add(self, number: int, results: list[Any]) -> None:
+        """A search is finished."""
+
+    def save(self, number: int, state: Any) -> None:
+        """A search has come so far."""
 
 
 @dataclass
@@ -53,20 +80,22 @@ class Solved:
 
 @dataclass
 class Problem:
-    """Residuals of all data as a function of the unknowns, each point evaluated once."""
+    """Residuals of all data as a function of the unknowns, each point evaluated once.
+
+    best : of all unknowns that were evaluated, those of the least cost.
+    """
 
     parameters: Parameters
     data: Sequence[Measured]
     harmonics: tuple[int, ...]
     blurred: bool
     options: FitOptions = FIT
-    poll: Callable[[], None] = int  # type: ignore[assignment]
     known: tuple[bytes, list[Rows] | None] = field(default=(b"", None))
+    best: Reached | None = None
 
     def parts(self, x: FloatArray) -> list[Rows] | None:
         """Rows of each data set; None where the model has no response."""
         if self.known[0] != x.tobytes():
-            self.poll()
             try:
                 self.known = (x.tobytes(), self._parts(x))
             except (NoMotionError, np.linalg.LinAlgError):
@@ -98,17 +127,73 @@ class Problem:
         assert parts is not None  # least_squares asks where the cost has fallen
         return np.concatenate([(part.rates * rates).reshape(-1, len(rates)) for part in parts])
 
-    def least(self, x: FloatArray, evaluations: int) -> tuple[FloatArray, float] | None:
-        """Unknowns of the least cost next to a start, and the cost; None where there is no response."""
+    def least(
+        self, x: FloatArray, evaluations: int, tell: Callable[[Reached], None] | None = None
+    ) -> Reached:
+        """The least cost next to a start; told of each evaluation. None where there is no response."""
         low, high = (self.parameters.unknowns(end) for end in (self.parameters.low, self.parameters.high))
         x = np.clip(x, low, high)
         inside = np.clip(x, low + 1e-9 * np.abs(low), high - 1e-9 * np.abs(high))
         if self.parts(inside) is None:
-            return None
+            return Reached(None, np.inf)
+
+        def residual(x: FloatArray) -> FloatArray:
+            found = self.residual(x)
+            here = Reached(x.copy(), 0.5 * float(found @ found))
+            self.note(here)
+            if tell is not None:
+                tell(here)
+            return found
+
         found = least_squares(
-            self.residual, inside, self.jacobian, bounds=(low, high), x_scale="jac", max_nfev=evaluations
+            residual, inside, self.jacobian, bounds=(low, high), x_scale="jac", max_nfev=evaluations
         )
-        return found.x, float(found.cost)
+        return Reached(found.x, float(found.cost))
+
+    def note(self, found: Reached) -> None:
+        """Unknowns that were evaluated, now or in an earlier run."""
+        if found.x is not None and (self.best is None or found.cost < self.best.cost):
+            self.best = found
+
+
+class Searches:
+    """The searches of a fit in their order, told and kept."""
+
+    def __init__(self, kept: Kept | None, tell: Tell | None) -> None:
+        self.kept, self.tell, self.number = kept, tell, 0
+
+    def least(
+        self, problem: Problem, x: FloatArray, evaluations: int, share: tuple[float, float], what: str
+    ) -> Reached:
+        """What a search from these unknowns comes to, or has come to already; share: of the bar."""
+        number, evaluated, least = self.number, 0, np.inf
+        self.number += 1
+        if self.kept is not None and number in self.kept.finished:
+            known: Reached = self.kept.finished[number][0]
+            problem.note(known)
+            return known
+        if self.kept is not None and (saved := self.kept.states.get(number)):
+            x = min(saved, key=lambda one: one.cost).x
+        self._say(share[0], what)
+
+        def tell(here: Reached) -> None:
+            nonlocal evaluated, least
+            evaluated += 1
+            done = min(evaluated / evaluations, 1.0)
+            self._say(share[0] + done * (share[1] - share[0]), f"{what}, evaluation {evaluated}")
+            if here.cost < least:
+                least = here.cost
+                if self.kept is not None:
+                    self.kept.save(number, here)
+
+        found = problem.least(x, evaluations, tell)
+        if self.kept is not None:
+            self.kept.add(number, [found])
+        return found
+
+    def _say(self, done: float, text: str) -> None:
+        if self.tell is not None:
+            self.tell(done, text)
 
 
 def solved(
@@ -118,52 +203,68 @@ def solved(
     options: FitOptions = FIT,
     tell: Tell | None = None,
     begin: FloatArray | None = None,
+    kept: Kept | None = None,
 ) -> Solved:
     """The numbers with which the residuals are least; begin: numbers of which it is known that they are near.
+
+    kept : what an earlier run with the same arguments has come to, and where more goes.
 
     Raises
     ------
     FitError
         If the model has no response near the data from any start.
     KeyboardInterrupt
-        If nothing is found then; else what is found is returned, and that it was interrupted.
+        If nothing is found then; else the best numbers so far are returned, and that it was interrupted.
     """
     few = [_thinned(one, options.few_points) for one in data]
     rough = Problem(parameters, few, harmonics, True, options)
     fine = Problem(parameters, data, harmonics, False, options)
-    starts: list[Start] = []
-    best: tuple[float, FloatArray] | None = None
+    searches, starts = Searches(kept, tell), list[Start]()
+    best: Reached | None = None
     try:
         if begin is None:
-            _tried(parameters, rough, starts, options, tell)
-            finalists = _by_cost(starts, options)[: options.finalists]
+            _tried(parameters, rough, starts, options, searches)
+            finalists = _by_cost(starts, options)[: options.finalists] if starts else []
         else:
             finalists = [Start(begin, begin, np.inf, np.ones(len(begin), dtype=bool))]
             starts.extend(finalists)
         for k, one in enumerate(finalists):
-            if tell is not None:
-                tell(
-                    0.7 + 0.3 * k / len(finalists),
-                    f"all points, from the best starts ({k + 1} of {len(finalists)})",
-                )
-            found = fine.least(parameters.unknowns(one.end), options.finishing)
-            if found is None:
+            share = tuple(STARTS + (1.0 - STARTS) * (k + i) / (len(finalists) + 1) for i in (0, 1))
+            what = f"all points, from the best starts ({k + 1} of {len(finalists)})"
+            found = searches.least(
+                fine, parameters.unknowns(one.end), options.finishing, (share[0], share[1]), what
+            )
+            if found.x is None:
                 continue
-            one.end, one.cost, one.finished = parameters.values(found[0]), found[1], True
-            if best is None or found[1] < best[0] * (1.0 - options.equal):
-                best = (found[1], found[0])
+            one.end, one.cost, one.finished = parameters.values(found.x), found.cost, True
+            if best is None or found.cost < best.cost * (1.0 - options.equal):
+                best = found
     except KeyboardInterrupt:
-        if not starts:
-            raise
-        x = best[1] if best is not None else parameters.unknowns(_by_cost(starts, options)[0].end)
-        return _with_rows(fine, x, starts, True)
-    if best is None:
+        return _so_far(fine, rough, starts)
+    if best is None or best.x is None:
         raise FitError("fit: the model has no response in the range of the data, from any start")
-    return _weighed(fine, best[1], starts, options)
+    return _weighed(fine, best.x, starts, options, searches)
 
 
-def _weighed(fine: Problem, x: FloatArray, starts: list[Start], options: FitOptions) -> Solved:
+def _so_far(fine: Problem, rough: Problem, starts: list[Start]) -> Solved:
+    """The best numbers of a fit that was interrupted: of all points where these were begun with.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If nothing has been evaluated.
+    """
+    best = fine.best or rough.best
+    if best is None or best.x is None:
+        raise KeyboardInterrupt
+    return _with_rows(fine if fine.parts(best.x) is not None else rough, best.x, starts, True)
+
+
+def _weighed(
+    fine: Problem, x: FloatArray, starts: list[Start], options: FitOptions, searches: Searches
+) -> Solved:
     """The fit made again with the errors that its residuals tell, where none are stated."""
+    again = fine
     try:
         for _ in range(options.reweighted):
             parts = fine.parts(x)
@@ -171,28 +272,30 @@ def _weighed(fine: Problem, x: FloatArray, starts: list[Start], options: FitOpti
             data = reweighted(fine.data, parts, options)
             if all(one.estimated is None for one in data):
                 break
-            again = replace(fine, data=data, known=(b"", None))
-            found = again.least(x, options.finishing)
-            if found is None:
+            again = replace(fine, data=data, known=(b"", None), best=None)
+            found = searches.least(again, x, options.finishing, (0.97, 1.0), "errors of the points estimated")
+            if found.x is None:
                 break
-            fine, x = again, found[0]
+            fine, x = again, found.x
     except KeyboardInterrupt:
+        if again is not fine and again.best is not None and again.best.x is not None:
+            fine, x = again, again.best.x
         return _with_rows(fine, x, starts, True)
     return _with_rows(fine, x, starts, False)
 
 
 def _tried(
-    parameters: Parameters, rough: Problem, starts: list[Start], options: FitOptions, tell: Tell | None
+    parameters: Parameters, rough: Problem, starts: list[Start], options: FitOptions, searches: Searches
 ) -> None:
     """Starts, until some have led to the same numbers, and these are the best."""
     for k, x in enumerate(parameters.starts(options.starts)):
-        if tell is not None:
-            tell(0.7 * k / options.starts, f"start {k + 1} of at most {options.starts}")
-        found = rough.least(x, options.starting)
-        if found is None:
+        share = STARTS * k / options.starts, STARTS * (k + 1) / options.starts
+        what = f"start {k + 1} of at most {options.starts}"
+        found = searches.least(rough, x, options.starting, share, what)
+        if found.x is None:
             continue
-        effect = np.abs(rough.jacobian(found[0])).max(axis=0, initial=0.0) > options.effect
-        starts.append(Start(parameters.values(x), parameters.values(found[0]), found[1], effect))
+        effect = np.abs(rough.jacobian(found.x)).max(axis=0, initial=0.0) > options.effect
+        starts.append(Start(parameters.values(x), parameters.values(found.x), found.cost, effect))
         least = _by_cost(starts, options)[0]
         same = [np.isclose(one.end, least.end, rtol=options.same, atol=0.0) | ~least.effect for one in starts]
         if sum(bool(one.all()) for one in same) >= options.agreeing:

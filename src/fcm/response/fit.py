@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,16 +16,17 @@ from fcm.fit.estimate import Estimate, estimated
 from fcm.fit.forced import errors_of
 from fcm.fit.options import FIT
 from fcm.fit.parameters import FitError, Parameters, parameters_of
-from fcm.fit.solve import Solved, solved
+from fcm.fit.solve import Reached, Solved, solved
 from fcm.model.scene import FloatArray, Measured, Scene
 from fcm.nonlinear_modes.backbone import ModeError
+from fcm.response.curve_sweep import checkpoint_of
 from fcm.response.mode import check_free
-from fcm.response.request import ResponseError, request_of
+from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.sweep import trace
 from fcm.results.fitted import Fitted, FittedData, FittedStart
 from fcm.results.result import Response
-from fcm.run import Progress
+from fcm.run import Checkpoint, Progress, Results, fingerprint
 from fcm.run.progress import part
 from fcm.scene.draft import LEVEL, number_of
 from fcm.scene.errors import quoted
@@ -40,6 +42,8 @@ def fit(
     harmonics: int | Sequence[int] | None = None,
     accuracy: float | None = None,
     progress: Progress | None = None,
+    keep: Path | Checkpoint | None = None,
+    resume: bool = False,
     **options: Any,
 ) -> Response:
     """The numbers of a scene with a [fit], and its response with them, a curve for each level of the data.
@@ -51,6 +55,8 @@ def fit(
     ----------
     harmonics, accuracy
         As of `trace`.
+    keep, resume
+        As of `trace`: what is kept are the searches from each start, and how far one is that was interrupted.
     options
         What else `trace` takes, for the response.
 
@@ -67,33 +73,71 @@ def fit(
     if any(one.damping is not None for one in scene.fit.data):
         check_free(scene)
     begin, wanted = time.perf_counter(), request_of(scene, harmonics, accuracy)
-    plain = replace(scene, fit=None)
-    chosen, values = wanted.harmonics or (1,), None
-    for _ in range(ROUNDS):
-        parameters, found = _found(plain, scene, chosen, part(progress, 0.0, FITTING), values)
-        response = Response.without_curves(plain)
-        if not found.interrupted:
-            there = _at_levels(parameters, found.values, scene.fit.data)
-            asked = {"harmonics": chosen} if wanted.harmonics else {"accuracy": wanted.accuracy}
-            response = trace(there, progress=part(progress, FITTING, 1.0), **asked, **options)
-        more = tuple(sorted({h for curve in response.curves for h in curve.harmonics} | set(chosen)))
-        values = found.values
-        if found.interrupted or response.interrupted or len(more) == len(chosen):
-            break
-        chosen = more
-    response.fitted = _fitted(parameters, found, chosen, not found.interrupted)
+    with checkpoint_of(keep, resume) as checkpoint:
+        response = _fit(scene, wanted, progress, checkpoint, options)
+        if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
+            checkpoint.done()
     response.seconds = time.perf_counter() - begin
     return response
 
 
+def _fit(
+    scene: Scene,
+    wanted: Request,
+    progress: Progress | None,
+    checkpoint: Checkpoint | None,
+    options: dict[str, Any],
+) -> Response:
+    """With the harmonics that are asked for, or as many as the response at the numbers found takes."""
+    assert scene.fit is not None
+    plain = replace(scene, fit=None)
+    chosen, fitted = wanted.harmonics or (1,), None
+    response = Response.without_curves(plain)
+    for _ in range(ROUNDS):
+        near = None if fitted is None else fitted[1].values
+        try:
+            found = _found(plain, scene, chosen, part(progress, 0.0, FITTING), near, checkpoint)
+        except KeyboardInterrupt:
+            if fitted is None:
+                raise
+            fitted = (fitted[0], replace(fitted[1], interrupted=True), fitted[2])
+            break
+        fitted = (*found, chosen)
+        if found[1].interrupted:
+            break
+        there = _at_levels(*found, scene.fit.data)
+        asked = {"harmonics": chosen} if wanted.harmonics else {"accuracy": wanted.accuracy}
+        try:
+            response = trace(
+                there, progress=part(progress, FITTING, 1.0), keep=checkpoint, **asked, **options
+            )
+        except KeyboardInterrupt:
+            response = Response.without_curves(plain)
+            response.fitted = _fitted(*fitted, advise=False, untraced=True)
+            return response
+        more = tuple(sorted({h for curve in response.curves for h in curve.harmonics} | set(chosen)))
+        if response.interrupted or len(more) == len(chosen):
+            break
+        chosen = more
+    assert fitted is not None
+    response.fitted = _fitted(*fitted, advise=not (fitted[1].interrupted or response.interrupted))
+    return response
+
+
 def _found(
-    plain: Scene, scene: Scene, harmonics: tuple[int, ...], progress: Progress | None, near: FloatArray | None
+    plain: Scene,
+    scene: Scene,
+    harmonics: tuple[int, ...],
+    progress: Progress | None,
+    near: FloatArray | None,
+    checkpoint: Checkpoint | None,
 ) -> tuple[Parameters, Solved]:
     """The numbers with the harmonics chosen; near: those with fewer."""
     assert scene.fit is not None
     try:
         parameters = parameters_of(plain, scene.fit.vary, scene.fit.bounds)
-        return parameters, solved(parameters, scene.fit.data, harmonics, tell=progress, begin=near)
+        kept = None if checkpoint is None else _kept(scene, harmonics, near, checkpoint)
+        return parameters, solved(parameters, scene.fit.data, harmonics, tell=progress, begin=near, kept=kept)
     except FitError as error:
         raise ResponseError(f"{scene.name}: {error}") from None
     except ModeError as error:
@@ -104,9 +148,32 @@ def _found(
         raise ResponseError(f"{scene.name}: fit: {error}; it cannot be fitted") from None
 
 
-def _at_levels(parameters: Parameters, values: FloatArray, data: Sequence[Measured]) -> Scene:
+def _kept(
+    scene: Scene, harmonics: tuple[int, ...], near: FloatArray | None, checkpoint: Checkpoint
+) -> Results:
+    """What is finished of this fit; it is known by all that decides its numbers."""
+    count = len(scene.fit.vary) if scene.fit is not None else 0
+    mark = fingerprint("fit", FIT, harmonics, near, replace(scene, name="", title=""))
+    found = checkpoint.results(mark, (Reached,), lambda _, results: _fits(count, results))
+    for number, states in list(found.states.items()):
+        found.states[number] = [one for one in states if _fits(count, [one]) and one.x is not None]
+    return found
+
+
+def _fits(count: int, results: Any) -> bool:
+    """Whether what was read from a file can be what a search of so many numbers came to."""
+    if not (isinstance(results, list) and len(results) == 1 and isinstance(results[0], Reached)):
+        return False
+    x, cost = results[0].x, results[0].cost
+    if x is None:
+        return isinstance(cost, float)
+    right = isinstance(x, np.ndarray) and x.shape == (count,) and x.dtype == np.float64
+    return right and isinstance(cost, float) and bool(np.isfinite(x).all())
+
+
+def _at_levels(parameters: Parameters, found: Solved, data: Sequence[Measured]) -> Scene:
     """The scene with the numbers found, a curve for each level that was measured."""
-    scene = parameters.at(values)
+    scene = parameters.at(found.values)
     every = np.unique(np.concatenate([one.level for one in data]))
     if every.size > FIT.levels:
         every = np.geomspace(every[0], every[-1], FIT.levels)
@@ -119,8 +186,10 @@ def _at_levels(parameters: Parameters, values: FloatArray, data: Sequence[Measur
     return replace(scene, curves=curves, draft=None)
 
 
-def _fitted(parameters: Parameters, found: Solved, harmonics: tuple[int, ...], advise: bool) -> Fitted:
-    """What is told of the numbers."""
+def _fitted(
+    parameters: Parameters, found: Solved, harmonics: tuple[int, ...], *, advise: bool, untraced: bool = False
+) -> Fitted:
+    """What is told of the numbers; untraced: their response was interrupted."""
     told = estimated(parameters, found.values, found.rows)
     return Fitted(
         keys=parameters.keys,
@@ -141,7 +210,8 @@ def _fitted(parameters: Parameters, found: Solved, harmonics: tuple[int, ...], a
         starts=[FittedStart(one.begin, one.end, one.cost, one.finished) for one in found.starts],
         harmonics=harmonics,
         advice=_advice(parameters, found, told, harmonics) if advise else [],
-        interrupted=found.interrupted,
+        final=not found.interrupted,
+        interrupted=found.interrupted or untraced,
     )
 
 

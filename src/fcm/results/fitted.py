@@ -85,11 +85,14 @@ class Fitted:
     starts: list[FittedStart]
     harmonics: tuple[int, ...]
     advice: list[str] = field(default_factory=list)  # measurements that would tell more
+    final: bool = True  # whether the search for the numbers is at its end
     interrupted: bool = False
 
     def problems(self) -> list[str]:
         """What keeps a reader from relying on the numbers."""
         said = []
+        if not self.final:
+            said.append("the numbers are the best so far: their standard errors are not those of a minimum")
         for k, key in enumerate(self.keys):
             if self.without_effect[k]:
                 said.append(f"{key} has no effect on these data: its value means nothing")
@@ -146,6 +149,7 @@ class Fitted:
             "harmonics": list(self.harmonics),
             "problems": self.problems(),
             "advice": self.advice,
+            "final": self.final,
             "interrupted": self.interrupted,
         }
 
