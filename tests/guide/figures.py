@@ -1,4 +1,4 @@
-"""The figures of the theory pages, computed and drawn: small SVG files whose lines have names.
+"""The figures of theory and validation, computed and drawn: small SVG files whose lines have names.
 
 usage: python -m tests.guide.figures [NAME...], which writes them into .github/guide/figures
 """
@@ -6,6 +6,7 @@ usage: python -m tests.guide.figures [NAME...], which writes them into .github/g
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib as mpl
@@ -184,6 +185,52 @@ def many_contacts(figure):
     lower.set(xlabel="frequency [rad/s]", ylabel="contacts that slip")
 
 
+def rubber(figure):
+    """Frequency and damping of the first mode of RubBeR, seven harmonics; as published while it is stuck."""
+    from ..published.test_rubber import STUCK, the_mode
+
+    mode = the_mode()
+    left, right = figure.subplots(1, 2)
+    drawn(left, "frequency", mode.amplitude, mode.omega / (2.0 * np.pi), "k-", lw=0.9)
+    left.axhline(STUCK, color=STATES["E"], lw=0.7, ls="--")
+    drawn(right, "damping", mode.amplitude, 100.0 * mode.damping, "-", color=STATES["P"], lw=0.9)
+    left.set(xscale="log", xlabel="modal amplitude [m √kg]", ylabel="frequency [Hz]")
+    right.set(xscale="log", xlabel="modal amplitude [m √kg]", ylabel="damping ratio [%]")
+
+
+def den_hartog(figure):
+    """Den Hartog's closed forms, with and without stops, and exact motions on a stiff contact."""
+    from ..published.test_den_hartog import exact, with_stops, without_stops
+
+    axes, high, low = figure.subplots(), np.linspace(0.54, 0.85, 60), np.linspace(0.47, 0.52, 12)
+    drawn(axes, "without-stops", high, [without_stops(r) for r in high], "k-", lw=0.9, label="without stops")
+    stops = [with_stops(r)[0] for r in low]
+    drawn(axes, "with-stops", low, stops, "--", color=STATES["E"], lw=0.9, label="with stops")
+    at = np.array([0.48, 0.5, 0.56, 0.6, 0.65, 0.7, 0.75, 0.8, 0.84])
+    found = [exact(1e4, r) for r in at]
+    drawn(axes, "exact", at, found, "+", color=STATES["P"], label="exact motion")
+    axes.set(xlabel="frequency over the natural one", ylabel="amplitude over the static one")
+    axes.legend()
+
+
+def two_masses(figure):
+    """A chain of two masses, the first with rigid friction: marched with rigid friction, and fcm."""
+    from ..published.test_two_masses import STEPS, marched, scene
+
+    axes, at = figure.subplots(), np.array([0.4, 0.55, 0.68, 0.85, 1.2])
+    amplitudes = np.array([marched(omega, STEPS // 2)[0] for omega in at])
+    wide = replace(scene(0.8), frequency_range=(0.35, 1.3))
+    curve = fcm.respond(wide, harmonics=[1, 3, 5, 7, 9]).isel(curve=0)
+    for i, (name, colour) in enumerate((("first", STATES["P"]), ("last", STATES["E"]))):
+        drawn(
+            axes, name, curve.frequency, curve.amplitude.isel(dof=i), "-", color=colour, lw=0.9,
+            label=f"{name} mass, nine harmonics",
+        )  # fmt: skip
+        drawn(axes, f"{name}-marched", at, amplitudes[:, i], "k+", label="marched" if i else None)
+    axes.set(xlabel="frequency", ylabel="amplitude")
+    axes.legend()
+
+
 FIGURES = {
     "contact-on-a-line": (contact_on_a_line, 5.8, 2.6),
     "contact-in-a-plane": (contact_in_a_plane, 4.2, 3.0),
@@ -192,6 +239,9 @@ FIGURES = {
     "errors": (errors, 3.8, 3.0),
     "exact-motion": (exact_motion, 5.0, 2.6),
     "many-contacts": (many_contacts, 4.4, 3.4),
+    "rubber": (rubber, 5.8, 2.4),
+    "den-hartog": (den_hartog, 4.2, 2.8),
+    "two-masses": (two_masses, 4.2, 2.8),
 }
 
 

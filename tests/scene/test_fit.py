@@ -49,6 +49,21 @@ def test_what_is_read(written):
     assert one.level.tolist() == [2.0, 2.0] and one.quantity == "velocity" and one.amplitude_error == 0.03
 
 
+def test_points_of_weight_0_are_left_out(written):
+    """Their errors were infinite."""
+    points = "frequency,amplitude,phase,weight\n0.9,1.5,0.1,1\n1.0,9.0,0.3,0\n1.1,2.5,-1.5,0.5\n"
+    (one,) = load_scene(written(points=points)).fit.data
+    assert one.frequency.tolist() == [0.9, 1.1] and one.phase.tolist() == [0.1, -1.5]
+    assert one.weight.tolist() == [1.0, 0.5] and one.level.tolist() == [1.0, 1.0]
+
+
+def test_a_star_stands_for_all_modes(written):
+    found = load_scene(written(FIT.replace("contact.shroud.mu", "modal.damping.*"))).fit
+    assert found.vary == ("modal.damping.*",)
+    with pytest.raises(SceneError, match="sets the same number"):
+        load_scene(written(FIT.replace('contact.shroud.mu"', 'modal.damping.*", "modal.damping.0"')))
+
+
 def test_frequencies_are_in_the_unit_of_the_scene(written):
     scene = 'frequency_unit = "Hz"\n' + oscillator(RANGE)
     (one,) = load_scene(written(scene=scene)).fit.data
@@ -94,6 +109,11 @@ def test_a_backbone(written):
         (FIT.replace("a.csv", "a.xls"), POINTS, "measured points are read from"),
         ('[fit]\nvary = ["contact.shroud.mu"]\n', POINTS, "missing; give [[fit.data]]"),
         (FIT + '[sweep]\n"contact.shroud.n_0" = [1.0]\n', POINTS, "is of no use with [sweep]"),
+        (FIT.replace("vary", "starts = 0\nvary"), POINTS, "must be a whole number from 1 to 100, is 0"),
+        (FIT.replace("vary", 'starts = "a"\nvary'), POINTS, 'must be a number, is the string "a"'),
+        (FIT, "frequency,amplitude\n1.0,1.5\n", "has 1 measured value for 1 number; give more"),
+        (FIT, "frequency,amplitude,weight\n1.0,1.5,0\n1.1,2.0,0\n", "all weights are 0"),
+        (FIT, "frequency,amplitude\n1.0,1e300\n1.1,2.0\n", "amplitude of point 1 must be at most 1e+100"),
     ],
 )  # fmt: skip
 def test_mistakes_are_said(written, fit, points, said):

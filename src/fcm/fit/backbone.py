@@ -71,11 +71,12 @@ class _Followed:
     def __init__(self, system: System, data: Measured) -> None:
         self.dof = list(system.scene.modal.dofs).index(data.dof) if data.dof else None
         self.system = system
-        low, high = float(data.amplitude.min()), float(data.amplitude.max())
-        if self.dof is not None:
+        low, high, beyond = float(data.amplitude.min()), float(data.amplitude.max()), BACKBONE.beyond_modal
+        if self.dof is not None:  # what is modal for a displacement, its shape at other amplitudes decides
             low, high = self._modal_span(low, high, data.mode)
+            beyond = BACKBONE.beyond
         self.mode: Mode = nonlinear_mode(
-            system, data.mode, (low / BACKBONE.beyond, high * BACKBONE.beyond), system.scene.max_step
+            system, data.mode, (low / beyond, high * beyond), system.scene.max_step
         )
         if not len(self.mode.path.z):
             raise NoMotionError

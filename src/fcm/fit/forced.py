@@ -155,7 +155,7 @@ def forced_rows(
             by_number[i] = nearest.rates(z, rates)
             low, high = scene.frequency_range
             unreached[i] = float(not low < z[-1] < high)
-    return Rows(residual, by_number, unreached, data.points * (y.shape[1] - 1))
+    return Rows(residual, by_number, unreached, data.values)
 
 
 def range_of(data: Measured, options: FitOptions) -> tuple[float, float]:

@@ -84,12 +84,13 @@ class NearestOptions:
 class BackboneOptions:
     """How a mode of the model is met at the amplitudes of a backbone.
 
-    beyond : factor by which it is followed past the amplitudes measured.
+    beyond, beyond_modal : factor by which it is followed past the amplitudes measured; past modal ones.
     difference : of the residual by a number, and of an amplitude along a direction, relative.
     steps, close : at most, to where a displacement has its amplitude, and the last of them in ln a.
     """
 
     beyond: float = 3.0
+    beyond_modal: float = 1.01
     difference: float = 1e-5
     steps: int = 20
     close: float = 1e-10

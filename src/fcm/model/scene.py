@@ -166,6 +166,11 @@ class Measured:
         """Residuals of each."""
         return 3 if self.phase is not None else 2
 
+    @property
+    def values(self) -> int:
+        """How many were measured: of the components of a response its frequencies were chosen."""
+        return self.points * (self.components if self.damping is not None else self.components - 1)
+
 
 @dataclass(frozen=True)
 class Fit:
@@ -174,6 +179,7 @@ class Fit:
     vary: tuple[str, ...]
     bounds: tuple[tuple[float, float] | None, ...]  # of each number
     data: tuple[Measured, ...]
+    starts: int | None = None  # tried at most; None for the usual ones
 
 
 class Swept(Protocol):

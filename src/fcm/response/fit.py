@@ -137,7 +137,9 @@ def _found(
     try:
         parameters = parameters_of(plain, scene.fit.vary, scene.fit.bounds)
         kept = None if checkpoint is None else _kept(scene, harmonics, near, checkpoint)
-        return parameters, solved(parameters, scene.fit.data, harmonics, tell=progress, begin=near, kept=kept)
+        options = replace(FIT, starts=scene.fit.starts or FIT.starts)
+        data = scene.fit.data
+        return parameters, solved(parameters, data, harmonics, options, tell=progress, begin=near, kept=kept)
     except FitError as error:
         raise ResponseError(f"{scene.name}: {error}") from None
     except ModeError as error:

@@ -42,7 +42,9 @@ class Addresses:
         return ()
 
     def _matching(self, key: str, path: str, mistakes: Mistakes) -> tuple[Address, ...]:
-        """The numbers of all contacts or forces whose names match a key path with a *."""
+        """The numbers of all contacts or forces whose names match a key path with a *; of all modes."""
+        if (whole := self.numbers.get(key.removesuffix(".*"))) is not None:
+            return (whole,)
         prefix, _, field = key.rpartition(".")
         labels = {
             (kind, index): f"{kind}.{draft['name'] or index}"

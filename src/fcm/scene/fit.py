@@ -10,14 +10,14 @@ import numpy as np
 from fcm.model.scene import Fit, FloatArray, Measured
 from fcm.scene.address import overlap
 from fcm.scene.draft import LEVEL, Draft, Number, number_in
-from fcm.scene.errors import choices, kind, quoted, shown
+from fcm.scene.errors import choices, counted, kind, quoted, shown
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
 from fcm.scene.measured_file import read_measured
 from fcm.scene.modal import UNITS
 from fcm.scene.names import Names
 from fcm.scene.optimum import pair_of_bounds, words_of
-from fcm.scene.rules import FRACTION, POSITIVE, Rule
+from fcm.scene.rules import FRACTION, LARGEST, POSITIVE, Rule
 from fcm.scene.section import Section
 from fcm.units import QUANTITIES
 
@@ -25,8 +25,10 @@ MOST = 20  # numbers that are fitted together
 RESPONSE_KEYS = ("dof", "level", "quantity", "amplitude_error", "frequency_error")
 BACKBONE_KEYS = ("dof", "mode", "frequency_error", "damping_error")
 MODE = Rule("a whole number of at least 1", low=1.0, whole=True)
+STARTS = Rule("a whole number from 1 to 100", low=1.0, high=100.0, whole=True)
 NOT_POSITIVE: Callable[[FloatArray], Any] = lambda values: ~(values > 0.0)  # noqa: E731
 NEGATIVE: Callable[[FloatArray], Any] = lambda values: ~(values >= 0.0)  # noqa: E731
+TOO_LARGE: Callable[[FloatArray], Any] = lambda values: ~(abs(values) <= LARGEST)  # noqa: E731
 RIGHT = {
     "frequency": (NOT_POSITIVE, "greater than 0"),
     "angular_frequency": (NOT_POSITIVE, "greater than 0"),
@@ -47,13 +49,21 @@ def read_fit(top: Section, files: Files, draft: Draft, reported: Sequence[str], 
             section.wrong("", f"is of no use with [{other}]: fit first, then use the numbers found")
     numbers = _numbers(section, draft)
     bounds = _bounds(section, numbers)
+    starts = section.number("starts", STARTS) if "starts" in section.data else None
     sections = section.tables("data")
     if not sections and section.mistakes.count == before:
         section.wrong("data", "missing; give [[fit.data]] with the file of measured points")
     data = [_data(one, files, draft, reported, UNITS[unit]) for one in sections]
     if section.mistakes.count > before:
         return None
-    return Fit(tuple(n.key for n in numbers if n), tuple(bounds), tuple(one for one in data if one))
+    known = tuple(one for one in data if one)
+    values = sum(one.values for one in known)
+    if values <= len(numbers):
+        what = f"has {counted(values, 'measured value')} for {counted(len(numbers), 'number')}"
+        section.wrong("data", f"{what}; give more than the numbers that vary")
+        return None
+    keys = tuple(number.key for number in numbers if number)
+    return Fit(keys, tuple(bounds), known, None if starts is None else int(starts))
 
 
 def _numbers(section: Section, draft: Draft) -> list[Number | None]:
@@ -112,7 +122,7 @@ def _data(
     }
     level = _level(section, draft)
     quantity = section.text("quantity", "displacement")
-    if quantity not in QUANTITIES:
+    if quantity and quantity not in QUANTITIES:
         section.wrong(
             "quantity", f"must be {choices(QUANTITIES)}, is {quoted(quantity)}", quantity, QUANTITIES
         )
@@ -128,11 +138,18 @@ def _data(
     levels = columns[level] / _force(draft) if isinstance(level, str) else np.full(count, level)
     if "per_force" in columns and columns["per_force"].any():
         amplitude = amplitude * np.abs(levels) * _force(draft)
+    weight = columns.get("weight", np.ones(count))
+    if not weight.max() > 0.0:
+        section.wrong("file" if not backbone else "backbone", f"{quoted(name)}: all weights are 0")
+        return None
     if not amplitude.max() > 0.0:
         section.wrong("file" if not backbone else "backbone", f"{quoted(name)}: all amplitudes are 0")
         return None
+    used = weight > 0.0
+    columns = {key: value[used] for key, value in columns.items()}
+    scaled, amplitude, weight, levels = scaled[used], amplitude[used], weight[used], levels[used]
     return Measured(
-        name, dof, scaled, amplitude, columns.get("weight", np.ones(count)), levels, columns.get("phase"),
+        name, dof, scaled, amplitude, weight, levels, columns.get("phase"),
         columns.get("damping"), quantity, int(mode), **errors,
     )  # fmt: skip
 
@@ -156,7 +173,8 @@ def _columns(
         faults.append(f"has no column {quoted(level)}; give the level as a number")
     right = RIGHT | ({level: (NOT_POSITIVE, "greater than 0")} if level else {})
     right |= {"amplitude": (NOT_POSITIVE, "greater than 0")} if backbone else {}
-    for column, (wrong, text) in right.items():
+    checks = [*right.items(), *((column, (TOO_LARGE, f"at most {LARGEST:g}")) for column in found)]
+    for column, (wrong, text) in checks:
         if column in found and (at := np.flatnonzero(wrong(found[column]))).size:
             value = shown(float(found[column][at[0]]))
             faults.append(f"{column} of point {at[0] + 1} must be {text}, is {value}")

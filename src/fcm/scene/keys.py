@@ -166,6 +166,7 @@ TABLES: dict[str, dict[str, Key]] = {
         "vary": Key("numbers of the scene by their paths",
                     'list such as ["contact.*.mu", "modal.damping.0"]'),
         "bounds": Key("of each number", "[[from, to], ...]", "a hundredth to a hundred times what it is"),
+        "starts": Key("tried at most, the scene's numbers first", "whole number, 1 to 100", "8"),
         "data": Key("what was measured", "[[fit.data]]"),
     },
     "fit.data": {
