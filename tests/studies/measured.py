@@ -156,8 +156,28 @@ def draw_beam(path: Path, parts: list[list[tuple[FloatArray, ...]]]) -> None:
         figure.savefig(path, dpi=110)
 
 
+def linear_equivalent(level: dict[str, FloatArray]) -> tuple[float, float]:
+    """Frequency [Hz] and damping ratio of the linear oscillator nearest to a level.
+
+    Of its force over acceleration, -m (w0^2 - w^2 + 2 i zeta w0 w) / w^2, by least squares.
+    """
+    omega = 2.0 * np.pi * level["frequency"]
+    dynamic = omega**2 * level["force"] / (level["amplitude"] * np.exp(1j * level["phase"]))
+    design = np.column_stack((np.ones_like(omega), -(omega**2)))
+    (stiffness, mass), *_ = np.linalg.lstsq(design, dynamic.real, rcond=None)
+    natural = float(np.sqrt(stiffness / mass))
+    return natural / (2.0 * np.pi), float((dynamic.imag / omega).mean() / (2.0 * mass * natural))
+
+
 def beam(folder: Path, out: Path) -> None:
     """The Brake-Reuss beam."""
+    for kind in (FORCE, RESPONSE):
+        for k, level in enumerate(beam_levels(folder, kind), 1):
+            frequency, damping = linear_equivalent(level)
+            print(
+                f"  {kind} {k}, {level['amplitude'].max():.1f} m/s^2 at most: as a linear oscillator "
+                f"{frequency:.2f} Hz, damping {100.0 * damping:.2f} %"
+            )
     path = beam_scene(folder, out)
     found = fitted(path)
     print_numbers("Brake-Reuss beam, one mode and three parallel sliders", found)
