@@ -12,12 +12,13 @@ from __future__ import annotations
 import json
 import re
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
+
+from ..program import called, ended
 
 FloatArray = npt.NDArray[np.float64]
 LENGTH, HEIGHT, WIDTH, ANGLE = 0.1, 0.03, 0.005, 30.0  # m; degrees of the plane to the cross section
@@ -76,9 +77,9 @@ CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1,
 def calculated(folder: Path, name: str, text: str) -> Path:
     """A run of CalculiX."""
     (folder / f"{name}.inp").write_text(text, encoding="utf-8")
-    done = subprocess.run(["ccx", name], cwd=folder, capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise RuntimeError(f"ccx {name}: {done.stdout[-300:]}")
+    done = ended("ccx", name, cwd=folder)
+    if done.code:
+        raise RuntimeError(f"ccx {name}: {done.out[-300:]}")
     return folder / name
 
 
@@ -136,8 +137,6 @@ def main(out: str = "build/oblique") -> None:
         sys.exit("the study needs CalculiX: ccx is not installed")
     folder = Path(out)
     folder.mkdir(parents=True, exist_ok=True)
-    from ..program import called
-
     result = folder / "oblique.nc"
     done = called("respond", scene(folder), "-o", result, "--json")
     print(done.err, file=sys.stderr)
