@@ -54,7 +54,9 @@ def test_more_of_anything_takes_more():
 
 def test_results_that_memory_does_not_hold_are_refused(fcm, monkeypatch):
     monkeypatch.setattr(room, "memory", lambda: 5_000.0)
+    monkeypatch.setattr("fcm.cli.room_needed.TOLD", 1_000.0)
     done = fcm("respond", SCENE, "--max-step", "0.001", "-o", "a.nc")
+    assert len(done.err.splitlines()) == 1  # what is refused is not told before
     assert (
         done.code == 2
         and "takes at least 2" in done.err

@@ -37,13 +37,13 @@ def check_room(messages: Messages, scene: Scene, count: int, asked: Asked) -> No
     contacts = len(scene.contacts)
     said = f"{count} curve{'s' * (count > 1)} of {contacts} contact{'s' * (contacts != 1)}"
     take = "take" if count > 1 else "takes"
-    if results + matrices > TOLD:
-        messages.info(f"{said} {take} at least {room.size(results + matrices)} of memory")
     if results + matrices > (free := room.memory()):
         raise ResponseError(
             f"{said} {take} at least {room.size(results + matrices)} of memory, and {room.size(free)} are "
             f"free: {_remedy(matrices > results, asked)}"
         )
+    if results + matrices > TOLD:
+        messages.info(f"{said} {take} at least {room.size(results + matrices)} of memory")
     if (seconds := _seconds_of_curve(scene, len(harmonics), asked)) > LONG:
         messages.info(
             f"{'each of ' * (count > 1)}{said} takes at least about {room.duration(seconds)} of processor "
