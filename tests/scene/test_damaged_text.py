@@ -209,6 +209,18 @@ def test_names_of_rows(tmp_path):
         assert {name.replace(":", "") for name in found.modal.dofs} <= lines, changed
 
 
+def test_names_of_rows_of_calculix(tmp_path):
+    """Each is the node and the direction of a line of its own."""
+    np.savez(tmp_path / "K.npz", K=K)
+    table = {"structure": {"dofs": "job.dof", "stiffness": "K.npz", "mass": [1, 2, 3], "damping": 0.1}}
+    content = b"1.1\n1.2\n40.6\n"
+    for changed, found in each(tmp_path, "job.dof", content, table, 10):
+        lines = [line.strip() for line in changed.decode("utf-8-sig").splitlines() if line.strip()]
+        pairs = (line.split(".") for line in lines)
+        names = [f"{int(node)}{['x', 'y', 'z', 'rx', 'ry', 'rz'][int(axis) - 1]}" for node, axis in pairs]
+        assert list(found.modal.dofs) == names, changed
+
+
 def test_scenes(tmp_path):
     """A scene's own file: a damaged line is named, or the scene is another."""
     from fcm.scene import load_scene
