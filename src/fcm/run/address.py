@@ -52,6 +52,8 @@ def unfit_host(host: str) -> str:
 
     >>> unfit_host("255.255.255.255"), unfit_host("127.0.0.1"), unfit_host("node7")
     ('255.255.255.255 is the address of no single host', '', '')
+    >>> unfit_host("::1"), unfit_host("::ffff:127.0.0.1"), unfit_host("ff02::1")
+    ('', '', 'ff02::1 is the address of no single host')
     >>> unfit_host("127.0.0.300")
     '127.0.0.300 is no address: each of its four numbers is 255 at most'
     """
@@ -59,7 +61,9 @@ def unfit_host(host: str) -> str:
         return f"{host} is no address: each of its four numbers is 255 at most"
     with suppress(ValueError):
         number = ipaddress.ip_address(host)
-        if number.is_multicast or number.is_reserved or number == ipaddress.IPv4Address("255.255.255.255"):
+        number = getattr(number, "ipv4_mapped", None) or number
+        reserved = number.is_reserved and not number.is_loopback  # as the standard library has ::1
+        if number.is_multicast or reserved or number == ipaddress.IPv4Address("255.255.255.255"):
             return f"{host} is the address of no single host"
     return ""
 
