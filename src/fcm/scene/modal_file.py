@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fcm.scene.archive import names_in_npz, read_npz
-from fcm.scene.errors import counted, kind, quoted
+from fcm.scene.errors import counted, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.reader_process import NAMES, read_apart
 from fcm.scene.readers import own_endings, own_reader, read_own
@@ -128,6 +128,9 @@ def _lengths(found: dict[str, Any]) -> list[str]:
     return [f"{one}, its frequency of {modes}" for one in said]
 
 
+_HELD = {"c": "complex ones", "b": "true and false", "U": "words", "S": "words", "M": "dates", "m": "times"}
+
+
 def _plain(key: str, value: Any, kinds: str, faults: list[str]) -> Any:
     """An array of numbers as it is; a single number as a float; names as a list of strings."""
     if key == "dofs":
@@ -135,7 +138,8 @@ def _plain(key: str, value: Any, kinds: str, faults: list[str]) -> Any:
         return [str(name) for name in (np.char.decode(names, "utf-8") if names.dtype.kind == "S" else names)]
     array = np.asarray(value)
     if array.dtype.kind not in kinds:
-        faults.append(f"{key} must hold real numbers, is {kind(value)} of {array.dtype}")
+        held = _HELD.get(array.dtype.kind, "what are no numbers")
+        faults.append(f"{key} must hold real numbers, and holds {held}")
         return array
     if array.dtype.kind == "c":
         return array.astype(np.complex128)
