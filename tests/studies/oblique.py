@@ -2,14 +2,13 @@
 
 usage: python -m tests.studies.oblique [OUT]
 
-The study needs `ccx`. It writes the mesh, the matrices, the scene, the response at four levels of the force
-and its picture into OUT, build/oblique. Then it prints the peaks beside two limits that CalculiX finds by
-itself: the first frequency of both bodies as one, and of one body alone.
+The study needs `ccx`. It writes the mesh, the matrices, the scene, the first nonlinear mode and its picture
+into OUT, build/oblique; minutes. Then it prints the mode beside two limits that CalculiX finds by itself: the
+first frequency of both bodies as one, and of one body alone.
 """
 
 from __future__ import annotations
 
-import json
 import re
 import shutil
 import sys
@@ -17,14 +16,16 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
+import xarray
 
+from ..guide.gallery import small
 from ..program import called, ended
 
 FloatArray = npt.NDArray[np.float64]
 LENGTH, HEIGHT, WIDTH, ANGLE = 0.1, 0.03, 0.005, 30.0  # m; degrees of the plane to the cross section
 ALONG, UP = 10, 12  # elements of each body, one across; 13 x 2 nodes on the plane
 PRELOAD, STIFFNESS = 400.0, 2e9  # N, N/m of the whole plane
-FORCES = (0.2, 1.0, 3.0, 10.0)  # N
+LEVELS = "1e-6:1e-4"  # modal amplitudes
 MATERIAL = "*MATERIAL, NAME=STEEL\n*ELASTIC\n2.1E11,0.3\n*DENSITY\n7850.\n"
 MATERIAL += "*SOLID SECTION, ELSET=EALL, MATERIAL=STEEL\n"
 MATRICES = "*STEP\n*FREQUENCY, SOLVER=MATRIXSTORAGE\n5\n*END STEP\n"
@@ -122,10 +123,6 @@ amplitude = 1.0
 [response]
 frequency = [600.0, 1250.0]
 harmonics = 1
-output = ["{driven}z"]
-
-[sweep]
-"force.{driven}z.amplitude" = {json.dumps(FORCES)}
 """
     path = folder / "oblique.toml"
     path.write_text(text, encoding="utf-8")
@@ -138,16 +135,19 @@ def main(out: str = "build/oblique") -> None:
     folder = Path(out)
     folder.mkdir(parents=True, exist_ok=True)
     result = folder / "oblique.nc"
-    done = called("respond", scene(folder), "-o", result, "--json")
+    done = called("respond", scene(folder), "--mode", "1", "--level", LEVELS, "-o", result)
     print(done.err, file=sys.stderr)
     glued = frequencies(folder, "glued", mesh(glued=True))[0]
     alone = frequencies(folder, "alone", mesh(alone=True))[0]
     print(f"CalculiX: as one {glued:.1f} Hz, one alone {alone:.1f} Hz")
-    for force, curve in zip(FORCES, json.loads(done.out)["curves"], strict=True):
-        ((_, peak),) = curve["peak"].items()
-        per = peak["amplitude"] / force
-        print(f"{force:6g} N: peak {peak['frequency']:.1f} Hz, {per:.4g} m/N, error {peak['error']:.1g}")
-    called("plot", "response", result, "-o", folder / "oblique.png")
+    with xarray.open_dataset(result) as data:
+        mode = data.isel(curve=0)
+        names = "modal_amplitude", "frequency", "damping_ratio"
+        for amplitude, frequency, damping in np.column_stack([mode[name].values for name in names])[::10]:
+            print(f"amplitude {amplitude:.3g}: {frequency:.1f} Hz, damping {100.0 * damping:.3f} %")
+    picture = folder / "oblique.png"
+    called("plot", "mode", result, "-o", picture)
+    small(picture, picture)
 
 
 if __name__ == "__main__":
