@@ -5,7 +5,7 @@ import math
 import pytest
 from scipy.optimize import brentq
 
-from fcm.continuation.root_finding import Secants
+from fcm.continuation.events import Secants
 
 
 def looked(f, low, high, within, zero=1e-10, may_jump=True):

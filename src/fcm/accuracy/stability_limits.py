@@ -17,7 +17,7 @@ from fcm.accuracy.options import AT_POINTS
 from fcm.accuracy.partner import give_back, lifted_of, partner_of
 from fcm.accuracy.required_harmonics import RequiredHarmonics, needed
 from fcm.continuation import Path, Segment
-from fcm.continuation.root_finding import Secants
+from fcm.continuation.events import Secants
 from fcm.harmonic_balance.normal_plane_prolongation import Lifted
 from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.residual_spectrum import HIGHEST, FurtherHarmonics

@@ -1,4 +1,11 @@
-"""What happens within a step: roots of functions along it, each found on the curve itself."""
+"""What happens within a step: roots of functions along it, each found on the curve itself.
+
+Between two points that enclose a sign change it is found by the secant through the last two points
+(`Secants`); halfway between the sides where that leads out of them, or three looks have not halved their
+distance. So it is too where the function jumps, if it may: between sides that are much nearer than they were
+a smooth function differs by much less. Values of the parameter are landed on where a curve may have a peak
+that no point away from them tells of (`Landing`).
+"""
 
 from __future__ import annotations
 
@@ -8,13 +15,12 @@ from typing import NamedTuple
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import sqrt
+from cython.cimports.libc.math import fabs, sqrt
 
 from fcm.continuation.extremum_search import ExtremumSearch, Sample
 from fcm.continuation.options import EventOptions
 from fcm.continuation.path import FloatArray, Mark
 from fcm.continuation.point import Point
-from fcm.continuation.root_finding import Secants
 from fcm.continuation.stepper import Stepper
 
 if cython.compiled:
@@ -23,6 +29,128 @@ if cython.compiled:
 else:
     from fcm.continuation.predictor import along
     from fcm.continuation.problem import DEAR
+
+# of the first distance of its sides, at which a function that does not jump
+CLOSER = cython.declare(cython.double, 0.25)
+LESS = cython.declare(cython.double, 0.5)  # differs by less than this part of what it did
+IN_TURN = cython.declare(cython.int, 3)  # looks that are to halve the distance
+
+
+@cython.cclass
+class Secants:
+    """The two sides of a change of sign, low and high, which looks at `at` bring nearer to one another.
+
+    width: their distance; secant: where the secant leads.
+    """
+
+    def __init__(
+        self,
+        low: cython.double,
+        high: cython.double,
+        before: cython.double,
+        after: cython.double,
+        may_jump: cython.bint = False,
+    ) -> None:
+        self.low, self.high, self.may_jump = low, high, may_jump
+        self.before, self.after = before, after  # the values there
+        # the last two points and their values
+        self.last, self.last_value, self.now, self.now_value = low, before, high, after
+        self.first_width, self.first_difference = high - low, fabs(after - before)
+        self.looks, self.width_in_turn = 0, high - low
+        self.aim()
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def aim(self) -> cython.void:
+        """The point to be looked at next."""
+        self.width, self.secant = self.high - self.low, self.low
+        if self.now_value != self.last_value:
+            rise: cython.double = self.now_value - self.last_value
+            self.secant = self.now - self.now_value * (self.now - self.last) / rise
+        slow: cython.bint = self.looks % IN_TURN == IN_TURN - 1 and self.width > 0.5 * self.width_in_turn
+        halved: cython.bint = slow or self.jumps() or not self.low < self.secant < self.high
+        self.at = 0.5 * (self.low + self.high) if halved else self.secant
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def jumps(self) -> cython.bint:
+        """Whether the function seems to."""
+        difference: cython.double = fabs(self.after - self.before)
+        near: cython.bint = self.width < CLOSER * self.first_width
+        return self.may_jump and near and difference > LESS * self.first_difference
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def known(self, fine: cython.double, after_next: cython.bint = False) -> cython.bint:
+        """Whether another look would move by no more than this; or the one after next.
+
+        That is shorter than the next by at least as much as the next is than the last.
+        """
+        way: cython.double = fabs(self.secant - self.now)
+        if way <= fine or self.width <= fine:
+            return True
+        return after_next and way * way <= fine * fabs(self.now - self.last)
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def saw(self, at: cython.double, value: cython.double) -> cython.int:
+        """Take the value there for that of one side."""
+        if self.looks % IN_TURN == IN_TURN - 1:
+            self.width_in_turn = self.width
+        self.looks += 1
+        self.last, self.last_value, self.now, self.now_value = self.now, self.now_value, at, value
+        if (value > 0.0) != (self.before > 0.0):
+            self.high, self.after = at, value
+        else:
+            self.low, self.before = at, value
+        self.aim()
+        return 0
+
+
+@cython.cclass
+class Landing:
+    """`value` (k, 2), of the parameter with a width; `met`: whether the step was cut to end at one."""
+
+    def __init__(self, values: Sequence[tuple[float, float]]) -> None:
+        self.value, self.met = np.array(values, dtype=np.float64).reshape(-1, 2), False
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def up_to(self, stepper: Stepper, step: cython.double) -> cython.double:
+        """The step, or the length at which it comes to the first value."""
+        k: cython.Py_ssize_t
+        n: cython.Py_ssize_t = stepper.problem.unknowns
+        way: cython.double
+        unit: cython.double = stepper.here.tangent[n] * stepper.newton.scale[n]
+        first: cython.double = step
+        for k in range(self.value.shape[0]):
+            way = self.value[k, 0] - stepper.here.z[n]
+            nearer: cython.bint = (
+                way * unit > 0.0 and fabs(way) > stepper.options.events.landing * self.value[k, 1]
+            )
+            if nearer and fabs(way) < first * fabs(unit):
+                first = way / unit
+        self.met = stepper.options.step.shortest < first < step
+        return first if self.met else step
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def across(self, stepper: Stepper, step: cython.double) -> cython.double:
+        """Length at which a step comes to the first value that it leads across; 0 if there is none."""
+        k: cython.Py_ssize_t
+        n: cython.Py_ssize_t = stepper.problem.unknowns
+        way: cython.double
+        gone: cython.double = stepper.there.z[n] - stepper.here.z[n]
+        first: cython.double = step
+        for k in range(self.value.shape[0]):
+            way = self.value[k, 0] - stepper.here.z[n]
+            within: cython.bint = way * gone > 0.0 and fabs(way) < fabs(gone)
+            if (
+                within
+                and min(fabs(way), fabs(gone - way)) > stepper.options.events.landing * self.value[k, 1]
+            ):
+                first = min(first, step * way / gone)
+        return first if stepper.options.step.shortest < first < step else 0.0
 
 
 class End(NamedTuple):

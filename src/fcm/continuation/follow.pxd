@@ -1,4 +1,4 @@
-from fcm.continuation.landing cimport Landing
+from fcm.continuation.events cimport Landing
 from fcm.continuation.nonsmooth_points cimport NonsmoothPoints
 from fcm.continuation.options cimport FollowOptions, StepOptions, SwitchingOptions
 from fcm.continuation.point cimport Point

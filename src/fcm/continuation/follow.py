@@ -20,9 +20,8 @@ import cython
 import numpy as np
 
 from fcm.continuation.checkpoint import Checkpoint, put_back, state_of
-from fcm.continuation.events import NO_MORE, End, Events, first_end
+from fcm.continuation.events import NO_MORE, End, Events, Landing, first_end
 from fcm.continuation.labelled_switching import LabelledSwitching
-from fcm.continuation.landing import Landing
 from fcm.continuation.nonsmooth_points import NonsmoothPoints
 from fcm.continuation.options import FOLLOW, FollowOptions, StepOptions, SwitchingOptions
 from fcm.continuation.path import FloatArray, Mark, Path, Status

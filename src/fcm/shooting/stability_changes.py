@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.continuation import Path, Segment
+from fcm.continuation.events import Secants
 from fcm.continuation.options import FOLLOW
-from fcm.continuation.root_finding import Secants
 from fcm.model.scene import FloatArray
 from fcm.shooting.periodic import STABLE
 from fcm.shooting.problem import OrbitProblem

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Path
-from fcm.continuation.root_finding import Secants
+from fcm.continuation.events import Secants
 from fcm.harmonic_balance.runs import runs
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray

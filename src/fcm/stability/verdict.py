@@ -7,18 +7,11 @@ from collections.abc import Sequence
 from enum import Enum
 from typing import NamedTuple
 
-import cython
-from cython.cimports.libc.math import atan2, fabs, hypot, log
-
-STABLE = cython.declare(cython.double, 1e-7)  # by which a multiplier may exceed 1
+STABLE = 1e-7  # by which a multiplier may exceed 1
 SURELY = 0.02  # logarithm of a real multiplier that truncation may put on the wrong side of 1 in any case
 SHIFTED = 2.0  # or, of one that it shifts, as far as this many times the shift
 FLIP_NEAR = 0.4  # [rad] from -1 within which a pair is followed as it passes: there modes flip
 SMALL = 0.75  # multipliers below are far from growth, wherever they turn
-FAR_FROM_GROWTH = cython.declare(cython.double, SMALL)
-PI = cython.declare(cython.double, 3.141592653589793)
-NAN = cython.declare(cython.double, float("nan"))
-INFINITY = cython.declare(cython.double, float("inf"))
 
 
 class Bifurcation(Enum):
@@ -45,7 +38,6 @@ PASSIVE = Verdict(1.0, -math.inf, Bifurcation.NEIMARK_SACKER, passive=True)
 UNKNOWN = Verdict(math.nan, math.nan, Bifurcation.NEIMARK_SACKER)
 
 
-@cython.cclass
 class Spectrum:
     """All multipliers of a solution sorted by how stability is lost through them; logarithms of their sizes.
 
@@ -54,40 +46,36 @@ class Spectrum:
     """
 
     values: tuple[complex, ...]
-    nearest = cython.declare(cython.double, visibility="readonly")
-    odd = cython.declare(cython.bint, visibility="readonly")
-    real: cython.double  # greatest of the real ones above 1, which leave at folds; -inf if there is none
-    real_but_nearest: cython.double
-    other: cython.double  # greatest of the others, -inf if there is none
+    nearest: float
+    odd: bool
+    real: float  # greatest of the real ones above 1, which leave at folds; -inf if there is none
+    real_but_nearest: float
+    other: float  # greatest of the others, -inf if there is none
     kind: Bifurcation  # of that
-    before_flip: cython.double  # as in `Verdict`
+    before_flip: float  # as in `Verdict`
 
     def __init__(self, values: list[complex]) -> None:
-        value: cython.doublecomplex
-        size: cython.double
-        self.values, self.kind, self.before_flip = tuple(values), Bifurcation.NEIMARK_SACKER, PI
-        self.nearest, self.odd, self.real, self.real_but_nearest = NAN, False, -INFINITY, -INFINITY
+        self.values, self.kind, self.before_flip = tuple(values), Bifurcation.NEIMARK_SACKER, math.pi
+        self.nearest, self.odd, self.real, self.real_but_nearest = math.nan, False, -math.inf, -math.inf
         self.other = 0.0
         for value in values:
-            size = hypot(value.real, value.imag)
+            size = math.hypot(value.real, value.imag)
             if value.imag == 0.0 and value.real > 0.0:
-                self.leaves_at_folds(log(size))
+                self.leaves_at_folds(math.log(size))
                 continue
             if size > self.other:
                 self.other, self.kind = (
                     size,
                     Bifurcation.NEIMARK_SACKER if value.imag != 0.0 else Bifurcation.PERIOD_DOUBLING,
                 )
-            if size > FAR_FROM_GROWTH and value.imag != 0.0:
-                self.before_flip = min(self.before_flip, PI - fabs(atan2(value.imag, value.real)))
-        self.other = log(self.other) if self.other > 0.0 else -INFINITY
+            if size > SMALL and value.imag != 0.0:
+                self.before_flip = min(self.before_flip, math.pi - abs(math.atan2(value.imag, value.real)))
+        self.other = math.log(self.other) if self.other > 0.0 else -math.inf
 
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def leaves_at_folds(self, size: cython.double) -> cython.void:
+    def leaves_at_folds(self, size: float) -> None:
         """Take a real multiplier above 0."""
-        farther: cython.double = size
-        if not fabs(size) >= fabs(self.nearest):
+        farther = size
+        if not abs(size) >= abs(self.nearest):
             farther, self.nearest = self.nearest, size
         if farther > STABLE:
             self.real_but_nearest = max(self.real_but_nearest, farther)
@@ -95,11 +83,11 @@ class Spectrum:
             self.odd = not self.odd
             self.real = max(self.real, size)
 
-    def verdict(self, without_nearest: cython.bint = False) -> Verdict:
+    def verdict(self, without_nearest: bool = False) -> Verdict:
         """By all multipliers but the real ones between 0 and 1, and if wanted the nearest to that."""
-        most: cython.double = self.real_but_nearest if without_nearest else self.real
+        most = self.real_but_nearest if without_nearest else self.real
         kind = self.kind
-        growth: cython.double = self.other
+        growth = self.other
         if not growth >= most:
             growth, kind = most, Bifurcation.REAL
         stable = 1.0 if growth <= STABLE else 0.0
@@ -117,16 +105,13 @@ def bifurcation_of(multipliers: Sequence[complex]) -> Bifurcation:
 
 def apart(verdict: Verdict) -> float:
     """[rad] that multipliers which are not small have to turn at least until two of them meet."""
-    value: cython.doublecomplex
-    angle: cython.double
-    k: cython.Py_ssize_t
     angles: list[float] = []
     for value in verdict.values:
-        angle = fabs(atan2(value.imag, value.real))
-        if angle > 0.0 and hypot(value.real, value.imag) > FAR_FROM_GROWTH:
+        angle = abs(math.atan2(value.imag, value.real))
+        if angle > 0.0 and math.hypot(value.real, value.imag) > SMALL:
             angles.append(angle)
     angles.sort()
-    nearest: float = PI - angles[len(angles) - 1] if angles else INFINITY
+    nearest: float = math.pi - angles[len(angles) - 1] if angles else math.inf
     for k in range(len(angles) - 2):
         nearest = min(nearest, angles[k + 2] - angles[k])
     return nearest
@@ -148,9 +133,7 @@ def even(fine: Spectrum, plain: Spectrum, turning: bool = False) -> Verdict:
     return found
 
 
-def doubtful(
-    found: Verdict, fine: Spectrum, plain: Spectrum, times: float, meetings: cython.bint = True
-) -> bool:
+def doubtful(found: Verdict, fine: Spectrum, plain: Spectrum, times: float, meetings: bool = True) -> bool:
     """Whether a verdict may be another once the motion has changed further, as it did from plain to fine.
 
     That is so where it is none, of a decay that is less than its change, of a growth that is less than some
@@ -189,7 +172,7 @@ def meeting(values: Sequence[complex]) -> tuple[float, float]:
 
 def to_flip(verdict: Verdict) -> float:
     """[rad] from the negative real axis to the nearest pair that is not small; 0 where one has come there."""
-    met = verdict.kind is Bifurcation.PERIOD_DOUBLING and verdict.growth > log(SMALL)
+    met = verdict.kind is Bifurcation.PERIOD_DOUBLING and verdict.growth > math.log(SMALL)
     return 0.0 if met else verdict.before_flip
 
 
