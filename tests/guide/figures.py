@@ -13,6 +13,8 @@ import matplotlib as mpl
 import numpy as np
 
 import fcm
+from fcm.contact.plane.forces import PlanarContact
+from fcm.contact.plane.options import PlanarOptions
 from fcm.plot.style import house_style, new_figure
 
 from .pages import GUIDE
@@ -228,12 +230,55 @@ def two_masses(figure):
         )  # fmt: skip
         drawn(axes, f"{name}-marched", at, amplitudes[:, i], "k+", label="marched" if i else None)
     axes.set(xlabel="frequency", ylabel="amplitude")
+
+
+ELLIPSE = {"u_x": [0, 1.0], "u_y": [0, -0.7j], "v": [0, 1.0]}  # which slips all the time
+LAW = {"mu": 1.0, "k_u": 1.0, "k_v": 0.1, "n_0": 0.3}
+
+
+def radial_return(samples, periods=30):
+    """First coefficients of f_x and f_y of that ellipse: a trial, then back to the disc, sample by sample."""
+    turn = np.exp(2j * np.pi * np.arange(samples) / samples)
+    u = turn.real + 0.7j * turn.imag  # u_x + i u_y
+    limit = LAW["mu"] * (LAW["n_0"] + LAW["k_v"] * turn.real)
+    w, force = 0j, np.empty(samples, complex)
+    for _ in range(periods if samples < 100 else 4):
+        for i in range(samples):
+            trial = u[i] - w
+            force[i] = trial * min(1.0, limit[i] / max(abs(trial), 1e-300))
+            w = u[i] - force[i]
+    return 2.0 / samples * np.array([force.real @ turn.conj(), force.imag @ turn.conj()])
+
+
+def sampled_slip(figure):
+    """The force of a slip in a plane that never ends: error against the angles at which it is evaluated."""
+    axes = figure.subplots()
+    best = np.array([part[1] for part in fcm.planar_forces(**ELLIPSE, **LAW)[:2]])
+    counts = 2 ** np.arange(5, 13)
+    sampled = np.array([abs(radial_return(count) - best).max() for count in counts])
+    panels, errors = np.array([5.0, 5.5, 6.0, 6.5, 7.0, 7.5, 8.0]), []
+    for length in 2.0 * np.pi / panels:
+        options = PlanarOptions(tolerance=1.0, resolved=2.0 * length, converged=1e-12)  # no panel is longer
+        contact = PlanarContact([1], [1], options=options)
+        contact.at(np.array([0, 0, 0, 1.0, 0, 0, -0.7, 1.0, 0]), *LAW.values(), gradient=False)
+        errors.append(abs(np.array(contact.forces)[3:7].view(complex) - best).max())
+    for name, x, y, colour in (
+        ("radial return", counts, sampled, STATES["P"]),
+        ("panels, as here", 8 * panels, np.array(errors), STATES["E"]),
+    ):
+        order = -np.polyfit(np.log(x), np.log(y), 1)[0]
+        drawn(
+            axes, name.split()[0].strip(","), x, y, "o-", ms=3, lw=0.9, color=colour,
+            label=f"{name}: order {order:.1f}",
+        )  # fmt: skip
+    axes.set(xscale="log", yscale="log", xlabel="angles of a cycle", ylabel="error of the force")
     axes.legend()
 
 
 FIGURES = {
     "contact-on-a-line": (contact_on_a_line, 5.8, 2.6),
     "contact-in-a-plane": (contact_in_a_plane, 4.2, 3.0),
+    "sampled-slip": (sampled_slip, 4.0, 2.8),
     "harmonic-balance": (harmonic_balance, 4.4, 2.8),
     "continuation": (continuation, 5.8, 2.6),
     "errors": (errors, 3.8, 3.0),

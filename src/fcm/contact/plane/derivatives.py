@@ -27,7 +27,8 @@ if cython.compiled:
     from cython.cimports.fcm.contact.plane.sums import CONTACT, SLIPS_X, SLIPS_Y, STICKS, Sums
 else:
     from fcm.contact.plane.motion import SCAN
-    from fcm.contact.plane.panel import STAGES, Panel
+    from fcm.contact.plane.panel import Panel
+    from fcm.contact.plane.radau import STAGES
     from fcm.contact.plane.sums import CONTACT, SLIPS_X, SLIPS_Y, STICKS, Sums
 
 PI = cython.declare(cython.double, 3.141592653589793)

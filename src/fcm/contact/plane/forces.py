@@ -19,7 +19,7 @@ else:
     from fcm.contact.periodic.motion import CLOSED, MIXED, UNKNOWN
     from fcm.contact.plane.cycle import STUCK, UNSOLVED, Cycle
     from fcm.contact.plane.motion import LOAD, REACH, SCAN, PlaneMotion, X, Y
-    from fcm.contact.plane.panel import STAGES
+    from fcm.contact.plane.radau import STAGES
     from fcm.contact.plane.sums import CONTACT, SLIPS_X, SLIPS_Y, STICKS
 
 from fcm.contact.plane.options import OPTIONS, PlanarOptions

@@ -186,7 +186,8 @@ class Panel:
         if cython.compiled:
             i = eliminate_eight(cython.address(self.matrix[0]), cython.address(self.right[0]))
             if i >= 0:
-                return i > 0
+                regular: bool = i > 0
+                return regular
         for k in range(STAGES):
             if not fabs(self.matrix[STAGES * k + k]) > 1e-300:
                 return False

@@ -59,7 +59,7 @@ def radau(stages: int) -> Radau:
     slopes = bary / bary[:, None] / apart
     np.fill_diagonal(slopes, 0.0)
     np.fill_diagonal(slopes, -slopes.sum(axis=1))
-    tail: FloatArray = np.linalg.inv(_legendre(x, stages))[-2:]
+    tail = np.linalg.inv(_legendre(x, stages)).astype(np.float64)[-2:]
     return Radau(nodes, vectors[0] ** 2, slopes, tail, bary)
 
 

@@ -20,7 +20,8 @@ if cython.compiled:
 else:
     from fcm.contact.plane.derivatives import Derivatives
     from fcm.contact.plane.motion import SCAN, PlaneMotion
-    from fcm.contact.plane.panel import STAGES, Panel
+    from fcm.contact.plane.panel import Panel
+    from fcm.contact.plane.radau import STAGES
     from fcm.contact.plane.sums import Sums
 
 STICK = cython.declare(cython.int, 0)  # states
@@ -270,8 +271,10 @@ class Slider:
     def scaled(self, length: float, left: float, by: float) -> float:
         """A length times a factor; if the panel was graded, of what is then left, so many times as deep."""
         if self.panel.fade > 0.0:
-            return left * (1.0 - exp(-by * self.panel.fade))
-        return by * length
+            length = left * (1.0 - exp(-by * self.panel.fade))
+        else:
+            length *= by
+        return length
 
     def stray(self, end: float) -> float:
         """How far the direction is from that in which it will be when the contact opens."""

@@ -18,7 +18,8 @@ if cython.compiled:
     from cython.cimports.fcm.contact.plane.sums import turn_eight
 else:
     from fcm.contact.plane.motion import PlaneMotion
-    from fcm.contact.plane.panel import STAGES, Panel
+    from fcm.contact.plane.panel import Panel
+    from fcm.contact.plane.radau import STAGES
 
 # Functions of the angle by which exp(-i m theta) is multiplied
 STICKS = cython.declare(cython.int, 0)  # 1 while it sticks
