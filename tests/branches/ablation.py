@@ -1,4 +1,4 @@
-"""Which answers are lost without each mechanism that looks for branches.
+"""Which answers are lost without each mechanism that looks for branches, peaks, or harmonics.
 
 usage: python -m tests.branches.ablation [HARMONICS] SCENE...   (files, or numbers of random scenes; HARMONICS
 is a number, or 0 for as many as the accuracy takes)
@@ -8,11 +8,13 @@ Each mechanism is switched off in turn, and what changes is printed: peaks, bran
 
 import sys
 from contextlib import contextmanager
+from importlib import import_module
 from unittest.mock import patch
 
 import numpy as np
 
 from fcm.accuracy import outline, refinement
+from fcm.branches import trace as branch_trace
 from fcm.response import refined
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
@@ -21,6 +23,7 @@ from fcm.scene import load_scene
 from ..response.random_scenes import random_scene
 
 ACCURACY, SAME = 1e-2, 1e-5
+curve_trace = import_module("fcm.response.trace")  # not the function of that name
 
 # what is put in the place of what, where it is called
 OFF = {
@@ -37,6 +40,9 @@ OFF = {
     "levels where nothing is stable": [
         (refined, "with_levels_where_unstable", lambda found, stable, accuracy: (found, False))
     ],
+    "narrow resonances": [(branch_trace, "narrow", lambda system: [])],
+    "peaks between points": [(curve_trace, "with_tops", lambda peaks, found: peaks)],
+    "stages that ask for more harmonics": [(refined, "finer", lambda *args: None)],
     "low harmonics": [(refinement, "with_low_harmonics", lambda system, found: system.harmonics)],
 }
 

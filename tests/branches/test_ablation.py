@@ -1,4 +1,4 @@
-"""Each mechanism that looks for branches is needed for an answer."""
+"""Each mechanism that looks for branches, peaks or harmonics is needed for an answer."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -8,6 +8,8 @@ import pytest
 from fcm.scene import load_scene, scene_from_dict
 
 from ..response.random_scenes import random_scene
+from ..response.test_leading import masses
+from ..response.test_narrow import around, with_mode
 from .ablation import OFF, answer, changes, without
 from .test_further_levels import ONE_MODE
 from .test_low_harmonics import beyond
@@ -26,6 +28,9 @@ LOST = [
     ("prolongation", random_scene(1), 10, "peak d0"),
     ("levels below peaks", scene_from_dict(ONE_MODE).each_curve()[0], 5, "branches 4 -> 3"),
     ("levels where nothing is stable", one(KNOWN, "chaos", (1.23, 1.6)), 7, "peak x0"),
+    ("narrow resonances", replace(around(with_mode(-60.0, 1.31, 1e-5, 0.005)), max_step=0.1), 3, "peak u"),
+    ("peaks between points", masses(["*"], 6, 2.0), 3, "peak m"),
+    ("stages that ask for more harmonics", one(SCENES, "equal_stops"), 0, "peak x1"),
     ("low harmonics", beyond().scene, 0, "peak v"),
 ]
 
