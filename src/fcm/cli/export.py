@@ -21,8 +21,11 @@ if TYPE_CHECKING:
     from fcm.results.result import Response
 
 UNIVERSAL, HDF5 = (".uff", ".unv"), (".h5", ".hdf5")
-_MISTUNED = "a mistuned ring has no mesh: that is of one sector; -o FILE has all displacements"
-_RING = "a ring's sector moves in modes that travel around it; its contact forces alone are exported"
+_MISTUNED = "a mistuned ring has no mesh: that is of one sector; -o FILE has the displacements of all sectors"
+_RING = (
+    "a ring's sector moves in modes that travel around it; its contact forces alone are exported "
+    "(--contact-forces), and -o FILE has its displacements"
+)
 
 
 def export_options(command: Any) -> Any:
@@ -74,10 +77,23 @@ def check_options(asked: Asked) -> None:
     if asked.export is not None and asked.export.suffix.lower() == ".vtu" and asked.mesh is None:
         raise click.UsageError("--export to .vtu needs --mesh FILE: .inp, .bdf, .msh, or .csv (node,x,y,z).")
     others = {
-        "--method exact": (asked.method == "exact", "it is of the motions of the balance, by harmonics"),
-        "--level": (asked.level is not None, "it is of curves against the frequency"),
-        "--track": (asked.track is not None, "it is of curves against the frequency"),
-        "--peaks-only": (asked.peaks_only, "it is taken at points of the curves"),
+        "--method exact": (
+            asked.method == "exact",
+            "it is of motions by their harmonics, which the balance has; leave --method out",
+        ),
+        "--mode": (
+            asked.mode is not None,
+            "it is of the motion under the scene's forces, as curves have it; leave --mode out",
+        ),
+        "--level": (
+            asked.level is not None,
+            "it is of curves against the frequency; give the forces that amplitude, and leave --level out",
+        ),
+        "--track": (
+            asked.track is not None,
+            "it is of curves against the frequency; give the scene the number, and leave --track out",
+        ),
+        "--peaks-only": (asked.peaks_only, "it is taken from points of the curves; leave --peaks-only out"),
     }
     for option, (one, why) in others.items():
         if wanted and one:
