@@ -44,7 +44,6 @@ class EigenOptions:
     last_digits: float = 10.0  # units of the last digit of entries that a shift is at least, if they have few
     no_mass: float = 1e-13  # relative: such an eigenvalue of the inverse problem is a row without mass
     negative: float = 1e-9  # of a mass whose diagonal is 1: an eigenvalue less negative is rounding
-    least: float = 1e-6  # relative to the greatest: how closely the least eigenvalue of a mass is looked for
     poll: float = 1e-3  # relative: how closely it is looked for a mode that was passed by
     same: float = 1e-6  # relative: so near to the highest, a mode that is left is not below it
     most_corrections: int = 12  # of static displacements; a shift that needs more is replaced
@@ -142,8 +141,8 @@ def _size_of_shift(K: Matrix, ratio: float, top: float) -> float:
 def _faults_of_mass(M: Matrix) -> list[str]:
     """Why a mass is not that of a structure; empty where it may be.
 
-    Its diagonal is made 1, so that the unit of a row does not matter. Of large matrices the least eigenvalue
-    alone is looked for, by Lanczos, which never tells it lower than it is.
+    Its diagonal is made 1, so that the unit of a row does not matter. Large matrices are factorised: the
+    pivots have as many negative ones as the eigenvalues, and most masses couple no two directions.
     """
     heavy = M.diagonal().real
     unit = scipy.sparse.diags_array(1.0 / np.sqrt(np.where(heavy > 0.0, heavy, heavy.max())))
@@ -154,12 +153,13 @@ def _faults_of_mass(M: Matrix) -> list[str]:
     if rows <= OPTIONS.dense:
         count = int((np.linalg.eigvalsh(scaled.toarray()) < -least).sum())
         return [_said("mass", count)] if count else []
-    above = 2.0 * float(abs(scaled).sum(axis=0).max())  # no eigenvalue is half as great
-    turned = LinearOperator(
-        scaled.shape, matvec=lambda x: above * np.ravel(x) - scaled @ np.ravel(x), dtype=scaled.dtype
-    )
-    value = eigsh(turned, 1, which="LA", v0=_start(rows), tol=OPTIONS.least, return_eigenvectors=False)
-    return [_said("mass", None)] if above - value[0] < -least else []
+    try:
+        solver(scaled + least * scipy.sparse.eye_array(rows))
+    except NotPositiveError as error:
+        return [_said("mass", error.negative)]
+    except TooLargeError as error:
+        return [str(error)]
+    return []
 
 
 def _said(what: str, negative: int | None) -> str:

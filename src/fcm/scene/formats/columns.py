@@ -32,18 +32,35 @@ def read_columns(path: Path, whole: int, between: str | None = None, comment: st
     ValueError names the line that is otherwise, and what a line must be.
     """
     content = path.read_bytes().removeprefix(MARK)
-    lines = _numbers_of_lines(content, comment.encode())
-    if not lines.size:
+    if not _holds_something(content, comment.encode()):
         raise UnreadableError("it is empty")
     kind = np.dtype([("whole", np.int64, (whole,)), ("real", np.float64)])
     try:
-        found = np.loadtxt(io.BytesIO(content), kind, delimiter=between, comments=comment, ndmin=1)
+        found = _loaded(content, kind, between, comment)
     except (ValueError, UnicodeDecodeError):
         found = _line_by_line(content, kind, between, comment)
+    count = content.count(b"\n") + (not content.endswith(b"\n"))
+    every = found.size == count  # which is quickly said of millions of lines
+    lines = np.arange(1, count + 1) if every else _numbers_of_lines(content, comment.encode())
     good = np.isfinite(found["real"])
     if not good.all():
         raise UnreadableError(f"line {lines[int(good.argmin())]}: is no finite number")
     return Columns(found["whole"], found["real"], lines)
+
+
+def _holds_something(content: bytes, comment: bytes) -> bool:
+    """Whether a line holds more than a comment."""
+    return any(one.partition(comment)[0].strip() for one in io.BytesIO(content))
+
+
+def _loaded(content: bytes, kind: np.dtype[Any], between: str | None, comment: str) -> npt.NDArray[Any]:
+    """The lines as numpy reads them: a comment of two letters would cost it more than the numbers."""
+    mark: str | None = comment
+    if comment.encode() not in content:
+        mark = None
+    elif b"#" not in content:
+        content, mark = content.replace(comment.encode(), b"#"), "#"
+    return np.loadtxt(io.BytesIO(content), kind, delimiter=between, comments=mark, ndmin=1)
 
 
 def _numbers_of_lines(content: bytes, comment: bytes) -> npt.NDArray[np.int64]:
