@@ -87,6 +87,33 @@ def test_rates_are_those_of_the_distances_beside_folds_too(blurred):
     assert gradient == pytest.approx(np.diff(np.reshape(costs, (3, 2))).ravel() / -2e-6, rel=1e-4)
 
 
+@pytest.mark.slow
+def test_rates_of_a_contact_in_a_plane():
+    """It slips along both directions, in an orbit."""
+    scene = scene_from_dict(
+        {
+            "modal": {"dofs": ["x", "y", "z"], "frequency": [1.0, 1.2, 9.0], "damping": [0.02, 0.02, 0.02],
+                      "shapes": [[1.0, 0.4, 0.2], [-0.3, 1.0, 0.1], [0.0, 0.0, 1.0]]},
+            "contact": [{"name": "c", "tangential": ["x", "y"], "normal": "z", "mu": 0.4, "k_u": 0.6,
+                         "k_v": 0.5, "n_0": 2.0}],
+            "force": [{"dof": "x", "amplitude": 1.0}, {"dof": "y", "amplitude": 0.8, "phase": 1.3}],
+            "response": {"frequency": [0.9, 1.5], "harmonics": 1},
+        }
+    )  # fmt: skip
+    curve = trace(scene, method="closed-form").curves[0]
+    chosen = np.unique(np.linspace(0, curve.points - 1, 9).astype(int))[1:-1]
+    assert any("P" in regime for regime in curve.regime[chosen, 0])
+    ones = np.ones(chosen.size)
+    amplitude = curve.amplitude[chosen, 0] * (1.0 + 0.02 * np.cos(np.arange(chosen.size)))
+    data = Measured("made", "x", curve.frequency[chosen], amplitude, ones, ones)
+    parameters = parameters_of(scene, ["contact.c.mu", "contact.c.k_u"], [None] * 2)
+    problem = Problem(parameters, [data], (1,), False)
+    x = parameters.unknowns(parameters.start * 1.01)
+    gradient = problem.jacobian(x).T @ problem.residual(x)
+    costs = [0.5 * (problem.residual(x + sign * h) ** 2).sum() for h in 1e-6 * np.eye(2) for sign in (1, -1)]
+    assert gradient == pytest.approx(np.diff(np.reshape(costs, (2, 2))).ravel() / -2e-6, rel=1e-4)
+
+
 def test_a_point_is_compared_with_the_nearest_point_of_all_branches():
     """Found here among many points of a fine curve, which the fold makes no function of the frequency."""
     scene = jump()

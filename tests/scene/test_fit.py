@@ -5,6 +5,7 @@ import struct
 import numpy as np
 import pytest
 
+from fcm.plot.measured import read_measured_points
 from fcm.scene import SceneError
 from fcm.scene.load import load_scene
 
@@ -134,11 +135,12 @@ def test_arrays_of_npz_and_mat(written, tmp_path):
     assert "amplitude[1] is nan" in mistakes(written(FIT.replace("a.csv", "b.npz")))
 
 
-def uff58(values, function=4, binary=None, even=True):
+def uff58(values, function=4, binary=None, even=True, ordinate=18):
     """A dataset 58 over 10, 10.5, ... Hz; binary: the byte order of struct."""
     head = ["NONE"] * 5 + [f"{function:5d}{0:10d}{1:5d}{0:10d} NONE{1:10d}{3:4d} NONE{1:10d}{3:4d}"]
     head += [f"{6:10d}{len(values):10d}{int(even):10d}{10.0:13.5e}{0.5:13.5e}{0.0:13.5e}"]
-    head += [f"{18:10d}{0:5d}{0:5d}{0:5d} NONE NONE"] * 4
+    axes = (18, ordinate, 13, 0)
+    head += [f"{kind:10d}{0:5d}{0:5d}{0:5d} NONE NONE" for kind in axes]
     rows = []
     if binary is None:
         for i, one in enumerate(values):
@@ -165,6 +167,29 @@ def test_functions_of_a_universal_file(written, options, function):
     assert one.frequency == pytest.approx(2.0 * np.pi * np.array([10.0, 10.5, 11.0]), rel=1e-6)
     assert one.amplitude == pytest.approx(np.abs(VALUES) * (6.0 if function == 4 else 1.0), rel=1e-12)
     assert one.phase == pytest.approx(np.angle(VALUES), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("ordinate", "quantity"), [(8, "displacement"), (11, "velocity"), (12, "acceleration")]
+)
+def test_a_universal_file_says_what_was_measured(written, ordinate, quantity):
+    """Accelerations were taken for displacements where the scene did not say it again."""
+    content, fit = uff58(VALUES, ordinate=ordinate), FIT.replace("a.csv", "a.unv")
+    (one,) = load_scene(written(fit, content, "a.unv")).fit.data
+    assert one.quantity == quantity
+    (one,) = load_scene(written(fit + f'quantity = "{quantity}"\n', content, "a.unv")).fit.data
+    assert one.quantity == quantity
+    other = "velocity" if quantity == "displacement" else "displacement"
+    said = mistakes(written(fit + f'quantity = "{other}"\n', content, "a.unv"))
+    assert f'is "{other}", and "a.unv" says that it is "{quantity}"' in said
+
+
+def test_accelerations_of_a_universal_file_are_drawn_as_displacements(tmp_path):
+    (tmp_path / "a.unv").write_bytes(uff58(VALUES, 12, ordinate=12))
+    found = read_measured_points(tmp_path / "a.unv", "Hz")
+    omega = 2.0 * np.pi * np.array([10.0, 10.5, 11.0])
+    assert found.frequency == pytest.approx(omega / (2.0 * np.pi))
+    assert found.amplitude == pytest.approx(np.abs(VALUES) / omega**2)
 
 
 def test_a_universal_file_without_a_response_says_what_it_holds(written):

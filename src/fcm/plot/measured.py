@@ -55,6 +55,8 @@ def measured_of(variables: Any) -> tuple[DrawnMeasured, ...]:
 def read_measured_points(path: Path, unit: str) -> DrawnMeasured:
     """Points of a file of measurements, as of [fit]: frequencies in a unit, displacements.
 
+    What a universal file says to be velocities or accelerations is divided by the frequency.
+
     Raises
     ------
     PlotError
@@ -71,6 +73,8 @@ def read_measured_points(path: Path, unit: str) -> DrawnMeasured:
         found["frequency"] = found["angular_frequency"] / UNIT.get(unit, 1.0)
         if found["per_force"].any():
             raise PlotError(f"{path}: its amplitudes are per unit of force: they are no displacements")
+        if "power" in found:
+            found["amplitude"] = found["amplitude"] / found["angular_frequency"] ** found["power"]
     return DrawnMeasured("", found["frequency"], found["amplitude"])
 
 

@@ -136,8 +136,12 @@ def _data(
     scaled = columns["angular_frequency"] if "angular_frequency" in columns else unit * columns["frequency"]
     amplitude, count = columns["amplitude"], scaled.size
     levels = columns[level] / _force(draft) if isinstance(level, str) else np.full(count, level)
+    if "power" in columns:
+        quantity = _quantity(section, name, quantity, float(columns["power"][0]))
     if "per_force" in columns and columns["per_force"].any():
         amplitude = amplitude * np.abs(levels) * _force(draft)
+    if section.mistakes.count > before:
+        return None
     weight = columns.get("weight", np.ones(count))
     if not weight.max() > 0.0:
         section.wrong("file" if not backbone else "backbone", f"{quoted(name)}: all weights are 0")
@@ -152,6 +156,14 @@ def _data(
         name, dof, scaled, amplitude, weight, levels, columns.get("phase"),
         columns.get("damping"), quantity, int(mode), **errors,
     )  # fmt: skip
+
+
+def _quantity(section: Section, name: str, given: str, power: float) -> str:
+    """What was measured: as a universal file says, which another one given contradicts."""
+    told = next(one for one, its in QUANTITIES.items() if its == power)
+    if told != given and "quantity" in section.data:
+        section.wrong("quantity", f"is {quoted(given)}, and {quoted(name)} says that it is {quoted(told)}")
+    return told
 
 
 def _columns(

@@ -30,7 +30,8 @@ def read_measured(
     """The columns of a file, (point,) each: all that are wanted, and those of the optional that it has.
 
     A universal file is in Hz: it has angular_frequency [rad/s] in place of frequency, and per_force (point,)
-    1 where amplitudes are those per unit of force.
+    1 where amplitudes are those per unit of force, and power (point,) of the frequency that they have over
+    displacements, where the file says it.
 
     Raises
     ------

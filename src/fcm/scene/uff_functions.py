@@ -2,7 +2,8 @@
 
 Its sixth line names the function (4 is a frequency response function, 12 a spectrum), the seventh the type of
 its values (2 and 4 real, 5 and 6 complex, of single and double precision), their number, and whether the
-frequencies are evenly spaced. Text is in columns of 13 or 20, as in Fortran's E13.5 and E20.12.
+frequencies are evenly spaced; the ninth says what the values are of (8 a displacement, 11 a velocity, 12 an
+acceleration). Text is in columns of 13 or 20, as in Fortran's E13.5 and E20.12.
 Source: SDRC I-DEAS Test Data Universal File Format, dataset 58, as published by the University of Cincinnati.
 """
 
@@ -18,23 +19,27 @@ from fcm.scene.errors import counted, quoted
 from fcm.scene.files import DataFileError
 from fcm.scene.number_text import fault_of_number, number_in
 from fcm.scene.uff_datasets import Dataset, read_datasets
+from fcm.units import QUANTITIES
 
 ComplexArray = npt.NDArray[np.complex128]
 HEAD = 11  # lines before the values
-FUNCTION, FORM = 5, 6  # lines that say what it is, and how its values are laid out
+FUNCTION, FORM, ORDINATE = 5, 6, 8  # lines that say what it is, how its values are laid out, and of what
 RESPONSE, SPECTRUM = 4, 12
 KINDS = {
     RESPONSE: "a frequency response function", SPECTRUM: "a spectrum", 1: "a time response",
     2: "an auto spectrum", 3: "a cross spectrum", 6: "a coherence",
 }  # fmt: skip
 WIDTH = {2: 13, 4: 20, 5: 13, 6: 20}  # columns of a value, by its type
+MEASURED = {8: "displacement", 11: "velocity", 12: "acceleration"}
 SINGLE, DOUBLE = (2, 5), (4, 6)
 COMPLEX = (5, 6)
 EVEN_WIDTH = 13  # columns of an abscissa
 
 
 def read_functions(path: Path) -> dict[str, FloatArray]:
-    """angular_frequency [rad/s], amplitude, phase [rad] and per_force of the one function of a file.
+    """angular_frequency [rad/s], amplitude, phase [rad], per_force and power of the one function of a file.
+
+    power : of the frequency that the values have over displacements, where the file says it.
 
     Raises
     ------
@@ -51,12 +56,16 @@ def read_functions(path: Path) -> dict[str, FloatArray]:
         what = f"has {counted(len(chosen), 'response')} over the frequency among its functions ({others})"
         raise DataFileError(f"{quoted(path.name)} {what}; one is right. The file holds {held}")
     frequency, value = _values(chosen[0], path)
-    return {
+    found = {
         "angular_frequency": 2.0 * np.pi * frequency,
         "amplitude": np.abs(value),
         "phase": np.angle(value),
         "per_force": np.full(frequency.size, float(_kind(chosen[0]) == RESPONSE)),
     }
+    words = _line(chosen[0], ORDINATE).split()
+    if words and words[0].isdecimal() and (quantity := MEASURED.get(int(words[0]))):
+        found["power"] = np.full(frequency.size, float(QUANTITIES[quantity]))
+    return found
 
 
 def _kind(one: Dataset) -> int:
