@@ -10,6 +10,10 @@ import numpy as np
 import pytest
 
 import fcm
+from fcm.continuation.corrector import Newton
+from fcm.harmonic_balance.modal_condensation import CondensedOptions
+from fcm.harmonic_balance.residual_traction import peak_changes
+from fcm.harmonic_balance.system import System
 from fcm.response.exact import trace_exact
 from fcm.scene import scene_from_dict
 
@@ -95,3 +99,23 @@ def test_the_run_says_one_number_beside_the_peak(tmp_path, fcm):
     assert f"by at most {float(f'{100.0 * change:.2g}'):g} % of it" in done.err
     table = fcm("respond", tmp_path / "model.toml", "--harmonics", "3").out
     assert "residual" in table and f"{float(f'{100.0 * change:.2g}'):g} %" in table
+
+
+def test_systems_condensed_to_modes_tell_the_same():
+    """As those of many contacts are."""
+    held = scene(1.0, [HELD])
+    omega = fcm.respond(held).peak_frequency.sel(dof="a").item()
+    told = []
+    for options in (CondensedOptions(), CondensedOptions(fewest=1, share=2.0)):
+        system = System(held, (1, 3), condensing=options)
+        newton = Newton(system.balance())
+        newton.z[-1], newton.row[-1] = omega, 1.0
+        newton.problem.measure(newton.z)
+        newton.scale[:] = newton.problem.scale
+        assert newton.correct(1.0) and (newton.problem.rank > 0) == (options.fewest == 1)
+        z, newton_row = np.array(newton.z), np.zeros(len(newton.z))
+        newton.problem.report(z, newton_row)
+        amplitude, stuck = np.array(newton.problem.output)[None], np.zeros((3, 2), dtype=bool)
+        stuck[:, 1] = True
+        told.append(peak_changes(system, z[None], amplitude, np.zeros(3, dtype=np.intp), stuck)[0])
+    assert told[0] > 0.005 and told[1] == pytest.approx(told[0], rel=1e-4)

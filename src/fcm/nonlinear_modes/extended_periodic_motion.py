@@ -107,8 +107,8 @@ class Autonomous(Problem):
         J[:], residual[:] = 0.0, 0.0
         self.contacts.evaluate(z[:m], self.modal_amplitude(z))
         force, tangent = self.contacts.force, self.contacts.tangent
-        grows = tangent @ z[:m] - force  # by ln a
-        J[self.mean_rows, :m] = self.static @ tangent[self.mean_rows]
+        grows = (tangent @ z[:m].reshape(*tangent.shape[:2], 1)).ravel() - force  # by ln a
+        J[self.mean_rows, :m] = self.of_contacts(self.static, tangent[:, : self.contacts.directions])
         J[self.mean_rows, n] = self.static @ grows[self.mean_rows]
         residual[self.mean_rows] = self.static @ force[self.mean_rows]
         for j, h in enumerate(self.h):
@@ -116,6 +116,13 @@ class Autonomous(Problem):
         residual[:m] += z[:m]
         J[range(m), range(m)] += 1.0
         return 0
+
+    def of_contacts(self, answer: FloatArray, tangent: FloatArray) -> FloatArray:
+        """answer (row, port) times the derivatives of forces of each contact by its own unknowns, tangent
+        (contact, direction, unknown): (row, unknown of all)."""
+        (contacts, directions, width), rows = tangent.shape, len(answer)
+        each = answer.reshape(rows, contacts, directions).swapaxes(0, 1) @ tangent
+        return each.swapaxes(0, 1).reshape(rows, contacts * width)
 
     def denominators(self, h: float, z: FloatArray) -> tuple[ComplexArray, ComplexArray, complex]:
         """e (mode,), and its derivatives by omega (mode,) and D."""
@@ -129,7 +136,10 @@ class Autonomous(Problem):
         """Rows of one harmonic: X + G F, without the modes kept, which have rows of their own."""
         m, n, P, rows = self.contact_unknowns, self.n, self.linear.ports, self.rows[j]
         e, by_omega, by_damping = self.denominators(h, z)
-        push, d_push = P @ _complex(self.contacts.force, rows), P @ _complex(self.contacts.tangent, rows)
+        push, first = P @ _complex(self.contacts.force, rows), int(rows[0]) if rows.size else 0
+        last, tangent = first + 2 * self.contacts.directions, self.contacts.tangent
+        real, imaginary = tangent[:, first:last:2], tangent[:, first + 1 : last : 2]
+        d_push = self.of_contacts(P, real) + 1j * self.of_contacts(P, imaginary)
         derivative = np.zeros((e.size, n + 1), dtype=np.complex128)
         kept = self.guess.kept if j == self.driven else self.guess.kept[:0]
         c = 1.0 / np.where(np.isin(np.arange(e.size), kept), 1.0, e)
@@ -139,7 +149,7 @@ class Autonomous(Problem):
         derivative[:, n - 2], derivative[:, n - 1] = -c * by_omega * Q, -c * by_damping * Q
         if j == self.driven:
             self.own_rows(z, Q, derivative, (e, by_omega, by_damping))
-        self.add(rows, -P.T @ Q, -P.T @ derivative)
+        self.add(rows, -P.T @ Q, -(P.T @ derivative.real) - 1j * (P.T @ derivative.imag))
 
     def own_rows(
         self,

@@ -21,23 +21,23 @@ class ScaledContacts:
         self._springs[self.mean_rows] = system.springs(stuck=True)
         self._springs[self.rows] = self._springs[self.rows + 1] = system.springs(stuck=True)
         self.force = np.zeros(self.unknowns)
-        self.tangent = np.zeros((self.unknowns, self.unknowns))
+        self.tangent = np.zeros((len(self.laws), self.width, self.width))  # of each contact by its own
 
     def evaluate(self, x: FloatArray, a: float) -> None:
         """Forces over a and their tangents at displacements a x, without those counted to the structure."""
-        w, normal = self.width, self.directions - 1
+        w, normal, whole = self.width, self.directions - 1, a * x
         for c, law in enumerate(self.laws):
             here = slice(c * w, (c + 1) * w)
-            if self._held(c, a * x[here]):
+            if self._held(c, whole[here]):
                 self.force[here] = self._springs[here] * x[here]
-                self.tangent[here, here] = np.diag(self._springs[here])
+                self.tangent[c] = np.diag(self._springs[here])
             else:
-                law.evaluate(a * x, c * w)
+                law.evaluate(whole, c * w)
                 self.force[here] = np.asarray(law.force) / a
-                self.tangent[here, here] = law.tangent
+                self.tangent[c] = law.tangent
             at = c * w + normal
             self.force[at] -= self._counted[c] * x[at]
-            self.tangent[at, at] -= self._counted[c]
+            self.tangent[c, normal, normal] -= self._counted[c]
 
     def _held(self, c: int, x: FloatArray) -> bool:
         """Whether a contact surely neither slips nor opens: then two springs, without rounding by n_0."""
