@@ -124,7 +124,7 @@ def test_contacts_that_stay_stuck_or_open_are_condensed(scene, harmonics):
         path = follow(problem, np.append(np.zeros(problem.unknowns), 0.9), (0.9, 1.5), Events(at))
         solutions.append(path.z[np.isin(path.parameter, at)])
         problem.evaluate(path.z[np.flatnonzero(path.parameter == 1.15)[0]])
-        assert problem.differs()
+        assert any(law.mixed for law in problem.laws)  # contacts slip or separate
         if options is EVERY_MODE:
             assert problem.condensed is not None and problem.condensed.holds
             assert parts < problem.condensed.held.size <= 4 * parts + 1
@@ -183,7 +183,7 @@ def test_few_modes_and_the_contacts_themselves_have_the_same_solutions(harmonics
     assert len(found) == 3
     np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected[:, :-1]).max())
     whole.evaluate(expected[1])
-    assert whole.differs()  # contacts slip or separate
+    assert any(law.mixed for law in whole.laws)  # contacts slip or separate
 
 
 def test_modes_that_yield_too_much_to_be_left_out_are_taken_after_all():
