@@ -29,6 +29,7 @@ class FitOptions:
     untold : standard error of a number, relative, from which it is not told.
     alike : correlation from which two numbers may not be told apart.
     apart : standard error of a number, relative, up to which it is told whatever it is correlated with.
+    poor : misfit of data, relative, from which the model does not meet them.
     confidence : of the intervals.
     reweighted : times that errors which are not stated are estimated, and the fit is made again.
     least_error : of a measured value, relative to the greatest: what is below is rounding.
@@ -57,6 +58,7 @@ class FitOptions:
     untold: float = 0.5
     alike: float = 0.98
     apart: float = 0.05
+    poor: float = 0.1
     confidence: float = 0.95
     reweighted: int = 2
     least_error: float = 1e-8

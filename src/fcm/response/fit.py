@@ -200,6 +200,7 @@ def _fitted(
         error=told.error,
         interval=told.interval,
         confidence=FIT.confidence,
+        poor=FIT.poor,
         correlation=told.correlation,
         without_effect=told.without_effect,
         untold=told.untold,

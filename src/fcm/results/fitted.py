@@ -76,6 +76,7 @@ class Fitted:
     error: FloatArray  # (number,) standard error, infinite where it has none
     interval: FloatArray  # (number, 2)
     confidence: float
+    poor: float  # misfit of data, relative, from which the model does not meet them
     correlation: FloatArray  # (number, number)
     without_effect: FloatArray  # (number,) 1 where the data do not change with it
     untold: FloatArray  # (number,) 1 where its standard error is as large as itself, nearly
@@ -111,6 +112,12 @@ class Fitted:
             if part.unreached:
                 name = part.measured.file
                 said.append(f"{name}: the model's curve does not come to {part.unreached} of its points")
+            off = max(part.misfit, np.nan_to_num(part.damping_misfit))
+            if off > self.poor:
+                said.append(
+                    f"{part.measured.file}: the model does not meet these data, from which it is off by "
+                    f"{100.0 * off:.0f} %: it lacks something, and the intervals do not know what"
+                )
         return said
 
     def _relative(self, k: int) -> str:

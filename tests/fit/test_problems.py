@@ -1,0 +1,44 @@
+"""What is said of a fit that is not to be relied on."""
+
+import numpy as np
+import pytest
+
+from fcm.model.scene import Measured
+from fcm.results.fitted import Fitted, FittedData
+
+
+def fitted(off, damping=None, off_damping=0.0):
+    """A number fitted to points that the model misses by a part of the greatest."""
+    ones = np.ones(4)
+    damped = None if damping is None else damping * ones
+    data = Measured("a.csv", "u", ones, 2.0 * ones, ones, ones, damping=damped)
+    residual = np.column_stack((off * ones * (2.0 if damping is None else 1.0), off_damping * ones))
+    error = ones[:, None] if damping is None else np.column_stack((ones, ones))
+    one = np.ones(1)
+    return Fitted(
+        keys=("contact.c.mu",), begin=one, values=one, error=0.1 * one, interval=np.array([[0.8, 1.2]]),
+        confidence=0.95, poor=0.1, correlation=np.eye(1), without_effect=0.0 * one, untold=0.0 * one,
+        at_bound=0.0 * one, alike=(), data=[FittedData(data, residual, error, 0)], starts=[], harmonics=(1,),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("off", [0.0, 0.09])
+def test_data_that_are_met_are_not_named(off):
+    assert fitted(off).problems() == []
+
+
+def test_data_that_the_model_misses_are_named():
+    """A fit at a thousand times the frequency said nothing of it."""
+    (said,) = fitted(0.25).problems()
+    assert said.startswith("a.csv: the model does not meet these data, from which it is off by 25 %")
+
+
+def test_so_is_the_damping_of_a_backbone():
+    (said,) = fitted(0.01, damping=0.02, off_damping=0.01).problems()
+    assert "is off by 50 %" in said
+
+
+def test_numbers_that_are_no_end_are_said():
+    found = fitted(0.0)
+    found.final = False
+    assert "best so far" in found.problems()[0]
