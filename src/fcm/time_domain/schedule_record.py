@@ -68,16 +68,12 @@ class Record:
     end: State  # from which another schedule can go on
     reason: str  # why it is not complete, else ''
     seconds: float
+    interrupted: bool = False  # whether an interruption has cut it off, or left it out
 
     @property
     def complete(self) -> bool:
         """Whether the schedule was simulated to its end."""
         return not self.reason
-
-    @property
-    def interrupted(self) -> bool:
-        """Whether an interruption has cut it off, or left it out."""
-        return self.reason in (INTERRUPTED, NOT_BEGUN)
 
     @property
     def cycles(self) -> float:
@@ -127,7 +123,7 @@ def record(
     """
     begin = time.perf_counter()
     plan = plan or Plan(scene.schedule, len(scene.modal.dofs))
-    recorder, reason = _Recorder(scene, plan), ""
+    recorder, reason, interrupted = _Recorder(scene, plan), "", False
     try:
         recorder.end = State.start(scene)
         for one in passed:
@@ -140,17 +136,17 @@ def record(
             if save is not None and recorder.done < plan.phase.size:
                 save(recorder.passed())
     except KeyboardInterrupt:
-        reason = INTERRUPTED
+        reason, interrupted = INTERRUPTED, True
     except SimulationError as error:
         reason = str(error)
-    made = recorder.record(reason)
+    made = recorder.record(reason, interrupted)
     made.seconds = time.perf_counter() - begin
     return made
 
 
 def unfinished(scene: Scene, plan: Plan) -> Record:
     """The record of a curve that was not begun."""
-    return _Recorder(scene, plan).record(NOT_BEGUN)
+    return _Recorder(scene, plan).record(NOT_BEGUN, True)
 
 
 def total(parts: Sequence[Energy]) -> Energy:
@@ -263,7 +259,7 @@ class _Recorder:
         segment = np.searchsorted(np.asarray(cycle.segments.start)[1:], times, side="right")
         self.state[chosen] = np.asarray(cycle.segments.states)[segment]
 
-    def record(self, reason: str) -> Record:
+    def record(self, reason: str, interrupted: bool) -> Record:
         amplitude, mean, greatest, least = self.measures
         found = self.transitions
         if self.done < self.plan.phase.size:  # it may have been interrupted within a cycle
@@ -273,7 +269,7 @@ class _Recorder:
             self.scene.parameters, amplitude, mean, greatest, least, self.displacement, self.state,
             np.array(found.times), np.array(found.contacts, dtype=np.int16),
             np.array(found.states, dtype=np.int8),
-            self._phases(), self.end, reason, 0.0,
+            self._phases(), self.end, reason, 0.0, interrupted,
         )  # fmt: skip
 
     def _phases(self) -> list[PhaseResult]:
