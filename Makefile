@@ -38,7 +38,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help docs reference guide-figures design fuzz kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence fold-curves multipliers kept-modes demo picture paper figures test test-all check tables \
+.PHONY: help docs reference guide-figures measured oblique design fuzz kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence fold-curves multipliers kept-modes demo picture paper figures test test-all check tables \
 	clean bench study study-plane
 
 help:  ## this list
@@ -245,6 +245,12 @@ reference: $(VENV)/installed-dev  ## the pages of reference, as the program itse
 guide-figures: $(VENV)/installed-dev  ## the figures of the theory pages, and the pictures of the gallery
 	$(BIN)/python -m tests.guide.figures
 	$(BIN)/python -m tests.guide.gallery
+
+measured: $(VENV)/installed  ## two measured joints fitted, in build/measured; DATA= names the folder of their files; minutes
+	$(BIN)/python -m tests.studies.measured $(DATA)
+
+oblique: $(VENV)/installed  ## two bodies on an oblique plane, built with CalculiX, in build/oblique; minutes
+	$(BIN)/python -m tests.studies.oblique
 
 docs: $(VENV)/installed-dev  ## the guide as a site that can be searched, in build/docs: to be served, as by python3 -m http.server -d build/docs
 	$(BIN)/python -m mkdocs build --quiet --config-file .github/mkdocs.yml
