@@ -39,7 +39,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PHONY: help docs reference guide-figures measured oblique design fuzz kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence fold-curves multipliers kept-modes demo picture paper figures test test-all check tables \
-	clean bench study study-plane
+	clean bench study
 
 help:  ## this list
 	@sed -n 's/^\([a-z-]*\):.*##/  make \1  -/p' $(MAKEFILE_LIST)
@@ -146,11 +146,6 @@ study: $(VENV)/installed  ## bundled and two hundred random scenes: do three ste
 	$(BIN)/python tests/response/lightly_damped.py >> build/study.partial
 	@mv build/study.partial build/study.txt; cat build/study.txt
 
-study-plane: $(VENV)/installed  ## two hundred random scenes of contacts in a plane beside marches in time; half an hour
-	@mkdir -p build
-	$(BIN)/python tests/response/random_planes.py > build/study-plane.partial
-	@mv build/study-plane.partial build/study-plane.txt; cat build/study-plane.txt
-
 calibration: $(VENV)/installed  ## estimated over true errors of hard curves; some minutes
 	@mkdir -p build
 	$(BIN)/python tests/accuracy/calibration.py > build/calibration.partial
@@ -178,6 +173,7 @@ bench-others: $(VENV)/installed  ## beside pyHarm-os and tmdsimpy, in environmen
 	@for one in pyharm tmdsimpy; do $(MAKE) --no-print-directory $(OTHERS)/$$one.json || \
 		echo "bench-others: $$one is left out: its environment could not be made, or it failed; see above" >&2; done
 	$(BIN)/python -m tests.report others $(OTHERS)
+	@test ! -f $(OTHERS)/pyharm/installed || $(OTHERS)/pyharm/bin/python tests/benchmarks/others/rotating_mass.py
 
 $(OTHERS)/pyharm.json: $(OTHERS)/pyharm/installed $(OTHERS)/problems.json $(wildcard tests/benchmarks/others/*.py)
 	cd $(@D)/pyharm && bin/python $(CURDIR)/tests/benchmarks/others/with_pyharm.py \
