@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev
@@ -12,16 +14,40 @@ from fcm.harmonic_balance.reported_quantities import Reported, reported_at
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
-DEGREE = 8  # of the polynomials in the way from one point to another, through solutions of the balance
-CLOSE = 1e-9  # of an amplitude: where the last coefficients of its polynomial are more, the way is halved
-HALVINGS = 3
-FINE = np.linspace(-1.0, 1.0, 129)  # where the highest place of a polynomial is looked for,
-STEPS = 3  # of Newton's method from there to where its slope is 0
-
 Indices = npt.NDArray[np.intp]
 
 
-def tops_between(system: System, path: Path, shown: Reported) -> tuple[FloatArray, FloatArray]:
+@dataclass(frozen=True)
+class InterpolationOptions:
+    """How a peak between two points of a path is found, by polynomials through solutions of the balance.
+
+    Attributes
+    ----------
+    degree : int
+        Of the polynomials.
+    close : float
+        Part of an amplitude: where the last coefficients of its polynomial are more, the way is halved.
+    halvings : int
+        Of the way, one within the other, at most.
+    samples : int
+        Places at which the greatest value of a polynomial is looked for.
+    steps : int
+        Steps of Newton's method from there to where its slope is 0.
+    """
+
+    degree: int = 8
+    close: float = 1e-9
+    halvings: int = 3
+    samples: int = 129
+    steps: int = 3
+
+
+INTERPOLATION = InterpolationOptions()
+
+
+def tops_between(
+    system: System, path: Path, shown: Reported, options: InterpolationOptions = INTERPOLATION
+) -> tuple[FloatArray, FloatArray]:
     """Greatest amplitudes (dof,) of a path, and their frequencies, at its points or beside the highest of
     these: where the amplitude grows at one of two neighbours and shrinks at the other."""
     top, d = shown.amplitude.argmax(axis=0), np.arange(shown.amplitude.shape[1])
@@ -32,15 +58,18 @@ def tops_between(system: System, path: Path, shown: Reported) -> tuple[FloatArra
     first = np.clip(first, 0, max(last - 1, 0))
     inside &= (shown.growth[first, d] > 0.0) & (shown.growth[np.minimum(first + 1, last), d] < 0.0)
     for i in np.unique(first[inside]).tolist():
-        _Way(system, path, i, np.flatnonzero(inside & (first == i))).raise_to(height, omega)
+        way = _Way(system, path, i, np.flatnonzero(inside & (first == i)), options)
+        way.raise_to(height, omega)
     return height, omega
 
 
 class _Way:
     """From a point of a path to the next, for some degrees of freedom."""
 
-    def __init__(self, system: System, path: Path, first: int, dofs: Indices) -> None:
-        scene = system.scene
+    def __init__(
+        self, system: System, path: Path, first: int, dofs: Indices, options: InterpolationOptions
+    ) -> None:
+        scene, self.options = system.scene, options
         chosen = np.zeros(len(scene.modal.dofs), dtype=np.bool_)
         chosen[dofs] = True
         self.system = System(scene.at_attached_and(chosen), system.harmonics, system.table, system.corrected)
@@ -50,30 +79,31 @@ class _Way:
 
     def raise_to(self, height: FloatArray, omega: FloatArray) -> None:
         """Put what is higher on the way, and where, in the place of heights (dof,) and frequencies."""
-        self._part(0.0, 1.0, np.arange(len(self.dofs)), height, omega, HALVINGS)
+        self._part(0.0, 1.0, np.arange(len(self.dofs)), height, omega, self.options.halvings)
 
     def _part(
         self, low: float, high: float, which: Indices, height: FloatArray, omega: FloatArray, halvings: int
     ) -> None:
         """The same of a part of the way, for some of its degrees of freedom."""
-        x = chebyshev.chebpts2(DEGREE + 1)
+        degree = self.options.degree
+        x = chebyshev.chebpts2(degree + 1)
         points = [self._at(low + 0.5 * (1.0 + one) * (high - low)) for one in x]
         z = np.array([one for one in points if one is not None])
         if len(z) < len(x):
             return
         amplitude = reported_at(self.system, z, np.zeros_like(z)).amplitude[:, self.columns[which]]
         of_amplitude, of_omega = (
-            chebyshev.chebfit(x, amplitude, DEGREE),
-            chebyshev.chebfit(x, z[:, -1], DEGREE),
+            chebyshev.chebfit(x, amplitude, degree),
+            chebyshev.chebfit(x, z[:, -1], degree),
         )
-        rough = np.abs(of_amplitude[-2:]).max(axis=0) > CLOSE * amplitude.max(axis=0)
+        rough = np.abs(of_amplitude[-2:]).max(axis=0) > self.options.close * amplitude.max(axis=0)
         if halvings and rough.any():
             middle = 0.5 * (low + high)
             self._part(low, middle, which[rough], height, omega, halvings - 1)
             self._part(middle, high, which[rough], height, omega, halvings - 1)
         smooth = ~rough if halvings else np.ones_like(rough)
         for k, polynomial in zip(which[smooth], of_amplitude.T[smooth], strict=True):
-            at = _highest(polynomial)
+            at = _highest(polynomial, self.options)
             value, d = float(chebyshev.chebval(at, polynomial)), self.dofs[k]
             if value > height[d]:
                 height[d], omega[d] = value, float(chebyshev.chebval(at, of_omega))
@@ -83,11 +113,12 @@ class _Way:
         return self.between.z if self.between.put(part) else None
 
 
-def _highest(polynomial: FloatArray) -> float:
+def _highest(polynomial: FloatArray, options: InterpolationOptions) -> float:
     """Where in [-1, 1] a Chebyshev series is greatest."""
-    at = float(FINE[chebyshev.chebval(FINE, polynomial).argmax()])
+    places = np.linspace(-1.0, 1.0, options.samples)
+    at = float(places[chebyshev.chebval(places, polynomial).argmax()])
     slope, bend = chebyshev.chebder(polynomial), chebyshev.chebder(polynomial, 2)
-    for _ in range(STEPS):
+    for _ in range(options.steps):
         down = float(chebyshev.chebval(at, bend))
         if down < 0.0:
             at = min(max(at - float(chebyshev.chebval(at, slope)) / down, -1.0), 1.0)
