@@ -114,6 +114,15 @@ def test_rates_of_a_contact_in_a_plane():
     assert gradient == pytest.approx(np.diff(np.reshape(costs, (2, 2))).ravel() / -2e-6, rel=1e-4)
 
 
+@pytest.mark.parametrize("count", [1, 2, 8])
+def test_so_many_starts_are_tried_the_numbers_of_the_scene_first(count):
+    """One start was two."""
+    parameters = parameters_of(stuck(), ["contact.c.k_u", "modal.damping.0"], [None, None])
+    found = np.array(list(parameters.starts(count)))
+    assert len(found) == count
+    assert np.exp(found[0]) == pytest.approx([K_U, DAMPING])
+
+
 def test_a_point_is_compared_with_the_nearest_point_of_all_branches():
     """Found here among many points of a fine curve, which the fold makes no function of the frequency."""
     scene = jump()

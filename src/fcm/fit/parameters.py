@@ -59,12 +59,14 @@ class Parameters:
         """Unknowns to begin with: the scene's numbers, then some spread evenly within the bounds."""
         first = self.unknowns(self.start)
         yield first
+        if count == 1:
+            return
         low, high = (self.unknowns(end) for end in (self.low, self.high))
         low, high = (
             np.where(np.isfinite(low), low, first - 1.0),
             np.where(np.isfinite(high), high, first + 1.0),
         )
-        for place in qmc.LatinHypercube(len(first), rng=seed).random(max(count - 1, 1)):
+        for place in qmc.LatinHypercube(len(first), rng=seed).random(count - 1):
             yield low + place * (high - low)
 
 
