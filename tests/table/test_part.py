@@ -13,7 +13,8 @@ from fcm.response import trace
 from fcm.scene import load_scene
 from fcm.table import TableError, build_table, open_table, spline
 from fcm.table.nodes import PRESETS
-from fcm.table.part import GUARD, Part, Reach
+from fcm.table.options import NODE_OPTIONS
+from fcm.table.part import Part, Reach
 
 from ..oscillator import oscillator
 
@@ -132,7 +133,7 @@ def test_any_cut_is_right_everywhere(tmp_path, tiny_file):
 
 
 def test_guards_are_wide_enough():
-    assert (2.0 - np.sqrt(3.0)) ** GUARD < 4e-4
+    assert (2.0 - np.sqrt(3.0)) ** NODE_OPTIONS.guard < 4e-4
     assert spline.FREE != spline.FLAT
 
 

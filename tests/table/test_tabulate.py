@@ -4,8 +4,11 @@ import json
 
 import pytest
 
+from fcm.cli.messages import Messages
+from fcm.cli.table_study import write_study
 from fcm.table import build, open_table, store
 from fcm.table.arrays import encode
+from fcm.table.options import StudyOptions
 
 SMALL = ("--nodes", 7, 5, 9, 7, "--points", 10_000)
 
@@ -91,14 +94,10 @@ def test_interruption_leaves_the_old_file_and_says_what_remains(fcm, tmp_path, m
 
 
 @pytest.mark.slow
-def test_study_compares_layouts(fcm, tmp_path, monkeypatch):
-    from fcm.table import study
-
-    monkeypatch.setattr(study, "SHARES", (0.2, 0.3))
-    monkeypatch.setattr(study, "POINTS", 3000)
-    done = fcm("tabulate", "--study", "study.csv", "--json")
-    assert done.code == 0
-    rows = json.loads(done.out)
+def test_study_compares_layouts(tmp_path, capsys):
+    options = StudyOptions(shares=(0.2, 0.3), points=3000)
+    write_study(Messages(), tmp_path / "study.csv", to_json=True, options=options)
+    rows = json.loads(capsys.readouterr().out)
     assert len(rows) == 9
     assert len((tmp_path / "study.csv").read_text().splitlines()) == 10
     assert (tmp_path / "study.png").read_bytes().startswith(b"\x89PNG")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -13,14 +14,18 @@ from fcm.cli.interruptible import Interruptible
 from fcm.cli.messages import Messages
 from fcm.files import replacing
 
+if TYPE_CHECKING:
+    from fcm.table.options import StudyOptions
 
-def write_study(messages: Messages, path: Path, to_json: bool) -> None:
+
+def write_study(messages: Messages, path: Path, to_json: bool, options: StudyOptions | None = None) -> None:
     from fcm.plot.study import write_study_figure
+    from fcm.table.options import STUDY_OPTIONS
     from fcm.table.study import Row, study
 
     began = time.perf_counter()
     with Interruptible(messages, "nothing was written") as progress:
-        rows = study(progress)
+        rows = study(progress, options or STUDY_OPTIONS)
     lines = [",".join(Row._fields)] + [",".join(map(_cell, row)) for row in rows]
     with replacing(path) as partial:
         partial.write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -27,11 +27,10 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.table.constants import CONE, FOLD_U, FOLD_Z, LARGEST_B, TIP
+from fcm.table.options import NODE_OPTIONS
 from fcm.table.tabulated import slip_geometry
 
 FloatArray = npt.NDArray[np.float64]
-
-NEWTON_STEPS = 60  # the first ones gain a third only
 
 
 class Geometry(NamedTuple):
@@ -67,7 +66,7 @@ def b_variation(x: FloatArray, phi: FloatArray) -> FloatArray:
     cone = CONE * (np.sin(phi) ** 2 + TIP)
     cube = np.abs(w) ** 3 / (1.0 + cone)  # |s|^3 = cube (s^2 + cone); convex above the root, so 1 is a start
     s = np.ones_like(cube)
-    for _ in range(NEWTON_STEPS):
+    for _ in range(NODE_OPTIONS.newton_steps):
         s = s - ((s - cube) * s * s - cube * cone) / np.maximum((3.0 * s - 2.0 * cube) * s, 1e-300)
     limit = 4.0 / np.pi * np.arctan(np.sqrt(LARGEST_B)) - 1.0
     b: FloatArray = np.tan(0.25 * np.pi * (np.minimum(np.sign(w) * s, limit) + 1.0)) ** 2

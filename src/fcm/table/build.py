@@ -10,9 +10,10 @@ import numpy as np
 from fcm.contact import fourier_coefficients
 from fcm.table import arrays, atlas, store
 from fcm.table.atlas import FloatArray
-from fcm.table.error import POINTS, error_of, sample
+from fcm.table.error import error_of, sample
 from fcm.table.lookup import Table
 from fcm.table.nodes import PRESETS, Nodes, axes, problem, separation_nodes, slip_nodes
+from fcm.table.options import ERROR_OPTIONS
 from fcm.table.part import Part
 from fcm.table.tabulated import Resolution
 from fcm.table.vanishing import vanishing_variation
@@ -25,7 +26,7 @@ Progress = Callable[[float, str], None]
 def build_table(
     path: str | Path,
     resolution: Resolution = PRESETS["default"],
-    points: int = POINTS,
+    points: int = ERROR_OPTIONS.points,
     progress: Progress | None = None,
     history: str = "fcm.table.build_table",
     part: Part | None = None,

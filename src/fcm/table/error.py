@@ -11,12 +11,10 @@ import numpy.typing as npt
 from fcm.contact import fourier_coefficients
 from fcm.table import atlas
 from fcm.table.atlas import FloatArray
+from fcm.table.options import ERROR_OPTIONS
 
 REGIMES = ("open", "separation", "slip", "stick")
 NAMES = ("F_b", "F_s", "F_c")
-POINTS = 1_000_000
-SEED = 1998  # as good as any: recorded beside an error, so that it can be measured again
-CHUNK = 50_000  # points between two looks at the progress; a few megabytes
 
 Progress = Callable[[float], None]  # with the share done
 Sampler = Callable[[int, int], tuple[FloatArray, FloatArray, FloatArray]]  # of so many points, with a seed
@@ -30,7 +28,7 @@ class Interpolant(Protocol):
     ) -> tuple[FloatArray, FloatArray, FloatArray]: ...
 
 
-def sample(count: int, seed: int = SEED) -> tuple[FloatArray, FloatArray, FloatArray]:
+def sample(count: int, seed: int = ERROR_OPTIONS.seed) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Points n0_bar, b_bar, phi over all regimes, a part of them crowded into every corner.
 
     b is uniform in b/(1+b), uniform in log from 1e-6 to 1e6, or within 1e-6 to 1 of b = 1; phi is uniform in
@@ -76,8 +74,8 @@ def regime(n0_bar: FloatArray, b_bar: FloatArray, phi: FloatArray) -> npt.NDArra
 
 def error_of(
     table: Interpolant,
-    points: int = POINTS,
-    seed: int = SEED,
+    points: int = ERROR_OPTIONS.points,
+    seed: int = ERROR_OPTIONS.seed,
     progress: Progress | None = None,
     drawn: Sampler = sample,
 ) -> dict[str, Any]:
@@ -92,12 +90,12 @@ def error_of(
     """
     n0, b, phi = drawn(points, seed)
     error = np.empty((3, points))
-    for first in range(0, points, CHUNK):
-        part = slice(first, first + CHUNK)
+    for first in range(0, points, ERROR_OPTIONS.chunk):
+        part = slice(first, first + ERROR_OPTIONS.chunk)
         exact = np.stack(fourier_coefficients(n0[part], b[part], phi[part]))
         error[:, part] = np.abs(np.stack(table(n0[part], b[part], phi[part])) - exact)
         if progress is not None:
-            progress(min(first + CHUNK, points) / points)
+            progress(min(first + ERROR_OPTIONS.chunk, points) / points)
     code = regime(n0, b, phi)
     result: dict[str, Any] = {"points": points, "seed": seed, **_summary(error.reshape(-1)), "regimes": {}}
     for index, name in enumerate(REGIMES):
@@ -121,7 +119,6 @@ def _summary(error: FloatArray) -> dict[str, float]:
     }
 
 
-SAME = 1e-3  # relative difference that other arithmetic may make at the same points
 SAMPLED, SAMPLED_RMS = 2.0, 1.25  # factors by which another sample may find a greater maximum, and rms
 
 
@@ -132,7 +129,7 @@ def disagreement(recorded: dict[str, Any], again: dict[str, Any], fresh: dict[st
     """
     for path, was in _numbers(recorded):
         now = _at(again, path)
-        if now is None or abs(now - was) > SAME * abs(was) + 1e-12:
+        if now is None or abs(now - was) > ERROR_OPTIONS.same * abs(was) + 1e-12:
             return f"{' '.join(path)} is {now if now is None else f'{now:.3g}'}, recorded {was:.3g}"
     for name, factor in (("max", SAMPLED), ("rms", SAMPLED_RMS)):
         if fresh[name] > factor * recorded[name]:

@@ -11,13 +11,9 @@ from fcm.contact.fourier import fourier_coefficients
 from fcm.contact.surface import CELLS, COEFFICIENTS, Edges, Plane, boundaries, edges
 from fcm.table.atlas import FloatArray
 from fcm.table.error import Interpolant
+from fcm.table.options import MAP_OPTIONS
 
-ZOOMS = 4  # times that the worst point is looked for on a finer grid around it
-FINER = 10  # steps to each side of such a grid, together as wide as one step of the grid before
-BESIDE = 250  # points between two lines between regimes, crowded towards both
-ROWS = 401  # values of b_bar at which there are such points
 CORNER = np.geomspace(1e-4, 0.1, 25)  # and more of them, at so much from b_bar = 1
-STARTS = 16  # points from which the worst one is sought, of each kind
 
 
 @dataclass(frozen=True)
@@ -59,9 +55,9 @@ def _zoomed(
 ) -> tuple[tuple[float, float], float]:
     """The greatest error near a point, within a step of it and then within smaller ones."""
     largest = 0.0
-    for shrink in FINER ** -np.arange(float(ZOOMS)):
+    for shrink in MAP_OPTIONS.finer ** -np.arange(float(MAP_OPTIONS.zooms)):
         axes = (
-            np.clip(x + h * shrink * np.linspace(-1.0, 1.0, 2 * FINER + 1), *ends)
+            np.clip(x + h * shrink * np.linspace(-1.0, 1.0, 2 * MAP_OPTIONS.finer + 1), *ends)
             for x, h, ends in zip(at, step, (plane.n0_range, plane.b_range), strict=True)
         )
         n0, b = np.meshgrid(*axes)
@@ -72,10 +68,10 @@ def _zoomed(
 def _beside_boundaries(plane: Plane) -> tuple[FloatArray, FloatArray]:
     """Points (j, i) that crowd towards b_bar = 1 and the lines between the regimes, where ridges are."""
     low, high = plane.b_range
-    rows = np.concatenate([np.linspace(low, high, ROWS), 1.0 + CORNER, 1.0 - CORNER])
+    rows = np.concatenate([np.linspace(low, high, MAP_OPTIONS.rows), 1.0 + CORNER, 1.0 - CORNER])
     rows = np.unique(np.clip(rows, low, high))
     lines = np.stack([*boundaries(rows, plane.phi).values()], axis=1)  # (j, line)
-    share = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, BESIDE))
+    share = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, MAP_OPTIONS.boundary_points))
     between = lines[:, :-1, None] + np.diff(lines, axis=1)[:, :, None] * share
     n0 = np.clip(between.reshape(len(rows), -1), *plane.n0_range)
     return n0, np.broadcast_to(rows[:, None], n0.shape)
@@ -86,7 +82,7 @@ def _peaks(error: FloatArray, n0: FloatArray, b: FloatArray) -> list[tuple[float
     of_row = error.max(axis=1)
     padded = np.pad(of_row, 1)
     rows = np.flatnonzero((of_row >= padded[:-2]) & (of_row >= padded[2:]))
-    rows = rows[np.argsort(of_row[rows])[-STARTS:]]
+    rows = rows[np.argsort(of_row[rows])[-MAP_OPTIONS.starts :]]
     columns = error[rows].argmax(axis=1)
     return [(float(n0[place]), float(b[place])) for place in zip(rows, columns, strict=True)]
 

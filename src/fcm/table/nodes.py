@@ -8,15 +8,12 @@ import numpy as np
 
 from fcm.table import atlas
 from fcm.table.atlas import FloatArray
+from fcm.table.options import NODE_OPTIONS
 from fcm.table.part import Part
 from fcm.table.tabulated import Resolution
 
 PRESETS: dict[str, Resolution] = {"default": (65, 17, 81, 71), "fast": (25, 9, 37, 29)}
 LEAST, MOST = 5, 2000  # nodes on an axis: what a spline needs, and more than anybody does
-MOST_NODES = 20_000_000  # of a table; 20 times the default, half a gigabyte
-
-LARGEST_SLIP_B = 1e4  # well beyond, the slip regime is thinner than rounding errors allow to resolve
-SMALLEST_PHI = 3e-6  # stands for the limit phi -> 0 of the slip regime where b >= 1
 
 
 class Nodes(NamedTuple):
@@ -38,7 +35,7 @@ def problem(resolution: Resolution) -> str:
     if not all(LEAST <= count <= MOST for count in resolution):
         return f"each axis has from {LEAST} to {MOST} nodes"
     total = (nu_1 + nu_2) * nx * nz
-    return f"{total} nodes in all are more than {MOST_NODES}" if total > MOST_NODES else ""
+    return f"{total} nodes in all are more than {NODE_OPTIONS.most}" if total > NODE_OPTIONS.most else ""
 
 
 def separation_nodes(u: FloatArray, x: FloatArray, z: FloatArray) -> Nodes:
@@ -56,8 +53,8 @@ def slip_nodes(u: FloatArray, x: FloatArray, z: FloatArray, resolved: bool = Fal
     phi = atlas.phi_phase(Z)
     b = atlas.b_variation(X, phi)
     if resolved:
-        b = np.minimum(b, LARGEST_SLIP_B)
-        away = np.where(b < 1.0 - 1e-10, 0.0, SMALLEST_PHI * b)
+        b = np.minimum(b, NODE_OPTIONS.largest_slip_b)
+        away = np.where(b < 1.0 - 1e-10, 0.0, NODE_OPTIONS.smallest_phi * b)
         phi = np.clip(phi, away, np.pi - away)
     return Nodes(b + atlas.t_slip(U) * atlas.geometry(b, phi).width, b, phi)
 

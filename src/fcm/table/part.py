@@ -1,7 +1,7 @@
 """A part of a table: the nodes around those points of the atlas that a calculation has looked up.
 
 Splines through a part differ from those through all nodes near its cut sides only: by a factor of 0.27 less
-with every node from there. So a part has `GUARD` nodes more than it answers for.
+with every node from there. So a part has `NODE_OPTIONS.guard` nodes more than it answers for.
 """
 
 from __future__ import annotations
@@ -12,10 +12,8 @@ import numpy as np
 
 from fcm.table import atlas
 from fcm.table.atlas import FloatArray
+from fcm.table.options import NODE_OPTIONS
 from fcm.table.tabulated import NODES_BETWEEN, Frame, Resolution, locate
-
-MARGIN = 1  # nodes around those reached: a solver's path is another with another table
-GUARD = 6  # nodes at a cut side, beyond which the splines are those through all nodes, to 1e-7
 
 Range = tuple[int, int]  # the first node, and one past the last; empty if they are the same
 
@@ -84,7 +82,7 @@ def _answered(nodes: Range, count: int) -> tuple[int, int]:
     first, end = nodes
     if first == end:
         return 0, -1
-    return first + GUARD * (first > 0), end - 1 - GUARD * (end < count)
+    return first + NODE_OPTIONS.guard * (first > 0), end - 1 - NODE_OPTIONS.guard * (end < count)
 
 
 def _uniform(random: np.random.Generator, count: int, nodes: Range, of: int) -> FloatArray:
@@ -129,5 +127,5 @@ def _around(low: float, high: float, count: int) -> Range:
     """Nodes of an axis around an interval of it, margin and guards included."""
     if low > high:
         return 0, 0
-    more = MARGIN + GUARD
+    more = NODE_OPTIONS.margin + NODE_OPTIONS.guard
     return max(0, int(np.floor(low)) - more), min(count, int(np.ceil(high)) + more + 1)

@@ -13,13 +13,14 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from fcm.table.options import NODE_OPTIONS
+
 FloatArray = npt.NDArray[np.float64]
 
 FREE, FLAT = "free", "flat"  # end conditions: third derivative continuous at the second node; zero slope
 
 # rows: the four weights; columns: 1, f, f^2, f^3
 WEIGHTS = np.array([[1, -3, 3, -1], [4, 0, -6, 3], [1, 3, 3, -3], [0, 0, 0, 1]]) / 6.0
-UNTHREADED = 200_000  # multiplications of a matrix product that OpenBLAS does in one thread
 
 
 def interpolate(values: FloatArray, ends: tuple[tuple[str, str], ...]) -> FloatArray:
@@ -35,7 +36,7 @@ def _along(axis: int, matrix: FloatArray, values: FloatArray) -> FloatArray:
     Where several programs share the processor, threads that wait for each other take ten times as long.
     """
     before, after = values.shape[:axis], values.shape[axis + 1 :]
-    width = max(1, UNTHREADED // matrix.size)
+    width = max(1, NODE_OPTIONS.serial_multiplications // matrix.size)
     if not after:
         rows = values.reshape(-1, values.shape[axis])
         parts = [rows[first : first + width] @ matrix.T for first in range(0, rows.shape[0], width)]

@@ -21,14 +21,9 @@ from fcm.table.build import charts
 from fcm.table.error import sample
 from fcm.table.lookup import Table
 from fcm.table.nodes import PRESETS
+from fcm.table.options import STUDY_OPTIONS, StudyOptions
 from fcm.table.part import Part
 from fcm.table.tabulated import NODES_BETWEEN, Cubic, Resolution, locate
-
-BOX = 3.0  # |n0_bar| and b_bar are at most this on a rectilinear grid; phi is in [0, pi]
-SHARES = (0.25, 0.35, 0.5, 0.7, 1.0)  # of the nodes of the default table, along each axis
-POINTS = 200_000  # sampled; about half of them lie in the box
-GROUP = 10  # points of the small look-up that is timed, as a solver makes it
-REPEATS = 5  # of a timed look-up, of which the least counts
 
 Coefficients = Callable[[FloatArray, FloatArray, FloatArray], Any]
 Progress = Callable[[float, str], None]
@@ -48,15 +43,15 @@ class Row(NamedTuple):
     us_per_point: float
 
 
-def study(progress: Progress | None = None) -> list[Row]:
+def study(progress: Progress | None = None, options: StudyOptions = STUDY_OPTIONS) -> list[Row]:
     """Measure every layout at every resolution; half a minute."""
-    n0, b, phi = sample(POINTS, seed=2024)
-    inside = (np.abs(n0) <= BOX) & (b <= BOX)
+    n0, b, phi = sample(options.points, seed=2024)
+    inside = (np.abs(n0) <= options.box) & (b <= options.box)
     points = n0[inside], b[inside], phi[inside]
     exact = np.stack(fourier_coefficients(*points))
     rows: list[Row] = []
-    count = 4 * len(SHARES) + 1
-    for layout, interpolation, nodes, coefficients in _candidates():
+    count = 4 * len(options.shares) + 1
+    for layout, interpolation, nodes, coefficients in _candidates(options):
         if progress is not None:
             progress(len(rows) / count, f"{layout} {interpolation}")
         error = np.abs(np.stack(coefficients(*points)) - exact)
@@ -65,18 +60,20 @@ def study(progress: Progress | None = None) -> list[Row]:
             Row(
                 layout, interpolation, nodes, 12 * nodes,
                 float(error.max()), float(np.quantile(error, 0.999)), rms,
-                _seconds(coefficients, points, GROUP, 100) * 1e6,
-                _seconds(coefficients, points, points[0].size, 1) / points[0].size * 1e6,
+                _seconds(coefficients, points, options.group, 100, options.repeats) * 1e6,
+                _seconds(coefficients, points, points[0].size, 1, options.repeats) / points[0].size * 1e6,
             )
         )  # fmt: skip
     return rows
 
 
-def _seconds(coefficients: Coefficients, points: tuple[FloatArray, ...], count: int, calls: int) -> float:
+def _seconds(
+    coefficients: Coefficients, points: tuple[FloatArray, ...], count: int, calls: int, repeats: int
+) -> float:
     """Least time of a look-up of this many points."""
     some = [x[:count] for x in points]
     best = np.inf
-    for _ in range(REPEATS):
+    for _ in range(repeats):
         began = time.perf_counter()
         for _ in range(calls):
             coefficients(*some)
@@ -84,15 +81,15 @@ def _seconds(coefficients: Coefficients, points: tuple[FloatArray, ...], count: 
     return float(best)
 
 
-def _candidates() -> Iterator[tuple[str, str, int, Coefficients]]:
+def _candidates(options: StudyOptions) -> Iterator[tuple[str, str, int, Coefficients]]:
     """Layout, interpolation, nodes, and how to look up; a resolution at a time."""
-    for share in SHARES:
+    for share in options.shares:
         resolution = _scaled(PRESETS["default"], share)
         nodes = (resolution[0] + resolution[1]) * resolution[2] * resolution[3]
         shape = _box_shape(nodes)
-        values = _box_values(shape)
-        yield "rectilinear", "linear", values[0].size, _box_linear(values)
-        yield "rectilinear", "cubic", values[0].size, _box_cubic(values)
+        values = _box_values(shape, options.box)
+        yield "rectilinear", "linear", values[0].size, _box_linear(values, options.box)
+        yield "rectilinear", "cubic", values[0].size, _box_cubic(values, options.box)
         parts = charts(Part.all_of(resolution))
         yield "regimes", "linear", nodes, _regimes_linear(resolution, *parts)
         yield "regimes", "cubic", nodes, Table(*parts)
@@ -111,13 +108,13 @@ def _box_shape(nodes: int) -> tuple[int, int, int]:
     return first, second, third
 
 
-def _box_axes(shape: tuple[int, ...]) -> list[FloatArray]:
-    limits = ((-BOX, BOX), (0.0, BOX), (0.0, np.pi))
+def _box_axes(shape: tuple[int, ...], box: float) -> list[FloatArray]:
+    limits = ((-box, box), (0.0, box), (0.0, np.pi))
     return [np.linspace(*limit, count) for limit, count in zip(limits, shape, strict=True)]
 
 
-def _box_values(shape: tuple[int, int, int]) -> FloatArray:
-    return np.stack(fourier_coefficients(*np.meshgrid(*_box_axes(shape), indexing="ij")))
+def _box_values(shape: tuple[int, int, int], box: float) -> FloatArray:
+    return np.stack(fourier_coefficients(*np.meshgrid(*_box_axes(shape, box), indexing="ij")))
 
 
 def _linear(axes: list[FloatArray], values: FloatArray) -> Callable[[FloatArray], FloatArray]:
@@ -142,8 +139,8 @@ def _signed(F: FloatArray, sign: FloatArray) -> FloatArray:
     return F
 
 
-def _box_linear(values: FloatArray) -> Coefficients:
-    at = _linear(_box_axes(values.shape[1:]), values)
+def _box_linear(values: FloatArray, box: float) -> Coefficients:
+    at = _linear(_box_axes(values.shape[1:], box), values)
 
     def coefficients(n0: FloatArray, b: FloatArray, phi: FloatArray) -> FloatArray:
         folded, sign = _fold(phi)
@@ -152,10 +149,10 @@ def _box_linear(values: FloatArray) -> Coefficients:
     return coefficients
 
 
-def _box_cubic(values: FloatArray) -> Coefficients:
+def _box_cubic(values: FloatArray, box: float) -> Coefficients:
     shape = values.shape[1:]
     cubic = Cubic(spline.stack(spline.interpolate(values, ((spline.FREE, spline.FREE),) * 3)))
-    ends = [(axis[0], (axis.size - 1) / (axis[-1] - axis[0])) for axis in _box_axes(shape)]
+    ends = [(axis[0], (axis.size - 1) / (axis[-1] - axis[0])) for axis in _box_axes(shape, box)]
 
     def coefficients(n0: FloatArray, b: FloatArray, phi: FloatArray) -> FloatArray:
         folded, sign = _fold(phi)
