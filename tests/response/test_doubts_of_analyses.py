@@ -83,6 +83,35 @@ def test_tracked_points_say_so(fcm, tmp_path):
     assert "a friction force that its past decides" in done.err
 
 
+def test_the_top_of_a_level_ranges_as_the_exact_motions_do(fcm, tmp_path):
+    """With residual friction, beside the exact motions that a period closes with it: at the level 1."""
+    (tmp_path / "s.toml").write_text(BODY + FORCES + STATIC + RANGE.replace("harmonics = 3\n", ""))
+    at = ("--at", 1.03979, "--json")
+    raised = fcm("respond", "s.toml", "--level", "0.5:1", "--harmonics", 7, *at)
+    exact = fcm("respond", "s.toml", "--method", "exact", *at)
+    peaks, family = (json.loads(done.out)["curves"][0]["peak"] for done in (raised, exact))
+    for dof in ("x0", "x1", "x2"):
+        told, known = peaks[dof]["residual_change"], family[dof]["residual_change"]
+        assert 0.01 < known and told == pytest.approx(known, rel=0.2)  # the members are balanced: an estimate
+    assert "may be one of many" in raised.err and "its past decides" in raised.err
+
+
+def test_an_optimum_has_the_residual_friction_of_its_peak(fcm, tmp_path):
+    least = '[optimum]\nvary = ["contact.c0.n_0"]\nbounds = [[0.095, 0.1]]\nminimise = "peak.x1"\n'
+    text = BODY + FORCES + STATIC + RANGE.replace("1.08", "1.2").replace("harmonics = 3", "harmonics = 7")
+    (tmp_path / "s.toml").write_text(text + least)
+    found = json.loads(fcm("respond", "s.toml", "--json", "-o", "s.nc").out)["optimum"][0]
+    (place,), number = found["at"], found["values"]["contact.c0.n_0"]
+    (tmp_path / "there.toml").write_text(text.replace("0.1058", repr(number)))
+    peak = json.loads(fcm("respond", "there.toml", "--json").out)["curves"][0]["peak"]["x1"]
+    assert place["residual_change"] == pytest.approx(peak["residual_change"], rel=1e-2) and number < 0.1
+    assert place["residual_change"] > 0.01
+    with netCDF4.Dataset(tmp_path / "s.nc") as file:
+        assert file["optimum_residual_change"][0, 0] == place["residual_change"]
+    head = fcm("respond", "s.toml").out.splitlines()[0]
+    assert f", residual friction {100.0 * place['residual_change']:.2g} %)" in head
+
+
 def test_a_level_at_which_all_slips_is_unique(fcm, tmp_path):
     (tmp_path / "s.toml").write_text(BODY + FORCES + STATIC + RANGE)
     done = fcm("respond", "s.toml", "--level", "9:11", "--at", 1.03979, "--json")

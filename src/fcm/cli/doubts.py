@@ -133,7 +133,9 @@ def maybe_not_unique(summary: Mapping[str, Any]) -> str:
 
 
 def _range_told(curve: Mapping[str, Any]) -> bool:
-    """Whether it is known of every peak how far it ranges with residual friction."""
+    """Whether it is known of every peak how far it ranges with residual friction; not of every level."""
+    if "level_folds" in curve:
+        return False
     peaks = [one for one in curve.get("peak", {}).values() if one]
     return bool(peaks) and all(one.get("residual_change") is not None for one in peaks)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.columns import UNKNOWN, UNSTABLE, aligned, short, swept
+from fcm.cli.columns import UNKNOWN, UNSTABLE, aligned, share_of, short, swept
 from fcm.cli.messages import Messages
 from fcm.cli.terminal import plain
 
@@ -155,7 +155,7 @@ def _optimum(one: Mapping[str, Any], unit: str) -> str:
     said = "".join(text for mark, text in _SAID.items() if mark in map(_mark, one["at"]))
     least = (
         f"least {' and '.join(map(plain, one['minimise']))}: {one['value']:.6g}{_stays(one)} "
-        f"(error {short(one['error'])})"
+        f"(error {short(one['error'])}{_ranges(one)})"
     )
     return f"{least} with {where}{kind}\n{at}{f'; {swept}' if swept else ''}{said}"
 
@@ -164,6 +164,15 @@ def _stays(one: Mapping[str, Any]) -> str:
     """What is said beside the least peak where no motion stays at it, or that is not told."""
     found = [place["stable"] for place in one["at"]]
     return ", unstable" if False in found else ", stability unknown" if None in found else ""
+
+
+def _ranges(one: Mapping[str, Any]) -> str:
+    """What is said beside the error where residual friction may change the least peak, or that is unknown."""
+    found = [place["residual_change"] for place in one["at"]]
+    if one["kind"] == "unfinished" or not found:
+        return ""
+    share = "unknown" if None in found else share_of(max(found))
+    return "" if share == "0" else f", residual friction {share}"
 
 
 def _mark(place: Mapping[str, Any]) -> str:

@@ -34,7 +34,7 @@ from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_modes
 from fcm.response.serial_sweep import one_by_one
 from fcm.response.trace import Rows, pick
-from fcm.response.undetermined_traction import undetermined
+from fcm.response.undetermined_traction import residual_changes_at_levels, undetermined
 from fcm.results.at_rest import without_rounding
 from fcm.results.cause import Cause
 from fcm.results.contact_maxima import greatest_of
@@ -171,12 +171,6 @@ def _followed(system: System, omega: float, span: tuple[float, float]) -> Curve:
     curve = _without(system.scene, omega, "no response was found at the least level")
     if inside.size:
         curve = replace(curve, **_points(system, path, inside, omega))
-        tops = np.nanargmax(curve.amplitude, axis=0)
-        at_top = stability_at_top(curve.amplitude, curve.stable).tolist()
-        curve.peaks = {
-            dof: Peak(float(curve.amplitude[i, d]), omega, float(curve.error[i, d]), at_top[d])
-            for d, (dof, i) in enumerate(zip(curve.peaks, tops, strict=True))
-        }
         curve.greatest = greatest_of(curve)
         whole, last = path.status is Status.COMPLETE, path.parameter[inside[-1]]
         curve.harmonics, curve.evaluations = system.harmonics, path.evaluations
@@ -222,9 +216,15 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     }
     if len(system.harmonics) > 1:
         of_points["harmonic"] = X
-    plane = in_plane(system, z)
+    plane, tops = in_plane(system, z), amplitude.argmax(axis=0)
+    residual = residual_changes_at_levels(system, z, level, amplitude, words).tolist()
+    at_top = stability_at_top(amplitude, stable).tolist()
     folds = level[(path.mark[inside] & Mark.FOLD) > 0]
     of_curve = {
+        "peaks": {
+            dof: Peak(float(amplitude[i, d]), omega, float(error[i, d]), at_top[d], residual[d])
+            for d, (dof, i) in enumerate(zip(system.scene.modal.dofs, tops, strict=True))
+        },
         "level_folds": folds.tolist(),
         "undetermined": int(undetermined(system.scene, words).sum()),
         "reason": _lost(system, level, lost),

@@ -18,7 +18,7 @@ from fcm.response.request import ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.sweep import trace
 from fcm.results.condensed_curves import gist_of, without_points
-from fcm.results.peak import stability_at_top
+from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import INTERRUPTED, Curve, Response
 from fcm.results.tracked import Optimal, Tracking
 from fcm.run import Checkpoint, Progress
@@ -104,7 +104,10 @@ def _freed(scene: Scene, keys: Iterable[str]) -> tuple[list[Number], Scene]:
 
 def _unfinished(free: Scene, tracking: Tracking, count: int, begin: float) -> Response:
     """What an interruption leaves of the search for optima: those so far, and no response with them."""
-    tracking.optima = [replace(one, stable=(np.nan,) * len(one.active)) for one in tracking.optima]
+    untold = [(np.nan,) * len(one.active) for one in tracking.optima]
+    tracking.optima = [
+        replace(one, stable=none, residual=none) for one, none in zip(tracking.optima, untold, strict=True)
+    ]
     tracking.interrupted = True
     finished = sum(one.kind != UNFINISHED for one in tracking.optima)
     said = "" if count == 1 else f" (of {count}, {finished} are)"
@@ -158,25 +161,28 @@ def _check_moves(found: Optimal, curve: Curve) -> None:
 
 
 def _with_error(found: Optimal, curve: Curve) -> Optimal:
-    """With the estimated error of the peaks that are greatest, and whether the motion is stable there."""
+    """With the estimated error of the peaks that are greatest, and what else is known of the motion there."""
     there = [_told(curve, dof, omega) for dof, omega in found.active]
-    error = float(np.max([error for error, _ in there])) if there else np.nan
-    return replace(found, error=error, stable=tuple(stable for _, stable in there))
+    error = float(np.max([one.error for one in there])) if there else np.nan
+    stable, residual = (tuple(getattr(one, name) for one in there) for name in ("stable", "residual"))
+    return replace(found, error=error, stable=stable, residual=residual)
 
 
-def _told(curve: Curve, dof: str, omega: float) -> tuple[float, float]:
-    """Error and stability, as of a `Peak`, of the peak of a degree of freedom at a frequency.
+def _told(curve: Curve, dof: str, omega: float) -> Peak:
+    """What is told of the peak of a degree of freedom at a frequency.
 
-    That need not be its greatest amplitude, which may be at an end of the range. NaN where neither is known.
+    That need not be its greatest amplitude, which may be at an end of the range. NaN where it is not known.
     """
     greatest, d = curve.peaks[dof], list(curve.peaks).index(dof)
     if abs(greatest.frequency - omega) <= SAME_PLACE * omega:
-        return greatest.error, greatest.stable
+        return greatest
     at = np.flatnonzero(np.abs(curve.frequency - omega) <= SAME_PLACE * omega)
+    residual = np.nan if curve.undetermined else 0.0
     if not at.size:
-        return np.nan, np.nan
-    stable = stability_at_top(curve.amplitude[at], curve.stable[at])[d]
-    return float(curve.error[at[curve.amplitude[at, d].argmax()], d]), float(stable)
+        return Peak(np.nan, omega, residual=residual)
+    stable = float(stability_at_top(curve.amplitude[at], curve.stable[at])[d])
+    top = at[curve.amplitude[at, d].argmax()]
+    return Peak(float(curve.amplitude[top, d]), omega, float(curve.error[top, d]), stable, residual)
 
 
 def _say_what_is_short(tracking: Tracking, response: Response, accuracy: float) -> None:

@@ -17,7 +17,6 @@ from fcm.branches.options import FOLDS
 from fcm.contact.contact_law import ContactLawError
 from fcm.continuation import Mark
 from fcm.harmonic_balance.planar_quantities import in_plane
-from fcm.harmonic_balance.residual_traction import peak_changes
 from fcm.harmonic_balance.response_quantities import Record, cycles, loops, recorded, table_errors
 from fcm.harmonic_balance.rounding import with_digits
 from fcm.harmonic_balance.static_equilibrium import RestError
@@ -30,13 +29,12 @@ from fcm.response.incomplete import FLOATING, incomplete
 from fcm.response.master_dofs import leading, of_all, with_tops
 from fcm.response.refined import Refined, refined
 from fcm.response.request import ONE_HARMONIC, Request
-from fcm.response.undetermined_traction import undetermined
+from fcm.response.undetermined_traction import residual_changes, undetermined
 from fcm.results.cause import Cause
 from fcm.results.contact_maxima import greatest_of
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve
 from fcm.run import Interrupted
-from fcm.structure.linear import Linear
 
 METHODS = ("table", "closed-form")
 QUICK = replace(PAIR, seconds=0.0, points=0.05, dearest=0)  # where nobody waits any more
@@ -136,7 +134,7 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
     peak = np.full_like(found.peak, np.nan) if response.exceeded else found.peak
     error = np.maximum(np.concatenate([one.amplitude for one in found.errors]), rounding)
     open_to_past = undetermined(scene, words)
-    residual = _residual_changes(system, points, words, open_to_past, quick)
+    residual = residual_changes(system, points.z, points.amplitude, words, open_to_past, quick)
     curve = Curve(
         parameters=dict(scene.parameters),
         frequency=pick(points.z[:, -1], rows),
@@ -198,24 +196,6 @@ def _of_greatest(found: Accurate, path: Rows, borne: FloatArray) -> FloatArray:
     unknown = (np.isnan(errors) & (heights > PAIR.rival * heights.max(axis=0))).any(axis=0)
     own = np.take_along_axis(errors, heights.argmax(axis=0)[None], axis=0)[0]
     return np.where(unknown, np.nan, own)
-
-
-def _residual_changes(
-    system: System,
-    points: Record,
-    words: npt.NDArray[np.str_],
-    undetermined: npt.NDArray[np.bool_],
-    quick: bool,
-) -> FloatArray:
-    """By how much residual friction may change each peak (dof,), see `harmonic_balance.residual_traction`."""
-    top, contacts = points.amplitude.argmax(axis=0), system.scene.contacts
-    if not undetermined[top].any():
-        return np.zeros(top.size)
-    if quick or type(system.linear) is not Linear:
-        return np.where(undetermined[top], np.nan, 0.0)
-    rough = np.array([one.mu * one.k_u > 0.0 for one in contacts], dtype=np.bool_)
-    stuck = (words[top] == "E") & rough & undetermined[top, None]
-    return peak_changes(system, points.z, points.amplitude, top, stuck)
 
 
 def _peaks(

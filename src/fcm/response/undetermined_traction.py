@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 
+from fcm.harmonic_balance.residual_traction import peak_changes
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
+from fcm.structure.linear import Linear
 
 FELT = 1e-9  # change of a contact's load, relative to the residual friction of another: less is rounding
 
@@ -35,6 +40,48 @@ def undetermined(scene: Scene, states: npt.NDArray[np.str_]) -> npt.NDArray[np.b
         rows, which = np.unique(states[still], axis=0, return_inverse=True)
         felt = np.array([_felt(scene, row == "E", (row == "E") & rough) for row in rows])
         found[still] = felt[which.ravel()]
+    return found
+
+
+def residual_changes(
+    system: System,
+    z: FloatArray,
+    amplitude: FloatArray,
+    states: npt.NDArray[np.str_],
+    undetermined: npt.NDArray[np.bool_],
+    quick: bool = False,
+) -> FloatArray:
+    """By how much residual friction may change each peak (dof,), see `harmonic_balance.residual_traction`.
+
+    z (point, unknown + 1), amplitude (point, dof), states (point, contact) and what `undetermined` says are
+    those of a curve; quick: NaN instead of what takes further motions to tell.
+    """
+    top, contacts = amplitude.argmax(axis=0), system.scene.contacts
+    if not undetermined[top].any():
+        return np.zeros(top.size)
+    if quick or type(system.linear) is not Linear:
+        return np.where(undetermined[top], np.nan, 0.0)
+    rough = np.array([one.mu * one.k_u > 0.0 for one in contacts], dtype=np.bool_)
+    stuck = (states[top] == "E") & rough & undetermined[top, None]
+    return peak_changes(system, z, amplitude, top, stuck)
+
+
+def residual_changes_at_levels(
+    system: System, z: FloatArray, level: FloatArray, amplitude: FloatArray, states: npt.NDArray[np.str_]
+) -> FloatArray:
+    """As `residual_changes`, of points at one frequency, with forces times level (point,).
+
+    The frequency is held, and the level that each peak is at.
+    """
+    scene, top, at = system.scene, amplitude.argmax(axis=0), float(z[0, -1])
+    maybe, found = undetermined(scene, states), np.zeros(amplitude.shape[1])
+    for i in np.unique(top[maybe[top]]).tolist():
+        forces = tuple(replace(one, amplitude=one.amplitude * float(level[i])) for one in scene.forces)
+        held = replace(scene, forces=forces, frequency_range=(at, 2.0 * at))  # as at an end of a range
+        there = System(held, system.harmonics)
+        one = slice(i, i + 1)
+        change = residual_changes(there, z[one], amplitude[one], states[one], maybe[one])
+        found = np.where(top == i, change, found)
     return found
 
 

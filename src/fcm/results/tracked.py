@@ -109,6 +109,7 @@ class Optimal:
     error: float = np.nan  # of the value, estimated, relative
     between: tuple[float, float] | None = None  # the numbers next to it, if it was found by trials
     stable: tuple[float, ...] = ()  # of each of the active, as of a `Peak`
+    residual: tuple[float, ...] = ()  # likewise
     fewer: Optimal | None = None  # what was found with fewer harmonics before
 
     def summary(self, unit: str) -> dict[str, Any]:
@@ -123,8 +124,11 @@ class Optimal:
                     "dof": dof,
                     "frequency": float(in_unit(omega, unit)),
                     "stable": None if np.isnan(stable) else bool(stable),
+                    "residual_change": residual,
                 }
-                for (dof, omega), stable in zip(self.active, self.stable, strict=True)
+                for (dof, omega), stable, residual in zip(
+                    self.active, self.stable, self.residual, strict=True
+                )
             ],
             "kind": self.kind,
             "harmonics": list(self.harmonics),

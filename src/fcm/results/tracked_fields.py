@@ -116,6 +116,9 @@ def _optima(response: Response, tracking: Tracking) -> dict[str, Field]:
     stable = padded([np.array(one.stable) for one in optima])
     dies = "1 where the motion at that peak, or those, is stable, 0 where not"
     add("stable", ("equal",), stable, dies, units="1")
+    residual = padded([np.array(one.residual) for one in optima])
+    ranges = "greatest change of that peak by the residual friction of contacts that never slip, relative"
+    add("residual_change", ("equal",), residual, ranges, units="1")
     add("kind", (), np.array([one.kind for one in optima], dtype=str), f"{KINDS}, bound, trials, unfinished")
     return out
 
