@@ -151,6 +151,33 @@ def test_dataset_2414_of_permas(tmp_path):
     assert any("gives no modal masses" in note for note in scene.notes)
 
 
+DOUBLE = [[-0.25, 1.0 / 3.0, -0.70857123456789012, 1e-101, 1.0, 0.0], [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]]
+
+
+@pytest.mark.parametrize("per_line", [3, 6])
+def test_dataset_2414_in_double_precision(tmp_path, per_line):
+    """Six values at a node, on a line or on two; real, and the same as complex ones without a phase."""
+    scenes = []
+    for kind, shapes in ((4, DOUBLE), (6, [[v for one in row for v in (one, 0.0)] for row in DOUBLE])):
+        lines = PERMAS.splitlines()[:15]
+        lines[10] = lines[10].replace("8         2", f"8         {kind}")
+        for node, row in enumerate(shapes, 1):
+            lines.append(f"{node:10d}")
+            texts = [f"{v:26.16E}".replace("E-101", "-101") for v in row]
+            lines += ["".join(texts[i : i + per_line]) for i in range(0, len(row), per_line)]
+        scenes.append(read(tmp_path, "\n".join([*lines, "    -1", ""]), "1x"))
+    for scene in scenes:
+        assert scene.modal.shapes.reshape(2, 6).tolist() == pytest.approx(np.array(DOUBLE), rel=1e-15)
+    text = (tmp_path / "m.uff").read_text().splitlines()
+    del text[17]  # a line of values: what is next is no value
+    assert "values at node 1 are 12" in refused(tmp_path, "\n".join(text))
+
+
+def test_fewer_values_on_a_line_are_of_double_precision_alone(tmp_path):
+    values = " -4.37263E-18 -8.53725E-18 -7.08571E-01"
+    assert "values at node 1 are 6" in refused(tmp_path, PERMAS.replace(f"{values} -4.", f"{values}\n -4."))
+
+
 def test_damping_viscous_and_half_of_the_hysteretic(tmp_path):
     text = nx("1.0 0.0 0.0 0.0 0.0 0.0")
     (tmp_path / "m.uff").write_text(text)

@@ -28,8 +28,9 @@ from fcm.scene.uff_datasets import Dataset, read_datasets
 DIRECTIONS = {1: ("",), 3: ("x", "y", "z"), 6: ("x", "y", "z", "rx", "ry", "rz")}  # by values per node
 NORMAL_MODE, AT_NODES = 2, 1
 MOTIONS = (8, 11, 12)  # displacement, velocity, acceleration: each is a mode's shape
-REAL, COMPLEX = (2, 4), (5, 6)  # data types: of single and of double precision
+REAL, COMPLEX, DOUBLE = (2, 4), (5, 6), (4, 6)  # data types: of single and of double precision
 PER_LINE = 6  # reals on a line
+OF_DOUBLE = 3  # values at a node on a line, as some write them in double precision
 PER_LINE_OF_INTEGERS = 8
 SAME = 1e-6  # relative difference of what two datasets write of one mode
 COLLINEAR = 1e-4  # of a shape: what may be left when it is turned to be real
@@ -123,14 +124,14 @@ class _Rows:
             raise _DamagedError(f"{self._line(at)} is no line of whole numbers")
         return found
 
-    def reals(self, count: int, what: str) -> list[float]:
-        """As many numbers as are wanted, from as many lines as they take."""
+    def reals(self, count: int, what: str, fewer: int = PER_LINE) -> list[float]:
+        """As many numbers as are wanted, from full lines but for the last: of six, or fewer."""
         found: list[float] = []
-        for _ in range(ceil(count / PER_LINE)):
+        per_line = PER_LINE
+        while len(found) < count and len(found) % per_line == 0:
             at = self.next(what)
             found += _reals(self.one.lines[at], self._line(at))
-            if len(found) >= count:
-                break
+            per_line = fewer if len(found) == fewer else per_line
         if len(found) != count:
             of = f"{self._line(at)} has {counted(len(found), 'number')}"
             raise _DamagedError(f"{of}, and {what} {'is' if count == 1 else 'are'} {count}")
@@ -159,17 +160,21 @@ def _mode(one: Dataset) -> _Mode:
     if len(reals) <= places[0]:
         raise _DamagedError("it has no frequency")
     hertz, mass, viscous, hysteretic = ([*reals, *[0.0] * PER_LINE][place] for place in places)
-    return _Mode(hertz, mass, viscous + hysteretic / 2, _values(rows, per_node, data in COMPLEX))
+    return _Mode(
+        hertz, mass, viscous + hysteretic / 2, _values(rows, per_node, data in COMPLEX, data in DOUBLE)
+    )
 
 
-def _values(rows: _Rows, per_node: int, pairs: bool) -> dict[str, complex]:
+def _values(rows: _Rows, per_node: int, pairs: bool, double: bool) -> dict[str, complex]:
     """The mode's value at each degree of freedom."""
     values: dict[str, complex] = {}
     while rows.left:
         node = rows.integers("nodes")[0]
         if f"{node}{DIRECTIONS[per_node][0]}" in values:
             raise _DamagedError(f"it has node {node} twice")
-        numbers = rows.reals(per_node * (2 if pairs else 1), f"the values at node {node}")
+        numbers = rows.reals(
+            per_node * (2 if pairs else 1), f"the values at node {node}", OF_DOUBLE if double else PER_LINE
+        )
         parts = numbers[::2] if pairs else numbers
         imaginary = numbers[1::2] if pairs else [0.0] * per_node
         for direction, real, imag in zip(DIRECTIONS[per_node], parts, imaginary, strict=True):
