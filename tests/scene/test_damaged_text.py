@@ -299,12 +299,15 @@ def test_packed_matlab_files(tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
-@pytest.mark.parametrize("kind", ["K.mat", "K.h5", "matlab 7.3"])
+@pytest.mark.parametrize("kind", ["K.mat", "K.h5", "matlab 7.3", "K.op4"])
 def test_binary_files_without_checksums(tmp_path, kind):
     """Each number that is read stands in the file by its bytes, of either order."""
     name = "K.mat" if kind == "matlab 7.3" else kind
     if kind == "K.mat":
         scipy.io.savemat(tmp_path / name, {"K": K})
+    elif kind == "K.op4":
+        op4 = pytest.importorskip("pyyeti.nastran.op4")
+        op4.write(str(tmp_path / name), {"K": K}, binary=True, sparse="dense")
     else:
         h5py = pytest.importorskip("h5py")
         with h5py.File(tmp_path / name, "w", userblock_size=512 * (kind == "matlab 7.3")) as file:
