@@ -10,8 +10,9 @@ import scipy.sparse
 import fcm
 from fcm.scene import scene_from_dict
 from fcm.structure.eigen import Modes, StructureError, modes_of, system_of
-from fcm.structure.flexibility import flexibility
-from fcm.structure.reduced import reduced
+from fcm.structure.flexibility import Truncation, flexibility
+from fcm.structure.options import FlexibilityOptions
+from fcm.structure.reduced import ModeSelection, reduced
 
 from . import beams
 
@@ -60,14 +61,16 @@ def test_rows_without_mass_are_no_modes():
 def test_matrices_of_no_structure(change, words):
     K, M, _ = beams.beam(20)
     with pytest.raises(StructureError, match=words):
-        reduced(*(scipy.sparse.csc_array(one) for one in change(K, M)), np.ones((40, 1)), 1.0, 4, True)
+        reduced(
+            *(scipy.sparse.csc_array(one) for one in change(K, M)), np.ones((40, 1)), 1.0, ModeSelection(4)
+        )
 
 
 def test_all_rigid_body_modes_are_kept_and_a_soft_mode_is_none():
     """Three masses that nothing holds, a fourth on a very soft spring."""
     K = scipy.sparse.csc_array(np.diag([0.0, 0.0, 0.0, 1e-9, 1.0]))
     M = scipy.sparse.eye_array(5, format="csc")
-    found = reduced(K, M, np.ones((5, 1)), 0.5, 1, True)
+    found = reduced(K, M, np.ones((5, 1)), 0.5, ModeSelection(1))
     assert found.rigid == 3 <= found.kept
     assert found.modes.stiffness[:3].tolist() == [0.0, 0.0, 0.0] and found.modes.stiffness[3] > 0.9e-9
 
@@ -83,10 +86,9 @@ def test_no_mode_of_several_equal_frequencies_is_passed_by():
 
 @pytest.mark.parametrize("kept", [2, 3, 5, 12])
 @pytest.mark.parametrize("blocks", [1, 2])
-def test_the_bound_holds_and_is_no_exaggeration(monkeypatch, kept, blocks):
+def test_the_bound_holds_and_is_no_exaggeration(kept, blocks):
     """Of receptances at two points and along a combination, up to just below the first mode left out."""
-    monkeypatch.setattr("fcm.structure.flexibility.MOST_BLOCKS", blocks)
-    monkeypatch.setattr("fcm.structure.flexibility.ENOUGH", 0.0)
+    options = FlexibilityOptions(enough=0.0, most_blocks=blocks)
     K, M, names = beams.beam(60)
     loads = np.zeros((len(names), 3))
     for column, weights in enumerate([{"60w": 1.0}, {"31w": 1.0}, {"60r": 0.3, "45w": -0.7}]):
@@ -100,7 +102,7 @@ def test_the_bound_holds_and_is_no_exaggeration(monkeypatch, kept, blocks):
     value, shapes = scipy.linalg.eigh(K.toarray(), M.toarray())
     third = ((shapes[:, kept:].T @ loads) ** 2 / value[kept:, None] ** 1.5).sum(axis=0)  # m_3
     for omega in np.sqrt(beyond) * np.array([0.1, 0.5, 0.9]):
-        more = flexibility(system, first, loads, omega, beyond)
+        more = flexibility(Truncation(system, first, omega, beyond, options), loads)
         exact = loads.T @ beams.direct(K, M, 0.0, loads, omega).real
         found, left_out = np.zeros((3, 3)), exact.copy()
         for modes in (first, more.modes):
@@ -132,7 +134,7 @@ def test_the_bound_where_no_flexibility_of_its_own_is_kept(kept, free):
     unit = np.sqrt(static * static[names.index("31w")])
     for share in (0.3, 0.8):
         omega = share * np.sqrt(value[kept])
-        found = reduced(K, M, loads, omega, kept, True, others)
+        found = reduced(K, M, loads, omega, ModeSelection(kept, other_rows=others))
         undamped = damped = 0.0
         for lam, phi, sign in ((value, shapes, 1.0), (found.modes.stiffness, found.modes.shapes, -1.0)):
             lam = np.where(np.arange(lam.size) < rigid, 0.0, lam)
@@ -140,8 +142,8 @@ def test_the_bound_where_no_flexibility_of_its_own_is_kept(kept, free):
             undamped = undamped + phi @ (force / (lam - omega**2))
             damped = damped + phi @ (force / (lam - omega**2 + 2j * ratio * np.sqrt(lam) * omega))
         error, whole = np.abs(undamped / unit).max(), np.abs(damped / unit).max()
-        assert 1e-7 < error < found.aside[0] < 30.0 * error
-        assert whole < found.aside[0] + 2.0 * ratio * found.aside[1]
+        assert 1e-7 < error < found.other_rows[0] < 30.0 * error
+        assert whole < found.other_rows[0] + 2.0 * ratio * found.other_rows[1]
 
 
 def test_many_outputs_are_said_to_keep_no_flexibility_of_their_own(tmp_path):
@@ -175,7 +177,7 @@ def test_rows_without_mass_keep_their_flexibility(free, count):
     M = np.diag([2.0, 0.0, 1.0, 0.0, 1.5])
     loads = np.eye(5)[:, [1, 3, 4]]
     omega = 0.4
-    found = reduced(scipy.sparse.csc_array(K), scipy.sparse.csc_array(M), loads, omega, count, True)
+    found = reduced(scipy.sparse.csc_array(K), scipy.sparse.csc_array(M), loads, omega, ModeSelection(count))
     on_modes = found.modes.shapes.T @ loads
     receptance = on_modes.T @ (on_modes / (found.modes.stiffness - omega**2)[:, None])
     exact = np.linalg.solve(K - omega**2 * M, loads)
@@ -183,7 +185,9 @@ def test_rows_without_mass_keep_their_flexibility(free, count):
     assert (
         np.abs(receptance - loads.T @ exact).max() < 2.0 * (found.bound + 1e-8) * np.abs(exact).max() < 1e-4
     )
-    few = reduced(scipy.sparse.csc_array(K), scipy.sparse.csc_array(M), loads[:, 2:], omega, None, True)
+    few = reduced(
+        scipy.sparse.csc_array(K), scipy.sparse.csc_array(M), loads[:, 2:], omega, ModeSelection(None)
+    )
     assert few.modes.count == 3  # nothing is added where nothing without mass is loaded
 
 

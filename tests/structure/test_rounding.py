@@ -9,7 +9,7 @@ import scipy.sparse
 
 from fcm.scene import scene_from_dict
 from fcm.structure.eigen import StructureError
-from fcm.structure.reduced import reduced
+from fcm.structure.reduced import ModeSelection, reduced
 
 from . import beams
 from .solids import bricks
@@ -25,7 +25,7 @@ def test_a_fine_mesh_has_no_other_rigid_body_modes(elements, off):
     for clamped, rigid, first in ((True, 0, CANTILEVER), (False, 2, FREE)):
         K, M, names = beams.beam(elements, clamped)
         load = np.eye(len(names))[:, [names.index(f"{elements}w")]]
-        found = reduced(K, M, load, 30.0, None, True)
+        found = reduced(K, M, load, 30.0, ModeSelection(None))
         error = np.sqrt(found.modes.stiffness[rigid]) / first - 1.0
         assert found.rigid == rigid
         assert abs(error) < off and abs(error) < 3.0 * found.rounding
@@ -51,7 +51,7 @@ def test_a_stiff_spring_hides_no_soft_mode_and_the_bound_has_the_rounding(stiff,
     springs[0], springs[AT] = 0.0 if free else 1.0, stiff
     K, M = chain(springs)
     loads = np.eye(MASSES)[:, [MASSES - 1, 12]]
-    found = reduced(scipy.sparse.csc_array(K), scipy.sparse.csc_array(M), loads, OMEGA, 4, True)
+    found = reduced(scipy.sparse.csc_array(K), scipy.sparse.csc_array(M), loads, OMEGA, ModeSelection(4))
     springs[AT] = 0.0  # the two are one body: no entry is large
     k, m, both = as_one(*chain(springs))
     exact = scipy.linalg.eigh(k, m, eigvals_only=True)
@@ -90,7 +90,7 @@ def test_the_bound_has_the_rounding_at_all_frequencies(seed):
     loads = np.eye(len(K))[:, rng.choice(len(K), 2, False)]
     kept = int(rng.integers(2, 13))
     top = np.sqrt(value[kept]) * rng.uniform(0.3, 0.9)
-    found = reduced(*map(scipy.sparse.csc_array, (K, M)), loads, top, kept, True)
+    found = reduced(*map(scipy.sparse.csc_array, (K, M)), loads, top, ModeSelection(kept))
     on_modes = found.modes.shapes.T @ loads
     size = np.sqrt(np.diagonal(loads.T @ solved(K.astype(np.longdouble), loads)))
     for share in (0.0, 0.3, 0.5, 0.7, 1.0):
@@ -128,7 +128,7 @@ def test_rigid_bodies_of_matrices_written_with_few_digits(digits):
         loads = np.eye(len(K))[:, :1]
         for held, rigid in ((0.0, 6), (0.05**2 * first, 0)):
             rounded = scipy.sparse.csc_array(written(K + held * M, digits))
-            found = reduced(rounded, scipy.sparse.csc_array(M), loads, 0.5 * first**0.5, 8, True)
+            found = reduced(rounded, scipy.sparse.csc_array(M), loads, 0.5 * first**0.5, ModeSelection(8))
             assert found.rigid == rigid
             frequency = np.sqrt(found.modes.stiffness)
             exact = np.sqrt(first + held)
@@ -141,7 +141,7 @@ def test_rigid_bodies_of_several_bodies(digits):
     bodies = [frame(np.random.default_rng(seed)) for seed in range(3)]
     K, M = (scipy.linalg.block_diag(*matrices) for matrices in zip(*bodies, strict=True))
     rounded = scipy.sparse.csc_array(written(K, digits))
-    found = reduced(rounded, scipy.sparse.csc_array(M), np.eye(len(K))[:, :1], 100.0, 24, True)
+    found = reduced(rounded, scipy.sparse.csc_array(M), np.eye(len(K))[:, :1], 100.0, ModeSelection(24))
     exact = scipy.linalg.eigh(K, M, eigvals_only=True)[18:24]
     assert found.rigid == 18
     assert np.sqrt(found.modes.stiffness[18:24] / exact) == pytest.approx(
@@ -155,7 +155,7 @@ def test_a_load_that_moves_rigid_bodies_alone_has_a_bound_that_is_true():
     upwards = np.array([name.endswith("w") for name in names], dtype=float)
     loads = np.stack((M @ upwards, np.eye(len(names))[0]), axis=1)
     omega = 12.0  # below the first bending mode
-    found = reduced(K, M, loads, omega, None, True)
+    found = reduced(K, M, loads, omega, ModeSelection(None))
     assert found.rigid == 2 and found.bound < 1e-6
     modes = found.modes
     assert modes.count <= found.kept + 4  # for the load on the end, none for rounding
@@ -189,7 +189,7 @@ def test_a_fine_mesh_written_with_few_digits(digits, uneven):
             K, M = (np.pi * one.toarray() for one in beams.beam(97 + seed, clamped=False)[:2])
         first = scipy.linalg.eigh(K, M, eigvals_only=True, subset_by_index=(2, 2))[0]
         rounded = scipy.sparse.csc_array(written(K, digits))
-        found = reduced(rounded, scipy.sparse.csc_array(M), np.eye(len(K))[:, :1], 10.0, 8, True)
+        found = reduced(rounded, scipy.sparse.csc_array(M), np.eye(len(K))[:, :1], 10.0, ModeSelection(8))
         assert found.rigid == 2
         assert abs(np.sqrt(found.modes.stiffness[2] / first) - 1.0) <= 1.5 * found.rounding < 0.5
         # a soft spring that would make a mode just there is not seen in what was written
@@ -217,7 +217,7 @@ def test_modes_that_the_digits_do_not_tell_from_rigid_bodies_are_said():
 def test_numbers_that_somebody_has_typed_are_exact():
     """A soft spring beside a stiff one, in the seventh digit of an entry."""
     K, M = np.array([[1e7 + 10.0, -1e7], [-1e7, 1e7]]), np.eye(2)
-    found = reduced(*map(scipy.sparse.csc_array, (K, M)), np.eye(2)[:, :1], 1.0, 2, True)
+    found = reduced(*map(scipy.sparse.csc_array, (K, M)), np.eye(2)[:, :1], 1.0, ModeSelection(2))
     assert found.rigid == 0
     assert found.modes.stiffness[0] == pytest.approx(5.0, rel=1e-6)
 
@@ -246,7 +246,7 @@ def test_rigid_body_modes_take_no_digits_from_the_elastic_ones():
     """Those of a free frame are orthogonal to them, and balance, to the machine's precision."""
     K, M = frame(np.random.default_rng(7))
     found = reduced(
-        scipy.sparse.csc_array(K), scipy.sparse.csc_array(M), np.eye(len(K))[:, :2], 1e3, 12, True
+        scipy.sparse.csc_array(K), scipy.sparse.csc_array(M), np.eye(len(K))[:, :2], 1e3, ModeSelection(12)
     )
     shapes, stiffness = found.modes.shapes[:, : found.kept], found.modes.stiffness[: found.kept]
     assert found.rigid == 6
@@ -295,7 +295,7 @@ def test_rigid_bodies_of_superelements_whatever_the_units_of_their_rows(kind, pl
     first = scipy.linalg.eigh(K, M, eigvals_only=True)[rigid]
     for unit in (np.ones(len(K)), 10.0 ** np.random.default_rng(1).uniform(-4.0, 4.0, len(K))):
         k, m = (scipy.sparse.csc_array(one * unit * unit[:, None]) for one in (K, M))
-        found = reduced(k, m, np.eye(len(K))[:, :1] * unit[0], np.sqrt(first), None, True)
+        found = reduced(k, m, np.eye(len(K))[:, :1] * unit[0], np.sqrt(first), ModeSelection(None))
         assert found.rigid == rigid and (found.modes.stiffness[:rigid] == 0.0).all()
         assert np.sqrt(found.modes.stiffness[rigid] / first) == pytest.approx(1.0, abs=1e-6)
 
@@ -324,9 +324,11 @@ def test_a_negative_stiffness_that_is_no_rounding_is_refused(sign):
     K, M = np.diag([-sign, 4.0, 9.0]), np.eye(3)
     if sign > 0.0:
         with pytest.raises(StructureError, match="negative eigenvalue"):
-            reduced(*map(scipy.sparse.csc_array, (K, M)), np.eye(3)[:, :1], 1.0, 2, True)
+            reduced(*map(scipy.sparse.csc_array, (K, M)), np.eye(3)[:, :1], 1.0, ModeSelection(2))
     else:
-        assert reduced(*map(scipy.sparse.csc_array, (K, M)), np.eye(3)[:, :1], 1.0, 2, True).rigid == 0
+        assert (
+            reduced(*map(scipy.sparse.csc_array, (K, M)), np.eye(3)[:, :1], 1.0, ModeSelection(2)).rigid == 0
+        )
 
 
 def test_a_loose_solid_by_lanczos():
@@ -336,7 +338,7 @@ def test_a_loose_solid_by_lanczos():
     exact = scipy.linalg.eigh(K.toarray(), M.toarray(), eigvals_only=True, subset_by_index=(6, 9))
     load = np.eye(len(names))[:, -1:]
     for top in (0.0, float(np.sqrt(exact[0]))):
-        found = reduced(K, M, load, top, 10, True)
+        found = reduced(K, M, load, top, ModeSelection(10))
         assert found.rigid == 6
         assert found.modes.stiffness[6:10] == pytest.approx(exact, rel=1e-9)
         assert np.abs(found.modes.shapes[:, :6].T @ (M @ found.modes.shapes[:, 6:10])).max() < 1e-9

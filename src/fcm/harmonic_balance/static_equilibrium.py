@@ -18,7 +18,7 @@ from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.structure.linear import Linear
-from fcm.structure.rigid import HELD
+from fcm.structure.options import RIGID_BODY
 
 LEAST = 1e-3  # share of the loads to begin with
 BY_SHARE = FollowOptions(0.2)  # along the curve of the share
@@ -117,7 +117,7 @@ def at_rest(system: System) -> FloatArray:
 def pushed_adrift(linear: Linear) -> bool:
     """Whether static loads push along a rigid-body mode that nothing holds."""
     size = np.abs(linear.load)
-    return bool((size[linear.adrift] > HELD * size.max(initial=0.0)).any())
+    return bool((size[linear.adrift] > RIGID_BODY.held * size.max(initial=0.0)).any())
 
 
 def _linear(system: System, share: float) -> Iterator[FloatArray]:

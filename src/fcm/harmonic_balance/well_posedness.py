@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
-from fcm.structure.rigid import HELD
+from fcm.structure.options import RIGID_BODY
 
 BoolArray = npt.NDArray[np.bool_]
 BALANCED = 1e-9  # mean friction on a mode, relative to the amplitude of the contact forces on it
@@ -61,5 +61,5 @@ def _floating(system: System, x: FloatArray, force: FloatArray) -> BoolArray:
     carrying = normal > CARRYING * glued
     size = np.linalg.svd(ports[None] * carrying[:, None, :], compute_uv=False)
     largest = size.max(axis=1, initial=0.0, keepdims=True)
-    floating: BoolArray = (size > HELD * largest).sum(axis=1) < held.sum()
+    floating: BoolArray = (size > RIGID_BODY.held * largest).sum(axis=1) < held.sum()
     return floating

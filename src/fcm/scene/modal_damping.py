@@ -8,7 +8,15 @@ import numpy as np
 
 from fcm.model.scene import FloatArray
 from fcm.scene.structure_table import Matrices
-from fcm.structure.damping import check_dissipates, coupling_effect, drag, projected, proportional, ratios
+from fcm.structure.damping import (
+    DampedModes,
+    check_dissipates,
+    coupling_effect,
+    drag,
+    projected,
+    proportional,
+    ratios,
+)
 from fcm.structure.reduced import Reduced
 
 WORTH_SAYING = 1e-4  # relative change of the response by damping that is left out
@@ -59,9 +67,8 @@ def damping_of(
         left = found.modes.shapes.conj().T
         pushes = left @ loads
         seen = np.hstack((pushes, left[:, outputs]))
-        effects = (
-            coupling_effect(modal, stiffness, pushes, seen, k, *ends, rigid) for k in (0.0 * springs, springs)
-        )
+        modes = DampedModes(stiffness, modal, rigid)
+        effects = (coupling_effect(modes, pushes, seen, k, ends) for k in (0.0 * springs, springs))
         said = _left_out(dragged, list(effects))
     lowest = ends[0] if np.isfinite(ends[0]) else 0.0
     return Damping(ratio, float(dragged / np.hypot(lowest, dragged)) if dragged else 0.0, said)

@@ -13,7 +13,7 @@ from fcm.scene.rules import RULES
 from fcm.scene.section import Section
 from fcm.scene.structure_table import Matrices
 from fcm.structure.eigen import StructureError, unit_columns
-from fcm.structure.reduced import Reduced, reduced
+from fcm.structure.reduced import ModeSelection, Reduced, reduced
 
 MOST_OUTPUTS = 30  # degrees of freedom of results whose own flexibility is kept
 UNDAMPED = 1e-12  # of a frequency without damping: rounding that nobody would notice
@@ -36,9 +36,8 @@ def modal_of_matrices(
     directions, others = split(loads, outputs)
     top_frequency = ends[1] if np.isfinite(ends[1]) else 0.0
     try:
-        found = reduced(
-            matrices.K, matrices.M, directions, top_frequency, matrices.modes, matrices.flexibility, others
-        )
+        selection = ModeSelection(matrices.modes, matrices.flexibility, others)
+        found = reduced(matrices.K, matrices.M, directions, top_frequency, selection)
         damping = damping_of(matrices, found, loads, springs, outputs, ends)
     except StructureError as error:
         top.wrong("structure", str(error))
@@ -60,7 +59,7 @@ def modal_of_matrices(
         found.modes.shapes,
         [
             _kept(matrices, found, damping),
-            *at_many(matrices, len(outputs), found.aside, damping.lost),
+            *at_many(matrices, len(outputs), found.other_rows, damping.lost),
             *_warnings(found, ends),
             *damping.said,
             *of_rounding([found], damping.ratio[found.rigid :]),

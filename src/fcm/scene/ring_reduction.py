@@ -14,7 +14,7 @@ from fcm.scene.reduction import at_many, how_far_off, of_rounding, split
 from fcm.scene.section import Section
 from fcm.scene.structure_table import Matrices
 from fcm.structure.eigen import StructureError
-from fcm.structure.reduced import Reduced, reduced
+from fcm.structure.reduced import ModeSelection, Reduced, reduced
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def modal_of_ring(
     }
     first, *others = _notes(matrices, diameters, ends)
     lost = max(one.damping.lost for one in diameters)
-    return draft, [first, *at_many(matrices, len(outputs), _aside(diameters), lost), *others]
+    return draft, [first, *at_many(matrices, len(outputs), _error_at_other_rows(diameters), lost), *others]
 
 
 def mass_of_all_alike(matrices: Matrices) -> Any:
@@ -75,9 +75,9 @@ def mass_of_all_alike(matrices: Matrices) -> Any:
     return _at_diameter(matrices, 1.0).M
 
 
-def _aside(diameters: list[Diameter]) -> tuple[float, float]:
+def _error_at_other_rows(diameters: list[Diameter]) -> tuple[float, float]:
     """The greatest of all diameters."""
-    own, damped = zip(*(one.found.aside for one in diameters), strict=True)
+    own, damped = zip(*(one.found.other_rows for one in diameters), strict=True)
     return max(own), max(damped)
 
 
@@ -107,7 +107,8 @@ def _modes(
 ) -> Diameter:
     directions, others = split(loads, outputs)
     top = ends[1] if np.isfinite(ends[1]) else 0.0
-    found = reduced(matrices.K, matrices.M, directions, top, matrices.modes, matrices.flexibility, others)
+    selection = ModeSelection(matrices.modes, matrices.flexibility, others)
+    found = reduced(matrices.K, matrices.M, directions, top, selection)
     return Diameter(number, found, damping_of(matrices, found, loads, springs, outputs, ends))
 
 

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from fcm.structure.eigen import FloatArray, Matrix, Modes, StructureError
-
-MOST_RESONANCES = 60  # at which two responses are compared, and beside them
-BETWEEN = 4  # places up to each next one: an effect between two of them is then seen to a fifth
-WORK = 3e8  # complex multiplications of all places, some tenths of a second: with many modes there are fewer
-FINER = 12  # further places beside the greatest
-ROUNDING = 1e-9  # of the greatest coefficient: less negative than that is none
-CANCELLED = 1e-13  # of the terms of a sum: what is left of them is rounding
+from fcm.structure.options import DAMPING
 
 
 def ratios(coefficients: FloatArray, stiffness: FloatArray) -> FloatArray:
@@ -41,35 +37,42 @@ def drag(C: Matrix, rigid: FloatArray) -> float:
     size = np.abs(rigid)
     terms = np.einsum("ij,ij->j", size, abs(C) @ size)
     own = np.abs(np.einsum("ij,ij->j", rigid.conj(), C @ rigid))
-    return float(own[own > CANCELLED * terms].max(initial=0.0))
+    return float(own[own > DAMPING.cancelled * terms].max(initial=0.0))
 
 
 def check_dissipates(coefficients: FloatArray) -> None:
     """Raise StructureError where the damping of a mode is negative, beyond rounding."""
     least = float(coefficients.min(initial=0.0))
-    if least < -ROUNDING * np.abs(coefficients).max(initial=0.0):
+    if least < -DAMPING.rounding * np.abs(coefficients).max(initial=0.0):
         mode = int(coefficients.argmin()) + 1
         raise StructureError(f"the damping of mode {mode} is negative, {least:.3g} for a modal mass of 1")
 
 
+@dataclass(frozen=True)
+class DampedModes:
+    """Modes of mass 1 with damping between them."""
+
+    stiffness: FloatArray  # (mode,)
+    damping: FloatArray  # (mode, mode) the damping matrix in modal coordinates
+    rigid: int = 0  # how many of them, the first, are rigid-body modes
+
+
 def coupling_effect(
-    modal: FloatArray,
-    stiffness: FloatArray,
+    modes: DampedModes,
     pushes: FloatArray,
     seen: FloatArray,
     springs: FloatArray,
-    low: float,
-    high: float,
-    rigid: int = 0,
+    ends: tuple[float, float],
 ) -> float:
     """Greatest relative change of the linear response by damping between modes and of the first, rigid ones.
 
-    The response of `seen` (mode, displacement) to each of `pushes` (mode, load), of modes of mass 1 with the
-    damping matrix `modal`, from low to high, with springs (load,) along the loads: the contacts' when they
-    are stuck. It is sampled at resonances, beside them and between, and once more where it is greatest; inf
+    The response of `seen` (mode, displacement) to each of `pushes` (mode, load) between the `ends`, the
+    lowest and highest angular frequency, with springs (load,) along the loads: the contacts' when they are
+    stuck. It is sampled at resonances, beside them and between, and once more where it is greatest; inf
     where without that damping there is no response.
     """
-    matrix = np.diag(stiffness) + (pushes * springs) @ pushes.conj().T
+    modal, rigid = modes.damping, modes.rigid
+    matrix = np.diag(modes.stiffness) + (pushes * springs) @ pushes.conj().T
     own = np.diag(np.concatenate((np.zeros(rigid), np.diagonal(modal)[rigid:])))
 
     def change(omega: float) -> float:
@@ -83,11 +86,11 @@ def coupling_effect(
             return np.inf
         return float(np.abs(whole - alone).max() / size) if 0.0 < size < np.inf else 0.0
 
-    places = _places(matrix, modal, low, high)
+    places = _places(matrix, modal, *ends)
     found = [change(omega) for omega in places.tolist()]
     at = int(np.argmax(found))
     before, after = places[max(at - 1, 0)], places[min(at + 1, places.size - 1)]
-    return max(found[at], *map(change, np.linspace(before, after, FINER).tolist()))
+    return max(found[at], *map(change, np.linspace(before, after, DAMPING.finer).tolist()))
 
 
 def _response(dynamic: FloatArray, pushes: FloatArray, seen: FloatArray) -> FloatArray | None:
@@ -104,10 +107,10 @@ def _places(matrix: FloatArray, damper: FloatArray, low: float, high: float) -> 
     value, turn = np.linalg.eigh(matrix)
     natural = np.sqrt(np.maximum(value, 0.0))
     width = 0.5 * np.einsum("ij,ij->j", turn.conj(), damper @ turn).real
-    inside = np.flatnonzero((natural > low) & (natural < high))[:MOST_RESONANCES]
+    inside = np.flatnonzero((natural > low) & (natural < high))[: DAMPING.most_resonances]
     own, beside = natural[inside], width[inside]
     ends = np.unique(np.clip([low, high, *own, *(own - beside), *(own + beside)], low, high))
     gaps = ends.size - 1
-    each = int(np.clip(WORK / (max(gaps, 1) * len(matrix) ** 3), 1, BETWEEN))
+    each = int(np.clip(DAMPING.work / (max(gaps, 1) * len(matrix) ** 3), 1, DAMPING.between))
     places: FloatArray = np.interp(np.arange(gaps * each + 1) / each, np.arange(ends.size), ends)
     return places

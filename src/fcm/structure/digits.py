@@ -12,15 +12,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from fcm.structure.options import RIGID_BODY
+
 FloatArray = npt.NDArray[np.float64]
 Matrix = Any  # scipy sparse array or matrix
 
-SAMPLE = 1000  # entries that are looked at
-FEWEST, MOST = 5, 15  # digits: fewer leave no structure, more are all that there are
-TYPED, MANY = (
-    7,
-    20,
-)  # fewer digits than that may be exact, as somebody typed them, unless so many numbers differ
 SINGLE = 7  # digits of a number of single precision
 
 
@@ -40,7 +36,10 @@ def digits_of(K: Matrix) -> int | None:
         return None
     if _single(entries):
         return SINGLE if _most_need(entries, SINGLE) else None
-    for digits in range(FEWEST if entries.size >= MANY else TYPED, MOST + 1):
+    for digits in range(
+        RIGID_BODY.fewest_digits if entries.size >= RIGID_BODY.many_entries else RIGID_BODY.typed_digits,
+        RIGID_BODY.most_digits + 1,
+    ):
         if (_rounded(entries, digits) == entries).all():
             return digits if _most_need(entries, digits - 1) else None
     return None
@@ -48,9 +47,9 @@ def digits_of(K: Matrix) -> int | None:
 
 def _some(K: Matrix) -> FloatArray:
     """Sizes of entries that are not 0, each once."""
-    entries: FloatArray = np.unique(np.abs(K.data[:: max(1, K.nnz // (10 * SAMPLE))]))
+    entries: FloatArray = np.unique(np.abs(K.data[:: max(1, K.nnz // (10 * RIGID_BODY.sample))]))
     entries = entries[entries > 0.0]
-    return entries[:: max(1, entries.size // SAMPLE)]
+    return entries[:: max(1, entries.size // RIGID_BODY.sample)]
 
 
 def _single(values: FloatArray) -> bool:

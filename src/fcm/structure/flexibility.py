@@ -30,19 +30,13 @@ at w_far, and answers at w by (w / w_far)^2 too much.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.linalg
 
 from fcm.structure.eigen import OPTIONS, FloatArray, Modes, System, energy_of, shifted, unit_columns
-
-ENOUGH = 1e-6  # relative error of the receptance: no more blocks are taken
-MOST_BLOCKS = 4  # of vectors, each by a further solution with the stiffness
-INDEPENDENT = 1e-10  # relative energy below which a displacement is a combination of the others
-NEAR = 1e-6  # relative: displacements as near to the static ones are static
-TOGETHER = 200  # displacements, for which as many numbers as rows are held at a time
-FAR = 1e3  # times the frequencies of interest and those kept: where nothing that has no mass is noticed
+from fcm.structure.options import FLEXIBILITY, FlexibilityOptions
 
 
 @dataclass(frozen=True)
@@ -54,74 +48,80 @@ class Flexibility:
     damping: float  # bound of the error of a resonance's damping, relative, where all modes have one ratio
 
 
-def flexibility(system: System, kept: Modes, loads: FloatArray, omega: float, beyond: float) -> Flexibility:
-    """Modes for what the kept ones leave out, under loads (row, load), up to the angular frequency omega.
+@dataclass(frozen=True)
+class Truncation:
+    """A structure of which the lowest modes are kept: up to which frequency, and what is left out."""
 
-    beyond is the square of the angular frequency of the first mode left out, a lower limit of all of them.
-    """
-    system = _near(system, beyond)
+    system: System
+    kept: Modes
+    omega: float  # [rad/s] the highest angular frequency of interest
+    beyond: float  # [rad^2/s^2] square of that of the first mode left out: a lower limit of all of them
+    options: FlexibilityOptions = FLEXIBILITY
+
+
+def flexibility(truncation: Truncation, loads: FloatArray) -> Flexibility:
+    """Modes for what the kept ones leave out, under loads (row, load)."""
+    truncation = _with_shift_for_static(truncation)
+    system, kept, options = truncation.system, truncation.kept, truncation.options
+    omega, beyond = truncation.omega, truncation.beyond
     basis = np.zeros((system.rows, 0))
     outer = _without(system, kept, loads)
     found = Flexibility(Modes(np.zeros(0), basis), np.inf, np.inf)
-    rest = _rest(system, kept, loads)
+    rest = _residual_receptance(system, kept, loads)
     static = _static(system, kept, loads, rest, omega)
     highest = max(omega**2, float(kept.stiffness.max(initial=0.0)))
-    far = FAR**2 * (highest or 1.0)
-    least = np.maximum(INDEPENDENT * _static(system, kept, loads, rest, np.inf), INDEPENDENT**2 * static)
-    newest = _of_energy_1(system, _orthogonal(system, kept, system.static(outer, beyond, NEAR)), least)
-    for blocks in range(1, MOST_BLOCKS + 1):
+    far = options.massless**2 * (highest or 1.0)
+    least = np.maximum(
+        options.independent * _static(system, kept, loads, rest, np.inf),
+        options.independent**2 * static,
+    )
+    newest = _of_energy_1(
+        system, _orthogonal(system, kept, system.static(outer, beyond, options.near_static)), least
+    )
+    for blocks in range(1, options.most_blocks + 1):
         basis = np.concatenate((basis, newest), axis=1)
-        modes = _galerkin(system, basis, far)
-        damping = omega * float(_damping_off(modes, outer, beyond, blocks > 1, static).max())
-        bound = _off(system, kept, modes, loads, omega, beyond, static)
+        modes = _galerkin(system, basis, far, options.independent)
+        damping = omega * float(_damping_error(modes, outer, beyond, blocks > 1, static).max())
+        bound = _receptance_error(truncation, modes, loads, static)
         if modes.stiffness.max(initial=0.0) > 0.9 * far:
             bound += omega**2 / far
         found = Flexibility(modes, bound, damping)
-        if found.bound <= ENOUGH or modes.count < basis.shape[1]:
+        if found.bound <= options.enough or modes.count < basis.shape[1]:
             break
-        further = _orthogonal(system, kept, system.static(system.M @ newest, beyond, NEAR))
-        newest = _of_energy_1(system, further, (INDEPENDENT / highest) ** 2 if highest else 0.0)
+        further = _orthogonal(system, kept, system.static(system.M @ newest, beyond, options.near_static))
+        newest = _of_energy_1(system, further, (options.independent / highest) ** 2 if highest else 0.0)
     return found
 
 
-def _near(system: System, beyond: float) -> System:
+def _with_shift_for_static(truncation: Truncation) -> Truncation:
     """The same, or with another shift where static displacements would take too many corrections.
 
     Of a small structure a shift costs nothing, and corrections the digits that are lost in K u.
     """
-    number = system.corrections(beyond, NEAR)
+    system, beyond, near = truncation.system, truncation.beyond, truncation.options.near_static
+    number = system.corrections(beyond, near)
     again = number > (0 if system.rows <= OPTIONS.dense else OPTIONS.most_corrections)
-    return shifted(system, -NEAR * beyond) if again else system
+    return replace(truncation, system=shifted(system, -near * beyond)) if again else truncation
 
 
-def _off(
-    system: System,
-    kept: Modes,
-    modes: Modes,
-    loads: FloatArray,
-    omega: float,
-    beyond: float,
-    static: FloatArray,
-) -> float:
-    """Largest error of the receptance of any load by itself at omega, over `static`; inf from `beyond` on."""
+def _receptance_error(truncation: Truncation, modes: Modes, loads: FloatArray, static: FloatArray) -> float:
+    """Largest error of the receptance of any load by itself, over `static`; inf from the first mode left out.
+
+    The modes are those that stand for what is left out.
+    """
+    system, omega, beyond = truncation.system, truncation.omega, truncation.beyond
     if omega**2 >= beyond:
         return np.inf
-    outer = _without(system, kept, loads)
+    outer = _without(system, truncation.kept, loads)
     answer = modes.shapes * (1.0 / (modes.stiffness - omega**2)) @ (modes.shapes.conj().T @ outer)
     residual = outer - system.K @ answer + omega**2 * (system.M @ answer)
-    error = _rest(system, kept, residual)
+    error = _residual_receptance(system, truncation.kept, residual)
     farther = (beyond - system.shift) / (beyond - omega**2) if np.isfinite(beyond) else 1.0
     return float((np.abs(error) * farther / static).max())
 
 
-def bound_aside(
-    system: System,
-    kept: Modes,
-    found: Flexibility,
-    loads: FloatArray,
-    others: Sequence[int],
-    omega: float,
-    beyond: float,
+def error_at_other_rows(
+    truncation: Truncation, found: Flexibility, loads: FloatArray, others: Sequence[int]
 ) -> tuple[float, float]:
     """How far the displacement of other rows, under the loads, is off, and the part of it by damping.
 
@@ -129,23 +129,25 @@ def bound_aside(
     own flexibility is not among the modes: Galerkin's solution errs at them by more, and the part m_3 of what
     is left out is only known to be at most m_2 over the first frequency left out, here and in the modes.
     """
+    omega, beyond = truncation.omega, truncation.beyond
     if omega**2 >= beyond:
         return np.inf, np.inf
-    system = _near(system, beyond)
-    own, share = 0.0, 0.0
-    for first in range(0, len(others), TOGETHER):
-        some = unit_columns(system.rows, others[first : first + TOGETHER])
-        rest = _rest(system, kept, some)
+    truncation = _with_shift_for_static(truncation)
+    system, kept = truncation.system, truncation.kept
+    own, share, together = 0.0, 0.0, truncation.options.together
+    for first in range(0, len(others), together):
+        some = unit_columns(system.rows, others[first : first + together])
+        rest = _residual_receptance(system, kept, some)
         static = _static(system, kept, some, rest, omega)
-        own = max(own, _off(system, kept, found.modes, some, omega, beyond, static))
+        own = max(own, _receptance_error(truncation, found.modes, some, static))
         share = max(share, float((rest / static).max(initial=0.0)))
-    rest = _rest(system, kept, loads)
+    rest = _residual_receptance(system, kept, loads)
     share *= float((rest / _static(system, kept, loads, rest, omega)).max(initial=0.0))
     slow = omega / np.sqrt(beyond)
     return float(np.sqrt(own * found.bound)), float(2.0 * slow * np.sqrt(share) / (1.0 - slow**2) ** 2)
 
 
-def _rest(system: System, kept: Modes, loads: FloatArray) -> FloatArray:
+def _residual_receptance(system: System, kept: Modes, loads: FloatArray) -> FloatArray:
     """The part of each load's static receptance that the kept modes leave out."""
     outer = _without(system, kept, loads)
     rest: FloatArray = np.einsum(
@@ -154,7 +156,7 @@ def _rest(system: System, kept: Modes, loads: FloatArray) -> FloatArray:
     return rest
 
 
-def _damping_off(
+def _damping_error(
     modes: Modes, outer: FloatArray, beyond: float, sixth: bool, static: FloatArray
 ) -> FloatArray:
     """How far m_3 of each load may be off, over its static receptance; sixth is whether m_6 is known.
@@ -209,7 +211,7 @@ def _of_energy_1(system: System, columns: FloatArray, least: FloatArray | float)
     return unit
 
 
-def _galerkin(system: System, basis: FloatArray, far: float) -> Modes:
+def _galerkin(system: System, basis: FloatArray, far: float, independent: float) -> Modes:
     """The modes within a space of displacements; what is nearly a combination of others is left out.
 
     far is the square of the highest angular frequency that one may have.
@@ -219,7 +221,7 @@ def _galerkin(system: System, basis: FloatArray, far: float) -> Modes:
     stiffness = basis.conj().T @ (system.K @ basis)
     unit = 1.0 / np.sqrt(np.diagonal(stiffness).real)
     value, vector = scipy.linalg.eigh(stiffness * unit * unit[:, None])
-    good = value > INDEPENDENT * value.max()
+    good = value > independent * value.max()
     basis = basis @ ((unit[:, None] * vector[:, good]) / np.sqrt(value[good]))  # of stiffness 1
     mass, turn = scipy.linalg.eigh(basis.conj().T @ (system.M @ basis))
     # in descending order of mass: in ascending order of frequency

@@ -22,16 +22,19 @@ from fcm.structure.eigen import (
     system_of,
     unit_columns,
 )
-from fcm.structure.flexibility import bound_aside, flexibility
+from fcm.structure.flexibility import Truncation, error_at_other_rows, flexibility
+from fcm.structure.options import REDUCTION
 from fcm.structure.rigid_body import may_be_rigid, rigid_by_energy, unclear_below
 from fcm.structure.rounding import of_frequencies, of_receptances
 
-FEWEST = 10  # modes that are kept at least, where none are asked for
-ABOVE = 3.0  # times the highest frequency of interest: modes up to there are kept
-STIFFEST = 50  # of other displacements: rounding is greatest beside what moves little
-MOST_TOLD = 10_000_000  # other rows times rows: each takes a solution, and more are not told of
-WHOLE = 30  # rows up to which all modes are kept
-MOST_LOST = 1e5  # times the shift: a first elastic mode that is so much farther has lost five digits
+
+@dataclass(frozen=True)
+class ModeSelection:
+    """What is kept of a structure."""
+
+    count: int | None = None  # modes; None for all up to some times the highest frequency of interest
+    flexibility: bool = True  # whether that of the other modes is kept as well, under the loads
+    other_rows: Sequence[int] = ()  # whose displacement is asked for, though no load acts there
 
 
 @dataclass(frozen=True)
@@ -45,7 +48,7 @@ class Reduced:
     bound: float  # of the receptances among the loads, relative to their static ones
     damping: float = 0.0  # bound of the error of a resonance's damping, where all modes have one ratio
     rounding: float = 0.0  # how far the frequency of a mode that is kept may be off, relative
-    aside: tuple[float, float] = (0.0, 0.0)  # see `flexibility.bound_aside`, with rounding
+    other_rows: tuple[float, float] = (0.0, 0.0)  # see `flexibility.error_at_other_rows`, with rounding
     digits: int | None = None  # with which the stiffness was written, if these are few
     unclear: float = 0.0  # see `rigid_body.unclear_below`
 
@@ -55,21 +58,18 @@ def reduced(
     M: Matrix,
     loads: FloatArray,
     top: float,
-    count: int | None,
-    rest: bool,
-    others: Sequence[int] = (),
+    selection: ModeSelection,
 ) -> Reduced:
     """Modes of a structure for loads (row, load) up to the angular frequency top.
 
-    count is how many modes are kept, None for all up to some times the top; rest is whether the flexibility
-    of the others is kept as well, under the loads; at other rows it is told how far what that
-    leaves out is off.
+    At the other rows of the selection it is told how far what that leaves out is off.
     """
+    count, rest, others = selection.count, selection.flexibility, selection.other_rows
     system = system_of(K, M, top)
     found = _cleared(system, _enough(lambda n: modes_of(system, n), system.rows, top, count))
     rigid = rigid_by_energy(K, M, found)
     if rigid == found.count < system.rows:  # all of them are kept
-        return reduced(K, M, loads, top, min(2 * rigid + 1, system.rows), rest, others)
+        return reduced(K, M, loads, top, replace(selection, count=min(2 * rigid + 1, system.rows)))
     system, found = _elastic_apart(system, found, rigid)
     if rigid < found.count and found.stiffness[rigid] < 0.0:
         raise StructureError("the stiffness has a negative eigenvalue, that of a structure has none")
@@ -85,15 +85,16 @@ def reduced(
     plain = replace(plain, beyond=float(np.sqrt(beyond)))
     if not (rest and loads.shape[1]):
         return replace(plain, bound=np.nan)
-    more = flexibility(system, kept, loads, top, beyond)
+    truncation = Truncation(system, kept, top, beyond)
+    more = flexibility(truncation, loads)
     both = _together(kept, more.modes)
-    bound, aside = more.bound + of_receptances(K, M, both, loads, top), (0.0, 0.0)
-    if len(others) * system.rows > MOST_TOLD:
-        aside = np.inf, np.inf
+    bound, other_rows = more.bound + of_receptances(K, M, both, loads, top), (0.0, 0.0)
+    if len(others) * system.rows > REDUCTION.most_told:
+        other_rows = np.inf, np.inf
     elif others:
-        own, damped = bound_aside(system, kept, more, loads, others, top, beyond)
-        aside = own + of_receptances(K, M, both, _stiffest(both, others), top), damped
-    return replace(plain, modes=both, bound=bound, damping=more.damping, aside=aside)
+        own, damped = error_at_other_rows(truncation, more, loads, others)
+        other_rows = own + of_receptances(K, M, both, _stiffest(both, others), top), damped
+    return replace(plain, modes=both, bound=bound, damping=more.damping, other_rows=other_rows)
 
 
 def _cleared(system: System, found: Modes) -> Modes:
@@ -114,7 +115,7 @@ def _elastic_apart(system: System, found: Modes, rigid: int) -> tuple[System, Mo
     if not 0 < rigid < found.count:
         return system, found
     first, own = float(found.stiffness[rigid]), found.shapes[:, :rigid]
-    if first > MOST_LOST * -system.shift or system.rows <= OPTIONS.dense or first < -system.shift:
+    if first > REDUCTION.most_lost * -system.shift or system.rows <= OPTIONS.dense or first < -system.shift:
         system = shifted(system, -first)
         found = modes_of(system, found.count)
     rest = found.shapes[:, rigid:]
@@ -134,24 +135,26 @@ def _stiffest(modes: Modes, others: Sequence[int]) -> FloatArray:
     elastic = modes.stiffness > 0.0
     seen = np.abs(modes.shapes[list(others)][:, elastic].T) ** 2
     order = np.argsort((seen / modes.stiffness[elastic, None]).sum(axis=0))
-    return unit_columns(len(modes.shapes), [others[i] for i in order[:STIFFEST].tolist()])
+    return unit_columns(len(modes.shapes), [others[i] for i in order[: REDUCTION.stiffest].tolist()])
 
 
 def _within(modes: Modes, top: float, rows: int) -> int:
     """How many modes are kept where no number is asked for."""
-    if rows <= WHOLE:
+    if rows <= REDUCTION.whole:
         return modes.count
-    return max(FEWEST, int((modes.stiffness < (ABOVE * top) ** 2).sum()))
+    return max(REDUCTION.fewest, int((modes.stiffness < (REDUCTION.above * top) ** 2).sum()))
 
 
 def _enough(modes: Callable[[int], Modes], rows: int, top: float, count: int | None) -> Modes:
     """The modes that are kept and one more, if there is one."""
     if count is not None:
         return modes(min(count + 1, rows))
-    number = min(rows, WHOLE)
+    number = min(rows, REDUCTION.whole)
     while True:
         found = modes(number)
-        enough = found.stiffness[-1] > (ABOVE * top) ** 2 and found.count > _within(found, top, rows)
+        enough = found.stiffness[-1] > (REDUCTION.above * top) ** 2 and found.count > _within(
+            found, top, rows
+        )
         if enough or found.count < number or number == rows:
             return found
         number = min(rows, 2 * number)

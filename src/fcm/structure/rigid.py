@@ -14,11 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.model.scene import FloatArray, Modal, Scene
+from fcm.structure.options import RIGID_BODY
 
 BoolArray = npt.NDArray[np.bool_]
-
-ROUNDING = 1e-13  # relative: a sum of products this small is zero
-HELD = 1e-9  # relative normal motion at the contacts below which a rigid-body motion is not held by them
 
 
 def settled(scene: Scene) -> tuple[Modal, BoolArray]:
@@ -30,7 +28,7 @@ def settled(scene: Scene) -> tuple[Modal, BoolArray]:
         return modal, adrift
     unit = modal.shapes[rigid] / np.sqrt(modal.mass[rigid])[:, None]  # of modal mass 1
     turn, size, _ = np.linalg.svd(_normal_motion(scene, unit))
-    held = int(np.count_nonzero(size > HELD * size.max(initial=0.0)))
+    held = int(np.count_nonzero(size > RIGID_BODY.held * size.max(initial=0.0)))
     shapes, mass = modal.shapes.copy(), modal.mass.copy()
     shapes[rigid], mass[rigid] = turn.T @ unit, 1.0
     adrift[rigid[held:]] = True
@@ -42,6 +40,6 @@ def _normal_motion(scene: Scene, shapes: FloatArray) -> FloatArray:
     normals = [contact.normal for contact in scene.contacts if contact.k_v > 0.0]
     directions = np.array(normals).reshape(len(normals), shapes.shape[1]).T
     motion = shapes @ directions
-    motion[np.abs(motion) <= ROUNDING * (np.abs(shapes) @ np.abs(directions))] = 0.0
+    motion[np.abs(motion) <= RIGID_BODY.rounding * (np.abs(shapes) @ np.abs(directions))] = 0.0
     moved: FloatArray = motion
     return moved

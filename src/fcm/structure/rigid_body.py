@@ -7,28 +7,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fcm.structure.digits import energy_uncertain
+from fcm.structure.options import RIGID_BODY
 
 if TYPE_CHECKING:
     from fcm.structure.eigen import FloatArray, Matrix, Modes
 
-FAR_BELOW = 1e-3  # of the next frequency: so low are rigid-body modes that come out of an eigensolver
 MOST = 6  # rigid-body modes of one body
-CANCELLED, FAR = (
-    4e-16,
-    0.1,
-)  # share of the elastic energy's terms that is left: rounding; of the next frequency
-LOW, LITTLE = 1e-8, 1e-4  # of the largest ratio of stiffness to mass on the diagonals; of the next frequency
-ALONE, LOWER = (
-    0.99,
-    1e-11,
-)  # share of its terms that a row has which the stiffness couples to no other; its LOW
-AS_NEGATIVE = 10.0  # times the most negative stiffness: what is no greater is as little known
-NEARLY, STEEP, NEAREST = (1e-6, 1e-4), 0.36, 0.03  # share of terms, of the next frequency; exponent; the most
-DEVIATIONS, BELOW = 4.0, 0.3  # of the energy by the digits of the entries; of the next frequency
-WORTH_SAYING = 0.03  # of the first elastic frequency: so near to it a soft mode may be taken for a rigid one
 
 
-def rigid_by_gap(frequency: FloatArray, below: float = FAR_BELOW, most: int = MOST) -> int:
+def rigid_by_gap(frequency: FloatArray, below: float = RIGID_BODY.far_below, most: int = MOST) -> int:
     """How many of the lowest modes are rigid-body modes, of those with a frequency above 0: at most `most`.
 
     Their own frequencies are rounding, and may be as far from each other.
@@ -74,15 +61,15 @@ def rigid_by_energy(K: Matrix, M: Matrix, modes: Modes) -> int:
     for count in range(size.size, 0, -1):
         left, highest = share[:count].max(), size[:count].max()
         if count == size.size:
-            if left <= CANCELLED:
+            if left <= RIGID_BODY.cancelled:
                 return count
             continue  # nothing tells how soft they are
         gap = float(np.sqrt(highest)) / max(float(frequency[count]), 1e-300)
         if (
-            (left <= CANCELLED and gap <= FAR)
-            or (highest <= unknown and gap <= FAR)
-            or ((size <= low)[:count].all() and gap <= LITTLE)
-            or (count <= many and left <= NEARLY[0] and gap <= _nearest(left))
+            (left <= RIGID_BODY.cancelled and gap <= RIGID_BODY.far)
+            or (highest <= unknown and gap <= RIGID_BODY.far)
+            or ((size <= low)[:count].all() and gap <= RIGID_BODY.little)
+            or (count <= many and left <= RIGID_BODY.nearly[0] and gap <= _nearest(left))
         ):
             return max(count, uncertain)
     return uncertain
@@ -92,17 +79,20 @@ def may_be_rigid(K: Matrix, M: Matrix, modes: Modes) -> int:
     """How many of the lowest modes may be rigid-body modes: before a gap, with little elastic energy."""
     size = np.abs(modes.stiffness)
     share = _share(K, modes)
-    little = (share <= NEARLY[0]) | (size <= np.maximum(_unknown(modes), _low(K, M, share)))
+    little = (share <= RIGID_BODY.nearly[0]) | (size <= np.maximum(_unknown(modes), _low(K, M, share)))
     frequency = np.sqrt(size)
-    gap = np.append(frequency[:-1] <= BELOW * frequency[1:], True) if frequency.size else little
+    gap = np.append(frequency[:-1] <= RIGID_BODY.below * frequency[1:], True) if frequency.size else little
     count = little.size if little.all() else int(little.argmin())
     found = np.flatnonzero(gap[:count])
     return int(found[-1]) + 1 if found.size else 0
 
 
 def _nearest(left: float) -> float:
-    """How near the next frequency may be where so much is left of the terms, up to the first of NEARLY."""
-    return min(NEAREST, NEARLY[1] * float((NEARLY[0] / max(left, 1e-300)) ** STEEP))
+    """How near the next frequency may be where so much is left of the terms, up to the first of `nearly`."""
+    return min(
+        RIGID_BODY.nearest,
+        RIGID_BODY.nearly[1] * float((RIGID_BODY.nearly[0] / max(left, 1e-300)) ** RIGID_BODY.steep),
+    )
 
 
 def _share(K: Matrix, modes: Modes) -> FloatArray:
@@ -115,22 +105,24 @@ def _share(K: Matrix, modes: Modes) -> FloatArray:
 
 def _unknown(modes: Modes) -> float:
     """The stiffness up to which negative ones say that nothing is known; 0 where there are none."""
-    return AS_NEGATIVE * max(0.0, -float(modes.stiffness.min(initial=0.0)))
+    return RIGID_BODY.as_negative * max(0.0, -float(modes.stiffness.min(initial=0.0)))
 
 
 def _low(K: Matrix, M: Matrix, share: FloatArray) -> FloatArray:
     """Stiffness of each mode that is rounding beside the stiffest row of the matrices."""
     stiff, heavy = K.diagonal().real, M.diagonal().real
     largest = float((np.abs(stiff[heavy > 0.0]) / heavy[heavy > 0.0]).max())
-    low: FloatArray = np.where(share < ALONE, LOW, LOWER) * largest
+    low: FloatArray = np.where(share < RIGID_BODY.alone, RIGID_BODY.low, RIGID_BODY.lower) * largest
     return low
 
 
 def _uncertain(K: Matrix, modes: Modes, frequency: FloatArray, most: int) -> int:
     """How many of the lowest modes may have no stiffness, by the digits of K, far below the next that has."""
-    may = modes.stiffness <= DEVIATIONS * energy_uncertain(K, modes.shapes)
+    may = modes.stiffness <= RIGID_BODY.deviations * energy_uncertain(K, modes.shapes)
     count = may.size if may.all() else int(may.argmin())
-    apart = 0 < count < may.size and count <= most and frequency[count - 1] <= BELOW * frequency[count]
+    apart = (
+        0 < count < may.size and count <= most and frequency[count - 1] <= RIGID_BODY.below * frequency[count]
+    )
     return count if apart else 0
 
 
@@ -141,6 +133,6 @@ def unclear_below(K: Matrix, modes: Modes, rigid: int) -> float:
     """
     if not 0 < rigid < modes.count:
         return 0.0
-    uncertain = DEVIATIONS * energy_uncertain(K, modes.shapes[:, :rigid]).max()
+    uncertain = RIGID_BODY.deviations * energy_uncertain(K, modes.shapes[:, :rigid]).max()
     part = float(np.sqrt(uncertain / modes.stiffness[rigid]))
-    return part if part > WORTH_SAYING else 0.0
+    return part if part > RIGID_BODY.worth_saying else 0.0

@@ -12,10 +12,8 @@ import numpy as np
 
 from fcm.structure.digits import energy_uncertain
 from fcm.structure.eigen import FloatArray, Matrix, Modes, elastic_energy
+from fcm.structure.options import REDUCTION
 
-MOST_BETWEEN = 8  # places between resonances that are looked at
-SPARE = 2.0  # beside these places it is not much more
-APART = 0.01  # how far squares of frequencies are from resonances at least, relative
 LONG = float(np.finfo(np.longdouble).eps)  # of the numbers in which elastic energy is summed
 
 
@@ -47,7 +45,7 @@ def of_receptances(K: Matrix, M: Matrix, modes: Modes, loads: FloatArray, omega:
     static, off = _energy_and_error(K, M, some, loads, 0.0)
     off = off + _energy_and_error(K, M, modes, loads, float(some.stiffness[0]))[1]
     between = [_energy_and_error(K, M, modes, loads, -(w**2))[1] for w in _between(some, omega)]
-    off = SPARE * np.max([off, *between], axis=0)
+    off = REDUCTION.spare * np.max([off, *between], axis=0)
     if omega:
         static = static + (np.abs(modes.shapes[:, ~elastic].conj().T @ loads) ** 2).sum(axis=0) / omega**2
     return float(np.divide(off, static, out=np.zeros_like(off), where=static > 0.0).max())
@@ -60,8 +58,8 @@ def _between(modes: Modes, omega: float) -> FloatArray:
     ends = np.append(np.sqrt(modes.stiffness[modes.stiffness < omega**2]), omega)
     places = np.append(0.5 * (ends[1:] + ends[:-1]), omega)
     off = np.abs(1.0 - modes.stiffness / places[:, None] ** 2).min(axis=1)
-    found: FloatArray = places[off > APART]
-    return found[:: max(1, found.size // MOST_BETWEEN)]
+    found: FloatArray = places[off > REDUCTION.apart]
+    return found[:: max(1, found.size // REDUCTION.most_between)]
 
 
 def _energy_and_error(
