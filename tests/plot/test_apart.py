@@ -11,6 +11,7 @@ import pytest
 
 from fcm import load_scene
 from fcm.plot.errors import PlotError
+from fcm.plot.options import ReadOptions
 from fcm.plot.read import read_response
 from fcm.plot.reader_process import apart
 from fcm.response import trace
@@ -54,11 +55,10 @@ def test_what_a_process_that_died_had_to_read_is_damaged():
 
 
 @pytest.mark.slow
-def test_a_file_that_is_read_without_end_is_damaged(monkeypatch):
+def test_a_file_that_is_read_without_end_is_damaged():
     """As the library does that follows a damaged file from place to place for ever."""
-    monkeypatch.setattr("fcm.plot.reader_process.ALLOWED", 1.0)
     with pytest.raises(PlotError, match=r"^a\.nc: damaged: "):
-        circles("a.nc")
+        apart(circles.__wrapped__, ReadOptions(seconds=1.0))("a.nc")
 
 
 def test_what_is_read_comes_from_another_process():
@@ -82,7 +82,7 @@ def response(tmp_path_factory):
 
 
 @pytest.mark.parametrize("number", range(DAMAGED))
-def test_a_damaged_file_is_read_or_refused(monkeypatch, tmp_path, response, number):
+def test_a_damaged_file_is_read_or_refused(tmp_path, response, number):
     """Bytes changed or set to zero, mostly where the file says how it is laid out; none ends this process."""
     rng, path = random.Random(number), tmp_path / "a.nc"
     whole = bytearray(response)
@@ -92,8 +92,7 @@ def test_a_damaged_file_is_read_or_refused(monkeypatch, tmp_path, response, numb
         begin = rng.randrange(len(whole))
         whole[begin : begin + 512] = bytes(len(whole[begin : begin + 512]))
     path.write_bytes(whole)
-    monkeypatch.setattr("fcm.plot.reader_process.ALLOWED", 2.0)
     try:
-        read_response(path)
+        apart(read_response.__wrapped__, ReadOptions(seconds=2.0))(path)
     except PlotError as error:
         assert str(error).startswith(f"{path}: ") and "\n" not in str(error)

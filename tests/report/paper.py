@@ -12,7 +12,7 @@ import click
 
 from fcm.cli.messages import Messages, pass_messages
 from fcm.files import replacing
-from fcm.plot.style import DPI
+from fcm.plot.style import LAYOUT
 
 from . import contact_figures, response_figures
 from .made import facts
@@ -145,4 +145,4 @@ def commands(folder: Path, number: int) -> tuple[str, ...]:
 def width_of(picture: Path) -> float:
     """Width of a PNG in millimetres, as it is printed."""
     (pixels,) = struct.unpack(">I", picture.read_bytes()[16:20])
-    return float(pixels / DPI * 25.4)
+    return float(pixels / LAYOUT.dpi * 25.4)

@@ -43,20 +43,14 @@ def contacts(
     At points of the curve: which contacts stick, slip and open. Of each the energy and the slip path of a
     cycle, and the greatest normal force. Those that take most energy are listed.
     """
-    from fcm.plot.interface import (
-        MOST,
-        draw_interface,
-        greatest_takers,
-        points_of,
-        read_interface,
-        read_places,
-    )
+    from fcm.plot.interface import draw_interface, greatest_takers, points_of, read_interface, read_places
+    from fcm.plot.style import LAYOUT
 
     output = picture_of(file, output, "-contacts.png", places, page=True)
     count = max(len(at), 1) * len(curves)
-    if count > MOST:
+    if count > LAYOUT.panels:
         options = " and ".join(name for name, given in (("--at", at), ("--curve", curves)) if len(given) > 1)
-        raise click.UsageError(f"{options} ask for {count} points; a picture has room for {MOST}.")
+        raise click.UsageError(f"{options} ask for {count} points; a picture has room for {LAYOUT.panels}.")
     read = read_interface(file)
     points = [point for curve in curves for point in points_of(read, at, curve)]
     where = read.places if places is None else read_places(places, read.contacts)

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fcm.plot.errors import PlotError
-from fcm.plot.read import LARGEST, opened, read
+from fcm.plot.options import READ
+from fcm.plot.read import opened, read
 from fcm.plot.reader_process import apart
 from fcm.plot.style import house_style, new_figure, plain_ticks
 
@@ -107,7 +108,7 @@ def _panel(summary: Any, reference: str, quantity: str) -> Panel:
 def _number(value: Any) -> float:
     """A time, an error or a step."""
     number = float(value)
-    if not 0.0 <= number <= LARGEST:
+    if not 0.0 <= number <= READ.largest:
         raise ValueError(f"it holds {number:g} in the place of a time, an error or a step")
     return number
 

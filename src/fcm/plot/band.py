@@ -11,7 +11,7 @@ from fcm.plot.curve_names import name_at_side
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label, with_unit
 from fcm.plot.read import LEVEL, DrawnResponse, wide
-from fcm.plot.style import has_decades, house_style, logarithmic_axis, new_figure, sequence_colours
+from fcm.plot.style import LAYOUT, has_decades, house_style, logarithmic_axis, new_figure, sequence_colours
 from fcm.rotation import unit_of
 
 if TYPE_CHECKING:
@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from fcm.results.bands import Band
-
-_FAINT = 0.28  # opacity of a band, so that those of several curves are seen through one another
 
 
 def banded_column(response: DrawnResponse, dof: str | None) -> int:
@@ -44,7 +42,9 @@ def draw_bands(
         axes = figure.add_subplot()
         for band, colour in zip(bands, sequence_colours(len(bands)), strict=True):
             shade = "#5b7fa6" if len(bands) == 1 else colour
-            axes.fill_between(band.frequency, band.low, band.high, color=shade, alpha=_FAINT, linewidth=0.0)
+            axes.fill_between(
+                band.frequency, band.low, band.high, color=shade, alpha=LAYOUT.band_opacity, linewidth=0.0
+            )
             axes.plot(band.frequency, band.median, color=colour, linewidth=1.1)
         axes.set_xlabel(frequency_label(response.frequency_unit))
         name = response.dofs[column]

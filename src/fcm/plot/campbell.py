@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.plot.labels import frequency_label
-from fcm.plot.style import HEIGHT, WIDTH, house_style, new_figure, sequence_colours
+from fcm.plot.style import LAYOUT, house_style, new_figure, sequence_colours
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,15 +22,7 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 
-_BEYOND = 2.5  # times the range's end: so far up modes are shown
-_ROOM = 1.08  # above the highest of them
-_MOST_HARMONICS = 5  # of an engine order that are marked
-_MOST_ORDERS = 6  # that have a line each
-_WIDE = 0.018  # of the axis: a bar of an engine order
-_FILLED = 0.75  # of the distance of two diameters, by bars beside one another
-_LABELLED = 0.95  # of the axis: up to there the numbers of harmonics
 _NUMBER = (0.12, 0.01, 0.045)  # of diameters beside one, and of the axis below and above its foot: its room
-_HALO = 2.0  # points of white around it, on the lines that it stands on
 
 
 @dataclass(frozen=True)
@@ -63,7 +55,7 @@ def draw_campbell(ring: Ring) -> Figure:
 
     top = _top(ring)
     with house_style():
-        figure = new_figure(1.15 * WIDTH, 1.2 * HEIGHT)
+        figure = new_figure(1.15 * LAYOUT.width, 1.2 * LAYOUT.height)
         axes = figure.subplots()
         _orders(axes, ring, top)
         _families(axes, ring.diameters, ring.stuck, "stuck")
@@ -83,15 +75,19 @@ def _title(ring: Ring) -> str:
     """What is drawn, and of how many engine orders some are."""
     count = len(ring.engine_orders)
     text = f"{ring.sectors} sectors"
-    return text if count <= _MOST_ORDERS else f"{text}; the first {_MOST_ORDERS} of {count} engine orders"
+    return (
+        text
+        if count <= LAYOUT.campbell_orders
+        else f"{text}; the first {LAYOUT.campbell_orders} of {count} engine orders"
+    )
 
 
 def _top(ring: Ring) -> float:
     """Where the frequency axis ends: above the modes that are of interest."""
     end = 0.0 if ring.span is None else ring.span[1]
-    limit = _BEYOND * end if end else np.inf
+    limit = LAYOUT.campbell_top * end if end else np.inf
     every = np.concatenate((*ring.opened, *ring.stuck))
-    return _ROOM * max(end, float(every[every < limit].max(initial=0.0))) or 1.0
+    return LAYOUT.campbell_headroom * max(end, float(every[every < limit].max(initial=0.0))) or 1.0
 
 
 def _families(axes: Axes, diameters: Sequence[int], frequencies: Sequence[FloatArray], state: str) -> None:
@@ -114,7 +110,7 @@ def _orders(axes: Axes, ring: Ring, top: float) -> None:
     """
     if ring.span is None:
         return
-    shown = ring.engine_orders[:_MOST_ORDERS]
+    shown = ring.engine_orders[: LAYOUT.campbell_orders]
     colours = dict(zip(shown, _colours(len(shown)), strict=True))
     _bars(axes, ring, ring.span, colours, top)
     for order, colour in colours.items():
@@ -155,7 +151,7 @@ def _number(axes: Axes, ring: Ring, harmonic: int, x: float, end: float, top: fl
     axes.annotate(
         f"{harmonic}", (x, free_height(ring, x, end, top)), xytext=(0, 1), textcoords="offset points",
         fontsize=7, ha="center", va="bottom", zorder=4,
-        path_effects=[withStroke(linewidth=_HALO, foreground="white")],
+        path_effects=[withStroke(linewidth=LAYOUT.halo, foreground="white")],
     )  # fmt: skip
 
 
@@ -171,13 +167,13 @@ def free_height(ring: Ring, x: float, end: float, top: float) -> float:
         for frequency in np.concatenate(both).tolist()
         if abs(diameter - x) < beside_one
     ]
-    height = min(end, _LABELLED * top)
+    height = min(end, LAYOUT.campbell_labelled * top)
     for direction in (1.0, -1.0):
         found = height
         for frequency in sorted(modes, reverse=direction < 0.0):
             if -below * top < frequency - found < above * top:
                 found = frequency + (below if direction > 0.0 else -above) * top
-        if found <= _LABELLED * top:
+        if found <= LAYOUT.campbell_labelled * top:
             return found
     return height
 
@@ -186,7 +182,7 @@ def _placed(ring: Ring, x: float, bars: list[Bar]) -> list[tuple[Bar, float, flo
     """The bars at a diameter, with their middles and widths."""
     lanes = beside([(bar.low, bar.high) for bar in bars])
     count = max(lanes) + 1
-    room = min(_WIDE * (ring.sectors // 2 + 1), _FILLED / count)
+    room = min(LAYOUT.campbell_bar * (ring.sectors // 2 + 1), LAYOUT.campbell_filled / count)
     return [
         (bar, x + room * (lane - 0.5 * (count - 1)), room if bar.harmonic == 1 else 0.5 * room)
         for bar, lane in zip(bars, lanes, strict=True)
@@ -199,7 +195,7 @@ def _met(
     """The bars at each nodal diameter, as far as they are seen."""
     met: dict[float, list[Bar]] = {}
     for order in orders:
-        for harmonic in range(1, _MOST_HARMONICS + 1):
+        for harmonic in range(1, LAYOUT.campbell_harmonics + 1):
             low, high = (harmonic * end for end in span)
             if low < top:
                 met.setdefault(folded(harmonic * order, sectors), []).append(Bar(order, harmonic, low, high))

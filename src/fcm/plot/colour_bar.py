@@ -7,13 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fcm.plot.style import sequence_colours
+from fcm.plot.style import LAYOUT, sequence_colours
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-MOST_NAMES = 20  # of more lines than this, a bar names some
-_MOST_TICKS = 9
 
 
 def colour_bar(figure: Figure, names: Sequence[str], title: str) -> None:
@@ -24,7 +21,7 @@ def colour_bar(figure: Figure, names: Sequence[str], title: str) -> None:
     count = len(names)
     each = BoundaryNorm(np.arange(count + 1) - 0.5, count)
     colours = ScalarMappable(each, ListedColormap(sequence_colours(count)))
-    shown = np.unique(np.linspace(0, count - 1, _MOST_TICKS).round().astype(int)).tolist()
+    shown = np.unique(np.linspace(0, count - 1, LAYOUT.bar_ticks).round().astype(int)).tolist()
     bar = figure.colorbar(colours, ax=figure.axes, ticks=shown, pad=0.02)
     bar.ax.set_yticklabels([names[i] for i in shown])
     bar.ax.minorticks_off()

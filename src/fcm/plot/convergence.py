@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fcm.plot.style import house_style, new_figure, plain_ticks
+from fcm.plot.style import LAYOUT, house_style, new_figure, plain_ticks
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,7 +20,6 @@ STYLES = (  # marker and colour of each scene (Okabe and Ito's, safe for the col
     ("D", "#cc79a7"),
     ("v", "#000000"),
 )
-FLOOR = 1e-6  # where the exact motion is drawn, as it is what errors are measured against
 
 
 @dataclass(frozen=True)
@@ -64,7 +63,7 @@ def draw_convergence(lines: Sequence[Line]) -> Figure:
         axes.set(xscale="log", yscale="log")
         axes.set_xlabel("Processor time of a curve (ms), where np.sin takes 10 ns a value")
         axes.set_ylabel("Greatest relative error of the peaks (–)")
-        axes.set_ylim(bottom=0.5 * FLOOR)
+        axes.set_ylim(bottom=0.5 * LAYOUT.exact_error)
         axes.margins(x=0.08)  # for the number at the last point
         plain_ticks(axes.xaxis, 300.0)
         figure.legend(
@@ -85,7 +84,13 @@ def _draw_line(axes: Axes, line: Line, marker: str, colour: str) -> None:
         markerfacecolor="none", markeredgewidth=0.8,
     )  # fmt: skip
     axes.plot(
-        line.exact, FLOOR, color=colour, marker="|", markersize=11.0, markeredgewidth=1.6, clip_on=False
+        line.exact,
+        LAYOUT.exact_error,
+        color=colour,
+        marker="|",
+        markersize=11.0,
+        markeredgewidth=1.6,
+        clip_on=False,
     )
 
 

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from fcm.plot.colour_bar import MOST_NAMES, colour_bar
+from fcm.plot.colour_bar import colour_bar
 from fcm.plot.labels import curve_label, symbols
+from fcm.plot.style import LAYOUT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,10 +37,7 @@ _OFFSETS = (  # [point] from the peak, with the alignment of the text, best firs
     (26, 4, "left", "center"),
     (-26, 4, "right", "center"),
 )
-_LEADER_FROM = 10  # [point] a name this far from its peak has a thin line to it
 _LEADER = {"arrowstyle": "-", "linewidth": 0.4, "shrinkA": 0.5, "shrinkB": 0.5}
-_MARGIN = 2  # [pixel] around a name, at 100 to the inch
-_FINE = 12  # points between two of a curve at which a touch is looked for
 
 
 def label_at_peaks(
@@ -70,11 +68,11 @@ def _find_room(
     frame = axes.get_window_extent()
     for dx, dy, ha, va in _OFFSETS:
         text = axes.annotate(name, peak, (dx, dy), textcoords="offset points", ha=ha, va=va, fontsize=8)
-        box = text.get_window_extent().padded(_MARGIN)
+        box = text.get_window_extent().padded(LAYOUT.name_margin)
         inside = frame.x0 < box.x0 and box.x1 < frame.x1 and frame.y0 < box.y0 and box.y1 < frame.y1
         if inside and not any(box.overlaps(other) for other in taken) and not _touched(box, pixels):
             taken.append(box)
-            if abs(dx) < _LEADER_FROM:
+            if abs(dx) < LAYOUT.name_leader:
                 return text
             text.remove()
             return axes.annotate(
@@ -90,7 +88,7 @@ def _touched(box: Bbox, pixels: FloatArray) -> bool:
 
 def _dense(x: FloatArray, y: FloatArray) -> FloatArray:
     """Points along the drawn line, close enough that none of its pieces jumps over a name."""
-    at = np.linspace(0, len(x) - 1, _FINE * (len(x) - 1) + 1)
+    at = np.linspace(0, len(x) - 1, LAYOUT.name_points * (len(x) - 1) + 1)
     nodes = np.arange(len(x))
     return np.column_stack([np.interp(at, nodes, x), np.interp(at, nodes, y)])
 
@@ -105,7 +103,7 @@ def name_at_side(
     if not parameters[0]:
         return
     names = [curve_label(one, False) for one in parameters]
-    if len(names) > MOST_NAMES:
+    if len(names) > LAYOUT.bar_names:
         colour_bar(figure, names, ", ".join(symbols(parameters[0], units)))
         return
     title = ",\n".join(symbols(parameters[0], units))

@@ -8,9 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.plot.errors import PlotError
+from fcm.plot.options import READ
 from fcm.rotation import MOST_DOFS, greatest_first
-
-MOST_NAMED = 12  # degrees of freedom in a message
 
 
 def column_of(dofs: Sequence[str], dof: str | None, whose: str = "the file has") -> int:
@@ -28,8 +27,8 @@ def column_of(dofs: Sequence[str], dof: str | None, whose: str = "the file has")
 
     if found := Names(dofs).find(dof):
         return dofs.index(found)
-    more = f", ... ({len(dofs)} in all)" if len(dofs) > MOST_NAMED else ""
-    listed = f"{whose} {', '.join(dofs[:MOST_NAMED])}{more}"
+    more = f", ... ({len(dofs)} in all)" if len(dofs) > READ.dofs_named else ""
+    listed = f"{whose} {', '.join(dofs[: READ.dofs_named])}{more}"
     raise PlotError(f"no degree of freedom {dof!r}; {listed}{suggestion(dof, dofs)}")
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fcm.plot.read import DrawnCurve, FloatArray, ends, wide
+from fcm.plot.style import LAYOUT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -15,10 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 SHARES = (3.1, 1.0)  # heights of the curves and of the panel
-HEIGHT = 4.9  # [inch] of a figure with both
 RANGE = (1e-8, 1.0)  # of errors; the same in every picture, so that pictures can be compared
-_BINS = 120  # over the frequencies
-_LEAST = 1e-30  # drawn in the place of 0, far below the panel
 _GREY = "0.8"
 
 
@@ -33,10 +31,12 @@ def draw_errors(
 ) -> None:
     """Lines for what the single harmonic leaves out of each curve; an area for the table, of all together."""
     edges, table = _largest(curves)
-    axes.stairs(np.maximum(table, _LEAST), edges, baseline=_LEAST, fill=True, color=_GREY)
+    axes.stairs(
+        np.maximum(table, LAYOUT.least_error), edges, baseline=LAYOUT.least_error, fill=True, color=_GREY
+    )
     for curve, colour in zip(curves, colours, strict=True):
         if curve.truncation_error is not None:
-            error = np.maximum(curve.truncation_error, _LEAST)
+            error = np.maximum(curve.truncation_error, LAYOUT.least_error)
             axes.plot(curve.frequency, error, color=colour, linewidth=width)
     _finish(axes)
 
@@ -76,8 +76,8 @@ def _finish(axes: Axes) -> None:
 
 def _largest(curves: Sequence[DrawnCurve]) -> tuple[FloatArray, FloatArray]:
     """Edges of equal bins over the frequencies, and the largest error by the table in each, of any curve."""
-    edges = (np.geomspace if wide(curves) else np.linspace)(*ends(curves), _BINS + 1)
-    largest = np.zeros(_BINS)
+    edges = (np.geomspace if wide(curves) else np.linspace)(*ends(curves), LAYOUT.error_bins + 1)
+    largest = np.zeros(LAYOUT.error_bins)
     for curve in curves:
         if curve.table_error is None:
             continue
@@ -85,7 +85,7 @@ def _largest(curves: Sequence[DrawnCurve]) -> tuple[FloatArray, FloatArray]:
         known = curve.table_error + 0.0 * curve.frequency
         error = np.nan_to_num(np.maximum(known[:-1], known[1:]))
         # the bins that each piece of the curve passes through
-        bins = np.clip(np.searchsorted(edges, curve.frequency, side="right") - 1, 0, _BINS - 1)
+        bins = np.clip(np.searchsorted(edges, curve.frequency, side="right") - 1, 0, LAYOUT.error_bins - 1)
         first, last = np.minimum(bins[:-1], bins[1:]), np.maximum(bins[:-1], bins[1:])
         count = last - first + 1
         before = np.cumsum(count) - count

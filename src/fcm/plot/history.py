@@ -10,7 +10,7 @@ from fcm.plot.errors import PlotError
 from fcm.plot.history_file import DrawnHistory, DrawnMotion
 from fcm.plot.labels import curve_label, frequency_label
 from fcm.plot.read import FloatArray
-from fcm.plot.style import house_style, new_figure
+from fcm.plot.style import LAYOUT, house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,13 +18,8 @@ if TYPE_CHECKING:
 
 Window = tuple[float, float]
 
-COLUMN = 3.35  # [inch] 85 mm, one column of a journal
 _HEIGHT, _PANEL = 2.5, 1.5  # [inch] of a single panel; of each further one
-_MOST_PANELS = 6  # one for each curve: more do not fit a page
-_MOST_CYCLES = 60  # drawn as a line; more would be a solid area
-_MOST_BOUNDARIES = 40  # between phases: of more the lines would be a solid area, too
 _BAND, _EDGE, _MEAN = "#a6c8e0", "#1f4e79", "#b34700"
-_LETTER = 0.026  # width of a letter of a label and of some space, relative to the axes
 _ROMAN = ("I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X", "XI", "XII")
 
 
@@ -34,11 +29,11 @@ def draw_history(history: DrawnHistory, window: Window | None = None) -> Figure:
     Few cycles are drawn as they move; of many, the extent and the mean of each.
     """
     motions = [motion for motion in history.motions if motion.least.size]
-    if len(motions) > _MOST_PANELS:
-        raise PlotError(f"the file has {len(motions)} curves; choose at most {_MOST_PANELS} of them")
+    if len(motions) > LAYOUT.history_panels:
+        raise PlotError(f"the file has {len(motions)} curves; choose at most {LAYOUT.history_panels} of them")
     shown = _window(history, window)
     with house_style():
-        figure = new_figure(COLUMN, _HEIGHT + _PANEL * (len(motions) - 1))
+        figure = new_figure(LAYOUT.column, _HEIGHT + _PANEL * (len(motions) - 1))
         panels = figure.subplots(len(motions), sharex=True, squeeze=False)[:, 0]
         for axes, motion in zip(panels, motions, strict=True):
             _draw_motion(axes, motion, shown)
@@ -72,7 +67,7 @@ def _window(history: DrawnHistory, window: Window | None) -> Window:
 
 def _draw_motion(axes: Axes, motion: DrawnMotion, shown: Window) -> None:
     inside = (motion.edges[1:] > shown[0]) & (motion.edges[:-1] < shown[1])
-    if int(inside.sum()) <= _MOST_CYCLES:
+    if int(inside.sum()) <= LAYOUT.history_cycles:
         _draw_line(axes, motion, shown)
         return
     first, last = np.flatnonzero(inside)[[0, -1]]
@@ -98,7 +93,7 @@ def _draw_line(axes: Axes, motion: DrawnMotion, shown: Window) -> None:
 def _mark_phases(axes: Axes, history: DrawnHistory, shown: Window) -> None:
     """A dashed line where a phase begins, unless they are too many to be told apart."""
     inside = [x for x in history.boundaries[1:-1] if shown[0] < x < shown[1]]
-    if len(inside) <= _MOST_BOUNDARIES:
+    if len(inside) <= LAYOUT.history_boundaries:
         for boundary in inside:
             axes.axvline(boundary, color="0.35", linewidth=0.6, linestyle=(0, (4, 3)))
 
@@ -112,7 +107,7 @@ def _name_phases(axes: Axes, history: DrawnHistory, shown: Window) -> None:
     room, taken = shown[1] - shown[0], -np.inf
     ticks: list[tuple[float, str]] = []
     for low, high, name in zip(bounds[:-1], bounds[1:], names, strict=True):
-        centre, half = 0.5 * (low + high), 0.5 * _LETTER * room * max(map(len, name.splitlines()))
+        centre, half = 0.5 * (low + high), 0.5 * LAYOUT.letter * room * max(map(len, name.splitlines()))
         if high > low and centre - half > taken:
             ticks.append((centre, name))
             taken = centre + half

@@ -15,7 +15,7 @@ from fcm.plot.labels import curve_label
 from fcm.plot.pairs import plane_view
 from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
-from fcm.plot.style import TWO_COLUMNS, WIDTH, house_style, new_figure
+from fcm.plot.style import LAYOUT, TWO_COLUMNS, house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,10 +31,8 @@ STATES_OF_CONTACTS = (  # word, colour and mark: told apart without colours, too
     ("open", "#FFFFFF", "o"),
 )
 _SIZE = (4.0, 60.0)  # [point^2] of a mark, for many contacts and for few
-_ROOM = 0.06  # around the interface, as part of its greater extent
 _BAR, _ABOVE = 1.2, 0.35  # [inch] beside the panels for a bar of colours, and above each
 _HEIGHTS = (3.5, 11.0)  # [inch] of a figure
-MOST = 6  # points in a picture
 
 
 @dataclass(frozen=True)
@@ -223,7 +221,7 @@ def draw_interface(
 
     count, titles = len(points), [f"{name}" for _, name in BORNE]
     with house_style():
-        width = TWO_COLUMNS if count > 1 else WIDTH
+        width = TWO_COLUMNS if count > 1 else LAYOUT.width
         figure = new_figure(width, 6.4 if places is None else _height(places, width, count))
         grid = figure.subplots(
             1 + len(BORNE), count, sharex=True, sharey="row" if places is None else True, squeeze=False
@@ -263,7 +261,7 @@ def draw_interface(
 def _limits(places: FloatArray) -> tuple[FloatArray, FloatArray]:
     """The lower left and the upper right of the interface with room for marks around it."""
     low, high = places.min(axis=0), places.max(axis=0)
-    room = _ROOM * float((high - low).max()) or 1.0
+    room = LAYOUT.interface_room * float((high - low).max()) or 1.0
     return low - room, high + room
 
 

@@ -13,7 +13,7 @@ from fcm.contact.periodic.loop import PeriodicLoop
 from fcm.contact.sampled import Part, parts, shown_degrees, transitions
 from fcm.plot.loop_marks import name_marks
 from fcm.plot.read import FloatArray
-from fcm.plot.style import COLUMN, TWO_COLUMNS, house_style, new_figure
+from fcm.plot.style import COLUMN, LAYOUT, TWO_COLUMNS, house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,12 +29,6 @@ _LIMIT: dict[str, Any] = {"color": "0.6", "linewidth": 0.7, "linestyle": (0, (5,
 _MARK: dict[str, Any] = {"marker": "o", "markersize": 3.2, "markerfacecolor": "white", "markeredgewidth": 0.7}
 _LOOP_HEIGHT, _TIME_HEIGHT = 1.75, 1.05  # [inch] of the two panels of a loop
 _LABELS, _LEGEND, _TITLE = 0.35, 0.75, 0.2  # [inch] of what is around them
-_ALONE = 1.25  # how much higher a loop alone is
-_MOST_COLUMNS = 4  # of loops beside one another
-_SMALL = 7  # [point]
-_ROOM = 0.18  # beside a loop, relative to its extent
-_MOST_NAMED = 60  # transitions whose angles still find room beside them
-_NARROWEST = 11.0  # [degree] a state shorter than this has no letter
 
 
 @dataclass(frozen=True)
@@ -88,7 +82,7 @@ def draw_loops(loops: Sequence[DrawnLoop], axes: LoopAxes | None = None, title: 
             _draw_loop(above, drawn)
             _draw_over_angle(below, drawn, names)
             _limit(above, below, loops if shared else [drawn])
-            left = i % _MOST_COLUMNS == 0
+            left = i % LAYOUT.loop_columns == 0
             _label(above, below, names, left=left, numbers=left or not shared)
             above.set_title(drawn.title, fontsize=8)
         _legend(figure, loops, names, any(_limits_seen(*one) for one in zip(loops, panels, strict=True)))
@@ -101,10 +95,10 @@ def draw_loops(loops: Sequence[DrawnLoop], axes: LoopAxes | None = None, title: 
 
 def _panels(count: int, titled: bool) -> tuple[Figure, list[tuple[Axes, Axes]]]:
     """Two panels for each loop, one above the other; one loop alone is a column wide, several are two."""
-    columns = min(count, _MOST_COLUMNS)
+    columns = min(count, LAYOUT.loop_columns)
     rows = -(-count // columns)
     height = rows * (_LOOP_HEIGHT + _TIME_HEIGHT + _LABELS) + _LEGEND + (_TITLE if titled else 0.0)
-    figure = new_figure(COLUMN, _ALONE * height) if count == 1 else new_figure(TWO_COLUMNS, height)
+    figure = new_figure(COLUMN, LAYOUT.loop_alone * height) if count == 1 else new_figure(TWO_COLUMNS, height)
     grid = figure.add_gridspec(2 * rows, columns, height_ratios=[_LOOP_HEIGHT, _TIME_HEIGHT] * rows)
     places = (divmod(i, columns) for i in range(count))
     return figure, [
@@ -167,10 +161,10 @@ def _draw_over_angle(axes: Axes, drawn: DrawnLoop, names: LoopAxes) -> None:
 def _name_state(axes: Axes, state: str, angle: Any) -> None:
     """The letter above the panel, in the middle of what is seen of the state."""
     low, high = max(angle[0], 0.0), min(angle[-1], 360.0)
-    if high - low >= _NARROWEST:
+    if high - low >= LAYOUT.loop_narrowest:
         axes.text(
             0.5 * (low + high), 1.02, state, transform=axes.get_xaxis_transform(),
-            ha="center", va="bottom", fontsize=_SMALL, color=STATES[state][1]["color"],
+            ha="center", va="bottom", fontsize=LAYOUT.small_text, color=STATES[state][1]["color"],
         )  # fmt: skip
 
 
@@ -179,9 +173,11 @@ def _label(above: Axes, below: Axes, names: LoopAxes, left: bool, numbers: bool)
     above.set_xlabel(names.displacement, fontsize=8)
     below.set_xlabel(r"Angle $\theta$ (°)", fontsize=8)
     for axes, force in ((above, names.force), (below, names.over_angle)):
-        axes.tick_params(labelsize=_SMALL, labelleft=numbers)
-        axes.xaxis.get_offset_text().set_fontsize(_SMALL)
-        axes.yaxis.get_offset_text().set(fontsize=_SMALL, ha="right")  # not among the letters of the states
+        axes.tick_params(labelsize=LAYOUT.small_text, labelleft=numbers)
+        axes.xaxis.get_offset_text().set_fontsize(LAYOUT.small_text)
+        axes.yaxis.get_offset_text().set(
+            fontsize=LAYOUT.small_text, ha="right"
+        )  # not among the letters of the states
         if left:
             axes.set_ylabel(force, fontsize=8)
 
@@ -189,8 +185,8 @@ def _label(above: Axes, below: Axes, names: LoopAxes, left: bool, numbers: bool)
 def _limit(above: Axes, below: Axes, loops: Sequence[DrawnLoop]) -> None:
     """Room around the loops for their marks; slip limits far beyond the force are cut off."""
     width, low, high = np.array([_extent(drawn) for drawn in loops]).T
-    room = _ROOM * (high.max() - low.min() or 1.0)
-    above.set_xlim(-(1.0 + _ROOM) * width.max(), (1.0 + _ROOM) * width.max())
+    room = LAYOUT.loop_room * (high.max() - low.min() or 1.0)
+    above.set_xlim(-(1.0 + LAYOUT.loop_room) * width.max(), (1.0 + LAYOUT.loop_room) * width.max())
     above.set_ylim(low.min() - room, high.max() + room)
     far = max(high.max(), -low.min()) + room
     below.set_ylim(-far, far)
@@ -219,7 +215,7 @@ def _legend(figure: Figure, loops: Sequence[DrawnLoop], names: LoopAxes, limits:
         handles.append(Line2D([], [], label="transition", linestyle="", color="black", **_MARK))
     columns = 2 if len(loops) == 1 else len(handles)
     figure.legend(
-        handles=handles, loc="outside lower center", ncols=columns, fontsize=_SMALL,
+        handles=handles, loc="outside lower center", ncols=columns, fontsize=LAYOUT.small_text,
         handlelength=2.4, columnspacing=1.0,
     )  # fmt: skip
 
@@ -232,5 +228,5 @@ def _mark_transitions(axes: Axes, drawn: DrawnLoop, names: LoopAxes) -> None:
     curve = np.concatenate([np.column_stack(drawn.points(part)) for part in parts(drawn.loop)])
     for x, y in points:
         axes.plot([x], [y], color="black", linestyle="", zorder=3, **_MARK)
-    if len(texts) <= _MOST_NAMED:
-        name_marks(axes, points, texts, curve, _SMALL)
+    if len(texts) <= LAYOUT.loop_named:
+        name_marks(axes, points, texts, curve, LAYOUT.small_text)

@@ -12,10 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.plot.errors import PlotError
+from fcm.plot.options import READ
 from fcm.plot.read import FloatArray, floats, opened, read_response
 from fcm.plot.reader_process import apart
 
-MOST_NAMES = 10  # contacts that a message lists
 _ENERGY = "dissipated_energy"
 _ALSO = ("contact", "frequency", "stable", _ENERGY, "harmonic", "regime")
 _PLANE = (
@@ -221,9 +221,9 @@ def _greatest(energy: FloatArray, contacts: int) -> FloatArray:
 
 def _names(file: LoopFile) -> str:
     """The contacts, of many those that take most energy, first the one that takes most."""
-    if len(file.contacts) <= MOST_NAMES:
+    if len(file.contacts) <= READ.contacts_named:
         return ", ".join(file.contacts)
-    first = np.argsort(-file.energy, kind="stable")[:MOST_NAMES]
+    first = np.argsort(-file.energy, kind="stable")[: READ.contacts_named]
     most = "that take most energy in a cycle" if file.energy.any() else "first in the file"
     names = ", ".join(file.contacts[i] for i in first.tolist())
     return f"of {len(file.contacts)} those {most}: {names}"

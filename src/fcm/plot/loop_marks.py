@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fcm.plot.read import BoolArray, FloatArray
+from fcm.plot.style import LAYOUT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -15,14 +17,8 @@ if TYPE_CHECKING:
     from matplotlib.transforms import Bbox
 
 _DISTANCES = (5.0, 9.0, 14.0, 20.0, 27.0, 35.0)  # [point] from the mark to the nearer side of its text
-_DIRECTIONS = 16  # of a text from its mark that are tried
-_LEADER_FROM = 9.0  # [point] a text this far from its mark has a thin line to it
 _LEADER = {"arrowstyle": "-", "linewidth": 0.4, "shrinkA": 0.5, "shrinkB": 2.0}
-_LEADER_POINTS = 12  # at which it may touch a text
 _OUTSIDE, _TOUCHED, _CROSSED = 1e6, 1e4, 1e2  # cost: beyond the panel, a text on one, a leader on one
-_STEEP = 2.5  # of an offset: beyond, the middle of the text's side is towards the mark
-_MARGIN = 2.0  # [pixel] around a text, at 100 to the inch
-_TICK = 3.5  # [point] length of the ticks inside the frame
 
 
 def name_marks(
@@ -38,24 +34,27 @@ def name_marks(
     marks = axes.transData.transform(np.array(points))
     centre = 0.5 * (pixels.min(axis=0) + pixels.max(axis=0))
     pixels = np.concatenate((pixels, marks))
-    taken: list[Bbox] = []
+    panel = _Panel(axes, pixels, size)
     for point, mark, text in zip(points, marks, texts, strict=True):
         outward = float(np.arctan2(*(mark - centre)[::-1]))
-        box, leader = _write(axes, point, text, outward, taken, pixels, size)
-        taken.append(box)
-        pixels = np.concatenate((pixels, leader))
+        box, leader = _write(panel, point, text, outward)
+        panel.taken.append(box)
+        panel.pixels = np.concatenate((panel.pixels, leader))
 
 
-def _write(
-    axes: Axes,
-    point: tuple[float, float],
-    text: str,
-    outward: float,
-    taken: list[Bbox],
-    pixels: FloatArray,
-    size: float,
-) -> tuple[Bbox, FloatArray]:
+@dataclass
+class _Panel:
+    """A panel in which texts are written, and what they should not touch."""
+
+    axes: Axes
+    pixels: FloatArray  # (i, 2) of curves, marks and leaders
+    size: float  # [point] of the texts
+    taken: list[Bbox] = field(default_factory=list)  # by texts
+
+
+def _write(panel: _Panel, point: tuple[float, float], text: str, outward: float) -> tuple[Bbox, FloatArray]:
     """The text at the first place that is free, nearest first and outward first; its box and leader."""
+    axes, taken, size = panel.axes, panel.taken, panel.size
     trial = _text(axes, point, text, (0.0, 0.0), size)
     extent = trial.get_window_extent()
     trial.remove()
@@ -63,7 +62,9 @@ def _write(
     best, least = (0.0, 0.0), np.inf
     for offset in (_offset(outward + turn, d) for d in _DISTANCES for turn in _turns()):
         box, leader = _box(axes, mark, offset, extent), _leader(axes, mark, offset)
-        cost = _covered(box, axes, taken, pixels) + _CROSSED * sum(_inside(b, leader).any() for b in taken)
+        cost = _covered(box, axes, taken, panel.pixels) + _CROSSED * sum(
+            _inside(b, leader).any() for b in taken
+        )
         if cost < least:
             best, least = offset, cost
         if cost == 0.0:
@@ -74,10 +75,10 @@ def _write(
 
 def _leader(axes: Axes, mark: FloatArray, offset: tuple[float, float]) -> FloatArray:
     """Points [pixel] of the line from a mark to a text, (i, 2); none where the text is near enough."""
-    if np.hypot(*offset) <= _LEADER_FROM:
+    if np.hypot(*offset) <= LAYOUT.mark_leader:
         return np.empty((0, 2))
     way = np.array(offset) * axes.figure.dpi / 72.0
-    line: FloatArray = mark + np.linspace(0.2, 1.0, _LEADER_POINTS)[:, None] * way
+    line: FloatArray = mark + np.linspace(0.2, 1.0, LAYOUT.mark_leader_points)[:, None] * way
     return line
 
 
@@ -89,12 +90,12 @@ def _box(axes: Axes, mark: FloatArray, offset: tuple[float, float], extent: Bbox
     x, y = mark + np.array(offset) * axes.figure.dpi / 72.0
     left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[across] * extent.width
     bottom = y - {"bottom": 0.0, "center": 0.5, "top": 1.0}[up] * extent.height
-    return Bbox.from_bounds(left, bottom, extent.width, extent.height).padded(_MARGIN)
+    return Bbox.from_bounds(left, bottom, extent.width, extent.height).padded(LAYOUT.name_margin)
 
 
 def _turns() -> list[float]:
     """Angles from the outward direction, the smallest first."""
-    half = [k * 2.0 * np.pi / _DIRECTIONS for k in range(_DIRECTIONS // 2 + 1)]
+    half = [k * 2.0 * np.pi / LAYOUT.mark_directions for k in range(LAYOUT.mark_directions // 2 + 1)]
     return [0.0, *(sign * turn for turn in half[1:] for sign in (1.0, -1.0))]
 
 
@@ -105,8 +106,10 @@ def _offset(direction: float, distance: float) -> tuple[float, float]:
 def _alignment(offset: tuple[float, float]) -> tuple[str, str]:
     """The side of a text that is towards its mark."""
     across, up = offset
-    horizontal = "center" if abs(up) > _STEEP * abs(across) else "left" if across > 0.0 else "right"
-    vertical = "center" if abs(across) > _STEEP * abs(up) else "bottom" if up > 0.0 else "top"
+    horizontal = (
+        "center" if abs(up) > LAYOUT.mark_steep * abs(across) else "left" if across > 0.0 else "right"
+    )
+    vertical = "center" if abs(across) > LAYOUT.mark_steep * abs(up) else "bottom" if up > 0.0 else "top"
     return horizontal, vertical
 
 
@@ -114,7 +117,7 @@ def _text(
     axes: Axes, point: tuple[float, float], text: str, offset: tuple[float, float], size: float
 ) -> Annotation:
     ha, va = _alignment(offset)
-    leader = _LEADER if np.hypot(*offset) > _LEADER_FROM else None
+    leader = _LEADER if np.hypot(*offset) > LAYOUT.mark_leader else None
     return axes.annotate(
         text, point, offset, textcoords="offset points", fontsize=size, ha=ha, va=va, arrowprops=leader
     )
@@ -122,7 +125,7 @@ def _text(
 
 def _covered(box: Bbox, axes: Axes, taken: list[Bbox], pixels: FloatArray) -> float:
     """What a text there would cover: other texts, the frame and its ticks, points of the loop (1 each)."""
-    frame = axes.get_window_extent().padded(-_TICK * axes.figure.dpi / 72.0)
+    frame = axes.get_window_extent().padded(-LAYOUT.tick * axes.figure.dpi / 72.0)
     outside = bool(box.x0 < frame.x0 or box.x1 > frame.x1 or box.y0 < frame.y0 or box.y1 > frame.y1)
     others = sum(bool(box.overlaps(other)) for other in taken)
     return _OUTSIDE * outside + _TOUCHED * others + float(_inside(box, pixels).sum())

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.plot.errors import PlotError
+from fcm.plot.options import READ
 from fcm.units import EXCITED, UNIT
 
 if TYPE_CHECKING:
@@ -23,7 +24,6 @@ FloatArray = npt.NDArray[np.float64]
 NEEDED = ("data_frequency", "data_displacement", "data_level", "data_dof")
 SIZE, NEUTRAL = 4.0, "#404040"
 WORD = "measured"
-SAME = 1e-9  # relative: levels that are one
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,9 @@ def _by_curve(
     found: list[tuple[int | None, npt.NDArray[np.intp]]] = []
     free = np.ones(one.frequency.size, dtype=bool)
     for number, curve in enumerate(curves):
-        here = free & np.isclose(one.level, curve.parameters.get(EXCITED, np.nan), rtol=SAME, atol=0.0)
+        here = free & np.isclose(
+            one.level, curve.parameters.get(EXCITED, np.nan), rtol=READ.same_level, atol=0.0
+        )
         free &= ~here
         found += [(number, np.flatnonzero(here))] if here.any() else []
     return [*found, (None, np.flatnonzero(free))] if free.any() else found

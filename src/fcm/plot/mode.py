@@ -12,9 +12,10 @@ import numpy as np
 from fcm.plot.curve_names import name_at_side
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label
+from fcm.plot.options import READ
 from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
-from fcm.plot.style import HEIGHT, WIDTH, house_style, new_figure, sequence_colours
+from fcm.plot.style import LAYOUT, house_style, new_figure, sequence_colours
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 
 _NEEDED = ("frequency", "modal_amplitude", "damping_ratio")
 _PERCENT = 100.0
-_HIGHER = 1.0 + 1e-6  # than the damping at both ends, where the greatest is between them
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ def draw_modes(drawn: DrawnModes) -> Figure:
     """The figure: frequency above, damping below, the modal amplitude on a logarithmic axis."""
     modes = drawn.modes
     with house_style():
-        figure = new_figure(WIDTH, 1.3 * HEIGHT)
+        figure = new_figure(LAYOUT.width, 1.3 * LAYOUT.height)
         upper, lower = figure.subplots(2, 1, sharex=True)
         for mode, colour in zip(modes, sequence_colours(len(modes)), strict=True):
             upper.plot(mode.amplitude, mode.frequency, color=colour, linewidth=1.1)
@@ -86,7 +86,7 @@ def draw_modes(drawn: DrawnModes) -> Figure:
 def _mark_greatest(axes: Axes, mode: DrawnMode, colour: str, unit: str) -> None:
     """A ring where the mode is damped most, with the values beside it where there is one mode."""
     top = int(mode.damping.argmax())
-    if mode.damping[top] <= _HIGHER * max(mode.damping[0], mode.damping[-1]):  # at an end, or by rounding
+    if mode.damping[top] <= READ.higher * max(mode.damping[0], mode.damping[-1]):  # at an end, or by rounding
         return
     x, y = float(mode.amplitude[top]), float(_PERCENT * mode.damping[top])
     axes.plot([x], [y], "o", markersize=6, markerfacecolor="none", color=colour, markeredgewidth=1.0)

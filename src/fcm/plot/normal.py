@@ -5,18 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fcm.plot.read import FloatArray
-from fcm.plot.style import COLUMN, house_style, new_figure, sequence_colours
+from fcm.plot.style import COLUMN, LAYOUT, house_style, new_figure, sequence_colours
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-_HEIGHT = 2.7  # [inch]
 
 
 def draw_normal(n0_star: FloatArray, N_b: FloatArray, N_s: FloatArray) -> Figure:
     """N_b solid, N_s dashed, as in the paper; the thin lines are the limits of the intermittent contact."""
     with house_style():
-        figure = new_figure(COLUMN, _HEIGHT)
+        figure = new_figure(COLUMN, LAYOUT.row_height)
         axes = figure.add_subplot()
         for limit in (-1.0, 1.0):
             axes.axvline(limit, color="0.6", linewidth=0.5, label="_limit")

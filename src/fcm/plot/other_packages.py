@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fcm.plot.style import house_style, new_figure
+from fcm.plot.style import LAYOUT, house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 WIDTH, HEIGHT = 5.5, 4.2  # [inch]
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7")  # Okabe and Ito's, safe for the colour-blind
 MARKERS = ("o", "^", "s", "D")  # by the number of harmonics
-FLOOR = 1e-12  # what is less is drawn here
 
 
 @dataclass(frozen=True)
@@ -42,9 +41,13 @@ def draw_others(lines: Sequence[Points]) -> Figure:
         axes = figure.subplots()
         for line in lines:
             colour, marker = COLOURS[packages.index(line.package)], MARKERS[counts.index(line.harmonics)]
-            middle = [max(error, FLOOR) for error in line.median]
+            middle = [max(error, LAYOUT.package_error) for error in line.median]
             axes.vlines(
-                line.seconds, middle, [max(e, FLOOR) for e in line.greatest], color=colour, linewidth=0.7
+                line.seconds,
+                middle,
+                [max(e, LAYOUT.package_error) for e in line.greatest],
+                color=colour,
+                linewidth=0.7,
             )
             axes.plot(
                 line.seconds, middle, color=colour, marker=marker, markersize=4.5, linewidth=1.0,

@@ -13,15 +13,13 @@ from fcm.model.interface import Interface
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import with_unit
 from fcm.plot.read import FloatArray
-from fcm.plot.style import TWO_COLUMNS, WIDTH, house_style, new_figure
+from fcm.plot.style import LAYOUT, TWO_COLUMNS, house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _ALONE = ("#D55E00", "#0072B2")  # of the first set, of the second
 _SIZE = (4.0, 60.0)  # [point^2] of a mark, for many pairs and for few
-_HEIGHT = 3.4  # [inch] of a row of panels
-MOST = 6  # contacts in a picture
 
 
 def view_of(interface: Interface) -> tuple[FloatArray, FloatArray]:
@@ -61,14 +59,15 @@ def draw_pairs(interfaces: Sequence[Interface], length: str = "") -> Figure:
             "no contact has pairs with places: give nodes = { sets = , mesh = , tolerance = }, or "
             "x, y, z in a file of pairs"
         )
-    if len(interfaces) > MOST:
+    if len(interfaces) > LAYOUT.panels:
         raise PlotError(
-            f"{len(interfaces)} contacts have pairs; a picture has room for {MOST}: choose by --contact"
+            f"{len(interfaces)} contacts have pairs; a picture has room for {LAYOUT.panels}: "
+            "choose by --contact"
         )
     count, columns = len(interfaces), min(len(interfaces), 2)
     rows = -(-count // columns)
     with house_style():
-        figure = new_figure(TWO_COLUMNS if columns > 1 else WIDTH, _HEIGHT * rows)
+        figure = new_figure(TWO_COLUMNS if columns > 1 else LAYOUT.width, LAYOUT.pairs_height * rows)
         grid = figure.subplots(rows, columns, squeeze=False)
         for axes in grid.flat[count:]:
             axes.set_axis_off()

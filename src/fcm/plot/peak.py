@@ -15,7 +15,7 @@ from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, staying, symbols, with_unit
 from fcm.plot.read import BoolArray, FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
-from fcm.plot.style import HEIGHT, WIDTH, house_style, logarithmic_axis, new_figure, sequence_colours
+from fcm.plot.style import LAYOUT, house_style, logarithmic_axis, new_figure, sequence_colours
 from fcm.rotation import unit_of
 
 if TYPE_CHECKING:
@@ -25,12 +25,8 @@ if TYPE_CHECKING:
 IntArray = npt.NDArray[np.intp]
 
 _NEEDED = ("dof", "peak_amplitude", "peak_frequency", "complete")
-_DECADES = 100.0  # positive swept values that span more are on a logarithmic axis
-_MOST_LINES = 12  # more combinations of the other swept values than this are a cloud of points
 _MARK = "#c03020"
 _WHOLE = ("cyclic.engine_order",)  # whole numbers, between which there is nothing
-_ABOVE = 1.05  # top of the axis over the greatest peak, whose mark is whole below it
-_MANY = 60  # values on a line whose points are not marked any more
 
 
 @dataclass(frozen=True)
@@ -72,7 +68,7 @@ def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) 
         raise PlotError("the file holds no complete curve")
     lines = _lines(peaks, key, known)
     with house_style():
-        figure = new_figure(WIDTH, 1.3 * HEIGHT)
+        figure = new_figure(LAYOUT.width, 1.3 * LAYOUT.height)
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
         for axes, values in ((upper, peaks.amplitude), (lower, peaks.frequency)):
             _draw(axes, peaks.parameters[key], values[:, column], known, lines, key not in _WHOLE)
@@ -99,7 +95,7 @@ def _lines(peaks: Peaks, key: str, known: BoolArray) -> list[IntArray]:
     groups: dict[tuple[float, ...], list[int]] = {}
     for i in np.flatnonzero(known).tolist():
         groups.setdefault(tuple(float(values[i]) for values in others), []).append(i)
-    if len(groups) > _MOST_LINES:
+    if len(groups) > LAYOUT.peak_lines:
         return []
     return [np.array(group)[np.argsort(x[group], kind="stable")] for group in groups.values()]
 
@@ -125,7 +121,7 @@ def _draw(
         return
     for line, colour in zip(lines, sequence_colours(len(lines)), strict=True):
         if joined:
-            mark = "o" if line.size <= _MANY else ""
+            mark = "o" if line.size <= LAYOUT.marked_points else ""
             axes.plot(x[line], y[line], color=colour, linewidth=1.1, marker=mark, markersize=2.5)
         else:
             axes.plot(x[line], y[line], "o", color=colour, markersize=4.0)
@@ -142,13 +138,13 @@ def _finish_axes(upper: Axes, lower: Axes, peaks: Peaks, key: str, column: int, 
     dof = peaks.dofs[column]
     upper.set_ylabel(with_unit(f"Peak amplitude of {dof}", unit_of(dof, peaks.length)), parse_math=False)
     lower.set_ylabel(frequency_label(peaks.frequency_unit).replace("Frequency", "Peak frequency"))
-    if x.min() > 0.0 and x.max() > _DECADES * x.min():
+    if x.min() > 0.0 and x.max() > LAYOUT.peak_decades * x.min():
         lower.set_xscale("log")
     y = peaks.amplitude[known, column]
     if y.max() > 10.0 * y.min() > 0.0:
         logarithmic_axis(upper)
     else:
-        upper.set_ylim(0.0, _ABOVE * float(y.max()) or 1.0)
+        upper.set_ylim(0.0, LAYOUT.headroom * float(y.max()) or 1.0)
     lower.minorticks_on()
     if key in _WHOLE:
         lower.xaxis.set_major_locator(MaxNLocator(integer=True))

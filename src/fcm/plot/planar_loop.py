@@ -11,18 +11,14 @@ import numpy.typing as npt
 from fcm.contact.plane.loop import PlanarLoop
 from fcm.plot.loop import STATES
 from fcm.plot.read import FloatArray
-from fcm.plot.style import TWO_COLUMNS, house_style, new_figure
+from fcm.plot.style import LAYOUT, TWO_COLUMNS, house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-SAMPLES = 1440  # of a cycle
-INSTANTS = 4  # of a cycle at which the disc is drawn
-HEIGHT = 3.35  # [inch]
 SLIDER = "#009e73"
 DISC = "0.75"
-ROOM = 0.56  # of the extent, to each side of the middle
 
 
 @dataclass(frozen=True)
@@ -33,7 +29,7 @@ class DrawnPlanarLoop:
     title: str
     directions: tuple[str, str] = ("x", "y")
     units: tuple[str, str] | None = None
-    instants: int = INSTANTS
+    instants: int = LAYOUT.planar_instants
 
 
 @dataclass(frozen=True)
@@ -50,7 +46,7 @@ class Path:
 
 def path_of(loop: PlanarLoop) -> Path:
     """Samples, those of the transitions among them."""
-    theta = np.unique(np.concatenate((np.linspace(0.0, 2.0 * np.pi, SAMPLES + 1), loop.angles)))
+    theta = np.unique(np.concatenate((np.linspace(0.0, 2.0 * np.pi, LAYOUT.planar_samples + 1), loop.angles)))
     return Path(
         theta,
         loop.displacement(theta),
@@ -66,7 +62,7 @@ def draw_planar_loop(drawn: DrawnPlanarLoop) -> Figure:
     path = path_of(drawn.loop)
     length, force = (f" ({unit.replace('$', '')})" for unit in drawn.units) if drawn.units else ("", "")
     with house_style():
-        figure = new_figure(TWO_COLUMNS, HEIGHT)
+        figure = new_figure(TWO_COLUMNS, LAYOUT.planar_height)
         grid = figure.add_gridspec(2, 2, width_ratios=[1.25, 1.0])
         plane = figure.add_subplot(grid[:, 0])
         _draw_plane(plane, drawn, path)
@@ -118,7 +114,7 @@ def _draw_plane(axes: Axes, drawn: DrawnPlanarLoop, path: Path) -> None:
     shown_at = _instants(path, drawn.instants)
     low = np.minimum(path.u.min(axis=0), (path.u[shown_at] - radius[shown_at, None]).min(axis=0))
     high = np.maximum(path.u.max(axis=0), (path.u[shown_at] + radius[shown_at, None]).max(axis=0))
-    half, (x, y) = ROOM * float((high - low).max()), 0.5 * (low + high)
+    half, (x, y) = LAYOUT.planar_room * float((high - low).max()), 0.5 * (low + high)
     axes.set_xlim(x - half, x + half)
     axes.set_ylim(y - half, y + half)
 

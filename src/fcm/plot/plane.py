@@ -9,7 +9,7 @@ import numpy as np
 
 from fcm.contact.surface import Edges, Plane
 from fcm.plot.read import FloatArray
-from fcm.plot.style import WIDTH, new_figure
+from fcm.plot.style import LAYOUT, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,7 +25,6 @@ BOUNDARIES: dict[str, tuple[str, Any]] = {  # name: label, line style
     "separation": (r"onset of separation, $\bar{n}_0 = \bar{b}$", (0, (4, 1.6))),
     "slip": (r"slip limit, $\bar{n}_0 = (\ell_1 + \ell_2)/2$", "-"),
 }
-ALONE = 1.4  # height of a picture of one panel, relative to that of a row of two
 
 
 def phase_name(phi: float) -> str:
@@ -52,7 +51,7 @@ def panels(count: int, height: float, **more: Any) -> tuple[Figure, list[Axes]]:
     """Axes in rows of two, or one alone and larger; a row of two has the given height [inch]."""
     columns = min(count, 2)
     rows = -(-count // columns)
-    figure = new_figure(WIDTH, height * rows if count > 1 else ALONE * height)
+    figure = new_figure(LAYOUT.width, height * rows if count > 1 else LAYOUT.plane_alone * height)
     axes = [figure.add_subplot(rows, columns, index + 1, **more) for index in range(count)]
     return figure, axes
 

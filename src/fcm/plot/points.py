@@ -15,6 +15,7 @@ from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label
 from fcm.plot.read import DrawnCurve, DrawnResponse, opened, read_response
 from fcm.plot.reader_process import apart
+from fcm.plot.style import LAYOUT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,9 +25,7 @@ MARKERS = {"up": "^", "down": "v", "": "o"}  # by the sweep that visited a point
 WORDS = {"up": "exact motion, swept up", "down": "swept down", "": "exact motion"}
 ALONE = {"up": "#0072B2", "down": "#D55E00", "": "#0072B2"}  # of one curve, told apart without colour as well
 NEUTRAL = "#404040"  # of what stands for the markers of several curves
-EDGE = 0.7  # [point]
 SIZE, SMALL = 4.0, 3.0  # [point] of a marker; of several curves' markers
-MOST = 60  # points of a traced curve that are marked
 
 
 @dataclass(frozen=True)
@@ -67,11 +66,12 @@ def draw_points(
         for way in (way for way in MARKERS if way in sweep):
             chosen = np.flatnonzero((sweep == way) & np.isfinite(curve.frequency))
             if not way:
-                chosen = chosen[:: max(1, chosen.size // MOST)]
+                chosen = chosen[:: max(1, chosen.size // LAYOUT.marked_points)]
             axes.plot(
                 factor * curve.frequency[chosen], curve.amplitude[chosen, column], MARKERS[way],
                 color=colours[number] if several else ALONE[way], markerfacecolor="none",
-                markeredgewidth=EDGE, markersize=SMALL if several else SIZE, label=f"_{WORDS[way]}",
+                markeredgewidth=LAYOUT.point_edge,
+                markersize=SMALL if several else SIZE, label=f"_{WORDS[way]}",
             )  # fmt: skip
 
 
@@ -86,7 +86,7 @@ def name_points(figure: Figure, axes: Axes) -> None:
     for way in ways:
         colour = ALONE[way] if alone else NEUTRAL
         handle = Line2D([], [], linestyle="none", marker=MARKERS[way], color=colour, markersize=SIZE)
-        handle.set(markerfacecolor="none", markeredgewidth=EDGE)
+        handle.set(markerfacecolor="none", markeredgewidth=LAYOUT.point_edge)
         handles.append(handle)
     words = ["harmonic balance", *(WORDS[way] for way in ways)]
     figure.legend(handles, words, loc="outside upper center", ncols=len(handles))

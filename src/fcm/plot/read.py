@@ -18,7 +18,9 @@ from fcm.plot.errors import PlotError
 from fcm.plot.layout import check_layout, is_text
 from fcm.plot.measured import NEEDED as MEASURED
 from fcm.plot.measured import DrawnMeasured, measured_of
+from fcm.plot.options import READ
 from fcm.plot.reader_process import apart
+from fcm.plot.style import LAYOUT
 from fcm.units import CF_UNIT
 from fcm.untold import untold
 
@@ -26,7 +28,6 @@ FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 Failures = tuple[type[Exception], ...]
 
-_WIDE = 30.0  # ratio of frequencies from which their axis is logarithmic
 _DESCRIBED = "swept value"  # how the description of a swept value begins
 _READ = {written: unit for unit, written in CF_UNIT.items()}
 LEVEL = "level"  # in the place of a unit of frequency: the curves are against the level of the forces
@@ -34,7 +35,6 @@ _NEEDED = ("frequency", "amplitude", "dof")
 _ALSO = ("stable", "table_error", "truncation_error", "regime", "level", *MEASURED)
 NO_NETCDF = "Unknown file format"  # what the library says of other files
 UNREAD = (OSError, RuntimeError, ValueError)  # what the library raises at reading, and what is refused here
-LARGEST = 1e100  # no result is as large, in whatever units: such a number was not written as one
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ def ends(curves: Sequence[DrawnCurve]) -> tuple[float, float]:
 def wide(curves: Sequence[DrawnCurve]) -> bool:
     """Whether the frequencies span so much that only a logarithmic axis shows the resonances."""
     low, high = ends(curves)
-    return high > _WIDE * low > 0.0
+    return high > LAYOUT.wide_frequencies * low > 0.0
 
 
 @apart
@@ -244,6 +244,6 @@ def floats(variable: Any) -> FloatArray:
     """A variable of the file, with NaN where it has no value."""
     found: FloatArray = np.ma.filled(np.ma.asarray(variable[:], dtype=float), np.nan)
     largest = float(np.max(np.abs(found), initial=0.0, where=~np.isnan(found)))
-    if largest > LARGEST:
+    if largest > READ.largest:
         raise ValueError(f"{getattr(variable, 'name', 'a variable')} holds {largest:.3g}")
     return found

@@ -23,20 +23,20 @@ from typing import Any, ParamSpec, TypeVar
 
 import fcm
 from fcm.plot.errors import PlotError
+from fcm.plot.options import READ, ReadOptions
 
 P = ParamSpec("P")
 T = TypeVar("T")
 
-ALLOWED = 20.0  # [s] of processor time for a file; a damaged one may lead the library round in a circle
-EACH_MB = 1.0  # [s] more for each megabyte of it
 _CODE = "from fcm.plot.reader_process import child; child()"
 _NAMED = "FCM_READS_APART"  # set in the environment of the process that reads
 
 
-def apart(reader: Callable[P, T]) -> Callable[P, T]:
+def apart(reader: Callable[P, T], options: ReadOptions = READ) -> Callable[P, T]:
     """A function that reads a file, which is its first argument, done by a process of its own.
 
-    What it is given and what it returns are pickled; so are the exceptions that it raises.
+    It has the processor time of the options. What it is given and what it returns are pickled; so are the
+    exceptions that it raises.
 
     Raises
     ------
@@ -48,7 +48,9 @@ def apart(reader: Callable[P, T]) -> Callable[P, T]:
     def read(*args: P.args, **named: P.kwargs) -> T:
         if _NAMED in os.environ:
             return reader(*args, **named)
-        done, value = _answer(reader.__module__, reader.__qualname__, args, named)
+        done, value = _answer(
+            _seconds(args[0], options), (reader.__module__, reader.__qualname__), args, named
+        )
         if not done:
             raise value
         found: T = value
@@ -57,7 +59,7 @@ def apart(reader: Callable[P, T]) -> Callable[P, T]:
     return read
 
 
-def _answer(module: str, name: str, args: Any, named: Any) -> tuple[bool, Any]:
+def _answer(seconds: int, reader: tuple[str, str], args: Any, named: Any) -> tuple[bool, Any]:
     """Whether it was read, and what was; else the exception."""
     places = [str(Path(fcm.__file__).parents[1]), *filter(None, sys.path)]
     given = {"PYTHONPATH": os.pathsep.join(places), "OPENBLAS_NUM_THREADS": "1", _NAMED: "1"}
@@ -69,7 +71,7 @@ def _answer(module: str, name: str, args: Any, named: Any) -> tuple[bool, Any]:
         env=os.environ | given,
     ) as process:
         try:
-            asked = pickle.dumps((_seconds(args[0]), module, name, args, named), protocol=5)
+            asked = pickle.dumps((seconds, *reader, args, named), protocol=5)
             assert process.stdin is not None
             with suppress(BrokenPipeError), process.stdin:
                 process.stdin.write(asked)
@@ -105,10 +107,10 @@ def child() -> None:
     os._exit(0)  # the memory of a damaged library is not tidied up
 
 
-def _seconds(path: Any) -> int:
+def _seconds(path: Any, options: ReadOptions) -> int:
     """Processor time in which a file has to be read."""
     size = Path(path).stat().st_size if Path(path).is_file() else 0
-    return math.ceil(ALLOWED + EACH_MB * size / 1e6)
+    return math.ceil(options.seconds + options.seconds_of_megabyte * size / 1e6)
 
 
 def _limit_time(seconds: int) -> None:

@@ -9,11 +9,11 @@ from scipy.ndimage import distance_transform_edt, minimum_filter
 
 from fcm.contact.surface import Regions
 from fcm.plot.read import FloatArray
+from fcm.plot.style import LAYOUT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_SIZE = 7  # [point] of a name
 _LETTER, _HEIGHT = 0.068, 0.125  # [inch] width of a letter, height of a name, with the space around them
 
 
@@ -33,7 +33,7 @@ def name_regions(axes: Axes, found: Regions) -> None:
         place = _place(where, size)
         if place is not None:
             at = found.n0_bar[place[1]], found.b_bar[place[0]]
-            axes.text(*at, name, ha="center", va="center", fontsize=_SIZE)
+            axes.text(*at, name, ha="center", va="center", fontsize=LAYOUT.small_text)
 
 
 def _place(where: FloatArray, size: tuple[float, float]) -> tuple[int, int] | None:

@@ -7,21 +7,15 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from fcm.plot.colour_bar import MOST_NAMES, colour_bar
+from fcm.plot.colour_bar import colour_bar
 from fcm.plot.curve_names import label_at_peaks
-from fcm.plot.error_panel import (
-    HEIGHT,
-    SHARES,
-    draw_errors,
-    has_errors,
-    name_errors,
-)
+from fcm.plot.error_panel import SHARES, draw_errors, has_errors, name_errors
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, symbols, with_unit
 from fcm.plot.measured import draw_measured, name_measured
 from fcm.plot.points import DrawnPoints, draw_points, name_points
 from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, FloatArray, wide
-from fcm.plot.style import has_decades, house_style, logarithmic_axis, new_figure, sequence_colours
+from fcm.plot.style import LAYOUT, has_decades, house_style, logarithmic_axis, new_figure, sequence_colours
 from fcm.rotation import unit_of
 
 if TYPE_CHECKING:
@@ -29,16 +23,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
-_HEADROOM = 1.05  # at least, above the highest amplitude
 _WIDTH, _THIN = 1.1, 0.4  # [point] of a line; of one among very many
 LineStyle = Literal["-"] | tuple[float, tuple[float, float]]
 _LINE: LineStyle = "-"
 _DASHES: LineStyle = (0, (3.0, 1.6))
 _DOTS: LineStyle = (0, (1.0, 1.0))
-_DOUBTFUL = 0.2  # estimated error beyond which a curve is faded,
-_WIDE = 1e-2  # of its frequency: a stretch whose error is not known, as far as a fold may be moved
-_FADED = f"may err by more than {100 * _DOUBTFUL:g} %, or by an unknown amount"  # what is said of both,
-_ALPHA = 0.3  # and how much of it is left
+# what is said of both kinds of faded stretches
+_FADED = f"may err by more than {100 * LAYOUT.doubtful_error:g} %, or by an unknown amount"
 _NOT_STABLE = "unstable"  # what is dashed
 _UNTOLD = "stability unknown"  # what is dotted
 _HOLLOW = "a point, unstable or of unknown stability"  # what is a hollow dot
@@ -63,7 +54,7 @@ def draw_response(
     with house_style():
         figure, axes, below = _panels(errors and has_errors(curves))
         colours = sequence_colours(len(curves))
-        width = _WIDTH if len(curves) <= MOST_NAMES else _THIN
+        width = _WIDTH if len(curves) <= LAYOUT.bar_names else _THIN
         axes.set_prop_cycle(color=colours)
         lines = [_draw_curve(axes, curve, column, width) for curve in curves]
         if points is not None:
@@ -104,7 +95,7 @@ def _panels(errors: bool) -> tuple[Figure, Axes, Axes | None]:
     if not errors:
         figure = new_figure()
         return figure, figure.add_subplot(), None
-    figure = new_figure(height=HEIGHT)
+    figure = new_figure(height=LAYOUT.height_with_errors)
     axes, below = figure.subplots(2, sharex=True, height_ratios=SHARES)
     return figure, axes, below
 
@@ -126,10 +117,10 @@ def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, width: float) -> Lin
     solid, dotted = _split(told, np.zeros_like(unstable) if curve.untold is None else curve.untold)
     trusted, faded = _split(solid, doubtful(curve))
     (line,) = axes.plot(curve.frequency, trusted, linewidth=width)
-    others = [(faded, _LINE, _ALPHA)]
+    others = [(faded, _LINE, LAYOUT.doubtful_opacity)]
     for values, style in ((dashed, _DASHES), (dotted, _DOTS)):
         sure, unsure = _split(values, doubtful(curve))
-        others += [(sure, style, 1.0), (unsure, style, _ALPHA)]
+        others += [(sure, style, 1.0), (unsure, style, LAYOUT.doubtful_opacity)]
     for values, style, alpha in others:
         if np.isfinite(values).any():
             axes.plot(
@@ -160,7 +151,7 @@ def _notes(curves: list[DrawnCurve], column: int, colour: str, width: float) -> 
 
     notes = {}
     if any(doubtful(curve).any() for curve in curves):
-        notes[_FADED] = Line2D([], [], color=colour, linewidth=width, alpha=_ALPHA)
+        notes[_FADED] = Line2D([], [], color=colour, linewidth=width, alpha=LAYOUT.doubtful_opacity)
     if any(curve.stable is not None and (~curve.stable).any() for curve in curves):
         notes[_NOT_STABLE] = Line2D([], [], color=colour, linewidth=width, linestyle=_DASHES)
     if any(curve.untold is not None and curve.untold.any() for curve in curves):
@@ -186,12 +177,12 @@ def doubtful(curve: DrawnCurve) -> BoolArray:
     error = curve.truncation_error
     if error is None or not np.isfinite(error).any():
         return np.zeros(len(curve.frequency), np.bool_)
-    found: BoolArray = np.nan_to_num(error) > _DOUBTFUL
+    found: BoolArray = np.nan_to_num(error) > LAYOUT.doubtful_error
     unknown = np.isnan(error) & np.isfinite(curve.frequency)
     ends = np.flatnonzero(np.diff(np.concatenate(([False], unknown, [False]))))
     for first, end in ends.reshape(-1, 2).tolist():
         own = curve.frequency[first:end]
-        found[first:end] |= bool(np.ptp(own) > _WIDE * own.max())
+        found[first:end] |= bool(np.ptp(own) > LAYOUT.fold_width * own.max())
     return found
 
 
@@ -217,7 +208,7 @@ def _finish_axes(axes: Axes, response: DrawnResponse, column: int, log: bool) ->
     if log:
         logarithmic_axis(axes)
     else:  # a curve without ups and downs would be drawn on the frame
-        axes.set_ylim(0.0, max(axes.get_ylim()[1], _HEADROOM * axes.dataLim.y1))
+        axes.set_ylim(0.0, max(axes.get_ylim()[1], LAYOUT.headroom * axes.dataLim.y1))
 
 
 def _name_curves(
@@ -231,7 +222,7 @@ def _name_curves(
     """At the peaks if there is room for every name, otherwise in a legend beside the axes."""
     names = [_named(curve, units, names=i == 0) for i, curve in enumerate(curves)]
     lines = [(curve.frequency, curve.amplitude[:, column]) for curve in curves]
-    if len(curves) <= MOST_NAMES and label_at_peaks(figure, axes, lines, names):
+    if len(curves) <= LAYOUT.bar_names and label_at_peaks(figure, axes, lines, names):
         return
     if any(names):
         _legend(figure, curves, drawn, units)
@@ -240,7 +231,7 @@ def _name_curves(
 def _legend(figure: Figure, curves: list[DrawnCurve], lines: list[Line2D], units: Mapping[str, str]) -> None:
     """Beside the axes; several swept quantities are named once, above their values."""
     several = len(curves[0].parameters) > 1
-    if len(lines) > MOST_NAMES:
+    if len(lines) > LAYOUT.bar_names:
         names = [_named(curve, units, names=False) for curve in curves]
         colour_bar(figure, names, ", ".join(symbols(curves[0].parameters, units)))
         return

@@ -11,9 +11,10 @@ import numpy as np
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import staying
-from fcm.plot.read import LARGEST, FloatArray, floats, opened, swept_units, swept_values
+from fcm.plot.options import READ
+from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
-from fcm.plot.style import WIDTH, house_style, new_figure
+from fcm.plot.style import LAYOUT, house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,8 +25,6 @@ _NEEDED = (
     "peak_stable",
     "peak_kind", "dof",
 )  # fmt: skip
-_MOST = 20  # bars
-_NOTHING = 1e-3  # of the greatest: numbers that do less are not drawn
 _RISE, _FALL = "#2b6a99", "#c03020"
 _REMARKS = {"corner": "peak at a corner", "end of range": "peak at an end of the range"}
 
@@ -62,7 +61,7 @@ def read_sensitivity(path: Path) -> DrawnSensitivity:
                 slope * (value[:, None, :] / size[:, :, None])
                 for slope, size in ((height, peak), (frequency, at))
             ]
-        height, frequency = (np.where(np.abs(one) <= LARGEST, one, np.nan) for one in known)
+        height, frequency = (np.where(np.abs(one) <= READ.largest, one, np.nan) for one in known)
         return DrawnSensitivity(
             tuple(map(str, np.atleast_1d(variables["dof"][:]))),
             tuple(map(str, np.atleast_1d(variables["number"][:]))),
@@ -86,7 +85,7 @@ def draw_sensitivity(drawn: DrawnSensitivity, dof: str | None = None, curve: int
         raise PlotError(f"the sensitivities of {drawn.dofs[column]} on curve {curve} are not known")
     names = [drawn.numbers[i] for i in shown]
     with house_style():
-        figure = new_figure(WIDTH, 0.9 + 0.24 * len(names))
+        figure = new_figure(LAYOUT.width, 0.9 + 0.24 * len(names))
         left, right = figure.subplots(1, 2, sharey=True)
         _bars(left, height[shown], names, "of the peak")
         _bars(right, frequency[shown], names, "of its frequency")
@@ -99,7 +98,10 @@ def _greatest(height: FloatArray, frequency: FloatArray) -> np.ndarray:
     """The numbers that do most, the greatest first."""
     size = np.nan_to_num(np.maximum(np.abs(height), np.abs(frequency)))
     order = np.argsort(-np.nan_to_num(np.abs(height)), kind="stable")
-    return np.array([i for i in order if size[i] > _NOTHING * size.max(initial=0.0)][:_MOST], dtype=int)
+    return np.array(
+        [i for i in order if size[i] > LAYOUT.negligible_bar * size.max(initial=0.0)][: LAYOUT.bars],
+        dtype=int,
+    )
 
 
 def _bars(axes: Axes, values: FloatArray, names: list[str], title: str) -> None:

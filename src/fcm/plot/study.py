@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from fcm.plot.style import HEIGHT, WIDTH, house_style, new_figure, save
+from fcm.plot.style import LAYOUT, house_style, new_figure, save
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,14 +21,15 @@ def draw_study(rows: list[Row]) -> Figure:
     """The figure: a line for each layout and interpolation, rms strong and greatest error pale."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-    figure = new_figure(1.35 * WIDTH, 1.05 * HEIGHT)
+    figure = new_figure(1.35 * LAYOUT.width, 1.05 * LAYOUT.height)
     by_size, by_time = figure.subplots(1, 2, sharey=True)
     for layout, (marker, colour) in LINES.items():
         for interpolation, dash in DASHES.items():
             some = [row for row in rows if (row.layout, row.interpolation) == (layout, interpolation)]
             name = f"{layout}, {interpolation}"
-            _line(by_size, [row.bytes / 1e6 for row in some], some, dash, marker, colour, name)
-            _line(by_time, [row.us_of_group for row in some], some, dash, marker, colour, name)
+            look = {"linestyle": dash, "marker": marker, "color": colour, "label": name, "markersize": 4}
+            _line(by_size, [row.bytes / 1e6 for row in some], some, look)
+            _line(by_time, [row.us_of_group for row in some], some, look)
     by_time.axvline(rows[-1].us_of_group, color="black", linestyle=":", label="closed form, exact")
     by_size.set(xlabel="Size (MB)", ylabel="Absolute error: rms (strong), greatest (pale) (–)")
     by_time.set(xlabel="Time for ten points (µs)", xlim=(20.0, None))
@@ -41,11 +42,9 @@ def draw_study(rows: list[Row]) -> Figure:
     return figure
 
 
-def _line(
-    axes: Axes, at: list[float], rows: list[Row], dash: str, marker: str, colour: str, name: str
-) -> None:
-    axes.loglog(at, [row.rms for row in rows], dash, marker=marker, color=colour, markersize=4, label=name)
-    axes.loglog(at, [row.max for row in rows], dash, marker=marker, color=colour, markersize=4, alpha=0.3)
+def _line(axes: Axes, at: list[float], rows: list[Row], look: dict[str, Any]) -> None:
+    axes.loglog(at, [row.rms for row in rows], **look)
+    axes.loglog(at, [row.max for row in rows], **look | {"alpha": 0.3, "label": None})
 
 
 def write_study_figure(rows: list[Row], path: Path) -> None:

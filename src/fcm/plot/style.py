@@ -6,6 +6,7 @@ import logging
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,10 +18,78 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
-WIDTH = 5.5  # [inch] 140 mm, one and a half columns
-HEIGHT = 3.7  # [inch]
-DPI = 300
-_DECADE = 10.0  # curves whose heights span more are drawn on a logarithmic axis
+
+@dataclass(frozen=True)
+class Layout:
+    """Sizes of pictures, and how much is drawn in one."""
+
+    width: float = 5.5  # [inch] 140 mm, one and a half columns
+    height: float = 3.7  # [inch]
+    dpi: int = 300  # dots per inch of a picture of dots
+    decade: float = 10.0  # curves whose heights span more are drawn on a logarithmic axis
+    column: float = 3.35  # [inch] 85 mm, one column of a journal
+    height_with_errors: float = 4.9  # [inch] of a figure of a response with the panel of its errors
+    row_height: float = 2.7  # [inch] of a row of panels
+    pairs_height: float = 3.4  # [inch] of a row of panels with contacts
+    planar_height: float = 3.35  # [inch] of a row of planar loops
+    loop_alone: float = 1.25  # how much higher a loop alone is than one of a row
+    plane_alone: float = 1.4  # height of a picture of one panel, relative to that of a row of two
+    band_opacity: float = 0.28  # of a band, so that those of several curves are seen through one another
+    doubtful_opacity: float = 0.3  # of a stretch of a curve whose error is large
+    doubtful_error: float = 0.2  # estimated error beyond which a curve is faded
+    # of its frequency: a stretch whose error is not known, as far as a fold may be moved
+    fold_width: float = 1e-2
+    headroom: float = 1.05  # of an axis, at least, above the highest amplitude
+    campbell_top: float = 2.5  # times the range's end: so far up modes are shown
+    campbell_headroom: float = 1.08  # above the highest mode that is shown
+    campbell_harmonics: int = 5  # of an engine order that are marked, at most
+    campbell_orders: int = 6  # that have a line each, at most
+    campbell_bar: float = 0.018  # of the axis: width of the bar of an engine order
+    campbell_filled: float = 0.75  # of the distance of two diameters, by bars beside one another
+    campbell_labelled: float = 0.95  # of the axis: up to there the numbers of harmonics
+    halo: float = 2.0  # [point] of white around a mark that stands on lines
+    bar_names: int = 20  # of more lines than this, a colour bar names some
+    bar_ticks: int = 9  # of a colour bar, at most
+    name_leader: int = 10  # [point] a name this far from its peak has a thin line to it
+    name_margin: float = 2.0  # [pixel] around a name, at 100 to the inch
+    name_points: int = 12  # points between two of a curve at which a touch is looked for
+    mark_directions: int = 16  # of a text from its mark that are tried
+    mark_leader: float = 9.0  # [point] a text this far from its mark has a thin line to it
+    mark_leader_points: int = 12  # of that line, at which it may touch a text
+    mark_steep: float = 2.5  # of an offset: beyond, the middle of the text's side is towards the mark
+    tick: float = 3.5  # [point] length of the ticks inside the frame
+    error_bins: int = 120  # over the frequencies
+    least_error: float = 1e-30  # drawn in the place of 0, far below the panel
+    history_panels: int = 6  # one for each curve: more do not fit a page
+    history_cycles: int = 60  # drawn as a line; more would be a solid area
+    history_boundaries: int = 40  # between phases: of more the lines would be a solid area, too
+    letter: float = 0.026  # width of a letter of a label and of some space, relative to the axes
+    interface_room: float = 0.06  # around the interface, as part of its greater extent
+    panels: int = 6  # points of an interface, or contacts, in a picture
+    loop_columns: int = 4  # of loops beside one another
+    small_text: int = 7  # [point] texts within a picture
+    loop_room: float = 0.18  # beside a loop, relative to its extent
+    loop_named: int = 60  # transitions whose angles still find room beside them
+    loop_narrowest: float = 11.0  # [degree] a state shorter than this has no letter
+    planar_room: float = 0.56  # of the extent of a planar loop, to each side of the middle
+    planar_samples: int = 1440  # of a cycle of a planar loop
+    planar_instants: int = 4  # of a cycle at which the disc is drawn
+    peak_decades: float = 100.0  # positive swept values that span more are on a logarithmic axis
+    peak_lines: int = 12  # more combinations of the other swept values than this are a cloud of points
+    marked_points: int = 60  # values or points on a line that are marked; of more, none is or some are
+    point_edge: float = 0.7  # [point] of a marked point
+    wide_frequencies: float = 30.0  # ratio of frequencies from which their axis is logarithmic
+    bars: int = 20  # of sensitivities, at most
+    negligible_bar: float = 1e-3  # of the greatest: numbers that do less are not drawn
+    surface_ticks: int = 5  # intervals of an axis in space, at most
+    surface_levels: int = 12  # bands of filled contours, at most
+    exact_error: float = 1e-6  # where the exact motion is drawn, as it is what errors are measured against
+    package_error: float = 1e-12  # what is less is drawn here
+    table_error: float = 1e-300  # in the place of 0, which has no logarithm
+
+
+LAYOUT = Layout()
+
 COLUMN, TWO_COLUMNS = 85.0 / 25.4, 170.0 / 25.4  # [inch] widths of a journal
 
 STYLE: dict[Any, Any] = {
@@ -37,7 +106,7 @@ STYLE: dict[Any, Any] = {
     "lines.solid_capstyle": "round",
     "mathtext.fontset": "stix",
     "pdf.fonttype": 42,
-    "savefig.dpi": DPI,
+    "savefig.dpi": LAYOUT.dpi,
     "svg.fonttype": "path",
     "svg.hashsalt": "fcm",
     "xtick.direction": "in",
@@ -70,7 +139,7 @@ def house_style() -> Iterator[None]:
         yield
 
 
-def new_figure(width: float = WIDTH, height: float = HEIGHT) -> Figure:
+def new_figure(width: float = LAYOUT.width, height: float = LAYOUT.height) -> Figure:
     """A figure that needs no display; use within ``house_style()``."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -108,7 +177,7 @@ def plain_ticks(axis: Axis, widest: float) -> None:
 
 def has_decades(heights: Sequence[float]) -> bool:
     """Whether they differ so much that on a linear axis the lowest would lie on its foot."""
-    return bool(max(heights) > _DECADE * min(heights) > 0.0)
+    return bool(max(heights) > LAYOUT.decade * min(heights) > 0.0)
 
 
 def lacking(figure: Figure) -> str:
@@ -122,7 +191,7 @@ def lacking(figure: Figure) -> str:
     return "".join(one for one in found if not any(font.get_char_index(ord(one)) for font in fonts))
 
 
-def save(figure: Figure, path: Path, dpi: int = DPI) -> None:
+def save(figure: Figure, path: Path, dpi: int = LAYOUT.dpi) -> None:
     """Write the picture in the format of its ending: the same bytes for the same figure.
 
     Drawn in memory first: on a full disk, a PDF would end by what its compression says of itself.

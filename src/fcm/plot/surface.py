@@ -20,7 +20,7 @@ from fcm.plot.plane import (
     shared_range,
 )
 from fcm.plot.regions import draw_regions, name_regions
-from fcm.plot.style import house_style
+from fcm.plot.style import LAYOUT, house_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 
 _SPACE_HEIGHT, _FLAT_HEIGHT = 2.3, 2.5  # [inch] of a row of panels
 _VIEW = (24.0, -125.0)  # [degree] elevation and azimuth
-_TICKS = 5  # intervals of an axis in space, at most
-_LEVELS = 12  # bands of filled contours, at most
 
 
 def draw_surfaces(surfaces: Sequence[Surface]) -> Figure:
@@ -101,7 +99,7 @@ def _draw_in_space(axes: Any, drawn: Surface, span: tuple[float, float]) -> None
     axes.set_zlabel(MEANING[drawn.coefficient], labelpad=-5)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
         corner = "lower" if axis is axes.xaxis else None  # two numbers in one corner would touch
-        axis.set_major_locator(MaxNLocator(_TICKS, steps=[1, 2, 5, 10], prune=corner))
+        axis.set_major_locator(MaxNLocator(LAYOUT.surface_ticks, steps=[1, 2, 5, 10], prune=corner))
         axis.set_tick_params(pad=-1, labelsize=7)
     axes.view_init(*_VIEW)
     axes.set_box_aspect((1.2, 1.0, 0.75), zoom=0.9)
@@ -111,7 +109,7 @@ def _draw_bands(axes: Axes, drawn: Surface, span: tuple[float, float]) -> None:
     from matplotlib.ticker import MaxNLocator
 
     signed = drawn.coefficient == "F_b"
-    levels = np.array(MaxNLocator(_LEVELS, steps=[1, 2, 5, 10]).tick_values(*span))
+    levels = np.array(MaxNLocator(LAYOUT.surface_levels, steps=[1, 2, 5, 10]).tick_values(*span))
     step = levels[1] - levels[0]
     ticks = [level for level in levels if round(level / step) % 2 == 0]
     if signed:  # the band in the middle is white and holds 0

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fcm.plot.plane import boundary_legend, draw_boundaries, finish_plane, panel_titles, panels
-from fcm.plot.style import house_style
+from fcm.plot.style import LAYOUT, house_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from fcm.table.error_map import ErrorMap
 
 RANGE = (-9.0, -3.0)  # log10 of the error; the same in every picture, so that pictures can be compared
-_HEIGHT = 2.7  # [inch] of a row of panels
-_LEAST = 1e-300  # an error of 0 has a logarithm too
 _BELOW = "0.92"  # grey of what is below the range: exact
 _WORST: dict[str, Any] = {"marker": "o", "markersize": 7.0, "markerfacecolor": "none", "markeredgewidth": 1.3}
 
@@ -26,7 +24,7 @@ _WORST: dict[str, Any] = {"marker": "o", "markersize": 7.0, "markerfacecolor": "
 def draw_errors(maps: Sequence[ErrorMap], title: str = "") -> Figure:
     """A panel for each coefficient and phase; the greatest error of each is marked and in its title."""
     with house_style():
-        figure, axes = panels(len(maps), _HEIGHT)
+        figure, axes = panels(len(maps), LAYOUT.row_height)
         names = panel_titles([(one.coefficient, one.plane.phi) for one in maps])
         for one, drawn, name in zip(axes, maps, names, strict=True):
             colours = _draw_error(one, drawn)
@@ -45,7 +43,7 @@ def _draw_error(axes: Axes, drawn: ErrorMap) -> Any:
     from matplotlib.patheffects import withStroke
 
     colours = matplotlib.colormaps["YlOrRd"].with_extremes(under=_BELOW)
-    logarithm = np.log10(np.maximum(drawn.error, _LEAST))
+    logarithm = np.log10(np.maximum(drawn.error, LAYOUT.table_error))
     mesh = axes.pcolormesh(
         drawn.n0_bar, drawn.b_bar, logarithm, cmap=colours, vmin=RANGE[0], vmax=RANGE[1], rasterized=True
     )

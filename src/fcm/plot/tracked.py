@@ -14,15 +14,7 @@ from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label, staying, symbols, with_unit
 from fcm.plot.read import FloatArray, floats, opened
 from fcm.plot.reader_process import apart
-from fcm.plot.style import (
-    HEIGHT,
-    WIDTH,
-    has_decades,
-    house_style,
-    logarithmic_axis,
-    new_figure,
-    sequence_colours,
-)
+from fcm.plot.style import LAYOUT, has_decades, house_style, logarithmic_axis, new_figure, sequence_colours
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -117,7 +109,7 @@ def draw_tracked(drawn: DrawnTracking, dof: str | None = None, folds: bool = Fal
 def _draw_folds(drawn: DrawnTracking) -> Figure:
     tracks = [track for track in drawn.tracks if track.what == "fold"]
     with house_style():
-        figure = new_figure(WIDTH, HEIGHT)
+        figure = new_figure(LAYOUT.width, LAYOUT.height)
         axes = figure.subplots()
         for track in tracks:
             # an open curve ends at an end of the range: the window goes on beyond it
@@ -137,7 +129,7 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
     peaks = [one for one in drawn.tracks if one.what.startswith("peak of ")] or list(drawn.tracks)
     wanted = [one for one in peaks if dof is None or one.what == f"peak of {dof}"] or peaks
     with house_style():
-        figure = new_figure(WIDTH, 1.3 * HEIGHT)
+        figure = new_figure(LAYOUT.width, 1.3 * LAYOUT.height)
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
         names = list(dict.fromkeys(track.what for track in wanted))
         colours = dict(zip(names, sequence_colours(len(names)), strict=True))

@@ -1,0 +1,23 @@
+"""Plot: tolerances and limits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class ReadOptions:
+    """Limits of files that are read, and of messages about them."""
+
+    dofs_named: int = 12  # degrees of freedom in a message
+    contacts_named: int = 10  # contacts that a message lists
+    same_level: float = 1e-9  # relative: levels that are one
+    # times the damping at both ends: where the greatest is between them, it is more
+    higher: float = 1.0 + 1e-6
+    largest: float = 1e100  # no result is as large, in whatever units: such a number was not written as one
+    # [s] of processor time for a file; a damaged one may lead the library round in a circle
+    seconds: float = 20.0
+    seconds_of_megabyte: float = 1.0  # [s] more for each megabyte of the file
+
+
+READ = ReadOptions()
