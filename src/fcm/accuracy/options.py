@@ -130,6 +130,8 @@ class PairOptions:
 
 
 PAIR = PairOptions()
+# of harmonics that are given: the pair is for the errors alone, and nothing is traced again
+OF_GIVEN = PairOptions(part=2.0, seconds=8.0)
 # at single points, where many harmonics take little: as many as the partner of a partner has
 AT_POINTS = PairOptions(times=PAIR.times * PAIR.again, least=PAIR.least * PAIR.again, named=PAIR.again_named)
 

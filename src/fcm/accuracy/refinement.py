@@ -10,7 +10,7 @@ import numpy as np
 
 from fcm.accuracy.budget import Budget
 from fcm.accuracy.embedded_pair import Errors, errors_along, with_nearest
-from fcm.accuracy.options import PAIR, REFINEMENT, PairOptions, RefinementOptions
+from fcm.accuracy.options import OF_GIVEN, PAIR, REFINEMENT, PairOptions, RefinementOptions
 from fcm.accuracy.outline import Outline, near, outlined, with_more
 from fcm.accuracy.required_harmonics import needed, required_harmonics
 from fcm.branches.force_level import few_of, with_low_harmonics
@@ -141,9 +141,13 @@ def _after(before: Outline | None, system: System, progress: Progress | None = N
 
 
 def judged(
-    outline: Outline, accuracy: float, known: tuple[Errors, ...] = (), options: PairOptions = PAIR
+    outline: Outline, accuracy: float, known: tuple[Errors, ...] = (), options: PairOptions | None = None
 ) -> Accurate:
-    """A response with its errors, of which those of its first branches may be known."""
+    """A response with its errors, of which those of its first branches may be known.
+
+    Without an accuracy, which is infinite then, its harmonics are given.
+    """
+    options = options or (OF_GIVEN if np.isinf(accuracy) else PAIR)
     system, response, shown = outline.system, outline.traced, outline.shown
     paths = response.branches.paths
     rest = list(zip(paths, shown, strict=True))[len(known) :]
