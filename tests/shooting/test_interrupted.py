@@ -15,7 +15,8 @@ from fcm.response.groups import KINDS
 from fcm.response.orbit_curve import orbit_curve
 from fcm.results.orbits import Stuck
 from fcm.run.records import unpacked
-from fcm.shooting import orbit_record, problem, trace
+from fcm.shooting import orbit_record, trace
+from fcm.shooting.options import SHOOTING
 from fcm.shooting.period_doubling import Doubled
 
 from ..interrupted import interrupted_after, interrupted_beyond
@@ -196,8 +197,8 @@ def test_of_a_curve_whose_time_is_over_no_period_is_computed_again(monkeypatch):
         return orbit_curve(groups, *rest)
 
     monkeypatch.setattr(resumable_branches.Clock, "poll", poll)
-    monkeypatch.setattr(problem, "KEPT", 0)
     monkeypatch.setattr(exact_curve, "orbit_curve", made)
-    curve = curve_of(yang(5.0), limit=100.0)
+    forgetful = replace(SHOOTING, orbit=replace(SHOOTING.orbit, remembered=0))
+    curve = curve_of(yang(5.0), limit=100.0, shooting=forgetful)
     assert curve.reason.startswith("not finished in 100 s") and np.isfinite(curve.amplitude).sum() > 20
     assert curve.orbits.periods == before[0] > 100

@@ -96,7 +96,7 @@ def test_levels_have_equal_shares_of_the_time_and_what_others_leave(monkeypatch)
     """The first takes 60 of 110 s, the others 5 s each: it is begun, given up, and followed to its end."""
     scene, now, came = random_scene(3), [0.0], []
 
-    def at(scene, one, omega, known, poll):
+    def at(scene, one, omega, known, poll, options):
         begin, end = now[0], now[0] + (60.0 if omega == 1.0 else 5.0)
         while now[0] < end:
             now[0] += 0.5

@@ -19,10 +19,11 @@ from fcm.shooting.harmonic_balance_branches import states_across
 from fcm.shooting.harmonic_balance_state import balance_solutions
 from fcm.shooting.initial_orbits import first_point
 from fcm.shooting.linear_orbits import started_states
+from fcm.shooting.options import SHOOTING
 from fcm.shooting.orbit_record import Sample, sampled, settled
 from fcm.shooting.periodic import Orbit, Poll, shoot, unloaded
 from fcm.shooting.problem import OrbitProblem
-from fcm.shooting.steady_state import NEAR, Steady, steady
+from fcm.shooting.steady_state import Steady, steady
 from fcm.shooting.trace import shown
 from fcm.shooting.work_budget import Doubts
 from fcm.time_domain.errors import SimulationError
@@ -142,7 +143,7 @@ def _simulated(
 
 def _same(one: Sample, other: Sample) -> bool:
     """Whether two motions are one; of those that do not repeat, whether they are as large."""
-    return _as_large(one, other, NEAR if 0 in (one.repeats, other.repeats) else SAME)
+    return _as_large(one, other, SHOOTING.steady.near if 0 in (one.repeats, other.repeats) else SAME)
 
 
 def _as_large(one: Sample | Orbit, other: Sample, near: float) -> bool:

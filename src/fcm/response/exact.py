@@ -26,6 +26,7 @@ from fcm.response.stepped_sweep import STATES
 from fcm.results.at_rest import without_rounding
 from fcm.results.result import Response
 from fcm.run import Checkpoint, Factory, Progress, fingerprint
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.units import UNIT
 
 METHOD = "exact"
@@ -47,6 +48,7 @@ def trace_exact(
     tolerance: float | None = TOLERANCE,
     only: str | None = None,
     periods: int = 1,
+    shooting: ShootingOptions = SHOOTING,
 ) -> Response:
     """The curves of exact periodic solutions of a scene, in the layout of `fcm.response.trace`.
 
@@ -76,6 +78,8 @@ def trace_exact(
     periods : {1, 2, 4, 8}
         Follow also motions that repeat only after up to so many periods of the force, from where the period
         doubles; with `at` they are found by the sweeps, and this has no meaning.
+    shooting : ShootingOptions, optional
+        Tolerances and limits of the motions that are followed; with `at` the usual ones are taken.
 
     Raises
     ------
@@ -94,7 +98,7 @@ def trace_exact(
     refuse_own_laws(scene, "the exact motion")
     begin, frequencies = time.perf_counter(), _checked(scene, at)
     with checkpoint_of(keep, resume) as checkpoint:
-        work = ExactWork(frequencies, limit, only is not None, tolerance is None, periods)
+        work = ExactWork(frequencies, limit, only is not None, tolerance is None, periods, shooting)
         run = _Run(work, CurveSweep(jobs or os.cpu_count() or 1, checkpoint, place))
         response = run.response(scene, tolerance, progress)
         if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:

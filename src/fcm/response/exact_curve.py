@@ -24,6 +24,7 @@ from fcm.results.cause import Cause
 from fcm.results.result import INTERRUPTED, Curve
 from fcm.run import Interrupted, Report
 from fcm.scene.errors import counted
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.orbit_record import Sample
 from fcm.shooting.period_doubling import Doubled, doubled_paths
 from fcm.shooting.problem import OrbitProblem
@@ -46,6 +47,7 @@ class ExactWork:
     only_peaks: bool = False
     whole: bool = False  # nothing is to be left out
     periods: int = 1  # up to which motions are followed, from where the period doubles
+    shooting: ShootingOptions = SHOOTING
 
     def __call__(self, group: Group, report: Report) -> list[Curve]:
         return [self._curve(scene, report) for scene in group]
@@ -72,7 +74,7 @@ class ExactWork:
             return lost_curve(scene, f"{_cut_off(stop, limit)}the start{stiff}")
 
     def _in_time(self, scene: Scene, report: Report, clock: Clock, stiff: str) -> Curve:
-        followed = _Followed(report, clock, stiff, self.periods)
+        followed = _Followed(report, clock, stiff, self.periods, options=self.shooting)
         if self.only_peaks:
             return followed.peaks(scene)
         if self.whole or len(scene.contacts) < FEWEST:
@@ -90,6 +92,7 @@ class _Followed:
     periods: int
     before: list[tuple[OrbitProblem, Legs]] = field(default_factory=list)  # the last that were followed
     doubts: Doubts = field(default_factory=Doubts)  # of the balance that these began near
+    options: ShootingOptions = SHOOTING
 
     def lightly(self, scene: Scene) -> Curve:
         """The curve, followed without the contacts that keep their state all along it."""
@@ -147,7 +150,11 @@ class _Followed:
             If a contact that is held would not have kept its state.
         """
         legs = Legs(scene.frequency_range, self.report, self.clock.poll, _watched if scene.held else None)
-        problems, groups, cause = [OrbitProblem(scene)], list[OrbitBranches](), Cause.CALCULATION
+        problems, groups, cause = (
+            [OrbitProblem(scene, options=self.options)],
+            list[OrbitBranches](),
+            Cause.CALCULATION,
+        )
         try:
             for problem, found in self.before:
                 legs.take(Released(problem, problems[0]).legs(found.found(problem)))

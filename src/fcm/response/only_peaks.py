@@ -24,8 +24,9 @@ from fcm.results.result import Curve
 from fcm.run import Report
 from fcm.shooting.harmonic_balance_state import state_of
 from fcm.shooting.initial_orbits import near_balance
+from fcm.shooting.options import SHOOTING
 from fcm.shooting.orbit_record import Sample
-from fcm.shooting.peaks_and_folds import SAME, Guess, located
+from fcm.shooting.peaks_and_folds import Guess, located
 from fcm.shooting.periodic import Poll
 from fcm.shooting.problem import OrbitProblem
 from fcm.shooting.work_budget import Doubts
@@ -122,7 +123,7 @@ def _paired(folds: dict[float, Sample], points: list[Sample]) -> bool:
     """Whether each fold of the balance is one of the motion, and the motion has no other."""
     theirs = sorted(one.frequency for one in folds.values())
     own = sorted(one.frequency for one in points if one.mark & Mark.FOLD)
-    return len(theirs) == len(own) and np.allclose(theirs, own, rtol=SAME, atol=0.0)
+    return len(theirs) == len(own) and np.allclose(theirs, own, rtol=SHOOTING.peaks.same, atol=0.0)
 
 
 def _guesses(scene: Scene, curve: Curve) -> Iterator[Guess]:

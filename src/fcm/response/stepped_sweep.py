@@ -24,7 +24,7 @@ from fcm.shooting.initial_orbits import first_point, solution_at
 from fcm.shooting.orbit_record import Sample, sampled, settled
 from fcm.shooting.periodic import Poll, shoot, without_end
 from fcm.shooting.problem import OrbitProblem
-from fcm.shooting.steady_state import FREE_CYCLES, Steady, steady
+from fcm.shooting.steady_state import Steady, steady
 from fcm.shooting.trace import shown
 from fcm.time_domain.cycle_measures import Measure
 from fcm.time_domain.errors import CycleError, SimulationError
@@ -118,7 +118,7 @@ class Visitor:
             return refused
         first = list(self.restless)[:MOST_NAMED]
         more = f" and {len(self.restless) - MOST_NAMED} more" if len(self.restless) > MOST_NAMED else ""
-        cycles = sum(FREE_CYCLES)
+        cycles = sum(self.problem.options.steady.cycles)
         restless = f"at {', '.join(first)}{more} the motion does not become steady within {cycles} cycles"
         return f"{restless}; {refused}" if refused else restless
 

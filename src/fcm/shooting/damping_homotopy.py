@@ -10,19 +10,16 @@ import numpy as np
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.fixed_frequency import held
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.problem import OrbitProblem
 
-DAMPED = 0.03  # ratio of the least damped mode from which motions are found from afar
-SHORTEST = 0.999  # factor of the damping from step to step, nearer to which it leads no further
-FIRST, LONGEST = 0.5, 0.2  # factors of the first step, of the longest
 
-
-def more_damped(scene: Scene) -> tuple[Scene, float] | None:
+def more_damped(scene: Scene, options: ShootingOptions = SHOOTING) -> tuple[Scene, float] | None:
     """The scene with all damping larger, and by what factor; None if it has enough, or none at all."""
     least = float(scene.modal.damping.min())
-    if not 0.0 < least < DAMPED:
+    if not 0.0 < least < options.damping.ratio:
         return None
-    return damped(scene, DAMPED / least), DAMPED / least
+    return damped(scene, options.damping.ratio / least), options.damping.ratio / least
 
 
 def damped(scene: Scene, factor: float) -> Scene:
@@ -30,17 +27,21 @@ def damped(scene: Scene, factor: float) -> Scene:
     return replace(scene, modal=replace(scene.modal, damping=scene.modal.damping * factor))
 
 
-def less_damped(scene: Scene, z: FloatArray, factor: float) -> FloatArray | None:
+def less_damped(
+    scene: Scene, z: FloatArray, factor: float, options: ShootingOptions = SHOOTING
+) -> FloatArray | None:
     """The motion of a scene from z, one with damping larger by a factor; None where the way ends before."""
     points = [(np.log(factor), z)]
-    ratio = FIRST
-    while factor > 1.0 and ratio < SHORTEST:
+    ratio = options.damping.first
+    while factor > 1.0 and ratio < options.damping.smallest:
         new = max(1.0, factor * ratio)
-        found = next(_held(OrbitProblem(damped(scene, new)), _guesses(points, np.log(new))), None)
+        found = next(
+            _held(OrbitProblem(damped(scene, new), options=options), _guesses(points, np.log(new))), None
+        )
         if found is None:
             ratio = np.sqrt(ratio)
             continue
-        factor, ratio = new, max(ratio**1.5, LONGEST)
+        factor, ratio = new, max(ratio**1.5, options.damping.largest)
         points = [points[-1], (np.log(new), found)]
     return points[-1][1] if factor == 1.0 else None
 

@@ -11,8 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,8 +21,8 @@ from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.fixed_frequency import held
 from fcm.shooting.force_level_problem import AtLevel, LevelProblem
-from fcm.shooting.harmonic_balance_state import FEW
 from fcm.shooting.linear_orbits import about_rest
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic import Poll, within_unit_circle
 from fcm.shooting.work_budget import Bounded
 
@@ -32,10 +31,6 @@ if TYPE_CHECKING:
     from fcm.harmonic_balance.system import System
 
 Known = Callable[[float], Sequence[FloatArray]]
-
-STEP = 0.2  # longest, along the curve of a level,
-SHORTER = 0.25  # and of that, where the curve has come back
-BELOW = 0.5  # part of the level up to which contacts are linear, down to which others are followed
 
 
 @dataclass(frozen=True)
@@ -67,78 +62,83 @@ def raised(scene: Scene, known: Known, bounded: Bounded) -> Iterator[Raised]:
     while waiting:
         (omega, before), *waiting = waiting
         if (share := bounded.share(1 + len(waiting))) > before:
-            found = raised_at(scene, one, omega, known(omega), bounded.poll)
+            found = raised_at(scene, one, omega, known(omega), bounded.poll, bounded.options)
             waiting += [(omega, share)] * found.over
             yield found
 
 
-def raised_at(scene: Scene, one: System, omega: float, known: Sequence[FloatArray], poll: Poll) -> Raised:
+def raised_at(
+    scene: Scene,
+    one: System,
+    omega: float,
+    known: Sequence[FloatArray],
+    poll: Poll,
+    options: ShootingOptions = SHOOTING,
+) -> Raised:
     """The same at one frequency; one is the balance of one harmonic. What was found is there, too, where look
     raises `TooLongError`."""
     from fcm.harmonic_balance.work_budget import TooLongError
 
     found = list[FloatArray]()
     try:
-        complete = _followed(scene, one, omega, known, poll, found)
+        complete = _followed(LevelProblem(scene, omega, options), one, known, poll, found)
     except TooLongError:
         return Raised(omega, tuple(found), False, over=True)
     return Raised(omega, tuple(found), complete)
 
 
 def _followed(
-    scene: Scene, one: System, omega: float, known: Sequence[FloatArray], poll: Poll, found: list[FloatArray]
+    problem: LevelProblem, one: System, known: Sequence[FloatArray], poll: Poll, found: list[FloatArray]
 ) -> bool:
     """Whether the level was followed to its end; what it leads to is added to what is found."""
     from fcm.branches.force_level import BEFORE, WEAK
     from fcm.branches.level_turns import turns_of
     from fcm.branches.linear_limits import least
 
+    omega, options = problem.omega, problem.options
+
     def passes(path: Path) -> None:
         found.extend(np.append(z[:-1], omega) for z in path.z[path.parameter == 1.0])
 
-    linear, top = BEFORE * least(one, omega), _top(one, omega)
+    linear, top = BEFORE * least(one, omega), _top(one, omega, options)
     if linear >= top:
         return True
-    linear, problem = min(linear, 1.0), LevelProblem(scene, omega)
-    span, along = (BELOW * max(linear, WEAK[0]), top), partial(_along, poll, passes)
+    linear, along = min(linear, 1.0), _Along(poll, passes)
+    span = options.level.linear * max(linear, WEAK[0]), top
     rest = _from_rest(problem, linear, span, along)
     if rest is None:
         return False
     there = [np.append(z[:-1], 1.0) for z in known]
-    curves = all_branches(lambda: problem, there, span, FollowOptions(STEP), None, along, rest)
-    found.extend(_beside(scene, [turn for path in curves.paths for turn in turns_of(path, omega)], poll))
+    curves = all_branches(lambda: problem, there, span, FollowOptions(options.level.step), None, along, rest)
+    turns = [turn for path in curves.paths for turn in turns_of(path, omega)]
+    found.extend(_at_turns(problem.scene, turns, poll, options))
     return curves.status is Status.COMPLETE
 
 
-def _along(
-    poll: Poll,
-    passes: Callable[[Path], None],
-    problem: LevelProblem,
-    start: FloatArray,
-    span: tuple[float, float],
-    wanted: Events,
-    options: FollowOptions,
-    *,
-    forward: bool,
-    progress: object = None,
-) -> Path:
+@dataclass(frozen=True)
+class _Along:
     """As `follow`; passes is told of the path also where poll raises `TooLongError`."""
-    from fcm.harmonic_balance.work_budget import TooLongError
 
-    checkpoints = list[Checkpoint]()
+    poll: Poll
+    passes: Callable[[Path], None]
 
-    def watch(checkpoint: Checkpoint) -> None:
-        checkpoints[:] = [checkpoint]
-        poll()
+    def __call__(self, *given: Any, **options: Any) -> Path:
+        from fcm.harmonic_balance.work_budget import TooLongError
 
-    try:
-        path = follow(problem, start, span, wanted, options, forward=forward, watch=watch)
-    except TooLongError:
-        for checkpoint in checkpoints:
-            passes(checkpoint.path(Status.INTERRUPTED))
-        raise
-    passes(path)
-    return path
+        checkpoints = list[Checkpoint]()
+
+        def watch(checkpoint: Checkpoint) -> None:
+            checkpoints[:] = [checkpoint]
+            self.poll()
+
+        try:
+            path = follow(*given, **options, watch=watch)
+        except TooLongError:
+            for checkpoint in checkpoints:
+                self.passes(checkpoint.path(Status.INTERRUPTED))
+            raise
+        self.passes(path)
+        return path
 
 
 def _from_rest(
@@ -148,7 +148,8 @@ def _from_rest(
 
     One that stalls is as far as it goes: from there on it would not be followed by other steps either.
     """
-    for step in (STEP, SHORTER * STEP):
+    options = problem.options.level
+    for step in (options.step, options.shorter * options.step):
         for z in _begun(problem, linear):
             path = along(problem, z, (0.0, span[1]), Events((1.0,)), FollowOptions(step), forward=True)
             whole = path.status is Status.COMPLETE and path.parameter[-1] == span[1]
@@ -157,18 +158,20 @@ def _from_rest(
     return None
 
 
-def _beside(scene: Scene, turns: Sequence[Turn], poll: Poll) -> Iterator[FloatArray]:
+def _at_turns(
+    scene: Scene, turns: Sequence[Turn], poll: Poll, options: ShootingOptions = SHOOTING
+) -> Iterator[FloatArray]:
     """Stable motions (unknown + 1,) beside turns below the level 1, at frequencies within the range."""
     from fcm.branches.level_turns import beside, came
 
-    problem, (low, high) = AtLevel(scene), scene.frequency_range
+    problem, (low, high) = AtLevel(scene, options=options), scene.frequency_range
     newton = Newton(problem)
     for turn in turns:
         poll()
         if turn.may_come and came(problem, newton, turn):
             for z in (one for one in beside(newton) if low <= one[-1] <= high):
                 shot = problem.shot(z)
-                if shot is not None and within_unit_circle(shot.multipliers):
+                if shot is not None and within_unit_circle(shot.multipliers, options):
                     yield z
 
 
@@ -185,10 +188,10 @@ def _begun(problem: LevelProblem, linear: float) -> Iterator[FloatArray]:
                 break
 
 
-def _top(one: System, omega: float) -> float:
+def _top(one: System, omega: float, options: ShootingOptions = SHOOTING) -> float:
     """Up to which level the curve is followed: as that of a few harmonics comes back."""
     from fcm.branches.force_level import FURTHER, NEAR, solutions
     from fcm.branches.linear_limits import highest
 
-    reach = solutions(one.with_harmonics(FEW), omega).reach
+    reach = solutions(one.with_harmonics(options.balance.few), omega).reach
     return min(highest(one, omega), reach if np.isfinite(reach) else FURTHER * NEAR)

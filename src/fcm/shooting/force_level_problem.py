@@ -7,18 +7,17 @@ with it, also at those that no sweep of the frequency from an end of the range c
 from __future__ import annotations
 
 from fcm.model.scene import FloatArray, Scene
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.problem import OrbitProblem
 from fcm.shooting.residual import Shot
 from fcm.time_domain.errors import SimulationError
-
-LEAST = 0.1  # levels are measured by themselves, and below this by this
 
 
 class LevelProblem(OrbitProblem):
     """The closure of one period at omega [rad/s], z = (q, q', f, level) at the forces' angle 0."""
 
-    def __init__(self, scene: Scene, omega: float) -> None:
-        super().__init__(scene)
+    def __init__(self, scene: Scene, omega: float, options: ShootingOptions = SHOOTING) -> None:
+        super().__init__(scene, options=options)
         self.omega = omega
 
     def _made(self, z: FloatArray) -> Shot | None:
@@ -31,7 +30,7 @@ class LevelProblem(OrbitProblem):
     def measure(self, z: FloatArray) -> int:
         """See `OrbitProblem`."""
         super().measure(z)
-        self._scale[-1] = max(abs(float(z[-1])), LEAST)
+        self._scale[-1] = max(abs(float(z[-1])), self.options.level.least)
         return 0
 
     def report(self, z: FloatArray, direction: FloatArray) -> int:

@@ -14,7 +14,8 @@ from fcm.continuation.all_branches import SAME
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.fixed_frequency import held
-from fcm.shooting.harmonic_balance_state import MANY, computed_state
+from fcm.shooting.harmonic_balance_state import computed_state
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic import Poll
 from fcm.shooting.problem import OrbitProblem
 from fcm.time_domain.state import State
@@ -23,10 +24,6 @@ if TYPE_CHECKING:
     from fcm.accuracy.outline import Outline
     from fcm.harmonic_balance.system import System
 
-ACCURACY = 1e-2  # of the balance that exact motions begin near
-TOGETHER = 8  # points, within which one top speaks for those of other degrees of freedom
-AROUND = (1, 2, 3, 4, 6, 8, 11, 16, 23, 32)  # points from a top, where one may lead to the same motion
-SOME = (1, 2, 3, 4, 5)  # harmonics: with three a closed branch may be as far off as another one is
 Place = tuple[float, State]  # frequency [rad/s], and a guess there
 
 
@@ -60,21 +57,25 @@ def is_stable(found: Outline, z: FloatArray) -> bool:
     return bool(of.verdict(z, enough=(1.0,)).stable == 1.0)
 
 
-def states_along(scene: Scene, found: Outline) -> Iterator[tuple[float, FloatArray, Iterator[Place]]]:
+def states_along(
+    scene: Scene, found: Outline, options: ShootingOptions = SHOOTING
+) -> Iterator[tuple[float, FloatArray, Iterator[Place]]]:
     """The height of each end and top of a balance's branches, itself, and guesses beside it, the nearest
     first."""
     for path, shown in zip(found.traced.branches.paths, found.shown, strict=True):
-        beside = [(top, _around(even, top)) for top, even in _tops(path, shown.amplitude)]
+        beside = [(top, _around(even, top, options)) for top, even in _tops(path, shown.amplitude, options)]
         for top, points in [(0, iter([0])), (-1, iter([-1])), *beside]:
             guesses = (path.z[i] for i in points)
             yield (
                 float(shown.amplitude[top].max()),
                 path.z[top],
-                _places(scene, found.system.harmonics, guesses),
+                _places(scene, found.system.harmonics, guesses, options),
             )
 
 
-def _tops(path: Path, amplitude: FloatArray) -> Iterator[tuple[int, npt.NDArray[np.bool_]]]:
+def _tops(
+    path: Path, amplitude: FloatArray, options: ShootingOptions = SHOOTING
+) -> Iterator[tuple[int, npt.NDArray[np.bool_]]]:
     """Where degrees of freedom are highest, of points inside the range with an even number of real
     multipliers above 1; and which points (point,) have that.
     """
@@ -84,25 +85,32 @@ def _tops(path: Path, amplitude: FloatArray) -> Iterator[tuple[int, npt.NDArray[
     if not places.size:
         return
     highest = np.unique(places[amplitude[places].argmax(axis=0)])
-    apart = np.append(True, np.diff(highest) > TOGETHER)
+    apart = np.append(True, np.diff(highest) > options.balance.together)
     for top in highest[apart].tolist():
         yield top, even
 
 
-def _around(even: npt.NDArray[np.bool_], top: int) -> Iterator[int]:
+def _around(even: npt.NDArray[np.bool_], top: int, options: ShootingOptions = SHOOTING) -> Iterator[int]:
     """A top and the points around it that no fold is between, the nearest first."""
-    for i in (top, *(top + way * step for step in AROUND for way in (-1, 1))):
+    for i in (top, *(top + way * step for step in options.balance.around for way in (-1, 1))):
         if 0 <= i < len(even) and even[min(i, top) : max(i, top) + 1].all():
             yield i
 
 
-def _places(scene: Scene, harmonics: tuple[int, ...], points: Iterator[FloatArray]) -> Iterator[Place]:
+def _places(
+    scene: Scene,
+    harmonics: tuple[int, ...],
+    points: Iterator[FloatArray],
+    options: ShootingOptions = SHOOTING,
+) -> Iterator[Place]:
     """Guesses from points of a balance."""
     for z in points:
-        yield float(z[-1]), computed_state(scene, harmonics, z)
+        yield float(z[-1]), computed_state(scene, harmonics, z, options)
 
 
-def converged_balance(scene: Scene, apart: bool, poll: Poll) -> Iterator[Outline]:
+def converged_balance(
+    scene: Scene, apart: bool, poll: Poll, options: ShootingOptions = SHOOTING
+) -> Iterator[Outline]:
     """The response of the balance with every branch, whose ends and tops lead to those of the exact motion.
 
     Of many contacts, for which that has one harmonic, only where branches are known to be apart.
@@ -110,13 +118,15 @@ def converged_balance(scene: Scene, apart: bool, poll: Poll) -> Iterator[Outline
     from fcm.harmonic_balance.static_equilibrium import RestError
 
     whole = scene.whole()
-    if not (whole.modal.frequency.all() and whole.contacts) or (len(whole.contacts) >= MANY and not apart):
+    if not (whole.modal.frequency.all() and whole.contacts) or (
+        len(whole.contacts) >= options.balance.contacts and not apart
+    ):
         return
     with suppress(RestError):
-        yield every_balance(whole, poll)
+        yield every_balance(whole, poll, options)
 
 
-def every_balance(whole: Scene, poll: Poll) -> Outline:
+def every_balance(whole: Scene, poll: Poll, options: ShootingOptions = SHOOTING) -> Outline:
     """The response of the balance with as many harmonics as it takes, and every branch; of many contacts
     with one harmonic."""
     from fcm.accuracy.outline import Outline, outlined
@@ -124,16 +134,18 @@ def every_balance(whole: Scene, poll: Poll) -> Outline:
     from fcm.branches.search import with_branching, with_isolas
     from fcm.harmonic_balance.reported_quantities import reported
 
-    if len(whole.contacts) >= MANY:
+    if len(whole.contacts) >= options.balance.contacts:
         return outlined(_single(whole, poll))
-    found = accurate(_single(whole, poll), ACCURACY)
+    found = accurate(_single(whole, poll), options.balance.error)
     system = found.system
     traced = with_branching(system, with_isolas(system, found.traced))
     shown = (reported(system, path) for path in traced.branches.paths[len(found.shown) :])
     return Outline(system, traced, (*found.shown, *shown), found.seconds)
 
 
-def states_across(scene: Scene, frequencies: Sequence[float], poll: Poll) -> dict[float, list[State]]:
+def states_across(
+    scene: Scene, frequencies: Sequence[float], poll: Poll, options: ShootingOptions = SHOOTING
+) -> dict[float, list[State]]:
     """Guesses where branches of the balance pass frequencies [rad/s] that are within the scene's range."""
     from fcm.harmonic_balance.static_equilibrium import RestError
 
@@ -142,12 +154,13 @@ def states_across(scene: Scene, frequencies: Sequence[float], poll: Poll) -> dic
     if not (inside and whole.contacts and whole.modal.frequency.all()):
         return {}
     try:
-        found = _outlined(_single(whole, poll))
+        found = _outlined(_single(whole, poll), options)
     except RestError:
         return {}
     harmonics, paths = found.system.harmonics, found.traced.branches.paths
     return {
-        omega: [computed_state(scene, harmonics, z) for z in _crossings(paths, omega)] for omega in inside
+        omega: [computed_state(scene, harmonics, z, options) for z in _crossings(paths, omega)]
+        for omega in inside
     }
 
 
@@ -170,8 +183,12 @@ def _single(whole: Scene, poll: Poll) -> System:
     return one
 
 
-def _outlined(one: System) -> Outline:
+def _outlined(one: System, options: ShootingOptions = SHOOTING) -> Outline:
     """The branches of `SOME` harmonics, or of one where there are many contacts."""
     from fcm.accuracy.outline import outlined
 
-    return outlined(one if len(one.scene.contacts) >= MANY else one.with_harmonics(SOME))
+    return outlined(
+        one
+        if len(one.scene.contacts) >= options.balance.contacts
+        else one.with_harmonics(options.balance.harmonics)
+    )

@@ -12,13 +12,11 @@ from fcm.contact import hysteresis_loop, periodic_forces
 from fcm.contact.closed_form import ClosedForm
 from fcm.harmonic_balance.single_harmonic_contact import SingleHarmonic
 from fcm.model.scene import Contact, FloatArray, Scene
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.time_domain.equations import has_friction
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.state import State
 from fcm.time_domain.system import System
-
-FEW, MANY = (1, 2, 3), 5  # harmonics of a guess; contacts from which on it has one
-FURTHER = 3  # times the highest of them, to which the forces of a guess reach
 
 
 def harmonic_state(
@@ -77,16 +75,24 @@ def harmonic_state(
     return _modal(system, wave, steady, friction)
 
 
-def balanced_states(scene: Scene, frequency: float, poll: Callable[[], None] | None = None) -> list[State]:
+def balanced_states(
+    scene: Scene,
+    frequency: float,
+    poll: Callable[[], None] | None = None,
+    options: ShootingOptions = SHOOTING,
+) -> list[State]:
     """Guesses from the scene's own harmonic balance at a frequency [rad/s]; none if it has none there.
 
     poll is called now and then.
     """
-    return balance_solutions(scene, frequency, poll)[0]
+    return balance_solutions(scene, frequency, poll, options)[0]
 
 
 def balance_solutions(
-    scene: Scene, frequency: float, poll: Callable[[], None] | None = None
+    scene: Scene,
+    frequency: float,
+    poll: Callable[[], None] | None = None,
+    options: ShootingOptions = SHOOTING,
 ) -> tuple[list[State], bool]:
     """The same, and whether the level of the forces was followed to its end, so that there are no more."""
     whole = scene.whole()
@@ -95,25 +101,31 @@ def balance_solutions(
     from fcm.branches.force_level import solutions
     from fcm.harmonic_balance.system import System as Balanced
 
-    balanced = Balanced(whole, FEW if len(whole.contacts) < MANY else (1,))
+    balanced = Balanced(
+        whole, options.balance.few if len(whole.contacts) < options.balance.contacts else (1,)
+    )
     balanced.work.poll = poll or balanced.work.poll
     found = solutions(balanced, frequency)
-    states = [computed_state(scene, balanced.harmonics, z) for z in found.solutions]
+    states = [computed_state(scene, balanced.harmonics, z, options) for z in found.solutions]
     return states, found.complete
 
 
-def computed_state(scene: Scene, harmonics: tuple[int, ...], z: FloatArray) -> State:
+def computed_state(
+    scene: Scene, harmonics: tuple[int, ...], z: FloatArray, options: ShootingOptions = SHOOTING
+) -> State:
     """The same as `state_of` of the whole scene's balance, without the friction of contacts that are held."""
-    state = state_of(scene.whole(), harmonics, z)
+    state = state_of(scene.whole(), harmonics, z, options)
     return replace(state, friction=state.friction[scene.computed()])
 
 
-def state_of(scene: Scene, harmonics: tuple[int, ...], z: FloatArray) -> State:
+def state_of(
+    scene: Scene, harmonics: tuple[int, ...], z: FloatArray, options: ShootingOptions = SHOOTING
+) -> State:
     """The state at the forces' angle 0 of a point z of the balance (`fcm.harmonic_balance.residual`).
 
     The contacts' forces on the balanced motion have more harmonics than that, and move the modes by them.
     """
-    system, highest = System(scene, float(z[-1])), FURTHER * max(harmonics)
+    system, highest = System(scene, float(z[-1])), options.balance.forces * max(harmonics)
     driven = list(system.harmonics)
     width = 2 + 4 * len(harmonics)
     wave = np.zeros((highest + 1, system.modes), dtype=np.complex128)  # modal forces

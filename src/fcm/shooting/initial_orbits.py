@@ -16,6 +16,7 @@ from fcm.shooting.fixed_frequency import held
 from fcm.shooting.harmonic_balance_branches import Place, is_stable, states_along
 from fcm.shooting.harmonic_balance_state import balanced_states, computed_state
 from fcm.shooting.linear_orbits import started_states
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.partly_sticking_orbits import partly_stuck_as_started
 from fcm.shooting.periodic import Orbit, Poll, approached, shoot, without_end
 from fcm.shooting.problem import OrbitProblem
@@ -27,13 +28,6 @@ from fcm.time_domain.system import System
 
 if TYPE_CHECKING:
     from fcm.accuracy.outline import Outline
-
-TRIED = 16  # guesses around a top of the balance, of whose motions the highest is followed,
-AS_HIGH = 0.9  # of the top's height: or the first that is so high, as the balance of one harmonic may be off
-PLACES = 24  # between which the range is looked at with more harmonics, where nothing else was found
-FEWER = 12  # between which it is looked at with more damping, where nothing was found so either
-ONE, MORE = (1,), tuple(range(1, 8))  # harmonics that are looked for, and then corrected
-DISTINCT = 1e-6  # solutions further apart than this, relative to their size, are different
 
 
 class Starts(NamedTuple):
@@ -58,16 +52,22 @@ def starts(problem: OrbitProblem, poll: Poll = without_end) -> Starts:
     scene, found, missed = problem.scene, list[FloatArray](), dict[float, str]()
     inside, apart = inner_resonances(scene), False
     for omega in (*scene.frequency_range, *inside):
-        guesses, before = balanced_states(scene, omega, poll), len(found)
+        guesses, before = balanced_states(scene, omega, poll, problem.options), len(found)
         orbits = [
-            *_shot(scene, omega, guesses, poll),
-            *_shot(scene, omega, started_states(scene, omega), poll),
+            *_shot(scene, omega, guesses, poll, problem.options),
+            *_shot(scene, omega, started_states(scene, omega, problem.options), poll, problem.options),
         ]
         if scene.start is not None:
-            orbits += _shot(scene, omega, partly_stuck_as_started(scene, omega, poll), poll)
+            orbits += _shot(
+                scene,
+                omega,
+                partly_stuck_as_started(scene, omega, poll, problem.options),
+                poll,
+                problem.options,
+            )
         try:
             if omega not in inside and not any(orbit.stable for orbit in orbits):
-                orbits += _from_rest(scene, omega, bool(orbits), poll)
+                orbits += _from_rest(scene, omega, bool(orbits), poll, problem.options)
         except SimulationError as error:
             missed[omega] = str(error)
         for orbit in orbits:
@@ -97,11 +97,11 @@ def along_balance(problem: OrbitProblem, found: Outline, poll: Poll = without_en
     poll is called now and then.
     """
     points, alike, lacking = list[FloatArray](), True, list[tuple[float, float]]()
-    for height, top, places in states_along(problem.scene, found):
+    for height, top, places in states_along(problem.scene, found, problem.options):
         there, high = list[tuple[float, FloatArray]](), False
-        for place in islice(places, TRIED):
+        for place in islice(places, problem.options.start.guesses):
             there += [(height_of(problem, z), z) for z in _points(problem, place, poll)]
-            high = bool(there) and there[-1][0] >= AS_HIGH * height
+            high = bool(there) and there[-1][0] >= problem.options.start.height * height
             if high:
                 break
         if there:  # some may lead to a lower branch
@@ -121,7 +121,7 @@ def height_of(problem: OrbitProblem, z: FloatArray) -> float:
 def _points(problem: OrbitProblem, place: Place, poll: Poll) -> Iterator[FloatArray]:
     """The motion near a guess."""
     omega, guess = place
-    for orbit in _shot(problem.scene, omega, [guess], poll):
+    for orbit in _shot(problem.scene, omega, [guess], poll, problem.options):
         with suppress(SimulationError):
             yield first_point(problem, orbit, poll)
 
@@ -129,8 +129,10 @@ def _points(problem: OrbitProblem, place: Place, poll: Poll) -> Iterator[FloatAr
 def _anywhere(problem: OrbitProblem, poll: Poll) -> list[FloatArray]:
     """The first point that the balance leads to, at frequencies across the range."""
     scene = problem.scene
-    for omega in np.linspace(*scene.frequency_range, PLACES + 1)[::-1].tolist():
-        for orbit in _shot(scene, omega, _corrected_states(scene, omega, poll), poll):
+    for omega in np.linspace(*scene.frequency_range, problem.options.start.places + 1)[::-1].tolist():
+        for orbit in _shot(
+            scene, omega, _corrected_states(scene, omega, poll, problem.options), poll, problem.options
+        ):
             try:
                 return [first_point(problem, orbit, poll)]
             except SimulationError:
@@ -141,20 +143,27 @@ def _anywhere(problem: OrbitProblem, poll: Poll) -> list[FloatArray]:
 def _by_damping(problem: OrbitProblem, poll: Poll) -> Iterator[list[FloatArray]]:
     """The points that motions with more damping lead to, at frequencies across the range."""
     scene = problem.scene
-    more = more_damped(scene)
+    more = more_damped(scene, problem.options)
     if more is None:
         return
     easier, factor = more
-    for omega in np.linspace(*scene.frequency_range, FEWER + 1).tolist():
-        for orbit in near_balance(easier, omega, poll):
+    for omega in np.linspace(*scene.frequency_range, problem.options.start.damped_places + 1).tolist():
+        for orbit in near_balance(easier, omega, poll, problem.options):
             poll()
             with suppress(SimulationError):
-                z = less_damped(scene, first_point(OrbitProblem(easier), orbit, poll), factor)
+                z = less_damped(
+                    scene,
+                    first_point(OrbitProblem(easier, options=problem.options), orbit, poll),
+                    factor,
+                    problem.options,
+                )
                 if z is not None:
                     yield [z]
 
 
-def _corrected_states(scene: Scene, omega: float, poll: Poll) -> Iterator[State]:
+def _corrected_states(
+    scene: Scene, omega: float, poll: Poll, options: ShootingOptions = SHOOTING
+) -> Iterator[State]:
     """Guesses from the balance of one harmonic, with more of them where Newton's method leads to that.
 
     To follow the level of the forces with as many takes a hundred times as long.
@@ -165,15 +174,19 @@ def _corrected_states(scene: Scene, omega: float, poll: Poll) -> Iterator[State]
     from fcm.branches.force_level import solutions
     from fcm.harmonic_balance.system import System as Balanced
 
-    one, more = Balanced(whole, ONE), Balanced(whole, MORE)
+    one, more = Balanced(whole, options.start.harmonics), Balanced(whole, options.start.corrected)
     newton = Newton(more.balance())
     one.work.poll = poll
     for solution in solutions(one, omega).solutions:
-        z = more.extended(solution, ONE)
-        yield computed_state(scene, MORE, np.array(newton.z) if held(newton, z) else z)
+        z = more.extended(solution, options.start.harmonics)
+        yield computed_state(
+            scene, options.start.corrected, np.array(newton.z) if held(newton, z) else z, options
+        )
 
 
-def solution_at(scene: Scene, omega: float, poll: Poll = without_end) -> Orbit:
+def solution_at(
+    scene: Scene, omega: float, poll: Poll = without_end, options: ShootingOptions = SHOOTING
+) -> Orbit:
     """A stable solution near harmonic balance, or the one that a motion from rest comes near to, or any.
 
     Where the scene says from which friction it starts, rather one in which contacts stick with just that.
@@ -186,33 +199,43 @@ def solution_at(scene: Scene, omega: float, poll: Poll = without_end) -> Orbit:
     """
     near = list[Orbit]()
     if scene.start is not None:
-        near += _shot(scene, omega, started_states(scene, omega), poll)
-        near += _shot(scene, omega, partly_stuck_as_started(scene, omega, poll), poll)
-    near += near_balance(scene, omega, poll)
+        near += _shot(scene, omega, started_states(scene, omega, options), poll, options)
+        near += _shot(scene, omega, partly_stuck_as_started(scene, omega, poll, options), poll, options)
+    near += near_balance(scene, omega, poll, options)
     stable = [orbit for orbit in near if orbit.stable]
-    return (stable or _from_rest(scene, omega, bool(near), poll) or near)[0]
+    return (stable or _from_rest(scene, omega, bool(near), poll, options) or near)[0]
 
 
-def near_balance(scene: Scene, omega: float, poll: Poll = without_end) -> Iterator[Orbit]:
+def near_balance(
+    scene: Scene, omega: float, poll: Poll = without_end, options: ShootingOptions = SHOOTING
+) -> Iterator[Orbit]:
     """The motions that shooting finds from the solutions of the balance."""
-    return _shot(scene, omega, balanced_states(scene, omega, poll), poll)
+    return _shot(scene, omega, balanced_states(scene, omega, poll, options), poll, options)
 
 
-def _shot(scene: Scene, omega: float, guesses: Iterable[State], poll: Poll = without_end) -> Iterator[Orbit]:
+def _shot(
+    scene: Scene,
+    omega: float,
+    guesses: Iterable[State],
+    poll: Poll = without_end,
+    options: ShootingOptions = SHOOTING,
+) -> Iterator[Orbit]:
     """The motions that shooting finds from guesses."""
     for guess in guesses:
         try:
-            orbit = shoot(System(scene, omega), guess, poll)
+            orbit = shoot(System(scene, omega), guess, poll, options)
         except SimulationError:
             continue
         if orbit is not None:
             yield orbit
 
 
-def _from_rest(scene: Scene, omega: float, others: bool, poll: Poll = without_end) -> list[Orbit]:
+def _from_rest(
+    scene: Scene, omega: float, others: bool, poll: Poll = without_end, options: ShootingOptions = SHOOTING
+) -> list[Orbit]:
     """The motion that one from rest comes to; none if there are others and this cannot be had."""
     try:
-        return [approached(System(scene, omega), poll)]
+        return [approached(System(scene, omega), poll, options)]
     except SimulationError:
         if others:
             return []
@@ -231,7 +254,7 @@ def inner_resonances(scene: Scene) -> list[float]:
 def _add(problem: OrbitProblem, found: list[FloatArray], z: FloatArray) -> None:
     problem.measure(z)
     scale = np.asarray(problem.scale)
-    if all(np.linalg.norm((z - other) / scale) > DISTINCT for other in found):
+    if all(np.linalg.norm((z - other) / scale) > problem.options.start.distinct for other in found):
         found.append(z)
 
 
@@ -245,12 +268,12 @@ def first_point(problem: OrbitProblem, orbit: Orbit, poll: Poll = without_end) -
     """
     z = problem.z(orbit.state, orbit.frequency)
     near = problem.shot(z)
-    member = None if near is None else chosen(near, problem.shooting.resting, poll)
+    member = None if near is None else chosen(near, problem.shooting.resting, poll, problem.options)
     if member is not None:
         z = np.append(member.x[problem.free], orbit.frequency)
     newton = Newton(problem)
     if not held(newton, z):
         if near is not None and member is None and any(choice.gap for choice in near.chosen):
             raise SimulationError(rests_elsewhere(problem.scene, orbit, near))
-        raise SimulationError(not_determined(orbit))
+        raise SimulationError(not_determined(orbit, problem.options))
     return np.array(newton.z)

@@ -17,16 +17,13 @@ import numpy.typing as npt
 
 from fcm.harmonic_balance.wave_extremes import greatest
 from fcm.model.scene import FloatArray, Scene
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic import unloaded
 from fcm.shooting.residual_traction import resting
 from fcm.signals import undisturbed
 from fcm.time_domain.equations import has_friction
 from fcm.time_domain.state import State
 from fcm.time_domain.system import System
-
-MOST = 3  # contacts of which all combinations of closed and open are tried; of more, all closed
-KEPT = 0.01  # of the forces, by which a motion keeps away from its limits if it can
-LEAST = 1e-6  # of them by which it does so at least; one on its limit belongs to others
 
 
 @dataclass(frozen=True)
@@ -40,7 +37,9 @@ class Linear:
     state: State  # at the forces' angle 0
 
 
-def linear_motions(scene: Scene, omega: float, as_started: bool = False) -> list[Linear]:
+def linear_motions(
+    scene: Scene, omega: float, as_started: bool = False, options: ShootingOptions = SHOOTING
+) -> list[Linear]:
     """Those in which a contact with friction sticks, at a frequency [rad/s]; of the scene with what is held.
 
     Their residual friction is the nearest to that of the scene's start, or just that.
@@ -48,15 +47,17 @@ def linear_motions(scene: Scene, omega: float, as_started: bool = False) -> list
     whole = scene.whole()
     system, count = System(whole, omega), len(whole.contacts)
     wanted = system.k_u * resting(whole)
-    closed = product((True, False), repeat=count) if count <= MOST else [(True,) * count]
-    found = (_motion(system, np.array(one, dtype=bool), wanted, as_started) for one in closed)
+    closed = (
+        product((True, False), repeat=count) if count <= options.linear.combinations else [(True,) * count]
+    )
+    found = (_motion(system, np.array(one, dtype=bool), wanted, as_started, options) for one in closed)
     return [one for one in found if one is not None]
 
 
-def started_states(scene: Scene, omega: float) -> list[State]:
+def started_states(scene: Scene, omega: float, options: ShootingOptions = SHOOTING) -> list[State]:
     """Guesses from those motions whose contacts rest where the scene starts."""
     computed = scene.computed()
-    found = linear_motions(scene, omega, as_started=True)
+    found = linear_motions(scene, omega, as_started=True, options=options)
     return [replace(one.state, friction=one.state.friction[computed]) for one in found]
 
 
@@ -76,7 +77,11 @@ def about_rest(scene: Scene, omega: float, level: float) -> Iterator[State]:
 
 
 def _motion(
-    system: System, closed: npt.NDArray[np.bool_], wanted: FloatArray, as_started: bool
+    system: System,
+    closed: npt.NDArray[np.bool_],
+    wanted: FloatArray,
+    as_started: bool,
+    options: ShootingOptions = SHOOTING,
 ) -> Linear | None:
     """The motion with these contacts closed, if any residual friction admits it."""
     stuck = [j for j in np.flatnonzero(closed).tolist() if has_friction(system.scene.contacts[j])]
@@ -88,7 +93,7 @@ def _motion(
         return None
     limits = list(_limits(system, closed, stuck, wave, mean, by_residual))
     rows, least = np.array([row for row, _ in limits]), np.array([least for _, least in limits])
-    inside = _inside(rows, least, wanted[stuck], as_started)
+    inside = _inside(rows, least, wanted[stuck], as_started, options)
     if inside is None:
         return None
     mean = mean + by_residual @ inside
@@ -164,15 +169,23 @@ def _lowered(system: System, swing: npt.NDArray[np.complex128]) -> float:
     return float(greatest(1j * swing[None, :, None], np.array(system.harmonics))[0, 0])
 
 
-def _inside(rows: FloatArray, least: FloatArray, wanted: FloatArray, just_that: bool) -> FloatArray | None:
+def _inside(
+    rows: FloatArray,
+    least: FloatArray,
+    wanted: FloatArray,
+    just_that: bool,
+    options: ShootingOptions = SHOOTING,
+) -> FloatArray | None:
     """The residual friction nearest to what is wanted with rows @ residual >= least, if there is any."""
     size = float(np.abs(least).max()) or 1.0
-    if (rows @ wanted >= least + LEAST * size).all():
+    if (rows @ wanted >= least + options.linear.least * size).all():
         return wanted
     if just_that:
         return None
     nearest = _nearest_number if wanted.size == 1 else _nearest
-    tried = (nearest(rows, least + kept * size, wanted) for kept in (KEPT, LEAST))
+    tried = (
+        nearest(rows, least + kept * size, wanted) for kept in (options.linear.kept, options.linear.least)
+    )
     return next((one for one in tried if one is not None), None)
 
 

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from fcm.continuation import Mark, Path
 from fcm.model.scene import FloatArray
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic import within_unit_circle
 from fcm.shooting.problem import OrbitProblem
 from fcm.shooting.residual import Shot
@@ -57,16 +58,16 @@ def recorded(problem: OrbitProblem, z: FloatArray) -> Sample:
     asked for when the curve comes there."""
     key = z.tobytes()
     if key not in problem.samples:
-        problem.samples[key] = _made(_shot(problem, z), z)
+        problem.samples[key] = _made(_shot(problem, z), z, problem.options)
     return problem.samples[key]
 
 
-def _made(shot: Shot, z: FloatArray) -> Sample:
+def _made(shot: Shot, z: FloatArray, options: ShootingOptions = SHOOTING) -> Sample:
     """What is kept of a period from z."""
     multipliers, found = shot.multipliers, shot.scanned
     return Sample(
         float(z[-1]), shot.state, shot.cycle.states, measure(shot.cycle, found.displaced),
-        borne([shot.cycle], found), multipliers, shot.residual, within_unit_circle(multipliers),
+        borne([shot.cycle], found), multipliers, shot.residual, within_unit_circle(multipliers, options),
         z, np.zeros(z.size), held=_held(shot), steady=several(shot),
     )  # fmt: skip
 

@@ -14,7 +14,8 @@ from itertools import combinations, product
 import numpy as np
 
 from fcm.model.scene import FloatArray, Held, Scene
-from fcm.shooting.linear_orbits import MOST, linear_answer, sticking
+from fcm.shooting.linear_orbits import linear_answer, sticking
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic import Orbit, Poll, closed, converged, shoot, within_unit_circle, without_end
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import always_stuck, resting, resting_at
@@ -25,12 +26,6 @@ from fcm.time_domain.simulation import cycles_from
 from fcm.time_domain.state import State
 from fcm.time_domain.system import System
 
-KEPT = (0.01, 1.0)  # of the forces, by which residual friction keeps away from two limits at a time
-APART = 0.2  # of the distance of the furthest two: residual friction nearer to another is not tried as well
-TRIED = 6  # at most for the same contacts
-SAME = 1e-3  # relative difference of amplitudes up to which a motion is within an extent
-CLOSED = 1e-6  # by which a motion that was found with contacts held may fail to close without
-CYCLES = (10, 40)  # simulated before each look whether the motion has become periodic
 Choices = list[FloatArray]
 
 
@@ -44,7 +39,11 @@ class Partly:
 
 
 def partly_stuck_motions(
-    scene: Scene, omega: float, known: list[Family], poll: Poll = without_end
+    scene: Scene,
+    omega: float,
+    known: list[Family],
+    poll: Poll = without_end,
+    options: ShootingOptions = SHOOTING,
 ) -> list[Partly]:
     """Those that belong to no family that is known, at a frequency [rad/s]; of the scene with what is held.
 
@@ -52,50 +51,59 @@ def partly_stuck_motions(
     """
     whole, found, families = scene.whole(), list[Partly](), list(known)
     system = System(whole, omega)
-    for stuck, residual in _tried(system, poll):
+    for stuck, residual in _tried(system, poll, options):
         if any(_has(one, stuck, residual) for one in families):
             continue
         poll()
-        orbit = _with_held(system, stuck, residual, poll)
-        if orbit is None or any(_holds(one, orbit) for one in families):
+        orbit = _with_held(system, stuck, residual, poll, options)
+        if orbit is None or any(_holds(one, orbit, options) for one in families):
             continue
-        one = _partly(orbit, poll)
+        one = _partly(orbit, poll, options)
         if one is not None:
             found.append(one)
             families.append(one.family)
     return found
 
 
-def partly_stuck_as_started(scene: Scene, omega: float, poll: Poll = without_end) -> list[State]:
+def partly_stuck_as_started(
+    scene: Scene, omega: float, poll: Poll = without_end, options: ShootingOptions = SHOOTING
+) -> list[State]:
     """Guesses from those motions whose contacts rest where the scene starts."""
     whole, computed = scene.whole(), scene.computed()
     system = System(whole, omega)
     wanted = system.k_u * resting(whole)
     return [
         State(orbit.state.q, orbit.state.velocity, orbit.state.friction[computed])
-        for stuck in _sets(whole)
-        if _choices(system, stuck, wanted[list(stuck)])
-        and (orbit := _with_held(system, stuck, wanted[list(stuck)], poll)) is not None
+        for stuck in _sets(whole, options)
+        if _choices(system, stuck, wanted[list(stuck)], options)
+        and (orbit := _with_held(system, stuck, wanted[list(stuck)], poll, options)) is not None
     ]
 
 
-def _sets(scene: Scene) -> Iterator[tuple[int, ...]]:
+def _sets(scene: Scene, options: ShootingOptions = SHOOTING) -> Iterator[tuple[int, ...]]:
     """The contacts that may stick while others do not."""
     rough = [j for j, contact in enumerate(scene.contacts) if has_friction(contact)]
     count = len(scene.contacts)
-    for size in range(1, count if count <= MOST else 1):
+    for size in range(1, count if count <= options.linear.combinations else 1):
         yield from combinations(rough, size)
 
 
-def _tried(system: System, poll: Poll) -> Iterator[tuple[tuple[int, ...], FloatArray]]:
+def _tried(
+    system: System, poll: Poll, options: ShootingOptions = SHOOTING
+) -> Iterator[tuple[tuple[int, ...], FloatArray]]:
     """Contacts, and residual friction of them with which they may stick."""
-    for stuck in _sets(system.scene):
+    for stuck in _sets(system.scene, options):
         poll()
-        for residual in _thinned(_choices(system, stuck)):
+        for residual in _thinned(_choices(system, stuck, options=options), options):
             yield stuck, residual
 
 
-def _choices(system: System, stuck: tuple[int, ...], just: FloatArray | None = None) -> Choices:
+def _choices(
+    system: System,
+    stuck: tuple[int, ...],
+    just: FloatArray | None = None,
+    options: ShootingOptions = SHOOTING,
+) -> Choices:
     """Residual friction that keeps contacts stuck whatever the others do, as far as that is linear."""
     scene, found = system.scene, Choices()
     others = [j for j in range(len(scene.contacts)) if j not in stuck]
@@ -111,16 +119,16 @@ def _choices(system: System, stuck: tuple[int, ...], just: FloatArray | None = N
         limits = [one for j in stuck for one in sticking(system, j, np.array(stuck) == j, wave, mean, free)]
         rows, least = np.array([row for row, _ in limits]), np.array([number for _, number in limits])
         if just is None:
-            found += _inside(rows, least)
+            found += _inside(rows, least, options)
         elif (rows @ just >= least).all():
             found.append(just)
     return found
 
 
-def _inside(rows: FloatArray, least: FloatArray) -> Choices:
+def _inside(rows: FloatArray, least: FloatArray, options: ShootingOptions = SHOOTING) -> Choices:
     """Places near the corners of where rows @ x >= least, and the middle of them."""
     size, count, found = float(np.abs(least).max()) or 1.0, rows.shape[1], Choices()
-    for kept in KEPT:
+    for kept in options.partly.kept:
         beyond = least + kept * size
         for pair in combinations(range(len(rows)), count):
             one = rows[list(pair)]
@@ -131,13 +139,13 @@ def _inside(rows: FloatArray, least: FloatArray) -> Choices:
     return [np.mean(found, axis=0), *found] if found else found
 
 
-def _thinned(choices: Choices) -> Choices:
+def _thinned(choices: Choices, options: ShootingOptions = SHOOTING) -> Choices:
     """Some of them, not near to one another, those first that came first."""
     kept, size = Choices(), float(np.ptp(choices, axis=0).max(initial=0.0)) if choices else 0.0
     for one in choices:
-        if all(np.abs(one - other).max() > APART * size for other in kept):
+        if all(np.abs(one - other).max() > options.partly.apart * size for other in kept):
             kept.append(one)
-    return kept[:TRIED]
+    return kept[: options.partly.tried]
 
 
 def _has(known: Family, stuck: tuple[int, ...], residual: FloatArray) -> bool:
@@ -147,41 +155,49 @@ def _has(known: Family, stuck: tuple[int, ...], residual: FloatArray) -> bool:
     return bool(((-known.friction[:, 1] <= residual) & (residual <= -known.friction[:, 0])).all())
 
 
-def _holds(known: Family, orbit: Orbit) -> bool:
+def _holds(known: Family, orbit: Orbit, options: ShootingOptions = SHOOTING) -> bool:
     """Whether a motion has a contact that sticks in a family, and its amplitudes are within that."""
-    room = SAME * known.greatest
+    room = options.partly.same * known.greatest
     amplitude = orbit.measure.amplitude
     inside = (amplitude >= known.least - room) & (amplitude <= known.greatest + room)
     stuck = always_stuck(orbit.cycle.system, orbit.cycle.segments)
     return bool(inside.all()) and not set(stuck).isdisjoint(known.contacts)
 
 
-def _with_held(system: System, stuck: tuple[int, ...], residual: FloatArray, poll: Poll) -> Orbit | None:
+def _with_held(
+    system: System,
+    stuck: tuple[int, ...],
+    residual: FloatArray,
+    poll: Poll,
+    options: ShootingOptions = SHOOTING,
+) -> Orbit | None:
     """The stable motion with contacts held on residual friction, if they stick in it by themselves."""
     contacts = system.scene.contacts
     rest = {j: float(force) / contacts[j].k_u for j, force in zip(stuck, residual, strict=True)}
     held = system.scene.holding([Held(j, contacts[j], False, w) for j, w in rest.items()])
     try:
-        orbit = _approached(System(held, system.omega), poll)
-        return None if orbit is None else _released(system, orbit.state, rest, poll)
+        orbit = _approached(System(held, system.omega), poll, options)
+        return None if orbit is None else _released(system, orbit.state, rest, poll, options)
     except SimulationError:  # it cannot be computed
         return None
 
 
-def _approached(system: System, poll: Poll) -> Orbit | None:
+def _approached(system: System, poll: Poll, options: ShootingOptions = SHOOTING) -> Orbit | None:
     """The stable motion that one from no displacement comes to soon."""
     state = State.unloaded(system.scene)
-    for count in CYCLES:
+    for count in options.partly.cycles:
         for _, end in cycles_from(system, count, state):
             poll()
             state = end
-        orbit = shoot(system, state, poll)
+        orbit = shoot(system, state, poll, options)
         if orbit is not None and orbit.stable:
             return orbit
     return None
 
 
-def _released(system: System, state: State, rest: dict[int, float], poll: Poll) -> Orbit | None:
+def _released(
+    system: System, state: State, rest: dict[int, float], poll: Poll, options: ShootingOptions = SHOOTING
+) -> Orbit | None:
     """The same motion with no contact held, if those stick all through it."""
     contacts, displacement = system.scene.contacts, system.scene.modal.shapes.T @ state.q
     friction = np.zeros(len(contacts))
@@ -190,16 +206,20 @@ def _released(system: System, state: State, rest: dict[int, float], poll: Poll) 
         friction[j] = contacts[j].k_u * (contacts[j].tangential @ displacement - w)
     shot = Shot(system, np.concatenate((state.q, state.velocity, friction)))
     sticks = set(rest) <= set(always_stuck(system, shot.segments))
-    found = converged(shot, poll=poll) if sticks and shot.residual < CLOSED else None
-    return closed(*found) if found is not None and within_unit_circle(found[0].multipliers) else None
+    found = (
+        converged(shot, poll=poll, options=options)
+        if sticks and shot.residual < options.partly.closure
+        else None
+    )
+    return closed(*found) if found is not None and within_unit_circle(found[0].multipliers, options) else None
 
 
-def _partly(orbit: Orbit, poll: Poll) -> Partly | None:
+def _partly(orbit: Orbit, poll: Poll, options: ShootingOptions = SHOOTING) -> Partly | None:
     """The motion with its family; None if that cannot be told."""
     system, state = System(orbit.scene, orbit.frequency), orbit.state
     x = np.concatenate((state.q, state.velocity, state.friction))
     try:
-        found = family(orbit.scene, orbit.frequency, state, poll=poll)
+        found = family(orbit.scene, orbit.frequency, state, poll=poll, options=options)
     except SimulationError:
         return None
     if found is None:

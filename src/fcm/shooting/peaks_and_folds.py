@@ -11,15 +11,10 @@ from fcm.continuation import FollowOptions, Mark, Path, follow
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
 from fcm.shooting.fixed_frequency import held
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.orbit_record import Sample, sampled
 from fcm.shooting.problem import OrbitProblem
 from fcm.time_domain.state import State
-
-WINDOWS = (0.005, 0.02, 0.08)  # of the frequency, to either side of a guess: the next where one has nothing
-ASTRAY = 0.5  # distance of the curve from a guess, in its own size, beyond which it is another
-LEVEL = 1e-7  # growth of an amplitude over its size, along a unit of arc, that paths take no notice of
-SAME = 1e-7  # of the frequency: what is found twice
-
 
 Summits = npt.NDArray[np.bool_]  # (dof,)
 
@@ -43,10 +38,10 @@ def located(problem: OrbitProblem, guess: Guess, known: list[Sample]) -> Sample 
     if z is None:
         return None
     low, high = problem.scene.frequency_range
-    for window in WINDOWS:
+    for window in problem.options.peaks.windows:
         span = (max(z[-1] * (1.0 - window), low), min(z[-1] * (1.0 + window), high))
         found = _within(problem, z, span)
-        known += [one for one, _ in found if all(_differ(one, other) for other in known)]
+        known += [one for one, _ in found if all(_differ(one, other, problem.options) for other in known)]
         wanted = [one for one, highest in found if _is_wanted(one, highest, guess.dof)]
         if wanted:
             return min(wanted, key=lambda one: _away(one, guess))
@@ -64,7 +59,7 @@ def _on_curve(problem: OrbitProblem, guess: Guess) -> FloatArray | None:
     size = float(np.linalg.norm(row))
     np.asarray(newton.scale)[:], np.asarray(newton.z)[:] = scale, z
     np.asarray(newton.row)[:] = row / size if size > 0.0 else np.eye(z.size)[-1]
-    if (newton.correct(1.0) or held(newton, z)) and newton.moved < ASTRAY:
+    if (newton.correct(1.0) or held(newton, z)) and newton.moved < problem.options.peaks.distance:
         return np.array(newton.z)
     return None
 
@@ -90,7 +85,7 @@ def _begun_at_a_peak(problem: OrbitProblem, ahead: Path, behind: Path) -> list[t
     if min(len(ahead.z), len(behind.z)) < 2:
         return []
     here = _amplitudes(problem, ahead, 0)
-    level = np.abs(np.asarray(problem.growth)) <= LEVEL * here
+    level = np.abs(np.asarray(problem.growth)) <= problem.options.peaks.level * here
     highest = level & _summits(problem, ahead, 0) & (here >= _amplitudes(problem, behind, 1))
     if not highest.any():
         return []
@@ -123,11 +118,11 @@ def _is_wanted(one: Sample, highest: Summits, dof: int | None) -> bool:
     return bool(one.mark & Mark.FOLD if dof is None else highest[dof])
 
 
-def _differ(one: Sample, other: Sample) -> bool:
-    if abs(one.frequency - other.frequency) > SAME * one.frequency:
+def _differ(one: Sample, other: Sample, options: ShootingOptions = SHOOTING) -> bool:
+    if abs(one.frequency - other.frequency) > options.peaks.same * one.frequency:
         return True
     size = np.abs(one.measure.amplitude).max()
-    return bool(np.abs(one.measure.amplitude - other.measure.amplitude).max() > SAME * size)
+    return bool(np.abs(one.measure.amplitude - other.measure.amplitude).max() > options.peaks.same * size)
 
 
 def _away(one: Sample, guess: Guess) -> float:

@@ -25,17 +25,12 @@ from fcm.stability.verdict import Bifurcation, bifurcation_of
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.state import State
 
-REACHES = (0.03, 0.1, 0.3)  # distances from a motion, relative to it, at which one of twice its periods is
-BESIDE = 4  # points to either side of a flip from which that is sought; further ones are beyond bends
-NEAR = 0.2  # distance of the last point of a curve from the flip at which it ends, at most
-AGAIN = 1e-6  # by which a motion fails to close after fewer periods, relative to it, if it does not
-
 
 class Doubled(OrbitProblem):
     """Motions of twice the periods of others; a curve of them has ended where it comes to those."""
 
     def __init__(self, once: OrbitProblem) -> None:
-        super().__init__(once.scene, 2 * once.repeats)
+        super().__init__(once.scene, 2 * once.repeats, once.options)
         self.once, self._way = once, np.zeros(0)
 
     def begins(self) -> None:
@@ -48,7 +43,7 @@ class Doubled(OrbitProblem):
         if shot is None:
             return False
         before, self._way = self._way, shot.gap / shot.scale
-        return shot.residual < AGAIN or bool(before.size and before @ self._way < 0.0)
+        return shot.residual < self.options.doubling.closure or bool(before.size and before @ self._way < 0.0)
 
     def later(self, z: FloatArray) -> FloatArray:
         """The same motion, begun after half of its periods."""
@@ -81,7 +76,9 @@ def to_flips(problem: Doubled, points: list[Sample], branches: list[list[Sample]
         last = points[end]
         problem.measure(last.z)
         scale = np.array(problem.scale)
-        near = [one for one in ends if np.linalg.norm((one.z - last.z) / scale) < NEAR]
+        near = [
+            one for one in ends if np.linalg.norm((one.z - last.z) / scale) < problem.options.doubling.near
+        ]
         if near and last.frequency not in problem.scene.frequency_range:
             nearest = min(near, key=lambda one: float(np.linalg.norm((one.z - last.z) / scale)))
             points = [nearest, *points] if end == 0 else [*points, nearest]
@@ -127,7 +124,10 @@ def _beside(problem: Doubled, points: list[Sample], k: int, poll: Poll) -> Itera
     unstable motion, that which a disturbance of it comes to may be one.
     """
     ends = [id(flip(points, j)) for j in flips(points)]
-    after, before = points[k + 1 : k + 1 + BESIDE], points[k : max(k - BESIDE, -1) : -1]
+    after, before = (
+        points[k + 1 : k + 1 + problem.options.doubling.points],
+        points[k : max(k - problem.options.doubling.points, -1) : -1],
+    )
     sides = (after, before) if points[k].stable else (before, after)
     near = [point for side in sides for point in side if id(point) not in ends]
     for point in near:
@@ -143,10 +143,10 @@ def _beside(problem: Doubled, points: list[Sample], k: int, poll: Poll) -> Itera
 
 def _doubled(problem: Doubled, point: Sample, once: Shot) -> Iterator[FloatArray]:
     """The motion in the direction in which a disturbance changes its sign after each period."""
-    for reach in REACHES:
+    for reach in problem.options.doubling.distances:
         try:
             guess = Shot(once.system, _disturbed(once, reach), problem.shooting.resting, problem.repeats)
-            found = converged(guess)
+            found = converged(guess, options=problem.options)
         except SimulationError:
             continue
         if found is not None:
@@ -155,8 +155,8 @@ def _doubled(problem: Doubled, point: Sample, once: Shot) -> Iterator[FloatArray
 
 def _approached(problem: Doubled, point: Sample, once: Shot, poll: Poll) -> Iterator[FloatArray]:
     """The motion that a simulation comes to from a disturbed one."""
-    x, system = _disturbed(once, REACHES[0]), once.system
-    found = steady(system, State(x[system.q], x[system.p], x[system.f]), poll)
+    x, system = _disturbed(once, problem.options.doubling.distances[0]), once.system
+    found = steady(system, State(x[system.q], x[system.p], x[system.f]), poll, problem.options)
     if isinstance(found, Steady) and found.periods == problem.repeats:
         state = found.state
         x = np.concatenate((state.q, state.velocity, state.friction))
@@ -173,7 +173,7 @@ def _disturbed(once: Shot, reach: float) -> FloatArray:
 
 def _held(problem: Doubled, point: Sample, shot: Shot) -> Iterator[FloatArray]:
     """The solution of the problem that a motion is, unless that repeats before."""
-    if Shot(shot.system, shot.x, periods=problem.once.repeats).residual < AGAIN:
+    if Shot(shot.system, shot.x, periods=problem.once.repeats).residual < problem.options.doubling.closure:
         return
     newton = Newton(problem)
     if held(newton, np.append(shot.x[problem.free], point.frequency)):

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.model.scene import FloatArray, Scene
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import resting
 from fcm.time_domain.cycle import Cycle
@@ -21,15 +22,7 @@ from fcm.time_domain.system import System
 from fcm.time_domain.trajectory import Motion
 from fcm.units import spoken
 
-TOLERANCE = 1e-11  # of the closure of the orbit, relative to its size
-MOST_ITERATIONS = 25  # of Newton's method
-SHORTEST = 1e-3  # part of one of its steps, below which it leads nowhere
-RANK = 1e-10  # singular values below are directions in which nothing changes: a contact that never slips
-STABLE = 1e-7  # by which a multiplier may exceed 1
-DRIFT = 0.2  # part of the range of cycle amplitudes by which their mean may differ from half to half
-LEFT = 0.01  # part of a disturbance that damping leaves of it, when it has settled
 Poll = Callable[[], None]  # called now and then; raises what ends the search
-FREE_CYCLES = (10, 20, 40, 80, 160)  # run before each attempt when there is no guess
 
 
 def without_end() -> None:
@@ -69,12 +62,14 @@ class Orbit:
         return Motion(self.scene, (self.cycle,), self.state)
 
 
-def within_unit_circle(multipliers: npt.NDArray[np.complex128]) -> bool:
+def within_unit_circle(multipliers: npt.NDArray[np.complex128], options: ShootingOptions = SHOOTING) -> bool:
     """Whether no disturbance grows, but for rounding."""
-    return bool(np.abs(multipliers).max(initial=0.0) <= 1.0 + STABLE)
+    return bool(np.abs(multipliers).max(initial=0.0) <= 1.0 + options.stability.excess)
 
 
-def periodic(scene: Scene, frequency: float, guess: State | None = None) -> Orbit:
+def periodic(
+    scene: Scene, frequency: float, guess: State | None = None, options: ShootingOptions = SHOOTING
+) -> Orbit:
     """A periodic solution of a scene, stable or not, at one frequency.
 
     Newton's method on the closure of one period of the exact motion (shooting), with the exact derivative.
@@ -89,6 +84,8 @@ def periodic(scene: Scene, frequency: float, guess: State | None = None) -> Orbi
         At the forces' angle 0, from `Motion.end`, from a neighbouring `Orbit.state`, or from
         `harmonic_state`. By default the solution is the one that a simulation from rest approaches, or
         goes around when that one is not stable; its residual friction is that of the scene's [start].
+    options : ShootingOptions, optional
+        Tolerances and limits.
 
     Raises
     ------
@@ -104,7 +101,7 @@ def periodic(scene: Scene, frequency: float, guess: State | None = None) -> Orbi
     """
     system = System(scene, frequency)
     if guess is not None:
-        orbit = shoot(system, guess)
+        orbit = shoot(system, guess, options=options)
         if orbit is None:
             at = spoken(frequency, scene.frequency_unit)
             raise SimulationError(
@@ -112,7 +109,7 @@ def periodic(scene: Scene, frequency: float, guess: State | None = None) -> Orbi
                 "simulate some cycles and start from their end, or from a solution at a frequency nearby"
             )
         return orbit
-    return approached(system)
+    return approached(system, options=options)
 
 
 def unloaded(scene: Scene) -> State:
@@ -124,7 +121,7 @@ def unloaded(scene: Scene) -> State:
     return State(rest.q, rest.velocity, friction)
 
 
-def approached(system: System, poll: Poll = without_end) -> Orbit:
+def approached(system: System, poll: Poll = without_end, options: ShootingOptions = SHOOTING) -> Orbit:
     """The periodic solution that a simulation from rest comes near to.
 
     Raises
@@ -133,13 +130,13 @@ def approached(system: System, poll: Poll = without_end) -> Orbit:
         If there is none.
     """
     state, unstable = unloaded(system.scene), 0
-    for cycles in FREE_CYCLES:
+    for cycles in options.approach.cycles:
         amplitudes = list[float]()
         for cycle, end in cycles_from(system, cycles, state):
             poll()
             amplitudes.append(float(measure(cycle).amplitude.max(initial=0.0)))
             state = end
-        orbit = shoot(system, state, poll)
+        orbit = shoot(system, state, poll, options)
         unstable += orbit is not None and not orbit.stable
         # near an unstable one twice: the motion goes around it, in a multiple of its period or in none
         if orbit is not None and (orbit.stable or unstable > 1):
@@ -147,19 +144,19 @@ def approached(system: System, poll: Poll = without_end) -> Orbit:
     at = spoken(system.omega, system.scene.frequency_unit)
     raise SimulationError(
         f"the motion from rest at {at} has not become periodic "
-        f"in {sum(FREE_CYCLES)} cycles; {_neither(system, np.array(amplitudes))}"
+        f"in {sum(options.approach.cycles)} cycles; {_neither(system, np.array(amplitudes), options)}"
     )
 
 
-def _neither(system: System, amplitude: FloatArray) -> str:
+def _neither(system: System, amplitude: FloatArray, options: ShootingOptions = SHOOTING) -> str:
     """What a motion does that has not become periodic, by the greatest amplitudes of its last cycles."""
     first, second = np.array_split(amplitude, 2)
-    if abs(second.mean() - first.mean()) > DRIFT * np.ptp(amplitude):
+    if abs(second.mean() - first.mean()) > options.approach.drift * np.ptp(amplitude):
         return "it may grow without end, repeat only after several periods, or need a guess"
     modal = system.scene.modal
     rate = float((modal.damping * modal.frequency).min())
-    last = -np.log(LEFT) / rate / system.period if rate > 0.0 else np.inf
-    slow = f", or settles only in some {last:.1g} cycles" if last > sum(FREE_CYCLES) else ""
+    last = -np.log(options.approach.settled) / rate / system.period if rate > 0.0 else np.inf
+    slow = f", or settles only in some {last:.1g} cycles" if last > sum(options.approach.cycles) else ""
     return (
         f"the amplitude of its last {amplitude.size} lies between {amplitude.min():.4g} and "
         f"{amplitude.max():.4g}, and neither grows nor decays: it is irregular, or repeats only after "
@@ -167,27 +164,35 @@ def _neither(system: System, amplitude: FloatArray) -> str:
     )
 
 
-def shoot(system: System, guess: State, poll: Poll = without_end) -> Orbit | None:
+def shoot(
+    system: System, guess: State, poll: Poll = without_end, options: ShootingOptions = SHOOTING
+) -> Orbit | None:
     """Newton's method from a state at the forces' angle 0; None when it does not converge."""
     x = np.concatenate((guess.q, guess.velocity, guess.friction))
-    found = converged(Shot(system, x), poll=poll)
+    found = converged(Shot(system, x), poll=poll, options=options)
     return None if found is None else closed(*found)
 
 
 def converged(
-    shot: Shot, most: int = MOST_ITERATIONS, poll: Poll = without_end, shortest: float = SHORTEST
+    shot: Shot,
+    most: int | None = None,
+    poll: Poll = without_end,
+    shortest: float | None = None,
+    options: ShootingOptions = SHOOTING,
 ) -> tuple[Shot, int] | None:
     """The shot that closes, by Newton's method from one that does not, and the number of steps it took.
 
     None after the most steps, or where only a shorter part of one than the shortest brings it nearer.
     """
+    most = options.closure.iterations if most is None else most
+    shortest = options.closure.shortest if shortest is None else shortest
     for iteration in range(most):
         poll()
-        if shot.residual <= TOLERANCE:
+        if shot.residual <= options.closure.tolerance:
             return shot, iteration
-        better = _improved(shot, shortest)
+        better = _improved(shot, shortest, options)
         if better is None:
-            return (shot, iteration) if shot.residual <= 100.0 * TOLERANCE else None
+            return (shot, iteration) if shot.residual <= 100.0 * options.closure.tolerance else None
         shot = better
     return None
 
@@ -200,18 +205,18 @@ def closed(shot: Shot, iterations: int = 0) -> Orbit:
     )
 
 
-def _step(shot: Shot) -> FloatArray:
+def _step(shot: Shot, options: ShootingOptions = SHOOTING) -> FloatArray:
     """Newton's step; along directions in which nothing changes, none."""
     matrix = shot.by_state * shot.scale / shot.scale[:, None]
-    solution = np.linalg.lstsq(matrix, -shot.gap / shot.scale, rcond=RANK)[0]
+    solution = np.linalg.lstsq(matrix, -shot.gap / shot.scale, rcond=options.closure.rank)[0]
     with np.errstate(over="ignore"):  # what is not finite is refused when it is tried
         step: FloatArray = solution * shot.scale
     return step
 
 
-def _improved(shot: Shot, shortest: float) -> Shot | None:
+def _improved(shot: Shot, shortest: float, options: ShootingOptions = SHOOTING) -> Shot | None:
     """The shot after Newton's step, shortened until the orbit closes better; None if it never does."""
-    step, size = _step(shot), 1.0
+    step, size = _step(shot, options), 1.0
     while size > shortest:
         try:
             new = Shot(shot.system, shot.x + size * step, shot.resting, shot.periods)

@@ -9,6 +9,7 @@ import numpy as np
 
 from fcm.continuation.problem import Problem
 from fcm.model.scene import FloatArray, Scene
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.period_derivative import along
 from fcm.shooting.residual import Shooting, Shot
 from fcm.time_domain.errors import SimulationError
@@ -16,10 +17,6 @@ from fcm.time_domain.state import State
 
 if TYPE_CHECKING:
     from fcm.shooting.orbit_record import Sample
-
-KEPT = 1_000_000  # numbers of periods that are remembered: a place is asked for more than once
-INSTANT = 1e-9  # of a period: what lasts less is no state of its own
-STILL = 1e-9  # of the greatest amplitude: what moves less is not reported
 
 
 class OrbitProblem(Problem):
@@ -35,6 +32,8 @@ class OrbitProblem(Problem):
         Its `frequency_range` is the unit of frequencies.
     repeats : int
         Periods of the force after which the motion closes.
+    options : ShootingOptions, optional
+        Tolerances and limits of all that is done with the problem.
 
     Examples
     --------
@@ -49,7 +48,8 @@ class OrbitProblem(Problem):
     (True, (5, 6))
     """
 
-    def __init__(self, scene: Scene, repeats: int = 1) -> None:
+    def __init__(self, scene: Scene, repeats: int = 1, options: ShootingOptions = SHOOTING) -> None:
+        self.options = options
         self.scene, self.shooting, self.repeats = scene, Shooting(scene, repeats), repeats
         self.free = self.shooting.free
         super().__init__(self.free.size, 1, len(scene.modal.dofs))
@@ -76,7 +76,7 @@ class OrbitProblem(Problem):
         shot = self._shots.get(key)
         if shot is None and key not in self._shots:
             shot = self._made(z)
-            if self._numbers > KEPT:
+            if self._numbers > self.options.orbit.remembered:
                 self.forget()
             self._numbers += 0 if shot is None else int(shot.segments.y.size) + 3 * shot.x.size**2
             self._shots[key] = shot
@@ -85,7 +85,7 @@ class OrbitProblem(Problem):
     @property
     def full(self) -> bool:
         """Whether so much is remembered that it may be forgotten with the next step."""
-        return 2 * self._numbers > KEPT
+        return 2 * self._numbers > self.options.orbit.remembered
 
     def forget(self) -> None:
         """Forget all periods."""
@@ -135,7 +135,7 @@ class OrbitProblem(Problem):
         """See the class; as they were where there is no motion."""
         shot = self.shot(z)
         if shot is not None:
-            self.margin[0] = _label(shot)
+            self.margin[0] = _label(shot, self.options)
         return 0
 
     def report(self, z: FloatArray, direction: FloatArray) -> int:
@@ -148,7 +148,7 @@ class OrbitProblem(Problem):
         shapes = self.scene.modal.shapes
         least, greatest, places = shot.scanned.displaced
         amplitude = 0.5 * (greatest - least)
-        moves = amplitude > STILL * amplitude.max(initial=0.0)
+        moves = amplitude > self.options.orbit.still * amplitude.max(initial=0.0)
         way = np.zeros(self.shooting.size)
         way[self.free] = np.asarray(direction)[:-1]
         rates = along(shot.system, shot.segments, places, way, float(direction[-1]))
@@ -157,11 +157,11 @@ class OrbitProblem(Problem):
         return 0
 
 
-def _label(shot: Shot) -> float:
+def _label(shot: Shot, options: ShootingOptions = SHOOTING) -> float:
     """A number for the states over the period, from its start, and for the contacts that are at a limit.
 
     A transition that passes the start is a corner of the friction force there, though of nothing else.
     """
-    states = shot.segments.lasting(shot.duration, INSTANT * shot.duration)
+    states = shot.segments.lasting(shot.duration, options.orbit.instant * shot.duration)
     limited = bytes([choice.contact for choice in shot.chosen if choice.limited])
     return float(crc32(states + limited))

@@ -14,11 +14,7 @@ from fcm.continuation import Path, Segment
 from fcm.continuation.events import Secants
 from fcm.continuation.options import FOLLOW
 from fcm.model.scene import FloatArray
-from fcm.shooting.periodic import STABLE
 from fcm.shooting.problem import OrbitProblem
-
-LOOKS = 60  # at most
-SURE = 0.01 * STABLE  # by which a multiplier may differ from where stability ends, to be there
 
 
 class Place(NamedTuple):
@@ -28,11 +24,7 @@ class Place(NamedTuple):
     excess: float  # of the greatest multiplier over where stability ends, on a logarithmic scale
     z: FloatArray
     direction: FloatArray
-
-    @property
-    def there(self) -> bool:
-        """Whether stability ends there, as far as can be told."""
-        return abs(self.excess) <= 0.5 * SURE
+    there: bool  # stability ends there, as far as can be told
 
 
 def crossing(problem: OrbitProblem, path: Path, first: int) -> Place | None:
@@ -44,7 +36,7 @@ def crossing(problem: OrbitProblem, path: Path, first: int) -> Place | None:
     ends = [_place(problem, float(i), path.z[first + i], path.direction[first + i]) for i in (0, 1)]
     sides = Secants(0.0, 1.0, ends[0].excess, ends[1].excess, may_jump=True)
     between, stable = Segment(problem, path, first), min(ends, key=lambda place: place.excess)
-    for _ in range(LOOKS):
+    for _ in range(problem.options.stability.looks):
         if stable.there or sides.width * between.length < FOLLOW.switching.touched:
             return stable
         tried = sides.at, 0.5 * (sides.low + sides.high)
@@ -62,5 +54,7 @@ def _place(problem: OrbitProblem, part: float, z: FloatArray, direction: FloatAr
     """Its excess is counted from half of what is sure below the limit, so that what is there is stable."""
     shot = problem.shot(z)
     others = np.zeros(0) if shot is None else np.abs(shot.others)
-    excess = np.log(others.max(initial=1e-300)) - np.log1p(STABLE) + 0.5 * SURE
-    return Place(part, float(excess), z, direction)
+    options = problem.options.stability
+    room = 0.5 * options.sure * options.excess
+    excess = float(np.log(others.max(initial=1e-300)) - np.log1p(options.excess) + room)
+    return Place(part, excess, z, direction, abs(excess) <= room)

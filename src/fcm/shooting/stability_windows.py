@@ -25,9 +25,6 @@ from fcm.stability.verdict import Bifurcation, Verdict
 
 ComplexArray = npt.NDArray[np.complex128]
 
-DIPS = 4  # times that a way between two points is divided in search of a window
-SAFE = -0.3  # logarithm of the greatest multiplier of both, below which none is looked for
-
 
 class Point(Protocol):
     """What is known of a point of a path."""
@@ -63,11 +60,11 @@ class _Known(NamedTuple):
         rows = zip(*(values[first:end].tolist() for values in self), strict=True)
         return [Seen(*row) for row in rows]
 
-    def suspected(self, jumps: npt.NDArray[np.bool_]) -> list[int]:
+    def suspected(self, jumps: npt.NDArray[np.bool_], safe: float) -> list[int]:
         """The points after which there may be a window: where a dip is foretold, or multipliers may jump."""
         low, high = self.stable[:-1], self.stable[1:]
         dips = np.where(low, self._dips(self.flip, self.pair), self._dips(self.growth))
-        near = np.maximum(self.growth[:-1], self.growth[1:]) >= SAFE
+        near = np.maximum(self.growth[:-1], self.growth[1:]) >= safe
         found: list[int] = np.flatnonzero((low == high) & near & (jumps | dips)).tolist()
         return found
 
@@ -92,7 +89,10 @@ def with_windows(problem: OrbitProblem, path: Path, points: Sequence[Point]) -> 
         return path, []
     known = _known(path, points)
     jumps = np.array([one.states != other.states for one, other in pairwise(points)], dtype=bool)
-    looked = (_window(problem, path, known, k, bool(jumps[k])) for k in known.suspected(jumps))
+    looked = (
+        _window(problem, path, known, k, bool(jumps[k]))
+        for k in known.suspected(jumps, problem.options.stability.safe)
+    )
     found = [one for one in looked if one is not None]
     if not found:
         return path, []
@@ -123,7 +123,7 @@ def _window(problem: OrbitProblem, path: Path, known: _Known, k: int, jumps: boo
         """Whether one is found, the way divided so often already; `between` is there then."""
         nonlocal between
         alike = [one for one in (*before, low, high, *after) if one.stable == low.stable]
-        length = dip(low, high, alike, times) if times < DIPS else None
+        length = dip(low, high, alike, times) if times < problem.options.stability.dips else None
         if length is None and jumps and times == 0:
             length = 0.5 * (low.length + high.length)
         if length is None:
@@ -134,7 +134,7 @@ def _window(problem: OrbitProblem, path: Path, known: _Known, k: int, jumps: boo
         shot = problem.shot(between.z)
         if shot is None:
             return False
-        there = _seen(length, shot.multipliers, within_unit_circle(shot.multipliers))
+        there = _seen(length, shot.multipliers, within_unit_circle(shot.multipliers, problem.options))
         return (
             there.stable != low.stable
             or inside(before, low, there, [high], times + 1)

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.model.scene import FloatArray
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic import Poll, converged, within_unit_circle, without_end
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import resting_at
@@ -25,21 +26,6 @@ from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.simulation import cycles_from
 from fcm.time_domain.state import State
 from fcm.time_domain.system import System
-
-FREE_CYCLES = (20, 40, 80, 160, 320, 640, 640, 640)  # simulated before each look whether it is steady
-MANY = 640  # from so many on they tell how far a motion ranges, all together: it may linger, and burst out
-MOST_PERIODS = 8  # of the force, after which a steady motion may repeat
-NEAR = 0.1  # distance, relative to the motion, of a simulated state from the steady one that it belongs to
-NEARER = 0.5  # part of its distance after fewer periods to which the motion comes back after more
-AGAIN = 1e-6  # difference of two states, relative to the motion, below which they are the same
-DRIFT = 0.2  # part of the range of cycle amplitudes by which their mean may differ from half to half
-LASTING = 0.5  # part of the spread of cycle amplitudes in the one half that the other must have
-REACHES = (
-    0.03,
-    0.1,
-    0.3,
-)  # distances from a motion, relative to it, at which one of twice its periods is sought
-FAR = 1.0  # distance from it at which it is another
 
 
 class Steady(NamedTuple):
@@ -57,7 +43,9 @@ class Steady(NamedTuple):
     borne: FloatArray  # (contact, 4) as of `borne`
 
 
-def steady(system: System, state: State, poll: Poll = without_end) -> Steady | State:
+def steady(
+    system: System, state: State, poll: Poll = without_end, options: ShootingOptions = SHOOTING
+) -> Steady | State:
     """The steady motion that a simulation from a state comes to; where there is none, the state at its end.
 
     poll is called after every cycle.
@@ -72,31 +60,38 @@ def steady(system: System, state: State, poll: Poll = without_end) -> Steady | S
     """
     ranging: Steady | None = None
     seen = list[Cycle]()
-    for count in FREE_CYCLES:
-        ends, cycles = deque([state], MOST_PERIODS + 1), list[Cycle]()
+    for count in options.steady.cycles:
+        ends, cycles = deque([state], options.steady.periods + 1), list[Cycle]()
         for cycle, end in cycles_from(system, count, state):
             poll()
             ends.append(end)
             cycles.append(cycle)
         state = ends[-1]
-        near = np.inf if _linear(cycles) else NEAR
-        for periods in _candidates(ends):
-            found = _repeating(system, state, periods, near)
+        near = np.inf if _linear(cycles) else options.steady.near
+        for periods in _candidates(ends, options):
+            found = _repeating(system, state, periods, near, options)
             if found is not None:
                 return found
-        if count >= MANY:
-            of_all = _ranging([*seen, *cycles])
+        if count >= options.steady.ranging:
+            of_all = _ranging([*seen, *cycles], options)
             seen = cycles if of_all is None else [*seen, *cycles]
-            ranging = of_all or _ranging(cycles) or ranging
+            ranging = of_all or _ranging(cycles, options) or ranging
     return state if ranging is None else ranging
 
 
-def _candidates(ends: Sequence[State]) -> list[int]:
+def _candidates(ends: Sequence[State], options: ShootingOptions = SHOOTING) -> list[int]:
     """Numbers of periods after which the motion may repeat, by the states at the ends of its last cycles."""
     past = np.array([np.concatenate((end.q, end.velocity)) for end in ends])
     size = np.maximum(np.abs(past).max(axis=0), 1e-300)
     apart = np.abs((past[-1] - past[-2::-1]) / size).max(axis=1)
-    return [1, *(k + 1 for k in range(1, apart.size) if apart[k] < min(NEAR, NEARER * apart[:k].min()))]
+    return [
+        1,
+        *(
+            k + 1
+            for k in range(1, apart.size)
+            if apart[k] < min(options.steady.near, options.steady.nearer * apart[:k].min())
+        ),
+    ]
 
 
 def _linear(cycles: Sequence[Cycle]) -> bool:
@@ -104,17 +99,19 @@ def _linear(cycles: Sequence[Cycle]) -> bool:
     return all(bool((np.ptp(np.asarray(cycle.segments.states), axis=0) == 0).all()) for cycle in cycles)
 
 
-def _repeating(system: System, state: State, periods: int, near: float) -> Steady | None:
+def _repeating(
+    system: System, state: State, periods: int, near: float, options: ShootingOptions = SHOOTING
+) -> Steady | None:
     """The stable motion near a state that repeats after so many periods and not before."""
     x = np.concatenate((state.q, state.velocity, state.friction))
-    shot = _closed(system, x, x, periods)
+    shot = _closed(system, x, x, periods, options)
     if shot is None or np.abs((shot.x - x) / shot.scale)[: 2 * system.modes].max() > near:
         return None
-    if periods > 1 and (before := _shorter(shot)) is not None:
-        shot = _flipped(before, x, periods)
+    if periods > 1 and (before := _shorter(shot, options)) is not None:
+        shot = _flipped(before, x, periods, options)
         if shot is None:
             return None
-    return _of_shot(shot) if within_unit_circle(shot.multipliers) else None
+    return _of_shot(shot) if within_unit_circle(shot.multipliers, options) else None
 
 
 def several(shot: Shot) -> Steady | None:
@@ -133,26 +130,28 @@ def _of_shot(shot: Shot) -> Steady:
     )  # fmt: skip
 
 
-def _closed(system: System, x: FloatArray, member: FloatArray, periods: int) -> Shot | None:
+def _closed(
+    system: System, x: FloatArray, member: FloatArray, periods: int, options: ShootingOptions = SHOOTING
+) -> Shot | None:
     """The motion of so many periods near x; contacts that never slip rest where they do in the member."""
     try:
-        found = converged(Shot(system, x, resting_at(system, member), periods))
+        found = converged(Shot(system, x, resting_at(system, member), periods), options=options)
     except SimulationError:
         return None
     return None if found is None else found[0]
 
 
-def _shorter(shot: Shot) -> Shot | None:
+def _shorter(shot: Shot, options: ShootingOptions = SHOOTING) -> Shot | None:
     """The same motion over fewer periods, if it repeats before."""
     for k in range(1, shot.periods):
         if shot.periods % k == 0:
             part = Shot(shot.system, shot.x, periods=k)
-            if part.residual < AGAIN:
+            if part.residual < options.doubling.closure:
                 return part
     return None
 
 
-def _flipped(once: Shot, x: FloatArray, periods: int) -> Shot | None:
+def _flipped(once: Shot, x: FloatArray, periods: int, options: ShootingOptions = SHOOTING) -> Shot | None:
     """The motion of twice the periods of another, which a simulated state at x is leaving by turns.
 
     Just beyond a flip the simulation leaves so slowly that Newton's method goes back; from further off on the
@@ -162,24 +161,26 @@ def _flipped(once: Shot, x: FloatArray, periods: int) -> Shot | None:
         return None
     way = (x - once.x) / once.scale
     size = float(np.abs(way).max())
-    for reach in REACHES:
-        found = _closed(once.system, once.x + reach / max(size, 1e-300) * way * once.scale, x, periods)
-        if found is not None and _shorter(found) is None:
+    for reach in options.doubling.distances:
+        found = _closed(
+            once.system, once.x + reach / max(size, 1e-300) * way * once.scale, x, periods, options
+        )
+        if found is not None and _shorter(found, options) is None:
             away = np.abs((found.x - once.x) / found.scale)[: 2 * once.system.modes].max()
-            return found if away < FAR else None
+            return found if away < options.steady.other else None
     return None
 
 
-def _ranging(cycles: Sequence[Cycle]) -> Steady | None:
+def _ranging(cycles: Sequence[Cycle], options: ShootingOptions = SHOOTING) -> Steady | None:
     """The motion over cycles that do not repeat, unless their amplitudes still grow or decay."""
     measures = [measure(cycle) for cycle in cycles]
     amplitude = np.array([one.amplitude for one in measures])
     first, second = np.array_split(amplitude, 2)
     drift = np.abs(second.mean(axis=0) - first.mean(axis=0))
-    if (drift > DRIFT * np.ptp(amplitude, axis=0)).any():
+    if (drift > options.approach.drift * np.ptp(amplitude, axis=0)).any():
         return None
     spreads = first.std(axis=0), second.std(axis=0)
-    if (np.minimum(*spreads) < LASTING * np.maximum(*spreads)).any():
+    if (np.minimum(*spreads) < options.steady.lasting * np.maximum(*spreads)).any():
         return None
     start, none = cycles[0], np.zeros(0, dtype=np.complex128)
     system, y = start.system, np.asarray(start.segments.y)[0]

@@ -13,8 +13,9 @@ from fcm.continuation.all_branches import Branches, Follow
 from fcm.model.scene import FloatArray, Scene
 from fcm.scene.modal import UNITS
 from fcm.shooting.force_level import Raised, raised
-from fcm.shooting.harmonic_balance_branches import ACCURACY, converged_balance, passes
-from fcm.shooting.initial_orbits import AS_HIGH, along_balance, first_point, height_of, starts
+from fcm.shooting.harmonic_balance_branches import converged_balance, passes
+from fcm.shooting.initial_orbits import along_balance, first_point, height_of, starts
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.orbit_record import Sample, samples
 from fcm.shooting.periodic import Orbit, Poll, periodic, without_end
 from fcm.shooting.problem import OrbitProblem
@@ -23,10 +24,7 @@ from fcm.shooting.work_budget import Bounded, Doubts
 from fcm.time_domain.errors import SimulationError
 
 Progress = Callable[[float, str], None]
-SPREAD = 7  # motions of a branch that are looked for on the others
 ENDED = (Status.COMPLETE, Status.RETURNED, Status.CLOSED)
-BROKEN = 3  # branches that break off, after which no others are looked for: where contacts rattle, with ten
-# impacts a period and more, unstable motions are countless, and the search for their branches has no end
 
 
 @dataclass
@@ -53,6 +51,7 @@ def trace_orbits(
     max_step: float | None = None,
     start: Orbit | None = None,
     progress: Progress | None = None,
+    options: ShootingOptions = SHOOTING,
 ) -> Branch:
     """Follow the periodic solutions of a scene over its frequency range, stable or not.
 
@@ -70,6 +69,8 @@ def trace_orbits(
         Where to start, at an end of the range; at its lower end, from rest, by default.
     progress : optional
         Called now and then with the fraction of the range that is covered and a text.
+    options : ShootingOptions, optional
+        Tolerances and limits.
 
     Raises
     ------
@@ -87,8 +88,8 @@ def trace_orbits(
     longest = scene.max_step if max_step is None else max_step
     if not longest > 0.0:
         raise SimulationError(f"max_step is {longest:g}; it must be positive")
-    problem, span = OrbitProblem(scene), scene.frequency_range
-    begin = periodic(scene, span[0]) if start is None else start
+    problem, span = OrbitProblem(scene, options=options), scene.frequency_range
+    begin = periodic(scene, span[0], options=options) if start is None else start
     z = first_point(problem, begin)
     said = None if progress is None else lambda fraction: progress(fraction, "")
     forward = z[-1] - span[0] <= span[1] - z[-1]
@@ -119,17 +120,18 @@ def explore(
         options=FollowOptions(scene.max_step),
         along=along,
     )
-    paths = branches(found).paths
-    bounded, lacking, lost = Bounded(poll, most), list[tuple[float, float]](), list[float]()
+    paths, lost = branches(found).paths, list[float]()
+    bounded = Bounded(poll, most, problem.options)
+    search = _Search(problem, branches, bounded, doubts or Doubts())
     if not sought:
-        paths = _with_others(problem, paths, apart, branches, bounded, lacking, doubts or Doubts())
-    if _broken(paths) >= BROKEN:
-        bounded.note(f"{BROKEN} that were followed break off")
+        paths = search.with_others(paths, apart)
+    if search.broken(paths):
+        bounded.note(f"{problem.options.search.broken} that were followed break off")
     if not bounded.given_up:
-        paths = _with(problem, paths, orbits_in_unstable_ranges(problem, paths, poll), branches)
+        paths = search.with_motions(paths, orbits_in_unstable_ranges(problem, paths, poll))
     ends = (end for end in missed if not any((path.parameter == end).any() for path in paths))
     if not bounded.given_up:  # else that is said
-        lost = [omega for omega, height in lacking if not _reaches(problem, paths, omega, height)]
+        lost = [omega for omega, height in search.unreached if not _reaches(problem, paths, omega, height)]
     told = [
         f"no exact motion was found from the stable branch of the balance at {shown(scene, one)}"
         for one in dict.fromkeys(lost)
@@ -140,70 +142,71 @@ def explore(
 def _reaches(problem: OrbitProblem, paths: Sequence[Path], omega: float, height: float) -> bool:
     """Whether a path has motions as high as that beside a frequency [rad/s], which is the balance's."""
     for path in paths:
-        near = path.z[np.abs(path.parameter / omega - 1.0) < ACCURACY]
-        if any(height_of(problem, z) >= AS_HIGH * height for z in near):
+        near = path.z[np.abs(path.parameter / omega - 1.0) < problem.options.balance.error]
+        if any(height_of(problem, z) >= problem.options.start.height * height for z in near):
             return True
     return False
 
 
-def _with_others(
-    problem: OrbitProblem,
-    paths: tuple[Path, ...],
-    apart: bool,
-    branches: Callable[..., Branches],
-    bounded: Bounded,
-    lacking: list[tuple[float, float]],
-    doubts: Doubts,
-) -> tuple[Path, ...]:
-    """Paths, and those of others that the converged balance and the level of the forces lead to.
+@dataclass
+class _Search:
+    """The search for further branches of a problem; unreached: frequencies [rad/s] and amplitudes of the
+    balance, from where it led to no motion as high."""
 
-    The level is not followed where each end and top of that balance leads to a motion as high. What led to
-    none is added to lacking, see `Along`. apart as of `converged_balance`.
-    """
-    scene, poll = problem.scene, bounded.poll
-    high = True
-    for balance in bounded.each(converged_balance(scene, apart, poll)):
-        doubts.take(balance.traced)
-        along = along_balance(problem, balance, bounded.outside)
-        paths, high = _with(problem, paths, along.points, branches), along.alike
-        lacking += along.lacking
-    if high:
+    problem: OrbitProblem
+    branches: Callable[..., Branches]
+    bounded: Bounded
+    doubts: Doubts
+    unreached: list[tuple[float, float]] = field(default_factory=list)
+
+    def with_others(self, paths: tuple[Path, ...], apart: bool) -> tuple[Path, ...]:
+        """Paths, and those of others that the converged balance and the level of the forces lead to.
+
+        The level is not followed where each end and peak of that balance leads to a motion as high. What led
+        to none is added to `unreached`, see `Along`. apart as of `converged_balance`.
+        """
+        problem, bounded, scene = self.problem, self.bounded, self.problem.scene
+        high = True
+        for balance in bounded.each(converged_balance(scene, apart, bounded.poll, problem.options)):
+            self.doubts.take(balance.traced)
+            along = along_balance(problem, balance, bounded.outside)
+            paths, high = self.with_motions(paths, along.points), along.alike
+            self.unreached += along.lacking
+        if high:
+            return paths
+
+        def there(omega: float) -> list[FloatArray]:
+            return [z for path in paths for z in path.z[path.parameter == omega]]
+
+        last = dict[float, Raised]()
+        for one in bounded.each(raised(scene, there, bounded)):
+            paths = self.with_motions(paths, one.motions)
+            last[one.omega] = one
+            if self.broken(paths):
+                return paths
+        for one in (each for each in last.values() if not each.complete):
+            failed = (
+                f"takes more than its share of {bounded.most:.3g} s" if one.over else "cannot be followed"
+            )
+            bounded.note(f"the level of the forces {failed} at {shown(scene, one.omega)}")
         return paths
 
-    def there(omega: float) -> list[FloatArray]:
-        return [z for path in paths for z in path.z[path.parameter == omega]]
+    def with_motions(self, paths: tuple[Path, ...], motions: Iterable[FloatArray]) -> tuple[Path, ...]:
+        """Paths, and those through motions that none of them passes, unless too many break off."""
+        problem = self.problem
+        for z in motions:  # what is passed already is known without being followed again
+            if self.broken(paths):
+                break
+            if not known(paths, [z], problem):
+                more = self.branches([z], known=paths).paths[len(paths) :]
+                fresh = [one for one in more if not known(paths, spread(one, problem.options), problem)]
+                paths += tuple(fresh)
+        return paths
 
-    last = dict[float, Raised]()
-    for one in bounded.each(raised(scene, there, bounded)):
-        paths = _with(problem, paths, one.motions, branches)
-        last[one.omega] = one
-        if _broken(paths) >= BROKEN:
-            return paths
-    for one in (each for each in last.values() if not each.complete):
-        failed = f"takes more than its share of {bounded.most:.3g} s" if one.over else "cannot be followed"
-        bounded.note(f"the level of the forces {failed} at {shown(scene, one.omega)}")
-    return paths
-
-
-def _with(
-    problem: OrbitProblem,
-    paths: tuple[Path, ...],
-    motions: Iterable[FloatArray],
-    branches: Callable[..., Branches],
-) -> tuple[Path, ...]:
-    """Paths, and those through motions that none of them passes, unless too many break off."""
-    for z in motions:  # what is passed already is known without being followed again
-        if _broken(paths) >= BROKEN:
-            break
-        if not known(paths, [z], problem):
-            more = branches([z], known=paths).paths[len(paths) :]
-            paths += tuple(path for path in more if not known(paths, spread(path), problem))
-    return paths
-
-
-def _broken(paths: Sequence[Path]) -> int:
-    """How many paths have come to no end."""
-    return sum(path.status not in ENDED for path in paths)
+    def broken(self, paths: Sequence[Path]) -> bool:
+        """Whether so many paths have come to no end that no more are looked for."""
+        count = sum(path.status not in ENDED for path in paths)
+        return count >= self.problem.options.search.broken
 
 
 def known(paths: Sequence[Path], motions: Sequence[FloatArray], problem: OrbitProblem) -> bool:
@@ -211,9 +214,10 @@ def known(paths: Sequence[Path], motions: Sequence[FloatArray], problem: OrbitPr
     return any(passes(path, z, problem) for path in paths for z in motions)
 
 
-def spread(path: Path) -> list[FloatArray]:
+def spread(path: Path, options: ShootingOptions = SHOOTING) -> list[FloatArray]:
     """Motions of a path far from one another: at a fold one may not be found on another path that has it."""
-    return list(path.z[np.linspace(0.0, len(path.z) - 1.0, SPREAD).astype(np.intp)]) if len(path.z) else []
+    chosen = np.linspace(0.0, len(path.z) - 1.0, options.search.motions)
+    return list(path.z[chosen.astype(np.intp)]) if len(path.z) else []
 
 
 def branch_of(problem: OrbitProblem, path: Path) -> Branch:

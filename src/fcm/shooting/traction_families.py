@@ -11,26 +11,21 @@ Of a stable motion the extent is that of the stable members, which a structure s
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise, product
 
 import numpy as np
 
 from fcm.model.scene import FloatArray, Scene
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic import Poll, converged, within_unit_circle, without_end
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import resting_at
-from fcm.shooting.traction_continuation import SHORTEST, Way, between, moved, residual_of, stuck_in
+from fcm.shooting.traction_continuation import Way, between, moved, residual_of, stuck_in
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.state import State
 from fcm.time_domain.system import System
 from fcm.units import spoken
-
-MOST_TOGETHER = 3  # contacts of which all combinations of directions are followed
-WITHIN = (1e-6, 0.25)  # part of bounds, by which a motion may be beyond: of one contact, of several by lines
-NEAREST = 12  # halvings of the way between two motions of which one is stable
-HALVINGS = 4  # of the way between motions, about the one with the greatest or the least amplitude
-SAME = 1e-6  # relative range of amplitudes below which they are the same
-MOST_TRIED = 500  # motions that are looked for: some contacts have hundreds of sets of those that stick
 
 
 @dataclass(frozen=True)
@@ -51,7 +46,12 @@ class Family:
 
 
 def family(
-    scene: Scene, frequency: float, state: State, periods: int = 1, poll: Poll = without_end
+    scene: Scene,
+    frequency: float,
+    state: State,
+    periods: int = 1,
+    poll: Poll = without_end,
+    options: ShootingOptions = SHOOTING,
 ) -> Family | None:
     """The family that a periodic motion belongs to; None if no contact of it always sticks.
 
@@ -85,7 +85,7 @@ def family(
     """
     system = System(scene, frequency)
     x = np.concatenate((state.q, state.velocity, state.friction))
-    found = converged(Shot(system, x, resting_at(system, x), periods), poll=poll)
+    found = converged(Shot(system, x, resting_at(system, x), periods), poll=poll, options=options)
     if found is None:
         at = spoken(frequency, scene.frequency_unit)
         raise SimulationError(f"no periodic motion is found at {at} from this state")
@@ -93,8 +93,8 @@ def family(
     contacts = stuck_in(begun)
     if not contacts:
         return None
-    shots, complete = _members(begun, poll)
-    shown = [shot for shot in shots if _stable(shot)] if _stable(begun) else shots
+    shots, complete = _members(begun, poll, options)
+    shown = [shot for shot in shots if _stable(shot, options)] if _stable(begun, options) else shots
     amplitude = np.array([shot.amplitude for shot in shown])
     friction = np.array([residual_of(shot)[contacts] for shot in shots if contacts == stuck_in(shot)])
     return Family(
@@ -103,27 +103,27 @@ def family(
     )  # fmt: skip
 
 
-def _members(begun: Shot, poll: Poll) -> tuple[list[Shot], bool]:
+def _members(begun: Shot, poll: Poll, options: ShootingOptions = SHOOTING) -> tuple[list[Shot], bool]:
     """Motions of the family up to its ends, and whether these were reached on every way."""
     shots, waiting, seen, complete = [begun], [begun], list[_Seen](), True
-    left = MOST_TRIED
+    left = options.family.tried
     while waiting:
         first = waiting.pop(0)
         contacts = stuck_in(first)
         if not contacts or any(one.has(contacts, first) for one in seen):
             continue
         found = [first]
-        for direction in _directions(len(contacts)):
-            ways = [Way(first, contacts, sign * direction, poll) for sign in (-1.0, 1.0)]
-            behind, ahead = (list(way.shots(min(left, MOST_TRIED // 5))) for way in ways)
+        for direction in _directions(len(contacts), options):
+            ways = [Way(first, contacts, sign * direction, poll, options) for sign in (-1.0, 1.0)]
+            behind, ahead = (list(way.shots(min(left, options.family.tried // 5))) for way in ways)
             left -= sum(way.tried for way in ways)
             complete &= all(way.ended for way in ways)
             line = [*reversed(behind), first, *ahead]
-            found += [*line, *_finer(line, poll), *_last_stable(line, poll)]
+            found += [*line, *_finer(line, poll, options), *_last_stable(line, poll, options)]
             beyond = [way.beyond for way in ways if way.beyond is not None]
             shots += beyond
             waiting += beyond
-        seen.append(_Seen(contacts, np.array([residual_of(shot) for shot in found])))
+        seen.append(_Seen(contacts, np.array([residual_of(shot) for shot in found]), options))
         shots += found
     return shots, complete
 
@@ -131,7 +131,8 @@ def _members(begun: Shot, poll: Poll) -> tuple[list[Shot], bool]:
 class _Seen:
     """What has been followed with the same contacts that stick, by their residual friction."""
 
-    def __init__(self, contacts: list[int], residual: FloatArray) -> None:
+    def __init__(self, contacts: list[int], residual: FloatArray, options: ShootingOptions) -> None:
+        self.options = options
         self.contacts = contacts
         self.low, self.high = residual[:, contacts].min(axis=0), residual[:, contacts].max(axis=0)
 
@@ -139,18 +140,19 @@ class _Seen:
         """Whether a motion lies within; another part may be beyond a gap in which other contacts stick."""
         if contacts != self.contacts:
             return False
-        residual, room = residual_of(shot)[contacts], WITHIN[len(contacts) > 1] * (self.high - self.low)
+        residual, within = residual_of(shot)[contacts], self.options.family.within[len(contacts) > 1]
+        room = within * (self.high - self.low)
         return bool(((residual >= self.low - room) & (residual <= self.high + room)).all())
 
 
-def _finer(line: list[Shot], poll: Poll) -> list[Shot]:
+def _finer(line: list[Shot], poll: Poll, options: ShootingOptions = SHOOTING) -> list[Shot]:
     """More motions beside those, within a line, at which an amplitude is greatest or least.
 
     Where it is so at an end, it may be more so beside that.
     """
     amplitude = np.array([shot.amplitude for shot in line])
-    flat = np.ptp(amplitude, axis=0) <= SAME * amplitude.max(axis=0)
-    middles, last = _Middles(poll), len(line) - 1
+    flat = np.ptp(amplitude, axis=0) <= options.family.same * amplitude.max(axis=0)
+    middles, last = _Middles(poll, options), len(line) - 1
     for sense in (1.0, -1.0):
         for dof in np.flatnonzero(~flat).tolist():
             k = int(np.argmax(sense * amplitude[:, dof]))
@@ -167,15 +169,15 @@ def _finer(line: list[Shot], poll: Poll) -> list[Shot]:
 class _Middles:
     """The motions between two, each looked for once: several amplitudes are often extreme together."""
 
-    def __init__(self, poll: Poll) -> None:
-        self.poll = poll
+    def __init__(self, poll: Poll, options: ShootingOptions) -> None:
+        self.poll, self.options = poll, options
         self.known: dict[tuple[int, int], tuple[Shot, Shot, Shot | None]] = {}
 
     def of(self, one: Shot, other: Shot) -> Shot | None:
         """That of two; None where it is not found."""
         key = min(id(one), id(other)), max(id(one), id(other))
         if key not in self.known:  # which keeps both, and with them their numbers
-            self.known[key] = one, other, between(one, other, self.poll)
+            self.known[key] = one, other, between(one, other, self.poll, self.options)
         return self.known[key][2]
 
     def found(self) -> list[Shot]:
@@ -183,29 +185,29 @@ class _Middles:
         return [middle for _, _, middle in self.known.values() if middle is not None]
 
 
-def _last_stable(line: list[Shot], poll: Poll) -> list[Shot]:
+def _last_stable(line: list[Shot], poll: Poll, options: ShootingOptions = SHOOTING) -> list[Shot]:
     """Motions ever nearer to where, within a line, stability is lost; those behind that are left out."""
     added = list[Shot]()
     for pair in pairwise(line):
-        if _stable(pair[0]) == _stable(pair[1]):
+        if _stable(pair[0], options) == _stable(pair[1], options):
             continue
-        inner, outer = sorted(pair, key=_stable, reverse=True)
-        for _ in range(NEAREST):
-            middle = between(inner, outer, poll)
+        inner, outer = sorted(pair, key=partial(_stable, options=options), reverse=True)
+        for _ in range(options.family.halvings_to_stable):
+            middle = between(inner, outer, poll, options)
             if middle is None:
                 break
-            inner, outer = (middle, outer) if _stable(middle) else (inner, middle)
+            inner, outer = (middle, outer) if _stable(middle, options) else (inner, middle)
         added.append(inner)
     return added
 
 
-def _stable(shot: Shot) -> bool:
-    return within_unit_circle(shot.multipliers)
+def _stable(shot: Shot, options: ShootingOptions = SHOOTING) -> bool:
+    return within_unit_circle(shot.multipliers, options)
 
 
 def _about(near: list[Shot], sense: float, dof: int, middles: _Middles) -> None:
     """Look ever nearer to the greatest, or least, amplitude of a degree of freedom among three motions."""
-    for _ in range(HALVINGS):
+    for _ in range(middles.options.family.halvings_to_extreme):
         one, other = middles.of(near[0], near[1]), middles.of(near[1], near[2])
         if one is None or other is None:
             break
@@ -214,17 +216,19 @@ def _about(near: list[Shot], sense: float, dof: int, middles: _Middles) -> None:
         near = five[top - 1 : top + 2]
 
 
-def _directions(count: int) -> list[FloatArray]:
+def _directions(count: int, options: ShootingOptions = SHOOTING) -> list[FloatArray]:
     """In which the family is followed, either way: each contact alone, and all together."""
     alone = list(np.eye(count))
     if count == 1:
         return alone
-    if count > MOST_TOGETHER:
+    if count > options.family.directions:
         return [*alone, np.ones(count)]
     return [*alone, *(np.array((1.0, *signs)) for signs in product((1.0, -1.0), repeat=count - 1))]
 
 
-def chosen(shot: Shot, wanted: FloatArray, poll: Poll = without_end) -> Shot | None:
+def chosen(
+    shot: Shot, wanted: FloatArray, poll: Poll = without_end, options: ShootingOptions = SHOOTING
+) -> Shot | None:
     """The member that a scene chooses of the family that a motion belongs to, in as many steps as it takes.
 
     Parameters
@@ -236,9 +240,9 @@ def chosen(shot: Shot, wanted: FloatArray, poll: Poll = without_end) -> Shot | N
     """
     begin, end = -residual_of(shot), shot.system.k_u * wanted
     done, share = 0.0, 1.0
-    while done < 1.0 and share > SHORTEST:
+    while done < 1.0 and share > options.family.shortest:
         reach = min(done + share, 1.0)
-        new = moved(shot, begin + reach * (end - begin), poll=poll)
+        new = moved(shot, begin + reach * (end - begin), poll=poll, options=options)
         if new is None:
             share *= 0.25
         else:

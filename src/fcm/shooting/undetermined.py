@@ -5,19 +5,18 @@ from __future__ import annotations
 import numpy as np
 
 from fcm.model.scene import Scene
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic import Orbit
 from fcm.shooting.residual import Shot
 from fcm.units import spoken
 
-BEYOND = 1e3  # times the frequency of the highest mode, where what a period does is near to rounding
 
-
-def not_determined(orbit: Orbit) -> str:
+def not_determined(orbit: Orbit, options: ShootingOptions = SHOOTING) -> str:
     """That a solution is not determined, and why."""
     unit = orbit.scene.frequency_unit
     where = f"the solution at {spoken(orbit.frequency, unit)} to start from is not determined"
     ratio = orbit.frequency / float(orbit.scene.modal.frequency.max(initial=0.0) or np.inf)
-    if ratio > BEYOND:
+    if ratio > options.search.rounding:
         return (
             f"{where}: that is {ratio:.1g} times the frequency of the highest mode, which hardly moves, and "
             "loses nothing, in one period of the force; take a lower frequency"

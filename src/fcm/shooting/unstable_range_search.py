@@ -20,8 +20,6 @@ from fcm.stability.unstable_ranges import unstable_stretches
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.system import System
 
-LOOKS = 3  # stretches of the frequency in whose middle the motion is simulated, the widest first
-
 
 def orbits_in_unstable_ranges(
     problem: OrbitProblem, paths: Sequence[Path], poll: Poll
@@ -35,9 +33,9 @@ def orbits_in_unstable_ranges(
     if not (scene.modal.damping > 0.0).all():
         return
     parts = [(path.parameter, np.array([_stable(problem, z) for z in path.z])) for path in paths]
-    for low, high in unstable_stretches(parts, scene.frequency_range)[:LOOKS]:
+    for low, high in unstable_stretches(parts, scene.frequency_range)[: problem.options.stability.ranges]:
         try:
-            orbit = approached(System(scene, 0.5 * (low + high)), poll)
+            orbit = approached(System(scene, 0.5 * (low + high)), poll, problem.options)
             if orbit.stable:
                 yield first_point(problem, orbit, poll)
         except SimulationError:  # it does not become periodic, or is not determined

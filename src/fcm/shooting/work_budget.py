@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic import Poll
 
 if TYPE_CHECKING:
     from fcm.branches.trace import Traced
 
 Found = TypeVar("Found")
-SELDOM = 0.05  # [s] between two looks at the processor time, which takes long to tell on some machines
 
 
 @dataclass
@@ -41,7 +41,8 @@ class Bounded:
     given_up : why there may be more branches than those, empty if all was sought.
     """
 
-    def __init__(self, outside: Poll, most: float) -> None:
+    def __init__(self, outside: Poll, most: float, options: ShootingOptions = SHOOTING) -> None:
+        self.options = options
         self.outside, self.most, self.given_up = outside, most, list[str]()
         self._begin = self._ask = 0.0
         self._end, self._left = np.inf, most
@@ -54,7 +55,7 @@ class Bounded:
         if self._end < np.inf and time.monotonic() > self._ask:
             if time.process_time() > self._end:
                 raise TooLongError
-            self._ask = time.monotonic() + SELDOM
+            self._ask = time.monotonic() + self.options.search.time
 
     def each(self, finds: Iterator[Found]) -> Iterator[Found]:
         """One after the other; what is done with them between takes nothing of their time."""
