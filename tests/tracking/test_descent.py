@@ -8,7 +8,7 @@ import pytest
 from fcm.cli.track import as_table
 from fcm.results.tracked import Optimal
 from fcm.tracking.minimax import Valley, downhill
-from fcm.tracking.options import DESCENT
+from fcm.tracking.options import DESCENT, SEARCH, TRACKING
 from fcm.tracking.peak_envelope import Height, least
 from fcm.tracking.trials import by_trials
 
@@ -44,7 +44,7 @@ def test_the_way_down_ends_where_a_higher_peak_appears_that_was_not_followed():
 class Tried:
     """Responses to a number from 0 to 1, some without a peak, in the order in which they are looked at."""
 
-    span = (0.0, 1.0)
+    span, options = (0.0, 1.0), SEARCH
 
     def __init__(self, *heights):
         self.heights, self.seen = list(heights), {}
@@ -82,7 +82,7 @@ class Straight:
 
 def test_the_least_beside_a_gap_between_pieces():
     """In the gap nothing is known: its heights were infinite, and numpy warned of their differences."""
-    way = SimpleNamespace(span=(0.0, 1.0))
+    way = SimpleNamespace(span=(0.0, 1.0), options=TRACKING)
     found = least(way, [Straight(0.0, 0.25, -1.0), Straight(0.5, 1.0, 1.0)])
     assert found.s == pytest.approx(0.25, abs=1e-9) and found.value == pytest.approx(1.75, abs=1e-9)
 

@@ -11,10 +11,10 @@ from fcm.harmonic_balance.reported_quantities import reported
 from fcm.harmonic_balance.system import System
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
-from fcm.tracking import curves, nonsmooth_continuation
+from fcm.tracking import nonsmooth_continuation
 from fcm.tracking.curves import tracks
 from fcm.tracking.extended_system import Condition, Kind
-from fcm.tracking.options import PIECES
+from fcm.tracking.options import TRACKING
 from fcm.tracking.parameter_line import along
 from fcm.tracking.starts import moved
 from fcm.tracking.tracked_point import Ending, Way
@@ -31,10 +31,13 @@ def scene():
 
 def followed(scene, what, span):
     """Curves from three values of the level."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(curves, "STARTS", 3)
-        line = along(number_of(scene, "level"))
-        return tracks(System(scene, (1, 2, 3)), line, span, [what]).curves
+    return tracks(levels(scene, span, starts=3), [what]).curves
+
+
+def levels(scene, span, starts):
+    """All curves over the level, from so many values of it."""
+    options = replace(TRACKING, curves=replace(TRACKING.curves, starts=starts))
+    return Way(System(scene, (1, 2, 3)), along(number_of(scene, "level")), span, options=options)
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +84,8 @@ def test_a_curve_goes_on_where_the_response_is_an_isolated_point(scene):
     """Its peak and its trough meet there, and its folds, too: the response has no one direction."""
     span, isolated = (0.6, 0.68), 0
     narrow = replace(scene, frequency_range=(1.45, 1.56))
-    few = replace(PIECES, step=replace(PIECES.step, most=25))
+    pieces = TRACKING.pieces
+    few = replace(TRACKING, pieces=replace(pieces, step=replace(pieces.step, most=25)))
     way = Way(System(narrow, (1, 2, 3)), along(number_of(scene, "level")), span, options=few)
     made = followed(narrow, Condition(Kind.PEAK, 2), span)
     for one, (i, _) in [(curve, turn) for curve in made for turn in curve.turns()]:
@@ -136,10 +140,7 @@ def test_a_peak_at_which_no_curve_begins_is_told():
         load_scene(Path(__file__).parents[1] / "harmonic_balance" / "scenes" / "sub.toml"),
         (0.7, 1.3),
     )
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(curves, "STARTS", 2)
-        line = along(number_of(other, "level"))
-        made = tracks(System(other, (1, 2, 3)), line, span, [Condition(Kind.PEAK, 0)])
+    made = tracks(levels(other, span, starts=2), [Condition(Kind.PEAK, 0)])
     assert made.lost and made.curves
     for level in span:
         told = [z[-2] for _, z in made.lost if z[-1] == level]

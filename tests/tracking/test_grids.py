@@ -50,7 +50,7 @@ def frequencies(scene, key, value, mark):
 def grid(scene, what, key, span):
     """Values of the number at which curves were followed through, and their frequencies there."""
     system, line = System(scene, (1,)), along(number_of(scene, key))
-    found = tracks(system, line, span, conditions_of(scene, what))
+    found = tracks(Way(system, line, span), conditions_of(scene, what))
     assert not found.problems and all(curve.whole for curve in found.curves)
     for value in np.linspace(*span, 13)[::3]:
         there = [curve.frequency[np.abs(curve.s - value) < 1e-9] for curve in found.curves]
@@ -157,7 +157,7 @@ def test_an_isolated_branch_is_between_the_turns_that_are_told():
     scene = gap5()
     gap, value = number_of(scene, "contact.c.gap"), 3.5
     way = Way(System(scene, (1, 3)), along(gap), (3.0, 4.0), (value,), 0.05)
-    curves = tracks(way.system, way.line, way.span, [Condition(Kind.FOLD)], (value,)).curves
+    curves = tracks(way, [Condition(Kind.FOLD)], (value,)).curves
     turns = [(kind, curve.s[i]) for curve in curves for i, kind in curve.turns()]
     assert [kind for kind, _ in turns] == ["isola", "isola"]
     assert min(s for _, s in turns) < value < max(s for _, s in turns)

@@ -13,6 +13,7 @@ from fcm.tracking import extended_system
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.kinks import Circle
 from fcm.tracking.nonsmooth_continuation import Pieces, land
+from fcm.tracking.options import TRACKING
 from fcm.tracking.parameter_line import along
 from fcm.tracking.peak_check import is_top
 from fcm.tracking.starts import moved, special_points
@@ -39,7 +40,7 @@ def spot(way):
 class Plane(SimpleNamespace):
     """All solutions are those with z_2 = 0, and what is special is z_1; aside, near its zero, nothing is."""
 
-    scale = np.ones(3)
+    options, scale = TRACKING, np.ones(3)
 
     def surface(self, z):
         if abs(z[1]) < self.blind * RADIUS < abs(z[0]):

@@ -26,9 +26,10 @@ from fcm.tracking.curve import Track
 from fcm.tracking.curves import tracks
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.lowest_peak import Lowest, Search
+from fcm.tracking.options import TRACKING
 from fcm.tracking.parameter_line import along
 from fcm.tracking.peak_envelope import Height, Least
-from fcm.tracking.tracked_point import Ending, Spot
+from fcm.tracking.tracked_point import Ending, Spot, Way
 
 from ..interrupted import interrupted_beyond
 
@@ -165,7 +166,7 @@ def test_an_interrupted_run_goes_on_to_the_same_curves(scene, folds, tmp_path):
 def test_the_window_in_the_level_is_the_one_in_the_preload(scene, folds):
     """Twice the forces with twice the preload is twice the motion: levels are 5 / n_0."""
     system, line = System(scene, (1,)), along(number_of(scene, "level"))
-    levels = tracks(system, line, (0.55, 2.5), [Condition(Kind.FOLD)]).curves
+    levels = tracks(Way(system, line, (0.55, 2.5)), [Condition(Kind.FOLD)]).curves
     assert all(curve.whole for curve in levels)
     turns = np.sort([5.0 / curve.s[i] for curve in levels for i, _ in curve.turns()])
     expected = [one["number"] for curve in folds.curves for one in curve.summary("rad/s")["turns"]]
@@ -316,7 +317,7 @@ class FallsAndEnds(Search):
 
     def __init__(self):
         self.system, self.span, self.curves = SimpleNamespace(harmonics=(1,)), (1.0, 9.0), []
-        self.seen, self.way = {}, SimpleNamespace(span=self.span)
+        self.seen, self.way = {}, SimpleNamespace(span=self.span, options=TRACKING)
 
     def best(self):
         return Least(3.0, 1.3, (), "end") if "lower" in self.curves else Least(3.0, 1.8, (), "corner")
@@ -357,7 +358,7 @@ class Parted(Search):
 
     def __init__(self, between):
         self.system, self.span, self.between = SimpleNamespace(harmonics=(1,)), (1.0, 9.0), between
-        self.way, self.curves = SimpleNamespace(span=self.span), []
+        self.way, self.curves = SimpleNamespace(span=self.span, options=TRACKING), []
         self.seen, self.visited = {}, set()
 
     def lift(self, known):

@@ -70,8 +70,8 @@ class TrackedWork:
     def _one(self, scene: Scene, report: Report) -> Followed:
         system, line, once = System(scene, self.harmonics), along(self.number), _Once(report)
         shown = partial(report, text=self.number.key)
-        found = tracks(system, line, self.span, conditions_of(scene, self.what), (), shown, once)
         way = Way(system, line, self.span, (), scene.max_step)
+        found = tracks(way, conditions_of(scene, self.what), (), shown, once)
         followed = Followed([], list(found.problems), list(found.unsure))
         followed.problems.extend(_lost(scene, condition, z) for condition, z in found.lost)
         stopped = found.interrupted

@@ -12,33 +12,28 @@ from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
 from fcm.tracking.extended_system import Condition, Kind, Tracked
 from fcm.tracking.onset_functions import kinds_of, onset
+from fcm.tracking.options import TRACKING, TrackingOptions
 from fcm.tracking.parameter_line import Varied
-
-STEPS = 20  # of Newton's method, and of the secant
-EXACT = 1e-13  # a step that ends them
-FIRST = 1e-6  # step of the secant
-FURTHEST = 0.1  # along a corner that what is special of it is sought
-BESIDE = 1e-13  # of the extent of the unknowns: how far from a corner its two sides are looked at
 
 
 class Corner:
     """A corner of a tracked point: the problem with the onset's equation, and what is on its sides."""
 
     def __init__(self, tracked: Tracked, at: Condition) -> None:
-        self.of, self.at = tracked, at
-        self.problem = Tracked(tracked.varied, at, tracked.span)
+        self.of, self.at, self.options = tracked, at, tracked.options.corner
+        self.problem = Tracked(tracked.varied, at, tracked.span, tracked.options)
 
     def reach(self, z: FloatArray, offset: float = 0.0) -> tuple[FloatArray, FloatArray] | None:
         """The nearest point where the function is the offset, and the curve's direction there, scaled."""
         self.problem.offset = offset
         scale = np.asarray(self.problem.scale)
         z = np.array(z)
-        for _ in range(STEPS):
+        for _ in range(self.options.steps):
             self.problem.evaluate(z)
             matrix = np.asarray(self.problem.jacobian) * scale / scale[:-1, None]
             step = np.linalg.lstsq(matrix, -np.asarray(self.problem.residual) / scale[:-1], rcond=None)[0]
             z += scale * step
-            if np.linalg.norm(step) < EXACT:
+            if np.linalg.norm(step) < self.options.tolerance:
                 return z, np.linalg.svd(matrix)[2][-1]
         return None
 
@@ -54,16 +49,16 @@ class Corner:
         newton = Newton(self.problem)
         newton.scale[:] = scale
         length, last, worth = 0.0, 0.0, 0.0
-        for count in range(STEPS):
+        for count in range(self.options.steps):
             newton.z[:], newton.row[:] = start + length * scale * direction, direction
-            if abs(length) > FURTHEST or not newton.correct(1e-3):
+            if abs(length) > self.options.furthest or not newton.correct(1e-3):
                 return None
             at = np.array(newton.z)
             before, worth = worth, self.special(at) if side is None else float(self.sides(at)[side])
-            if count and (worth == before or abs(length - last) < EXACT):
+            if count and (worth == before or abs(length - last) < self.options.tolerance):
                 return at
             slope = (worth - before) / (length - last) if count else 0.0
-            last, length = length, length - worth / slope if count else FIRST
+            last, length = length, length - worth / slope if count else self.options.first
         return at
 
     def special(self, z: FloatArray, aside: float = 0.0) -> float:
@@ -80,7 +75,8 @@ class Corner:
 
     def sides(self, z: FloatArray) -> FloatArray:
         """What is special before and after the corner, (2,)."""
-        return np.array([self.special(z, -BESIDE), self.special(z, BESIDE)])
+        side = self.options.side
+        return np.array([self.special(z, -side), self.special(z, side)])
 
     def holds(self, z: FloatArray) -> bool:
         """Whether the corner is what is tracked."""
@@ -94,7 +90,9 @@ class Corner:
         return slope / np.linalg.norm(slope)  # type: ignore[no-any-return]
 
 
-def nearest(varied: Varied, z: FloatArray, scale: FloatArray) -> list[tuple[float, Condition]]:
+def nearest(
+    varied: Varied, z: FloatArray, scale: FloatArray, options: TrackingOptions = TRACKING
+) -> list[tuple[float, Condition]]:
     """The onsets by their distance from z in a scale of its numbers, the nearest first."""
     varied.put(float(z[-1]))
     width = varied.balance.width
@@ -102,7 +100,7 @@ def nearest(varied: Varied, z: FloatArray, scale: FloatArray) -> list[tuple[floa
     for c, law in enumerate(varied.balance.laws):
         block = slice(c * width, (c + 1) * width)
         for kind in kinds_of(law):
-            one = onset(law, np.ascontiguousarray(z[block]), kind, varied.harmonics)
+            one = onset(law, np.ascontiguousarray(z[block]), kind, varied.harmonics, options)
             slope = float(np.linalg.norm(one.slope * scale[block]))
             if slope > 0.0:
                 found.append((abs(one.value) / slope, Condition(Kind.ONSET, c, kind)))

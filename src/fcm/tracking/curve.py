@@ -10,10 +10,9 @@ import numpy.typing as npt
 from fcm.model.scene import FloatArray
 from fcm.tracking.extended_system import Condition, Kind, Tracked
 from fcm.tracking.nonsmooth_continuation import follow_special_point
+from fcm.tracking.options import TRACKING
 from fcm.tracking.peak_check import is_top
 from fcm.tracking.tracked_point import Ending, Spot, Way
-
-CUSP = 1e-3  # of the frequency's rate beside a turn: at the turn it is less where it turns back, too
 
 BoolArray = npt.NDArray[np.bool_]
 
@@ -35,13 +34,13 @@ class Track:
         """Whether there is no more of it."""
         return all(ending.whole for ending in self.endings)
 
-    def turns(self) -> list[tuple[int, str]]:
-        """Points at which the number turns back, and what they are."""
+    def turns(self, cusp: float = TRACKING.curves.cusp) -> list[tuple[int, str]]:
+        """Points at which the number turns back, and what they are; cusp as of `CurveOptions`."""
         other = "peak and trough" if self.condition.kind is Kind.PEAK else "extreme"
         fold, turns = self.condition.kind is Kind.FOLD, [i for i, spot in enumerate(self.spots) if spot.turn]
-        return [(i, self._turn_of_fold(i) if fold else other) for i in turns]
+        return [(i, self._turn_of_fold(i, cusp) if fold else other) for i in turns]
 
-    def _turn_of_fold(self, i: int) -> str:
+    def _turn_of_fold(self, i: int, cusp: float) -> str:
         """A cusp where two folds meet with one tangent; an isola where the frequency passes on.
 
         Along a curve of folds w . R_omega omega' + w . R_s s' = 0, with w the adjoint null vector. At a cusp
@@ -51,7 +50,7 @@ class Track:
         beside = [self.spots[j].direction[-2] for j in (i - 1, i + 1) if 0 <= j < len(self.spots)]
         if self.spots[i].switch and len(beside) == 2:
             return "cusp" if beside[0] * beside[1] < 0.0 else "isola"
-        still = abs(self.spots[i].direction[-2]) < CUSP * max(map(abs, beside), default=0.0)
+        still = abs(self.spots[i].direction[-2]) < cusp * max(map(abs, beside), default=0.0)
         return "cusp" if still else "isola"
 
 

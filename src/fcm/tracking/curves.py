@@ -10,20 +10,14 @@ from typing import Protocol, TypeVar
 import numpy as np
 
 from fcm.continuation.follow import Progress
-from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.tracking.curve import Track, whole
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.known_curves import passed
 from fcm.tracking.nonsmooth_continuation import land
-from fcm.tracking.parameter_line import Line
 from fcm.tracking.peak_check import is_top
 from fcm.tracking.starts import moved, special_points
 from fcm.tracking.tracked_point import Spot, Way
-
-STARTS = 13  # values of the number, evenly spaced, at which ordinary curves are traced
-SAME, NEAR = 1e-9, 1e-3  # of the span, of a frequency: a point nearer to a curve is on it
-MOST_PEAKS = 3  # curves of peaks along which onsets are looked for
 
 T = TypeVar("T")
 
@@ -51,9 +45,7 @@ class Tracks:
 
 
 def tracks(
-    system: System,
-    line: Line,
-    span: tuple[float, float],
+    way: Way,
     conditions: list[Condition],
     starts: tuple[float, ...] = (),
     progress: Progress | None = None,
@@ -62,10 +54,13 @@ def tracks(
     """The curves of conditions, from ordinary curves at some values of s, and at more of them.
 
     An onset that comes and goes between two such values is first met by the highest peak. Interrupted, it
-    returns the curves that are finished. once takes each costly step.
+    returns the curves that are finished. once takes each costly step. Of the way the system, the line, the
+    span and the options count: the step is the scene's, and all values of s but the ends are stations.
     """
-    values = sorted({*np.linspace(*span, STARTS).tolist(), *starts})
-    way = Way(system, line, span, tuple(values[1:-1]), system.scene.max_step)
+    values = sorted({*np.linspace(*way.span, way.options.curves.starts).tolist(), *starts})
+    way = Way(
+        way.system, way.line, way.span, tuple(values[1:-1]), way.system.scene.max_step, options=way.options
+    )
     made, stopped = _Made(way, once), False
     try:
         _follow_all(made, values, conditions, progress)
@@ -84,7 +79,7 @@ def _follow_all(
         if progress is not None:
             progress(number / len(values))
         there = moved(system, line.scene(system.scene, value))
-        special = made.once(partial(special_points, there, conditions))
+        special = made.once(partial(special_points, there, conditions, made.way.options))
         if special.wrong:
             made.problems.append(f"at {value:.6g}: {special.wrong}")
         made.unsure += [(value, omega) for omega in special.unsure]
@@ -124,8 +119,8 @@ class _Made:
     def _comes_to(self, curve: Track, condition: Condition, z: FloatArray) -> bool:
         """Whether a curve has a point at the same value of the number, and nearly the same frequency."""
         low, high = self.way.span
-        there = np.abs(curve.s - z[-1]) < SAME * (high - low)
-        near = np.abs(curve.frequency[there] / z[-2] - 1.0) < NEAR
+        there = np.abs(curve.s - z[-1]) < self.way.options.curves.same * (high - low)
+        near = np.abs(curve.frequency[there] / z[-2] - 1.0) < self.way.options.curves.frequency
         return curve.condition == condition and bool(near.any())
 
     def _is_top(self, condition: Condition, spot: Spot) -> bool:
@@ -141,10 +136,10 @@ def _met_by_peaks(way: Way, onsets: list[Condition]) -> list[tuple[Condition, Fl
     """Points of onsets next to which the peak of the degree of freedom that moves most comes."""
     middle = moved(way.system, way.line.scene(way.system.scene, 0.5 * sum(way.span)))
     peaks = [Condition(Kind.PEAK, d) for d in range(len(middle.scene.modal.dofs))]
-    points = special_points(middle, peaks).points
+    points = special_points(middle, peaks, way.options).points
     problem = way.tracked(onsets[0])
     made = _Made(way)
-    for condition, z in points[:MOST_PEAKS]:
+    for condition, z in points[: way.options.curves.peaks]:
         made.from_points([(condition, np.append(z, 0.5 * sum(way.span)))])
     found = []
     for spots in (curve.spots for curve in made.curves):

@@ -18,12 +18,10 @@ from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.tracking.curve import Track
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.nonsmooth_continuation import follow_special_point, land
+from fcm.tracking.options import TRACKING, TrackingOptions
 from fcm.tracking.peak_check import is_top
 from fcm.tracking.starts import moved
 from fcm.tracking.tracked_point import Ending, Spot, Way
-
-BEFORE = 3  # points before a turn from which the turn with more harmonics is sought
-BEYOND = 3.0  # times the way of the number from there to the turn, up to which it is sought
 
 
 class Change(NamedTuple):
@@ -68,7 +66,7 @@ def places(track: Track) -> dict[int, str]:
 def change(way: Way, track: Track, i: int) -> Change:
     """At one point: to that of the partner."""
     condition, here = track.condition, _Found(way, track.spots[i])
-    value, number, begin = here.value(condition), float(here.spot.z[-1]), beginning(track, i)
+    value, number, begin = here.value(condition), float(here.spot.z[-1]), beginning(track, i, way.options)
     start = here if begin is None else _Found(way, track.spots[begin])
     more = _more(here)
     if more == here.way.system.harmonics:
@@ -81,12 +79,12 @@ def change(way: Way, track: Track, i: int) -> Change:
     return Change(off, abs(float(there.spot.z[-1]) - number))
 
 
-def beginning(track: Track, i: int) -> int | None:
+def beginning(track: Track, i: int, options: TrackingOptions = TRACKING) -> int | None:
     """Of a turn the point from which it is sought, some before it and not beyond another turn."""
     if not track.spots[i].turn:
         return None
     j = i
-    while j > max(0, i - BEFORE) and not track.spots[j - 1].turn:
+    while j > max(0, i - options.error.points) and not track.spots[j - 1].turn:
         j -= 1
     return j
 
@@ -115,7 +113,11 @@ def _landed(wider: Way, condition: Condition, start: _Found, turn: Spot, turns: 
     s, rise = float(start.spot.z[-1]), float(turn.z[-1] - start.spot.z[-1])
     if rise == 0.0:
         return None
-    near = replace(wider, span=(min(s, s + BEYOND * rise), max(s, s + BEYOND * rise)), peaks_only=True)
+    near = replace(
+        wider,
+        span=(min(s, s + wider.options.error.beyond * rise), max(s, s + wider.options.error.beyond * rise)),
+        peaks_only=True,
+    )
     spots, _ = follow_special_point(near, condition, beside, rise > 0.0)
     if not spots or not spots[-1].turn:
         return None

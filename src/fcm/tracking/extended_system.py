@@ -21,13 +21,8 @@ from fcm.continuation.problem import Problem
 from fcm.harmonic_balance.dense_jacobian import Amplitude, jacobian_of
 from fcm.model.scene import FloatArray
 from fcm.tracking.onset_functions import onset, values
+from fcm.tracking.options import TRACKING, TrackingOptions
 from fcm.tracking.parameter_line import Varied
-
-SMALLEST = 1e-150  # amplitudes below this count as this in a division
-ASIDE = 1e-5  # of the response curve's extent: how far along it the Jacobian is evaluated for a difference
-LEAST_ASIDE = 1e-9  # and at least, where a corner is near
-NEARER = 0.05  # of the way to a corner: beside it derivatives begin like a root, and change again close by
-ASKEW = 1e3  # times as long as the row: a tangent that is nearly across it
 
 
 class Kind(Enum):
@@ -66,7 +61,10 @@ class Evaluation(NamedTuple):
 class Tracked(Problem):
     """See the module; y, s are the numbers z (unknown + 2,) of a problem, s the last."""
 
-    def __init__(self, varied: Varied, condition: Condition, span: float) -> None:
+    def __init__(
+        self, varied: Varied, condition: Condition, span: float, options: TrackingOptions = TRACKING
+    ) -> None:
+        self.options = options
         self.varied, self.condition, self.span = varied, condition, span
         self.n, self.offset = varied.balance.unknowns, 0.0  # of an onset: its function, in the scale, is this
         Problem.__init__(self, self.n + 1, 0, 0)
@@ -119,7 +117,7 @@ class Tracked(Problem):
         if self.condition.kind is Kind.PEAK:
             one = Amplitude(balance, self.condition.which)
             one.at(y, self.angles)
-            growth = np.append(one.slopes, by_s.of(one)) / max(one.value, SMALLEST)
+            growth = np.append(one.slopes, by_s.of(one)) / max(one.value, self.options.special.smallest)
         return Evaluation(jacobian_of(balance), by_s.residual, growth)
 
     def measure(self, z: FloatArray) -> int:
@@ -134,7 +132,7 @@ class Tracked(Problem):
         balance.measure(y)
         scale[:-1], scale[-1] = balance.scale, self.span
         balance.evaluate(y)
-        t = _direction(jacobian_of(balance) * scale[:-1] / scale[:-2, None], self.row)
+        t = _direction(jacobian_of(balance) * scale[:-1] / scale[:-2, None], self.row, self.options)
         self.row[:] = t if t @ self.row >= 0.0 else -t
         if self.condition.kind is Kind.PEAK:
             one = Amplitude(balance, self.condition.which)
@@ -152,7 +150,7 @@ class Tracked(Problem):
         y, balance = np.array(z[:-1]), self.varied.balance
         balance.evaluate(y)
         scale = np.asarray(self.scale)[:-1]
-        t = _direction(jacobian_of(balance) * scale / scale[:-1, None], self.row)
+        t = _direction(jacobian_of(balance) * scale / scale[:-1, None], self.row, self.options)
         balance.report(y, np.ascontiguousarray(t * np.asarray(self.scale)[:-1]))
         return t, np.array(balance.output), np.array(balance.growth)
 
@@ -178,7 +176,9 @@ class Tracked(Problem):
     def _onset(self, y: FloatArray) -> tuple[float, FloatArray]:
         c, width = self.condition.which, self.varied.balance.width
         block = slice(c * width, (c + 1) * width)
-        found = onset(self.varied.balance.laws[c], y[block], self.condition.onset, self.varied.harmonics)
+        found = onset(
+            self.varied.balance.laws[c], y[block], self.condition.onset, self.varied.harmonics, self.options
+        )
         gradient = np.zeros(self.n + 2)
         gradient[block] = found.slope
         gradient[-1] = self.varied.contact_rates()[c] @ found.by_number
@@ -202,12 +202,13 @@ class Tracked(Problem):
 
     def _room(self, y: FloatArray, ahead: FloatArray) -> float:
         """How far to go along the tangent so that no margin changes its sign, not even nearly."""
-        signs, step = self._margins(y), ASIDE
+        signs, step = self._margins(y), self.options.special.distance
         for there in (self._margins(y + step * ahead), self._margins(y - step * ahead)):
             crossed = signs * there < 0.0
             if crossed.any():
                 part = np.abs(signs[crossed] / (signs[crossed] - there[crossed])).min()
-                step = min(step, max(NEARER * part * ASIDE, LEAST_ASIDE))
+                options = self.options.special
+                step = min(step, max(options.part * part * options.distance, options.least))
         return step
 
     def _margins(self, y: FloatArray) -> FloatArray:
@@ -216,7 +217,7 @@ class Tracked(Problem):
         if balance.margins:
             balance.bound(y)
             return np.array(balance.margin)
-        return values(balance.laws, y, self.varied.harmonics)
+        return values(balance.laws, y, self.varied.harmonics, self.options)
 
     def _aside(self, y: FloatArray, adjoint: FloatArray) -> FloatArray:
         """What changes along the tangent, (unknown + 2,), at a place on it."""
@@ -228,7 +229,9 @@ class Tracked(Problem):
         self.varied.put(float(z[-1]))
         c, width = condition.which, self.varied.balance.width
         block = np.ascontiguousarray(z[c * width : (c + 1) * width])
-        return onset(self.varied.balance.laws[c], block, condition.onset, self.varied.harmonics).value
+        return onset(
+            self.varied.balance.laws[c], block, condition.onset, self.varied.harmonics, self.options
+        ).value
 
     def amplitude_along(self, z: FloatArray, direction: FloatArray, dof: int) -> tuple[float, float]:
         """An amplitude, and its rate along a direction (unknown + 2,), what s does to it included."""
@@ -241,7 +244,7 @@ class Tracked(Problem):
         return one.value, float(slopes @ direction)
 
 
-def _direction(matrix: FloatArray, row: FloatArray) -> FloatArray:
+def _direction(matrix: FloatArray, row: FloatArray, options: TrackingOptions = TRACKING) -> FloatArray:
     """Unit vector (unknown + 1,) that a matrix (unknown, unknown + 1) takes to 0; row is nearly that."""
     closed = np.concatenate((matrix, row[None]))
     try:
@@ -249,7 +252,7 @@ def _direction(matrix: FloatArray, row: FloatArray) -> FloatArray:
     except np.linalg.LinAlgError:
         t = np.full(row.size, np.inf)
     size = float(np.linalg.norm(t))
-    if size < ASKEW * float(np.linalg.norm(row)):
+    if size < options.special.tangent * float(np.linalg.norm(row)):
         return t / size
     last: FloatArray = np.linalg.svd(matrix)[2][-1]
     return last if last @ row >= 0.0 else -last

@@ -25,7 +25,7 @@ class Joints:
     spots: list[Spot]
 
     def __init__(self, way: Way, condition: Condition) -> None:
-        self.way, self.condition, self.options = way, condition, way.options
+        self.way, self.condition, self.options = way, condition, way.options.pieces
         self.smooth = way.tracked(condition)
         self.low, self.high = way.system.scene.frequency_range
         self.turns = condition.kind in (Kind.FOLD, Kind.PEAK)
@@ -75,7 +75,7 @@ class Joints:
         """Signs of the functions of all onsets."""
         varied = self.smooth.varied
         varied.put(float(z[-1]))
-        return np.sign(values(varied.balance.laws, z, varied.harmonics))
+        return np.sign(values(varied.balance.laws, z, varied.harmonics, self.way.options))
 
     def _outside(self, s: float) -> bool:
         low, high = self.way.span
@@ -86,7 +86,7 @@ class Joints:
     def _corners_near(self, z: FloatArray) -> Iterator[Condition]:
         """The corners of the response that a point is near to, the nearest first."""
         if self.turns:
-            for off, at in nearest(self.smooth.varied, z, np.array(self.newton.scale)):
+            for off, at in nearest(self.smooth.varied, z, np.array(self.newton.scale), self.way.options):
                 if off > self.options.near:
                     break
                 yield at

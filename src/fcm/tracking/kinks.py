@@ -17,12 +17,6 @@ from scipy.optimize import brentq
 from fcm.model.scene import FloatArray
 from fcm.tracking.extended_system import Tracked
 
-CLOSEST, WIDEST = 1e-3, 0.2  # [rad] of angles from the way back, with which the way on may make a narrow one
-STEPS = 8  # of Newton's method to the surface
-EXACT = 1e-12  # a step that ends them
-SHARP = 1e-10  # [rad] to which the change of a sign is found
-JUMP = 1e-3  # of the greatest value on the circle: what is more on a side of a change is no zero
-
 
 class Change(NamedTuple):
     """Where what is special changes its sign on a circle, by a jump or through zero."""
@@ -36,7 +30,7 @@ class Circle:
     """A circle on the surface of the balance's solutions, about a point of a curve with a direction."""
 
     def __init__(self, problem: Tracked, z: FloatArray, t: FloatArray, radius: float) -> None:
-        self.problem, self.z, self.radius = problem, z, radius
+        self.problem, self.z, self.radius, self.options = problem, z, radius, problem.options.kink
         self.scale = np.array(problem.scale)
         plane = np.linalg.svd(problem.surface(z)[1])[2][-2:]
         ahead = plane @ t
@@ -50,8 +44,9 @@ class Circle:
         """
         way = self.axes @ ((back - self.z) / self.scale)
         came = float(np.arctan2(way[1], way[0]))
-        aside = np.append(np.geomspace(CLOSEST, WIDEST, 6), np.arange(2.0 * WIDEST, np.pi, 0.25))
-        angles = came + np.concatenate((aside, 2.0 * np.pi - aside[::-1], [2.0 * np.pi + CLOSEST]))
+        closest, widest = self.options.closest, self.options.widest
+        aside = np.append(np.geomspace(closest, widest, 6), np.arange(2.0 * widest, np.pi, 0.25))
+        angles = came + np.concatenate((aside, 2.0 * np.pi - aside[::-1], [2.0 * np.pi + closest]))
         values = np.array([self.special(angle) for angle in angles])
         if not np.isfinite(values).all():
             return []
@@ -72,20 +67,20 @@ class Circle:
     def at(self, angle: float) -> tuple[FloatArray, float]:
         """The point at an angle, 0 is straight ahead, and what is special there; NaN where there is none."""
         z = self.z + self.radius * self.scale * (np.array([np.cos(angle), np.sin(angle)]) @ self.axes)
-        for _ in range(STEPS):
+        for _ in range(self.options.steps):
             try:
                 residual, matrix, special = self.problem.surface(z)
             except np.linalg.LinAlgError:  # the response has no one direction there
                 break
             step = np.linalg.lstsq(matrix, -residual, rcond=None)[0]
-            if np.linalg.norm(step) < EXACT:
+            if np.linalg.norm(step) < self.options.tolerance:
                 return z, special
             z = z + self.scale * step
         return z, np.nan
 
     def _change(self, low: float, high: float, most: float) -> Change:
         """The change of sign between two angles."""
-        angle = float(brentq(self.special, low, high, xtol=SHARP, rtol=SHARP))
-        sides = [self.at(angle + side * SHARP) for side in (-1.0, 1.0)]
-        jump = max(abs(special) for _, special in sides) > JUMP * most
+        angle = float(brentq(self.special, low, high, xtol=self.options.angle, rtol=self.options.angle))
+        sides = [self.at(angle + side * self.options.angle) for side in (-1.0, 1.0)]
+        jump = max(abs(special) for _, special in sides) > self.options.jump * most
         return Change(angle, self.at(angle)[0], jump)

@@ -14,11 +14,8 @@ from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
 from fcm.tracking.curve import Track
 from fcm.tracking.extended_system import Condition
+from fcm.tracking.options import TRACKING, TrackingOptions
 from fcm.tracking.tracked_point import Spot, Way
-
-SAME = 1e-5  # in the problem's scale: points nearer than this are one
-BESIDE = 0.5  # of a chord: what is further from it is not on its part of the curve, which turns by 90 degrees
-CHORDS = 4  # nearest ones that are looked at
 
 
 def passed(curve: Track, condition: Condition, spot: Spot, way: Way) -> bool:
@@ -29,12 +26,12 @@ def passed(curve: Track, condition: Condition, spot: Spot, way: Way) -> bool:
     problem.measure(spot.z)
     scale = np.array(problem.scale)
     points = (np.array([one.z for one in curve.spots]) - spot.z) / scale
-    if np.linalg.norm(points, axis=1).min() < SAME:
+    if np.linalg.norm(points, axis=1).min() < way.options.known.same:
         return True
-    return any(_crosses(curve, i, spot, way, scale) for i in _beside(points))
+    return any(_crosses(curve, i, spot, way, scale) for i in _beside(points, way.options))
 
 
-def _beside(points: FloatArray) -> npt.NDArray[np.intp]:
+def _beside(points: FloatArray, options: TrackingOptions = TRACKING) -> npt.NDArray[np.intp]:
     """The chords between points next to which the origin lies, the nearest first."""
     chord = np.diff(points, axis=0)
     length = np.linalg.norm(chord, axis=1)
@@ -42,7 +39,9 @@ def _beside(points: FloatArray) -> npt.NDArray[np.intp]:
     part = np.clip(-(points[:-1] * chord).sum(axis=1) / square, 0.0, 1.0)
     off = np.linalg.norm(points[:-1] + part[:, None] * chord, axis=1)
     order = np.argsort(off)
-    near: npt.NDArray[np.intp] = order[off[order] < BESIDE * length[order] + SAME][:CHORDS]
+    near: npt.NDArray[np.intp] = order[off[order] < options.known.chord * length[order] + options.known.same][
+        : options.known.chords
+    ]
     return near
 
 
@@ -58,4 +57,4 @@ def _crosses(curve: Track, i: int, spot: Spot, way: Way, scale: FloatArray) -> b
     newton.scale[:], newton.z[:], newton.row[:] = scale, guess, row
     if not newton.correct(1e-3):
         return False
-    return bool(np.linalg.norm((np.asarray(newton.z) - spot.z) / scale) < SAME)
+    return bool(np.linalg.norm((np.asarray(newton.z) - spot.z) / scale) < way.options.known.same)

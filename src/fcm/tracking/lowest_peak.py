@@ -25,7 +25,7 @@ from fcm.tracking.known_curves import passed
 from fcm.tracking.nonsmooth_continuation import land
 from fcm.tracking.options import SEARCH, SearchOptions
 from fcm.tracking.parameter_line import Line
-from fcm.tracking.peak_envelope import FINE, UNFINISHED, Height, Least, Piece, Target, gaps, least, pieces_of
+from fcm.tracking.peak_envelope import UNFINISHED, Height, Least, Piece, Target, gaps, least, pieces_of
 from fcm.tracking.starts import moved, special_points
 from fcm.tracking.tracked_point import Spot, Way
 
@@ -58,7 +58,9 @@ class Search:
 
     def __post_init__(self) -> None:
         step = self.system.scene.max_step
-        self.way = Way(self.system, self.line, self.span, (), step, peaks_only=True)
+        self.way = Way(
+            self.system, self.line, self.span, (), step, peaks_only=True, options=self.options.tracking
+        )
 
     def conditions(self) -> list[Condition]:
         """What may be greatest."""
@@ -82,7 +84,7 @@ class Search:
             if best is None:
                 break
             before = len(self.curves)
-            fine = FINE * (self.span[1] - self.span[0])
+            fine = self.way.options.envelope.fine * (self.span[1] - self.span[0])
             seen = [one.value for value, one in self.seen.items() if abs(value - best.s) <= fine]
             top = seen[0] if seen else self.visit(best.s)
             checked = top <= best.value * (1.0 + self.options.higher)
@@ -144,7 +146,7 @@ class Search:
         """What may be greatest of the response at a value, with its heights."""
         if value not in self.met:
             here = moved(self.system, self.line.scene(self.system.scene, value))
-            points = special_points(here, self.conditions()).points
+            points = special_points(here, self.conditions(), self.way.options).points
             self.met[value] = found = [(one, self.height(one, np.append(z, value))) for one, z in points]
             self.seen[value] = max(
                 (height for _, height in found), key=lambda one: one.value, default=NOTHING

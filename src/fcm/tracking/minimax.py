@@ -71,7 +71,14 @@ class Valley:
 
     def way(self, q: FloatArray, direction: FloatArray) -> Way:
         """The same, to the end of the direction."""
-        return Way(self.system, self.line(q, direction), (0.0, 1.0), (), self.system.scene.max_step)
+        return Way(
+            self.system,
+            self.line(q, direction),
+            (0.0, 1.0),
+            (),
+            self.system.scene.max_step,
+            options=self.options.search.tracking,
+        )
 
     def peaks(self, q: FloatArray) -> list[Member]:
         """All that counts for the targets of the response at q, by tracing it."""
@@ -80,7 +87,7 @@ class Valley:
         way, found = self.way(q, np.zeros(q.size)), []
         for target in self.targets:
             conditions = [Condition(Kind.PEAK, target.dof), *(ends if target.ends else [])]
-            for condition, z in special_points(here, conditions).points:
+            for condition, z in special_points(here, conditions, self.options.search.tracking).points:
                 if (spot := land(way, condition, np.append(z, 0.0))) is not None:
                     found.append((condition, target.dof, spot))
         return [(condition, dof, spot.z[:-1]) for condition, dof, spot in found]

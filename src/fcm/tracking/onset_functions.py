@@ -29,13 +29,12 @@ from fcm.harmonic_balance.contact_law import Law
 from fcm.harmonic_balance.planar_contact import Planar
 from fcm.model.scene import FloatArray
 from fcm.structure.layout import Layout
+from fcm.tracking.options import TRACKING, TrackingOptions
 
 KINDS = ("separation", "closing", "slip")
 LIMITS = ("upper limit", "lower limit")
 START = "start"  # in a plane, in the place of these
 NORMAL = -1  # of the directions of a contact
-SAMPLES = 24  # of a period of the highest harmonic, among which an extreme is sought
-REFINED = 4  # Newton steps from there
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -48,7 +47,9 @@ class Onset(NamedTuple):
     by_number: FloatArray
 
 
-def onset(law: Law, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Onset:
+def onset(
+    law: Law, x: FloatArray, kind: str, harmonics: tuple[int, ...], options: TrackingOptions = TRACKING
+) -> Onset:
     """One of `kinds_of` a contact at its unknowns."""
     if isinstance(law, Planar) and kind in ("slip", START):
         return _in_plane(law, x, kind, harmonics)
@@ -56,13 +57,13 @@ def onset(law: Law, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Ons
     load[0] += law.n_0
     if kind == "slip" or kind in LIMITS:
         push = _polynomial(x, law, 0) * law.k_u
-        upper = _least(push + law.mu * load, harmonics)
-        lower = _least(law.mu * load - push, harmonics)
+        upper = _least(push + law.mu * load, harmonics, options)
+        lower = _least(law.mu * load - push, harmonics, options)
         parts = [(upper, 1.0, law.mu), (lower, -1.0, law.mu)]
         parts = parts if kind == "slip" else [parts[LIMITS.index(kind)]]
     else:
         sign = 1.0 if kind == "separation" else -1.0
-        parts = [(_least(sign * load, harmonics), 0.0, sign)]
+        parts = [(_least(sign * load, harmonics, options), 0.0, sign)]
     value, slope, numbers = 0.0, np.zeros(x.size), np.zeros(4)
     sign = -1.0 if kind in ("closing", "lower limit") else 1.0  # max n = -min(-n)
     for (least, theta), of_push, of_load in parts:
@@ -80,7 +81,9 @@ def onset(law: Law, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Ons
     return Onset(value, slope, numbers)
 
 
-def values(laws: list[Law], x: FloatArray, harmonics: tuple[int, ...]) -> FloatArray:
+def values(
+    laws: list[Law], x: FloatArray, harmonics: tuple[int, ...], options: TrackingOptions = TRACKING
+) -> FloatArray:
     """The functions of all contacts at all unknowns: separation and closing, slip, and limits if none slips.
 
     Also of those that cannot slip, or whose load does not vary, as a number may pass by the value that makes
@@ -89,7 +92,7 @@ def values(laws: list[Law], x: FloatArray, harmonics: tuple[int, ...]) -> FloatA
     if not laws:
         return np.zeros(0)
     if isinstance(laws[0], Planar):
-        return np.concatenate([_values_in_plane(law, x, i, harmonics) for i, law in enumerate(laws)])
+        return np.concatenate([_values_in_plane(law, x, i, harmonics, options) for i, law in enumerate(laws)])
     blocks = x[: len(laws) * laws[0].width].reshape(len(laws), -1)
     numbers = np.array([(law.mu, law.k_u, law.k_v, law.n_0) for law in laws])
     mu, k_u, k_v, n_0 = numbers.T
@@ -101,7 +104,7 @@ def values(laws: list[Law], x: FloatArray, harmonics: tuple[int, ...]) -> FloatA
     load[:, 0] += n_0
     limit = mu[:, None] * load
     open_, shut, upper, lower = np.split(
-        _all_least(np.concatenate((load, -load, push + limit, limit - push)), harmonics), 4
+        _all_least(np.concatenate((load, -load, push + limit, limit - push)), harmonics, options), 4
     )
     rests = upper + lower > 0.0
     return np.concatenate(
@@ -109,14 +112,16 @@ def values(laws: list[Law], x: FloatArray, harmonics: tuple[int, ...]) -> FloatA
     )
 
 
-def _all_least(c: ComplexArray, harmonics: tuple[int, ...]) -> FloatArray:
+def _all_least(
+    c: ComplexArray, harmonics: tuple[int, ...], options: TrackingOptions = TRACKING
+) -> FloatArray:
     """The least value of each row of c as of `_least`."""
     h, wave = np.array(harmonics), c[:, 1:]
     if h.size == 1:
         return c[:, 0].real - np.abs(wave[:, 0])
-    theta = 2.0 * np.pi * np.arange(SAMPLES * h[-1]) / (SAMPLES * h[-1])
+    theta = 2.0 * np.pi * np.arange(options.onset.samples * h[-1]) / (options.onset.samples * h[-1])
     at = theta[(wave @ np.exp(1j * np.outer(h, theta))).real.argmin(axis=1)]
-    for _ in range(REFINED):
+    for _ in range(options.onset.steps):
         turned = np.exp(1j * np.outer(at, h)) * wave
         bend = (h * h * turned).real.sum(axis=1)
         step = (h * turned).imag.sum(axis=1) / np.where(bend < 0.0, bend, 1.0)
@@ -124,10 +129,12 @@ def _all_least(c: ComplexArray, harmonics: tuple[int, ...]) -> FloatArray:
     return c[:, 0].real + (np.exp(1j * np.outer(at, h)) * wave).real.sum(axis=1)  # type: ignore[no-any-return]
 
 
-def _values_in_plane(law: Law, x: FloatArray, i: int, harmonics: tuple[int, ...]) -> FloatArray:
+def _values_in_plane(
+    law: Law, x: FloatArray, i: int, harmonics: tuple[int, ...], options: TrackingOptions = TRACKING
+) -> FloatArray:
     """Those of contact number i."""
     block = np.ascontiguousarray(x[i * law.width : (i + 1) * law.width])
-    open_, shut, slip, start = (onset(law, block, kind, harmonics).value for kind in (*KINDS, START))
+    open_, shut, slip, start = (onset(law, block, kind, harmonics, options).value for kind in (*KINDS, START))
     return np.array([open_, shut, slip, start if slip > 0.0 else 1.0])
 
 
@@ -199,14 +206,16 @@ def _waves(theta: float, harmonics: tuple[int, ...]) -> FloatArray:
     return np.concatenate(([1.0], np.stack((np.cos(h), -np.sin(h)), axis=1).ravel()))
 
 
-def _least(c: ComplexArray, harmonics: tuple[int, ...]) -> tuple[float, float]:
+def _least(
+    c: ComplexArray, harmonics: tuple[int, ...], options: TrackingOptions = TRACKING
+) -> tuple[float, float]:
     """The least value of c_0 + Re sum c_h exp(i h theta), and where it is."""
     h, wave = np.array(harmonics), c[1:]
     if h.size == 1:
         return float(c[0].real - abs(wave[0])), float(np.pi - np.angle(wave[0]))
-    theta = 2.0 * np.pi * np.arange(SAMPLES * h[-1]) / (SAMPLES * h[-1])
+    theta = 2.0 * np.pi * np.arange(options.onset.samples * h[-1]) / (options.onset.samples * h[-1])
     at = float(theta[(np.exp(1j * np.outer(theta, h)) @ wave).real.argmin()])
-    for _ in range(REFINED):
+    for _ in range(options.onset.steps):
         turned = np.exp(1j * h * at) * wave
         bend = float((h * h * turned).real.sum())
         if bend >= 0.0:

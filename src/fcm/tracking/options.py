@@ -1,4 +1,7 @@
-"""Tolerances and limits of tracked curves, and of searches for the least peak over numbers of a scene."""
+"""Tolerances and limits of tracked curves, and of searches for the least peak over numbers of a scene.
+
+`TrackingOptions` has all of the curves. It is a field of `Way`, which all curves of one run share.
+"""
 
 from __future__ import annotations
 
@@ -47,17 +50,188 @@ class PieceOptions:
 
 
 @dataclass(frozen=True)
+class SpecialPointOptions:
+    """The equations of a special point of a response.
+
+    smallest: amplitude; lower ones count as this in a division. distance: along the response, of its extent,
+    by which its Jacobian is evaluated for a difference. least: of that distance, where a corner is near.
+    part: of the way to a corner, which the distance is at most, as derivatives change there like a root.
+    tangent: times as long as the row; a longer one is nearly across it.
+    """
+
+    smallest: float = 1e-150
+    distance: float = 1e-5
+    least: float = 1e-9
+    part: float = 0.05
+    tangent: float = 1e3
+
+
+@dataclass(frozen=True)
+class CornerOptions:
+    """Special points that are corners of a response. Lengths are in the problem's scale.
+
+    steps: of Newton's method, and of the secant, at most. tolerance: length of a step that ends them.
+    first: step of the secant. furthest: along a corner, that what is special of it is sought. side: distance
+    from a corner at which its two sides are evaluated.
+    """
+
+    steps: int = 20
+    tolerance: float = 1e-13
+    first: float = 1e-6
+    furthest: float = 0.1
+    side: float = 1e-13
+
+
+@dataclass(frozen=True)
+class KinkOptions:
+    """The way on from a kink, on a circle about it.
+
+    closest, widest: [rad] angles from the way back, with which the way on may make a narrow one. steps: of
+    Newton's method to the surface. tolerance: length of a step that ends them. angle: [rad] to which the
+    change of a sign is found. jump: part of the greatest value on the circle; what is more on a side of a
+    change is no zero.
+    """
+
+    closest: float = 1e-3
+    widest: float = 0.2
+    steps: int = 8
+    tolerance: float = 1e-12
+    angle: float = 1e-10
+    jump: float = 1e-3
+
+
+@dataclass(frozen=True)
+class OnsetOptions:
+    """The extremes within a cycle of what a contact does.
+
+    samples: of a period of the highest harmonic, among which an extreme is sought. steps: of Newton's method
+    from there.
+    """
+
+    samples: int = 24
+    steps: int = 4
+
+
+@dataclass(frozen=True)
+class CurveOptions:
+    """All curves over a range of the number.
+
+    starts: values of the number, evenly spaced, at which ordinary curves are traced. same: part of the range,
+    by which values of the number are one. frequency: part of it, to which a point is on a curve. peaks:
+    curves of peaks along which onsets are looked for. lowest: part of the greatest amplitude of a degree of
+    freedom; lower peaks are not tracked. cusp: part of the frequency's rate next to a turn; at a turn where
+    the frequency turns back, too, it is less.
+    """
+
+    starts: int = 13
+    same: float = 1e-9
+    frequency: float = 1e-3
+    peaks: int = 3
+    lowest: float = 1e-3
+    cusp: float = 1e-3
+
+
+@dataclass(frozen=True)
+class KnownCurveOptions:
+    """Whether a curve passes a point that was found otherwise.
+
+    same: distance in the problem's scale; points nearer than this are one. chord: part of a chord; what is
+    further from it is not on its part of the curve, which turns by 90 degrees. chords: nearest ones that are
+    looked at.
+    """
+
+    same: float = 1e-5
+    chord: float = 0.5
+    chords: int = 4
+
+
+@dataclass(frozen=True)
+class TurnErrorOptions:
+    """The error at a turn of the number.
+
+    points: before a turn, from which the turn with more harmonics is sought. beyond: times the way of the
+    number from there to the turn, up to which it is sought.
+    """
+
+    points: int = 3
+    beyond: float = 3.0
+
+
+@dataclass(frozen=True)
+class EnvelopeOptions:
+    """The greatest of several peaks over the number, and its least value.
+
+    brackets: of the lowest points, in which the least value is sought. fine: part of the range, to which the
+    number is known. rough: part of the highest by the chords; what is lower is not looked at. gap: part of
+    the range, in which no piece is known. equal: relative; peaks nearer than this are one at a crossing.
+    unknown: times the highest; counts where no peak is known, as differences of infinities are none.
+    overtaken: relative; extremes of a cycle nearer than this are one.
+    """
+
+    brackets: int = 4
+    fine: float = 1e-9
+    rough: float = 0.7
+    gap: float = 1e-3
+    equal: float = 1e-7
+    unknown: float = 10.0
+    overtaken: float = 1e-12
+
+
+@dataclass(frozen=True)
+class LimitOptions:
+    """Where stability changes along a tracked curve.
+
+    side: part of the response's extent to either side of a corner, where it may turn back. halvings: of a
+    step between points, within which the motion ceases to be stable.
+    """
+
+    side: float = 1e-6
+    halvings: int = 14
+
+
+@dataclass(frozen=True)
+class TrialOptions:
+    """The least peak by trials.
+
+    values: over the range, both ends among them. closer: values about the lowest of those. nearest: part of
+    the range, between two values that are tried.
+    """
+
+    values: int = 5
+    closer: int = 4
+    nearest: float = 1e-4
+
+
+@dataclass(frozen=True)
+class TrackingOptions:
+    """All of tracked curves, by what they are for: see the class of each field."""
+
+    pieces: PieceOptions = PieceOptions()
+    special: SpecialPointOptions = SpecialPointOptions()
+    corner: CornerOptions = CornerOptions()
+    kink: KinkOptions = KinkOptions()
+    onset: OnsetOptions = OnsetOptions()
+    curves: CurveOptions = CurveOptions()
+    known: KnownCurveOptions = KnownCurveOptions()
+    error: TurnErrorOptions = TurnErrorOptions()
+    envelope: EnvelopeOptions = EnvelopeOptions()
+    stability: LimitOptions = LimitOptions()
+    trials: TrialOptions = TrialOptions()
+
+
+@dataclass(frozen=True)
 class SearchOptions:
     """Over the range of one number, see `fcm.tracking.lowest_peak`.
 
     visits: of lowest points, and of values about which nothing is followed, at most. higher: a peak that is
     this much higher, relative, was not followed. high: of the highest, relative; peaks from there on are
-    followed from where they are met.
+    followed from where they are met. tracking: of the curves.
     """
 
     visits: int = 12
     higher: float = 1e-5
     high: float = 0.9
+    tracking: TrackingOptions = TrackingOptions()
 
 
 @dataclass(frozen=True)
@@ -93,6 +267,6 @@ class DescentOptions:
     search: SearchOptions = SearchOptions()
 
 
-PIECES = PieceOptions()  # where nothing else is said
+TRACKING = TrackingOptions()  # where nothing else is said
 SEARCH = SearchOptions()
 DESCENT = DescentOptions()

@@ -10,8 +10,6 @@ from fcm.tracking.corner import Corner
 from fcm.tracking.extended_system import Tracked
 from fcm.tracking.tracked_point import Spot
 
-EQUAL = 1e-12  # relative: extremes of a cycle that are one
-
 
 def is_top(problem: Tracked, spot: Spot) -> bool:
     """Whether a tracked peak that was measured is one, and not a trough: growth falls along the response."""
@@ -37,4 +35,4 @@ def overtaken(problem: Tracked, z: FloatArray) -> bool:
     one.at(y)
     greatest = one.value
     one.at(y, problem.angles)
-    return not one.value >= greatest * (1.0 - EQUAL)
+    return not one.value >= greatest * (1.0 - problem.options.envelope.overtaken)

@@ -20,13 +20,7 @@ from fcm.tracking.curve import Track
 from fcm.tracking.extended_system import Condition, Kind, Tracked
 from fcm.tracking.tracked_point import Way
 
-BRACKETS = 4  # of the lowest points, in which the least value is sought
-FINE = 1e-9  # of the span: the number is known to this
-ROUGH = 0.7  # of the highest by the chords: what is lower is not looked at
-GAP = 1e-3  # of the span, in which no piece is known
-EQUAL = 1e-7  # relative: peaks that are one at a crossing
 UNFINISHED = "unfinished"  # what the least so far is of, where it was still sought
-UNKNOWN = 10.0  # of the highest: what counts where no peak is known, as differences of infinities are none
 
 
 class Target(NamedTuple):
@@ -143,7 +137,7 @@ def least(way: Way, pieces: Sequence[Piece]) -> Least | None:
     rough = np.array([np.max([p.roughly(s) for p in pieces if p.covers(s)]) for s in grid])
     inner = np.pad(rough, 1, constant_values=np.inf)
     lowest = np.flatnonzero((rough <= inner[:-2]) & (rough <= inner[2:]))
-    lowest = lowest[np.argsort(rough[lowest])][:BRACKETS]
+    lowest = lowest[np.argsort(rough[lowest])][: way.options.envelope.brackets]
     found = [_refined(pieces, way, *_around(pieces, grid, i)) for i in lowest.tolist()]
     return min(found, key=lambda one: one.value)
 
@@ -151,7 +145,7 @@ def least(way: Way, pieces: Sequence[Piece]) -> Least | None:
 def gaps(way: Way, pieces: Sequence[Piece]) -> list[float]:
     """Values of s about which no piece says anything: the ends of the span, or the middle of a gap."""
     low, high = way.span
-    least, found, last = GAP * (high - low), [], low
+    least, found, last = way.options.envelope.gap * (high - low), [], low
     if not pieces:
         return [low, high]
     for piece in sorted(pieces, key=lambda piece: float(piece.s[0])):
@@ -174,18 +168,18 @@ def _around(pieces: Sequence[Piece], grid: FloatArray, i: int) -> tuple[float, f
 
 def _refined(pieces: Sequence[Piece], way: Way, low: float, middle: float, high: float) -> Least:
     """The least value between two values of s."""
-    span = way.span[1] - way.span[0]
+    span, options = way.span[1] - way.span[0], way.options.envelope
 
     def highest(s: float) -> tuple[Height, Piece]:
         rough = {piece: piece.roughly(s) for piece in pieces if piece.covers(s)}
         if not rough:  # nothing is known there
             return Height(np.inf, 0.0, np.zeros(0), -1), pieces[0]
         top = max(rough.values())
-        heights = [(piece.at(s), piece) for piece, height in rough.items() if height >= ROUGH * top]
+        heights = [(piece.at(s), piece) for piece, height in rough.items() if height >= options.rough * top]
         return max(heights, key=lambda pair: pair[0].value)
 
     if high > low:
-        most = UNKNOWN * max(float(piece.height.max()) for piece in pieces)
+        most = options.unknown * max(float(piece.height.max()) for piece in pieces)
         bounded = minimize_scalar(
             lambda s: min(highest(s)[0].value, most),
             bounds=(low, high),
@@ -201,45 +195,47 @@ def _refined(pieces: Sequence[Piece], way: Way, low: float, middle: float, high:
     (before, one), (after, other) = highest(left), highest(right)
     kind = "bound"
     if before.slope < 0.0 < after.slope:
-        kind, s = _turned(highest, one, other, left, right, span)
+        kind, s = _turned(highest, (one, other), (left, right), way)
     elif low < s < high or way.span[0] < s < way.span[1]:
         kind = "corner"
     else:
         s = left if before.value <= after.value else right
     top = highest(s)[0]
-    active = [h for p in pieces if p.covers(s) and (h := p.at(s)).value >= top.value * (1.0 - EQUAL)]
+    active = [h for p in pieces if p.covers(s) and (h := p.at(s)).value >= top.value * (1.0 - options.equal)]
     kind = "kink" if len(active) > 1 else kind
-    if kind == "corner" and any(_ends_higher(piece, s, top.value, width) for piece in pieces):
+    if kind == "corner" and any(
+        _ends_higher(piece, s, top.value * (1.0 + options.equal), width) for piece in pieces
+    ):
         kind = "end"
     return Least(s, top.value, tuple(active), kind)
 
 
 def _ends_higher(piece: Piece, s: float, value: float, width: float) -> bool:
-    """Whether a piece that is not there ends higher close by."""
+    """Whether a piece that is not there ends higher than a value close by."""
     ends = ((piece.s[0], piece.height[0]), (piece.s[-1], piece.height[-1]))
-    near = any(abs(end - s) < width and height > value * (1.0 + EQUAL) for end, height in ends)
+    near = any(abs(end - s) < width and height > value for end, height in ends)
     return near and not piece.s[0] < s < piece.s[-1]
 
 
 def _turned(
     highest: Callable[[float], tuple[Height, Piece]],
-    one: Piece,
-    other: Piece,
-    low: float,
-    high: float,
-    span: float,
+    pieces: tuple[Piece, Piece],
+    between: tuple[float, float],
+    way: Way,
 ) -> tuple[str, float]:
     """Where the greatest turns between two values of s: where pieces cross, or one has its least value."""
+    (one, other), span = pieces, way.span[1] - way.span[0]
+    fine = way.options.envelope.fine * span
     if one is not other:
-        crossing = _root(lambda s: one.at(s).value - other.at(s).value, low, high, span)
+        crossing = _root(lambda s: one.at(s).value - other.at(s).value, *between, fine)
         if one.covers(crossing) and other.covers(crossing):
             return "kink", crossing
-    at = _root(lambda s: highest(s)[0].slope, low, high, span)
+    at = _root(lambda s: highest(s)[0].slope, *between, fine)
     return "smooth" if abs(highest(at)[0].slope) * span < 1e-3 * highest(at)[0].value else "corner", at
 
 
-def _root(function: Callable[[float], float], low: float, high: float, span: float) -> float:
+def _root(function: Callable[[float], float], low: float, high: float, tolerance: float) -> float:
     """A change of sign, or the end with the lesser value where there is none."""
     if function(low) * function(high) > 0.0:
         return low if abs(function(low)) < abs(function(high)) else high
-    return float(brentq(function, low, high, xtol=FINE * span))
+    return float(brentq(function, low, high, xtol=tolerance))

@@ -15,9 +15,6 @@ from fcm.tracking.curve import Track, with_spots
 from fcm.tracking.extended_system import Kind, Tracked
 from fcm.tracking.tracked_point import Spot, Way
 
-BESIDE = 1e-6  # of the response's extent: on either side of a corner, where it may turn back
-HALVINGS = 14  # of a step between points, within which the motion ceases to be stable
-
 Seen = tuple[Spot, float]  # a point, and what is said of it
 
 
@@ -53,7 +50,7 @@ class _Along:
         before, ends = one[1], [one, other]
         if _same(before, other[1]):
             return []
-        for _ in range(HALVINGS):
+        for _ in range(self.way.options.stability.halvings):
             middle = self._middle(ends[0][0], ends[1][0])
             if middle is None:
                 break
@@ -110,7 +107,7 @@ def _same(one: float, other: float) -> bool:
 def _signs(problem: Tracked, spot: Spot) -> set[float]:
     """Of the balance's determinant at a point; at a corner of the response those on both sides."""
     scale, y = np.asarray(problem.scale)[:-1], np.array(spot.z[:-1])
-    ahead = BESIDE * scale * np.asarray(problem.row)
+    ahead = problem.options.stability.side * scale * np.asarray(problem.row)
     places = [y] if spot.corner is None and not spot.switch else [y - ahead, y + ahead]
     return {_sign(problem, place, scale[:-1]) for place in places}
 

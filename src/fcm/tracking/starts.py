@@ -18,8 +18,7 @@ from fcm.model.scene import FloatArray, Scene
 from fcm.structure.linear import linear_of
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.onset_functions import onset
-
-LOWEST = 1e-3  # of the greatest amplitude of a degree of freedom: lower peaks are not tracked
+from fcm.tracking.options import TRACKING, TrackingOptions
 
 
 class Special(NamedTuple):
@@ -40,7 +39,9 @@ def moved(system: System, scene: Scene) -> System:
     return other
 
 
-def special_points(system: System, conditions: list[Condition]) -> Special:
+def special_points(
+    system: System, conditions: list[Condition], options: TrackingOptions = TRACKING
+) -> Special:
     """Those of a system's curves.
 
     Conditions that differ in which degree of freedom are sought one by one; onsets of every contact.
@@ -52,7 +53,7 @@ def special_points(system: System, conditions: list[Condition]) -> Special:
     amplitudes = _amplitudes(system, branches.paths, conditions)
     for path, amplitude in zip(branches.paths, amplitudes, strict=True):
         for condition in conditions:
-            found += [(condition, z) for z in _points(system, path, amplitude, condition)]
+            found += [(condition, z) for z in _points(system, path, amplitude, condition, options)]
     if not branches.paths:
         return Special(found, "no solution was found at either end of the range", unsure)
     wrong = "" if branches.status.name == "COMPLETE" else branches.status.value
@@ -68,30 +69,38 @@ def _amplitudes(system: System, paths: Sequence[Path], conditions: list[Conditio
     return [one * moves for one in every]
 
 
-def _points(system: System, path: Path, amplitude: FloatArray, condition: Condition) -> Iterator[FloatArray]:
+def _points(
+    system: System,
+    path: Path,
+    amplitude: FloatArray,
+    condition: Condition,
+    options: TrackingOptions = TRACKING,
+) -> Iterator[FloatArray]:
     if condition.kind is Kind.FOLD:
         yield from path.z[path.where(Mark.FOLD)]
     elif condition.kind is Kind.END:
         yield from path.z[path.parameter == condition.omega]
     elif condition.kind is Kind.PEAK:
-        yield from path.z[_tops(amplitude[:, condition.which])]
+        yield from path.z[_tops(amplitude[:, condition.which], options)]
     else:
-        yield from _onsets(system, path, condition)
+        yield from _onsets(system, path, condition, options)
 
 
-def _tops(amplitude: FloatArray) -> npt.NDArray[np.intp]:
+def _tops(amplitude: FloatArray, options: TrackingOptions = TRACKING) -> npt.NDArray[np.intp]:
     """Points higher than their neighbours."""
     inner = amplitude[1:-1]
     tops = 1 + np.flatnonzero((inner >= amplitude[:-2]) & (inner > amplitude[2:]))
-    high: npt.NDArray[np.intp] = tops[amplitude[tops] > LOWEST * amplitude.max(initial=0.0)]
+    high: npt.NDArray[np.intp] = tops[amplitude[tops] > options.curves.lowest * amplitude.max(initial=0.0)]
     return high
 
 
-def _onsets(system: System, path: Path, condition: Condition) -> Iterator[FloatArray]:
+def _onsets(
+    system: System, path: Path, condition: Condition, options: TrackingOptions = TRACKING
+) -> Iterator[FloatArray]:
     """Where a function of a contact changes its sign between points, by the chord."""
     law, c = system.laws()[condition.which], condition.which
     blocks = [np.ascontiguousarray(z[c * law.width : (c + 1) * law.width]) for z in path.z]
-    value = np.array([onset(law, x, condition.onset, system.harmonics).value for x in blocks])
+    value = np.array([onset(law, x, condition.onset, system.harmonics, options).value for x in blocks])
     for i in np.flatnonzero(value[:-1] * value[1:] < 0.0):
         part = value[i] / (value[i] - value[i + 1])
         yield path.z[i] + part * (path.z[i + 1] - path.z[i])

@@ -10,7 +10,7 @@ import numpy as np
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.tracking.extended_system import Condition, Tracked
-from fcm.tracking.options import PIECES, PieceOptions
+from fcm.tracking.options import TRACKING, TrackingOptions
 from fcm.tracking.parameter_line import Line, Varied
 
 
@@ -55,11 +55,11 @@ class Way:
     stations: tuple[float, ...] = ()
     step: float = 0.05  # longest
     peaks_only: bool = False  # a peak ends where it meets a trough, and the number turns back
-    options: PieceOptions = PIECES
+    options: TrackingOptions = TRACKING
 
     def tracked(self, condition: Condition) -> Tracked:
         """The problem of a condition, with a balance of its own."""
-        return Tracked(Varied(self.system, self.line), condition, self.span[1] - self.span[0])
+        return Tracked(Varied(self.system, self.line), condition, self.span[1] - self.span[0], self.options)
 
 
 def kinks(way: Way) -> list[float]:

@@ -10,23 +10,20 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from fcm.tracking.lowest_peak import Search
-from fcm.tracking.peak_envelope import UNKNOWN, Least
-
-EVEN = 5  # values over the range, both ends among them
-CLOSER = 4  # values about the lowest of those
-NEAR = 1e-4  # of the range: nearer to it none is tried
+from fcm.tracking.peak_envelope import Least
 
 
 def by_trials(search: Search) -> Least | None:
     """The least of the greatest at the values that were tried; None where nothing has a peak."""
     low, high = search.span
-    for value in np.linspace(low, high, EVEN).tolist():
+    options = search.options.tracking.trials
+    for value in np.linspace(low, high, options.values).tolist():
         _greatest(search, value)
     minimize_scalar(
         lambda value: _greatest(search, float(value)),
         bounds=_beside(search, _lowest(search)),
         method="bounded",
-        options={"xatol": NEAR * (high - low), "maxiter": CLOSER},
+        options={"xatol": options.nearest * (high - low), "maxiter": options.closer},
     )
     s = _lowest(search)
     top = search.seen[s]
@@ -40,7 +37,8 @@ def _greatest(search: Search, value: float) -> float:
     """The greatest at a value; where there is no peak, none that could be least."""
     if value not in search.seen:
         search.greatest_at(value)
-    return search.seen[value].value or UNKNOWN * max(height.value for height in search.seen.values())
+    unknown = search.options.tracking.envelope.unknown * max(height.value for height in search.seen.values())
+    return search.seen[value].value or unknown
 
 
 def _lowest(search: Search) -> float:
