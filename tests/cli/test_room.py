@@ -13,6 +13,7 @@ from fcm.response import trace
 from fcm.results.size import SizeOptions, bytes_of_matrices, bytes_of_results, least_points
 from fcm.scene import scene_from_dict
 from fcm.scene.draft import Draft
+from fcm.scene.options import MessageOptions
 
 SCENE = "yang1998-n5"
 DRAWN = """
@@ -164,7 +165,7 @@ def test_draws_that_take_long_are_told_before_they_are_drawn(fcm, monkeypatch):
     )
     Path("a.toml").write_text(slow)
     assert "take about" not in fcm("respond", "a.toml").err
-    monkeypatch.setattr("fcm.scene.draws.TOLD_SECONDS", 0.0)
+    monkeypatch.setattr("fcm.scene.draws.MESSAGES", MessageOptions(seconds_of_draws=0.0))
     monkeypatch.setattr("fcm.scene.draws.Draws.values", lambda _self: (_ for _ in ()).throw(MemoryError))
     done = fcm("respond", "a.toml")
     said = done.err.splitlines()[0]
@@ -217,7 +218,7 @@ frequency = [0.1, 0.5]
 
 def test_flexibility_along_directions_that_memory_does_not_hold_is_refused(fcm, monkeypatch):
     Path("a.toml").write_text(CHAIN)
-    monkeypatch.setattr("fcm.scene.linear.ROOM_TOLD", 1_000.0)
+    monkeypatch.setattr("fcm.scene.linear.MESSAGES", MessageOptions(memory=1_000.0))
     done = fcm("plot", "modes", "a.toml")
     assert done.code == 0 and "takes" not in done.err  # there is no one to tell
     done = fcm("respond", "a.toml")

@@ -12,7 +12,7 @@ from fcm.accuracy.options import PAIR, PairOptions
 from fcm.harmonic_balance.normal_plane_prolongation import Lifted
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
-from fcm.scene.rules import MOST_HARMONICS
+from fcm.scene.options import LIMITS
 
 ENOUGH = 0.01  # of a displacement: when a Newton step was less than this, what is left is far less
 MOST = 24  # balances that are kept for the next curve
@@ -46,7 +46,7 @@ def partner_of(
     total = float(share.sum())
     order = [int(k) + 1 for k in np.argsort(-share, kind="stable") if share[k] > options.share * total]
     highest = min(options.times * count, count + options.most)
-    low = range(1, min(max(highest, options.least), MOST_HARMONICS + options.most) + 1)
+    low = range(1, min(max(highest, options.least), LIMITS.harmonics + options.most) + 1)
     named = [h for h in order if h not in low][: options.named]
     # where not all can be had what matters most comes first, then the lowest
     wanted = dict.fromkeys((*order[:1], *low, *named))

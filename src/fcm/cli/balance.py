@@ -26,11 +26,11 @@ def harmonics(_ctx: click.Context, _param: click.Parameter, text: str | None) ->
 
 def _from_to(word: str) -> range:
     """The whole numbers of 3, or of 1-3."""
-    from fcm.scene.rules import MOST_HARMONICS
+    from fcm.scene.options import LIMITS
 
     first, dash, last = word.strip().partition("-")
     low, high = int(first), int(last if dash else first)
-    if not low <= high <= low + MOST_HARMONICS:
+    if not low <= high <= low + LIMITS.harmonics:
         raise ValueError
     return range(low, high + 1)
 

@@ -15,7 +15,8 @@ from fcm.continuation.stepper import Stepper
 from fcm.harmonic_balance.modal_condensation import OPTIONS, condensed_size
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Scene
-from fcm.scene.rules import MOST_HARMONICS, harmonics_up_to
+from fcm.scene.options import LIMITS
+from fcm.scene.rules import harmonics_up_to
 from fcm.structure.layout import Layout, layout_of
 
 PATIENCE = 30.0  # seconds that all rounds of more and more harmonics may take: levels, branches, errors
@@ -90,7 +91,7 @@ def with_twice_as_many(system: System, evaluations: int) -> System | None:
     evaluations: what following it with its own harmonics took.
     """
     highest = system.harmonics[-1]
-    more = min(2 * highest + 1, MOST_HARMONICS)
+    more = min(2 * highest + 1, LIMITS.harmonics)
     if more == highest or seconds_with(system, evaluations, more) > AGAIN:
         return None
     return system.with_harmonics(harmonics_up_to(more))

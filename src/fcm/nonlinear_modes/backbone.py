@@ -14,7 +14,7 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.nonlinear_modes.extended_periodic_motion import Autonomous, ComplexArray, Guess
 from fcm.nonlinear_modes.restart import follow_past_corners
-from fcm.scene.rules import MOST_HARMONICS
+from fcm.scene.options import LIMITS
 
 RIGID = 1e-12  # of the greatest square of a frequency: rigid-body modes are below
 HALVES = (0.5, 0.0, 1.0)  # shares of its springs that a contact has in the mean which just touches
@@ -176,7 +176,7 @@ def truncation(mode: Mode) -> tuple[FloatArray, FloatArray]:
     Relative, of the damping to the greatest of the mode; NaN where there is no such motion.
     """
     system, old = mode.system, mode.problem
-    highest = min(2 * system.harmonics[-1] + 1, MOST_HARMONICS)
+    highest = min(2 * system.harmonics[-1] + 1, LIMITS.harmonics)
     larger = without_even(system.with_harmonics(tuple(range(1, highest + 1))))
     finer = Autonomous(larger, old.guess)
     newton = Newton(finer)

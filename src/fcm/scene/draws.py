@@ -20,14 +20,12 @@ from fcm import room
 from fcm.model.scene import FloatArray
 from fcm.scene.errors import counted, kind, quoted
 from fcm.scene.keys import names
+from fcm.scene.options import LIMITS, MESSAGES, TOLERANCES
 from fcm.scene.rules import ANY, POSITIVE
 from fcm.scene.section import Section
 
 FORMS = ("normal", "uniform", "distribution")
-ROUNDING = 1e-12  # of a correlation matrix: an eigenvalue that is less below zero is one of zero
 
-SAMPLE, MOST_SECONDS = 8, 600.0  # draws that are timed; longest time of all draws of a number
-TOLD_SECONDS = 5.0  # from which on it is told before they are drawn
 
 Quantile = Callable[[FloatArray], FloatArray]  # of probabilities
 
@@ -71,11 +69,11 @@ class Draws:
 
     def seconds(self) -> float:
         """About how long all draws take, from a few of them; 0 of those that take no time."""
-        if self.quantile is None or self.count <= SAMPLE:
+        if self.quantile is None or self.count <= LIMITS.draws_timed:
             return 0.0
         begin = perf_counter()
-        self._quantiles(np.linspace(0.05, 0.95, SAMPLE))
-        return (perf_counter() - begin) * self.count / SAMPLE
+        self._quantiles(np.linspace(0.05, 0.95, LIMITS.draws_timed))
+        return (perf_counter() - begin) * self.count / LIMITS.draws_timed
 
     def _quantiles(self, probability: FloatArray) -> FloatArray:
         assert self.quantile is not None
@@ -100,14 +98,14 @@ def read_draws(table: Section, form: str, key: str, integer: Callable[..., int |
     found = Draws(key, form, pair, quantile, count, seed)
     seconds = found.seconds()
     long = f"{count} draws of this distribution take about {room.duration(seconds)}"
-    if seconds > MOST_SECONDS:
+    if seconds > LIMITS.draws_seconds:
         table.wrong(
             "count",
-            f"{long}, {seconds / count:.2g} s each: give {int(count * MOST_SECONDS / seconds)} at most, or "
-            "another distribution",
+            f"{long}, {seconds / count:.2g} s each: give "
+            f"{int(count * LIMITS.draws_seconds / seconds)} at most, or another distribution",
         )
         return None
-    if seconds > TOLD_SECONDS:
+    if seconds > MESSAGES.seconds_of_draws:
         table.mistakes.say(f"{table.path}: {long}")
     return found
 
@@ -244,7 +242,7 @@ def _fault(matrix: FloatArray) -> str:
     if (np.abs(matrix) > 1.0).any():
         return "must have numbers from -1 to 1"
     least = np.linalg.eigvalsh(matrix)[0]
-    if least < -ROUNDING * len(matrix):
+    if least < -TOLERANCES.correlation * len(matrix):
         return f"is that of no draws at all: it has the negative eigenvalue {least:.3g}"
     return ""
 

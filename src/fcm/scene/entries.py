@@ -9,12 +9,9 @@ import numpy as np
 import scipy.sparse
 
 from fcm.scene.errors import quoted, shown
+from fcm.scene.options import MESSAGES, TOLERANCES
 from fcm.scene.rules import ANY
 from fcm.scene.section import Section
-
-ASYMMETRY = 1e-8  # relative difference of two entries that ought to be equal
-NEGLIGIBLE = 1e-12  # of the largest entry: differences this small are rounding
-MOST_SHOWN = 3  # entries named in a message
 
 
 def check_numbers(section: Section, key: str, matrix: Any) -> bool:
@@ -24,8 +21,8 @@ def check_numbers(section: Section, key: str, matrix: Any) -> bool:
     if not wrong:
         return True
     row, column = entries.coords
-    each = [f"[{row[k]}][{column[k]}] {ANY.fault(float(entries.data[k]))}" for k in wrong[:MOST_SHOWN]]
-    rest = f"; {len(wrong)} such entries in all" if len(wrong) > MOST_SHOWN else ""
+    each = [f"[{row[k]}][{column[k]}] {ANY.fault(float(entries.data[k]))}" for k in wrong[: MESSAGES.entries]]
+    rest = f"; {len(wrong)} such entries in all" if len(wrong) > MESSAGES.entries else ""
     section.wrong(key, f"entry {'; '.join(each)}{rest}")
     return False
 
@@ -42,11 +39,13 @@ def check_symmetric(section: Section, key: str, matrix: Any, dofs: Sequence[str]
     of_both = np.asarray(both[row, column]).ravel() if row.size else np.zeros(0)
     largest = float(size.max()) if size.nnz else 0.0
     wrong = (
-        (difference.data > ASYMMETRY * of_both) & (difference.data > NEGLIGIBLE * largest) & (row < column)
+        (difference.data > TOLERANCES.asymmetry * of_both)
+        & (difference.data > TOLERANCES.negligible * largest)
+        & (row < column)
     )
     if not wrong.any():
         return float(difference.max()) / largest if difference.nnz and largest else 0.0
-    worst = np.flatnonzero(wrong)[np.argsort(-difference.data[wrong], kind="stable")][:MOST_SHOWN]
+    worst = np.flatnonzero(wrong)[np.argsort(-difference.data[wrong], kind="stable")][: MESSAGES.entries]
     named = dofs is not None and len(dofs) == matrix.shape[0]
     names = [quoted(name) for name in dofs or ()] if named else [str(i) for i in range(matrix.shape[0])]
 

@@ -5,9 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterable
 
-MOST_SHOWN = 30  # mistakes listed one by one; the rest are counted
-LONGEST_SHOWN = 60  # characters of a value shown in a message
-MOST_COMPARED = 2000  # names that a misspelt one is compared with
+from fcm.scene.options import MESSAGES
 
 
 class SceneError(ValueError):
@@ -51,7 +49,7 @@ class Mistakes:
     def add(self, where: str, what: str, word: str = "", among: Iterable[str] = ()) -> None:
         """Note that `what` is wrong at the key path `where`; `word` may be a misspelling of one `among`."""
         self.count += 1
-        if len(self._lines) < MOST_SHOWN:
+        if len(self._lines) < MESSAGES.mistakes:
             text = what + suggestion(word, among)
             self._lines.append(f"{where}: {text}" if where else text)
 
@@ -67,9 +65,9 @@ def suggestion(word: str, among: Iterable[str]) -> str:
     >>> suggestion("frequncy", ["frequency", "damping"])
     '; did you mean "frequency"?'
     """
-    if not word or len(word) > LONGEST_SHOWN:
+    if not word or len(word) > MESSAGES.longest_value:
         return ""
-    names = {name.casefold(): name for name, _ in zip(among, range(MOST_COMPARED), strict=False)}
+    names = {name.casefold(): name for name, _ in zip(among, range(MESSAGES.names_compared), strict=False)}
     from difflib import get_close_matches
 
     close = get_close_matches(word.casefold(), names, n=1)
@@ -96,7 +94,7 @@ def choices(names: Iterable[str], most: int = 12) -> str:
     return ", ".join(quoted(name) for name in listed[:most]) + rest
 
 
-def quoted(text: object, longest: int = LONGEST_SHOWN) -> str:
+def quoted(text: object, longest: int = MESSAGES.longest_value) -> str:
     """Text in double quotes, on one line, without control characters and not too long."""
     line = text if isinstance(text, str) else shown(text)
     if len(line) > longest:
@@ -107,7 +105,7 @@ def quoted(text: object, longest: int = LONGEST_SHOWN) -> str:
 def bare(key: object) -> str:
     """A key as a path shows it: in quotes when it is not a plain word."""
     word = str(key)
-    return word if word.isidentifier() and len(word) <= LONGEST_SHOWN else quoted(word)
+    return word if word.isidentifier() and len(word) <= MESSAGES.longest_value else quoted(word)
 
 
 def shown(value: object) -> str:

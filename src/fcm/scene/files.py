@@ -11,9 +11,7 @@ from pathlib import Path
 from fcm.files import no_file
 from fcm.model.interface import Interface
 from fcm.scene.errors import quoted
-
-LONGEST_PATH = 400  # characters of a path shown in a message
-LARGEST = 1_000_000_000  # bytes of a file beside a scene, unpacked: what fits in any machine's memory twice
+from fcm.scene.options import FILES, MESSAGES
 
 
 class DataFileError(ValueError):
@@ -48,7 +46,7 @@ class Files:
     """The files beside a scene."""
 
     folder: Path = Path()
-    largest: int = LARGEST  # bytes, unpacked
+    largest: int = FILES.largest  # bytes, unpacked
     read: list[Path] = field(default_factory=list, compare=False)  # those that were opened
     said: list[str] = field(default_factory=list, compare=False)  # of the matrices that were read
     noted: list[str] = field(default_factory=list, compare=False)  # of the pairs that were made
@@ -93,4 +91,4 @@ def megabytes(size: int) -> str:
 
 
 def _shown(path: Path) -> str:
-    return quoted(str(path), LONGEST_PATH)
+    return quoted(str(path), MESSAGES.longest_path)

@@ -17,18 +17,18 @@ from fcm.scene.measured_file import read_measured
 from fcm.scene.modal import UNITS
 from fcm.scene.names import Names
 from fcm.scene.optimum import pair_of_bounds, words_of
-from fcm.scene.rules import FRACTION, LARGEST, POSITIVE, Rule
+from fcm.scene.options import LIMITS
+from fcm.scene.rules import FRACTION, POSITIVE, Rule
 from fcm.scene.section import Section
 from fcm.units import QUANTITIES
 
-MOST = 20  # numbers that are fitted together
 RESPONSE_KEYS = ("dof", "level", "quantity", "amplitude_error", "frequency_error")
 BACKBONE_KEYS = ("dof", "mode", "frequency_error", "damping_error")
 MODE = Rule("a whole number of at least 1", low=1.0, whole=True)
 STARTS = Rule("a whole number from 1 to 100", low=1.0, high=100.0, whole=True)
 NOT_POSITIVE: Callable[[FloatArray], Any] = lambda values: ~(values > 0.0)  # noqa: E731
 NEGATIVE: Callable[[FloatArray], Any] = lambda values: ~(values >= 0.0)  # noqa: E731
-TOO_LARGE: Callable[[FloatArray], Any] = lambda values: ~(abs(values) <= LARGEST)  # noqa: E731
+TOO_LARGE: Callable[[FloatArray], Any] = lambda values: ~(abs(values) <= LIMITS.largest)  # noqa: E731
 RIGHT = {
     "frequency": (NOT_POSITIVE, "greater than 0"),
     "angular_frequency": (NOT_POSITIVE, "greater than 0"),
@@ -70,8 +70,8 @@ def _numbers(section: Section, draft: Draft) -> list[Number | None]:
     """The numbers to fit; None in the place of one that there is not."""
     right = 'a list of numbers of the scene, as ["contact.shroud.mu"]'
     keys = words_of(section, "vary", right)
-    if len(keys) > MOST:
-        section.wrong("vary", f"has {len(keys)} numbers; there can be {MOST}")
+    if len(keys) > LIMITS.fitted:
+        section.wrong("vary", f"has {len(keys)} numbers; there can be {LIMITS.fitted}")
     found: list[Number | None] = []
     for i, key in enumerate(keys):
         path = f"{section.at('vary')}[{i}]"
@@ -185,7 +185,7 @@ def _columns(
         faults.append(f"has no column {quoted(level)}; give the level as a number")
     right = RIGHT | ({level: (NOT_POSITIVE, "greater than 0")} if level else {})
     right |= {"amplitude": (NOT_POSITIVE, "greater than 0")} if backbone else {}
-    checks = [*right.items(), *((column, (TOO_LARGE, f"at most {LARGEST:g}")) for column in found)]
+    checks = [*right.items(), *((column, (TOO_LARGE, f"at most {LIMITS.largest:g}")) for column in found)]
     for column, (wrong, text) in checks:
         if column in found and (at := np.flatnonzero(wrong(found[column]))).size:
             value = shown(float(found[column][at[0]]))

@@ -18,6 +18,7 @@ from fcm.scene.files import Files
 from fcm.scene.mistuning import energy_of_matrices
 from fcm.scene.modal import KEYS, UNITS, read_modal
 from fcm.scene.names import Names, RowNames
+from fcm.scene.options import LIMITS, MESSAGES
 from fcm.scene.section import Part, Parts, Section, described
 from fcm.structure.rigid_body import MOST, rigid_by_gap
 
@@ -25,10 +26,6 @@ if TYPE_CHECKING:
     from fcm.scene.structure_table import Matrices
 
 HIDDEN = "\0"  # how the name of a displacement begins that a load over many rows works on
-ALL_REPORTED = 50  # degrees of freedom of which all are in the results, where no others are asked for
-OF_DIRECTION = 8 * 14  # bytes at each row of matrices that the flexibility along a direction takes, measured
-ROOM_TOLD = 2e9  # bytes of it from which on they are told
-OF_NO_INTEREST = 0.01  # of the range's lower end: a frequency far below everything that is traced
 
 
 def read_linear(top: Section, files: Files, unit: str, cyclic: list[Part]) -> tuple[Parts, Matrices | None]:
@@ -80,7 +77,7 @@ def with_modes(
 
 def _room_for(top: Section, directions: int, rows: int) -> bool:
     """Whether memory holds what the flexibility along directions takes; else it is noted."""
-    taken = float(OF_DIRECTION * directions * rows)
+    taken = float(LIMITS.bytes_of_direction * directions * rows)
     said = f"its flexibility along {directions} directions of contacts and forces, at {rows} rows, takes"
     if taken > (free := room.memory()):
         top.wrong(
@@ -89,7 +86,7 @@ def _room_for(top: Section, directions: int, rows: int) -> bool:
             "the contacts and forces first, as by Craig and Bampton, or give fewer contacts",
         )
         return False
-    if taken > ROOM_TOLD:
+    if taken > MESSAGES.memory:
         top.mistakes.say(f"structure: {said} about {room.size(taken)} of memory")
     return True
 
@@ -154,7 +151,7 @@ def without_rounding(parts: Parts, ends: tuple[float, float], unit: str) -> tupl
     if not count or np.isnan(ends[0]):
         return parts, []
     lowest = np.sort(frequency[frequency > 0.0])[:count]
-    if lowest[-1] * UNITS[unit] > OF_NO_INTEREST * ends[0]:
+    if lowest[-1] * UNITS[unit] > LIMITS.of_no_interest * ends[0]:
         return parts, []
     if count == 1:
         note = f"modal: the mode of {lowest[0]:.3g} {unit} is a rigid-body mode: taken as 0"
@@ -198,7 +195,7 @@ def reported_of(parts: Parts, output: list[str], asked: bool) -> tuple[str, ...]
     """The degrees of freedom in results: those of contacts and forces and those asked for, or all of few."""
     dofs: Names = parts["modal"]["dofs"]
     own = [name for name in dofs if not name.startswith((HIDDEN, NEXT))]
-    if not asked and len(own) <= ALL_REPORTED:
+    if not asked and len(own) <= LIMITS.reported:
         return tuple(own)
     used = _columns(_directions(parts), len(dofs)).any(axis=1)
     wanted = {*output, *(own_name(dofs[i]) for i in np.flatnonzero(used))}

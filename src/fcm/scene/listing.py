@@ -8,10 +8,8 @@ import numpy as np
 
 from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray, Force, Scene
+from fcm.scene.options import MESSAGES, TOLERANCES
 
-ROUNDING = 1e-12  # relative: a displacement this small is none
-SPARSE_ABOVE = 2.0  # times the range's end: modes ought to reach there, or their flexibility be kept
-NEAR = 2.0  # times the range's ends: a mode within that is near it
 METRE_AND_MILLIMETRE = float(np.sqrt(1000.0))  # of frequencies, where stiffness and mass mix the two systems
 UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}
 
@@ -79,7 +77,9 @@ def _of_ring(scene: Scene, ring: Ring) -> dict[str, Any]:
         for number, i in enumerate(order.tolist())
     ]
     size = np.abs(ring.shapes)
-    idle = [n for n, d in directions.items() if (motion[n] <= ROUNDING * (size @ np.abs(d))).all()]
+    idle = [
+        n for n, d in directions.items() if (motion[n] <= TOLERANCES.displacement * (size @ np.abs(d))).all()
+    ]
     return {
         "scene": scene.name,
         "title": scene.title,
@@ -115,7 +115,7 @@ def _slip_of_units(elastic: FloatArray, ends: tuple[float, float], unit: str) ->
     def near(factor: float, room: float) -> bool:
         return bool(((elastic * factor >= ends[0] / room) & (elastic * factor <= ends[1] * room)).any())
 
-    if near(1.0, NEAR):
+    if near(1.0, MESSAGES.range_near):
         return ""
     hertz = 2.0 * np.pi
     slips = {
@@ -155,7 +155,7 @@ def _name(scene: Scene, force: Force) -> str:
 
 def _shares(frequency: FloatArray, along: FloatArray) -> list[float] | None:
     """Share of each mode in the static flexibility of a direction."""
-    if (frequency == 0.0)[np.abs(along) > ROUNDING * np.abs(along).max(initial=0.0)].any():
+    if (frequency == 0.0)[np.abs(along) > TOLERANCES.displacement * np.abs(along).max(initial=0.0)].any():
         return None
     flexibility = np.divide(along, frequency, out=np.zeros_like(along), where=frequency > 0.0) ** 2
     total = float(flexibility.sum())
@@ -177,7 +177,7 @@ def _warnings(scene: Scene, directions: dict[str, FloatArray], motion: dict[str,
     said = []
     for name, direction in directions.items():
         size = (np.abs(scene.modal.shapes) @ np.abs(direction)) / np.sqrt(scene.modal.mass)
-        if (np.abs(motion[name]) <= ROUNDING * size).all():
+        if (np.abs(motion[name]) <= TOLERANCES.displacement * size).all():
             said.append(f"{name}: no mode moves along it")
     if scene.has_range:
         said += _of_range(scene)
@@ -196,7 +196,7 @@ def _of_range(scene: Scene) -> list[str]:
         said.append(f"within the range, without damping: mode {', '.join(map(str, undamped[:10]))}")
     highest = modal.frequency.max()
     lacking = not (modal.added or modal.complete)
-    if lacking and highest < SPARSE_ABOVE * high and modal.frequency.size > 1 and scene.contacts:
+    if lacking and highest < MESSAGES.range_above * high and modal.frequency.size > 1 and scene.contacts:
         where = f"{highest / UNIT[unit]:.6g} {unit}"
         said.append(f"the highest mode is at {where}: a contact lacks the flexibility of all modes above")
     return said

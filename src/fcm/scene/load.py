@@ -17,7 +17,7 @@ from fcm.scene.cyclic import check_diameters, note_of_stability, only_own, own_n
 from fcm.scene.draft import Draft, forces_of, modes_of
 from fcm.scene.errors import Mistakes, SceneError, choices, kind, quoted, suggestion
 from fcm.scene.excitation import load_of, read_base, read_loads
-from fcm.scene.files import LARGEST, Files
+from fcm.scene.files import Files
 from fcm.scene.fit import read_fit
 from fcm.scene.keys import names
 from fcm.scene.linear import (
@@ -35,6 +35,7 @@ from fcm.scene.mistuning import MistuningError, drawn_rings, read_blade, tuned_s
 from fcm.scene.modal import UNITS
 from fcm.scene.node_pairs import notes_of_shares
 from fcm.scene.optimum import read_optimum
+from fcm.scene.options import FILES, TOLERANCES
 from fcm.scene.parts import (
     contact_of,
     note_of_harmonics,
@@ -55,8 +56,6 @@ from fcm.scene.sweep import combinations, curves_of, read_sweep
 from fcm.scene.told import Told
 from fcm.scene.toml import read_toml
 
-CANCELLED = 1e-14  # of the sizes of forces: where no more is left of their sum, it is rounding
-MASS_RATIO = 1e20  # of modes: beyond it, sums over the modes lose the heavy ones to rounding
 NOT_IN_PLANE = (
     "simulates contacts on a line alone, between whose events the structure is linear; a contact with two "
     "tangential directions has a response by harmonics, without [[schedule]]"
@@ -88,7 +87,7 @@ def path_of(path_or_name: str | Path) -> Path:
 def load_scene(
     path_or_name: str | Path,
     *,
-    largest_file: int = LARGEST,
+    largest_file: int = FILES.largest,
     every_row: bool = False,
     solved: bool = True,
     told: Told | None = None,
@@ -124,7 +123,7 @@ def scene_from_dict(
     name: str = "scene",
     folder: str | Path = ".",
     *,
-    largest_file: int = LARGEST,
+    largest_file: int = FILES.largest,
     every_row: bool = False,
     solved: bool = True,
     told: Told | None = None,
@@ -305,9 +304,9 @@ def _faults_of_curve(curve: Scene) -> Iterator[str]:
     if curve.has_range and not _moved(curve):
         yield "the forces move no mode, so the response is zero"
     masses = curve.modal.mass
-    if masses.size and masses.max() > MASS_RATIO * masses.min():
+    if masses.size and masses.max() > TOLERANCES.mass_ratio * masses.min():
         low, high = masses.min(), masses.max()
-        what = f"the modal masses, from {low:g} to {high:g}, differ by more than {MASS_RATIO:g}"
+        what = f"the modal masses, from {low:g} to {high:g}, differ by more than {TOLERANCES.mass_ratio:g}"
         yield f"{what}: beside the light ones nothing is left of the heavy ones"
     for contact in curve.contacts:
         if not all(direction.any() for direction in contact.directions[:-1]):
@@ -326,7 +325,7 @@ def _moved_by(curve: Scene, harmonic: int) -> bool:
     pushes = [shapes @ (force.amplitude * force.direction) for force in forces]
     size = np.sum([np.abs(push) for push in pushes], axis=0)
     turned = [push * np.exp(1j * force.phase) for push, force in zip(pushes, forces, strict=True)]
-    return bool((np.abs(np.sum(turned, axis=0)) > CANCELLED * size).any())
+    return bool((np.abs(np.sum(turned, axis=0)) > TOLERANCES.cancelled * size).any())
 
 
 def _unit(top: Section) -> str:

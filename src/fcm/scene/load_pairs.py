@@ -8,10 +8,11 @@ from pathlib import Path
 from fcm.model.interface import Interface
 from fcm.scene.cyclic import read_cyclic
 from fcm.scene.errors import Mistakes
-from fcm.scene.files import LARGEST, Files
+from fcm.scene.files import Files
 from fcm.scene.linear import read_linear
 from fcm.scene.load import path_of
 from fcm.scene.modal import UNITS
+from fcm.scene.options import FILES
 from fcm.scene.parts import read_contacts, read_units
 from fcm.scene.section import Section
 from fcm.scene.toml import read_toml
@@ -27,7 +28,7 @@ class Pairs:
     files: tuple[Path, ...]
 
 
-def load_pairs(path_or_name: str | Path, *, largest_file: int = LARGEST) -> Pairs:
+def load_pairs(path_or_name: str | Path, *, largest_file: int = FILES.largest) -> Pairs:
     """The pairs of a scene; SceneError names every mistake of its structure and contacts.
 
     >>> load_pairs("yang1998").interfaces

@@ -24,8 +24,8 @@ import scipy.sparse
 from fcm.scene.errors import choices, counted, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.number_text import fault_of_number, number_in
+from fcm.scene.options import MESSAGES
 
-MOST_SHOWN = 5  # faults of a file that are said one by one
 LAYOUTS = ("coordinate", "array")
 FIELDS = {"real": 1, "double": 1, "integer": 1, "unsigned-integer": 1, "complex": 2}  # numbers of an entry
 SYMMETRIES = ("general", "symmetric", "skew-symmetric", "hermitian")
@@ -87,7 +87,7 @@ def read_matrix_market(path: Path, files: Files) -> Any:
     files.check_size(path, 8 * max(head.rows, head.columns))
     found = _numbers(path, head)
     if faults := [*_outside(found, head), *_across(found, head)]:
-        numbers = _lines_of(path, head, [entry for entry, _ in faults[:MOST_SHOWN]])
+        numbers = _lines_of(path, head, [entry for entry, _ in faults[: MESSAGES.faults]])
         said = [f"line {number}: {fault}" for number, (_, fault) in zip(numbers, faults, strict=False)]
         raise _refused(path, said, len(faults))
     parts = [found[f"value{i}"] for i in range(FIELDS[head.field])]
@@ -197,7 +197,7 @@ def _one_by_one(path: Path, head: _Head) -> Entries:
             found.append(entry)
             continue
         count += 1
-        if len(faults) < MOST_SHOWN:
+        if len(faults) < MESSAGES.faults:
             faults.append(f"line {number}: {entry}")
     if faults:
         raise _refused(path, faults, count)
@@ -263,7 +263,7 @@ def _repeated(path: Path, head: _Head, row: Any, column: Any) -> tuple[list[str]
     """The entries that are there twice, with both lines; and how many they are."""
     order = np.lexsort((column, row))
     same = np.flatnonzero((np.diff(row[order]) == 0) & (np.diff(column[order]) == 0))
-    shown = same[:MOST_SHOWN]
+    shown = same[: MESSAGES.faults]
     pairs = [int(order[k + i]) for k in shown for i in (0, 1)]
     numbers = _lines_of(path, head, pairs)
     said = [

@@ -18,10 +18,9 @@ from fcm.scene.archive import names_in_npz, read_npz
 from fcm.scene.errors import choices, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.number_text import fault_of_number, number_in
+from fcm.scene.options import MESSAGES
 from fcm.scene.reader_process import NAMES, read_apart
 from fcm.scene.uff_functions import read_functions
-
-FAULTS = 5  # of a file that are told
 
 
 def read_measured(
@@ -113,7 +112,7 @@ def _csv(path: Path) -> tuple[dict[str, FloatArray], list[str]]:
         ]
         rows.append(values)
     if faults:
-        raise DataFileError(*(f"{quoted(path.name)}, {fault}" for fault in faults[:FAULTS]))
+        raise DataFileError(*(f"{quoted(path.name)}, {fault}" for fault in faults[: MESSAGES.faults]))
     table = np.array(rows, dtype=np.float64).reshape(len(rows), len(header))
     return dict(zip(header, table.T.copy(), strict=True)), header
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fcm.model.scene import FloatArray
+from fcm.scene.options import MESSAGES
 from fcm.scene.structure_table import Matrices
 from fcm.structure.damping import (
     DampedModes,
@@ -18,8 +19,6 @@ from fcm.structure.damping import (
     ratios,
 )
 from fcm.structure.reduced import Reduced
-
-WORTH_SAYING = 1e-4  # relative change of the response by damping that is left out
 
 
 @dataclass(frozen=True)
@@ -76,7 +75,7 @@ def damping_of(
 
 def _left_out(dragged: float, effects: list[float]) -> list[str]:
     """What is to be said of damping that is left out, from its effects on the linear response, if told."""
-    if not dragged and max(effects, default=0.0) <= WORTH_SAYING:
+    if not dragged and max(effects, default=0.0) <= MESSAGES.damping_left_out:
         return []
     what = "damping between modes is left out"
     if dragged:

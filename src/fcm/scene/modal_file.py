@@ -10,6 +10,7 @@ import numpy as np
 from fcm.scene.archive import names_in_npz, read_npz
 from fcm.scene.errors import counted, quoted
 from fcm.scene.files import DataFileError, Files
+from fcm.scene.options import TOLERANCES
 from fcm.scene.reader_process import NAMES, read_apart
 from fcm.scene.readers import own_endings, own_reader, read_own
 from fcm.scene.uff import read_uff
@@ -26,7 +27,6 @@ KEYS = {  # of a file, and names that other programs give the same
 }
 ENDINGS = (".npz", ".mat", ".uff", ".unv")
 WANTED = tuple(name for key, others in KEYS.items() for name in (key, *others))
-LARGEST_VALUE = 1e-6  # relative: how near to 1 the largest value of a shape is that was scaled to it
 
 
 def read_modal_file(name: str, files: Files, waves: bool = False) -> dict[str, Any]:
@@ -76,7 +76,7 @@ def note_of_scale(name: str, shapes: Any) -> list[str]:
     """
     text = f"modal: {name} gives no modal masses: the shapes are taken as mass-normalised"
     several = np.ndim(shapes) == 2 and min(np.shape(shapes)) > 1
-    if several and (np.abs(np.abs(shapes).max(axis=1) - 1.0) < LARGEST_VALUE).all():
+    if several and (np.abs(np.abs(shapes).max(axis=1) - 1.0) < TOLERANCES.scaled_shape).all():
         return [f"{text}, but all are scaled to a largest value of 1, so they are not; give modal.mass"]
     return [text] if name.lower().endswith((".uff", ".unv")) else []
 

@@ -8,9 +8,9 @@ from functools import cached_property
 from unicodedata import normalize
 
 from fcm.scene.errors import kind, quoted
+from fcm.scene.options import LIMITS
 from fcm.scene.section import Section
 
-LONGEST_NAME = 100  # bytes: "contact.NAME.tangential.NAME" is the name of a variable of a file, 256 at most
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")  # Nastran's 1 to 6
 _AT_NODE = re.compile(r"(\d+)[:. ]?(r?[xyz]|[1-6])", re.IGNORECASE)
 
@@ -92,7 +92,11 @@ def unfit_name(name: str) -> str:
     if not name.strip() or not name.isprintable():
         return f"{quoted(name)} is not a name that can be printed"
     size = len(name.encode())
-    return f"is too long for a name: {size} bytes, of {LONGEST_NAME} at most" if size > LONGEST_NAME else ""
+    return (
+        f"is too long for a name: {size} bytes, of {LIMITS.longest_name} at most"
+        if size > LIMITS.longest_name
+        else ""
+    )
 
 
 def same_names(names: Iterable[str]) -> list[tuple[str, list[str]]]:

@@ -14,8 +14,8 @@ from fcm.model.interface import Interface
 from fcm.scene.errors import choices, counted, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
+from fcm.scene.options import TOLERANCES
 from fcm.scene.pair_file import PairTable
-from fcm.scene.plane import SQUARE
 from fcm.scene.rules import POSITIVE, as_float
 from fcm.scene.section import Section, described
 
@@ -113,7 +113,7 @@ def _check_right_angle(section: Section, tangential: Any, plane: Plane) -> None:
         if along is None:
             continue
         part = along - (along @ plane.normal) * plane.normal
-        if np.linalg.norm(part) < (1.0 - SQUARE) * np.linalg.norm(along):
+        if np.linalg.norm(part) < (1.0 - TOLERANCES.square) * np.linalg.norm(along):
             angle = np.degrees(np.arccos(np.linalg.norm(part) / np.linalg.norm(along)))
             terms = ", ".join(f"{axis} = {x:.6g}" for axis, x in zip(AXES, part, strict=True))
             section.wrong(

@@ -13,11 +13,10 @@ from fcm.scene.draft import Draft, Number, number_in
 from fcm.scene.errors import choices, kind, quoted, shown
 from fcm.scene.keys import names
 from fcm.scene.names import Names
+from fcm.scene.options import LIMITS
 from fcm.scene.rules import as_float
 from fcm.scene.section import Section
 
-MOST = 3  # numbers that are chosen together
-WIDE = 10.0  # times its value in the scene, to which a number may go where no bounds are given
 WHAT = ("peak", "greatest")
 
 
@@ -41,8 +40,8 @@ def read_optimum(top: Section, draft: Draft, reported: Sequence[str]) -> Optimum
 def _numbers(section: Section, draft: Draft) -> list[Number | None]:
     """The numbers to vary; None in the place of one that there is not."""
     keys = words_of(section, "vary", 'a list of numbers of the scene, as ["contact.shroud.n_0"]')
-    if len(keys) > MOST:
-        section.wrong("vary", f"has {len(keys)} numbers; there can be {MOST}")
+    if len(keys) > LIMITS.chosen:
+        section.wrong("vary", f"has {len(keys)} numbers; there can be {LIMITS.chosen}")
     found: list[Number | None] = []
     for i, key in enumerate(keys):
         number = number_in(draft, key, f"{section.at('vary')}[{i}]", section.mistakes)
@@ -146,4 +145,6 @@ def _wide(section: Section, number: Number, draft: Draft) -> tuple[float, float]
     furthest = max(values, key=abs, default=0.0)
     if furthest == 0.0:
         section.wrong("bounds", f"missing; give [from, to] for {number.key}, which is 0 in the scene")
-    return (0.0, WIDE * furthest) if furthest > 0.0 else (WIDE * furthest, 0.0)
+    return (
+        (0.0, LIMITS.optimum_range * furthest) if furthest > 0.0 else (LIMITS.optimum_range * furthest, 0.0)
+    )

@@ -24,23 +24,14 @@ from fcm.scene.node_pairs import (
     shares,
 )
 from fcm.scene.node_sets import with_fitted
+from fcm.scene.options import LIMITS
 from fcm.scene.pair_file import PairTable
 from fcm.scene.plane import check_axes, read_directions
-from fcm.scene.rules import (
-    FRACTION,
-    MOST_HARMONICS,
-    POSITIVE,
-    RULES,
-    SHORTEST_STEP,
-    harmonics_fault,
-    step_fault,
-)
+from fcm.scene.rules import FRACTION, POSITIVE, RULES, harmonics_fault, step_fault
 from fcm.scene.section import Section
 
 Dofs = Names | None
-NARROWEST = 1e-10  # relative width of a range: its points are still some 1e5 roundings apart
 ONE = "give a range, and a single frequency within it by --at"
-MAX_STEP = 0.05  # longest step along a curve when the scene names none
 
 
 def read_contacts(top: Section, dofs: Dofs, files: Files) -> list[dict[str, Any]]:
@@ -138,9 +129,9 @@ def _harmonic(section: Section) -> int:
     """The harmonic of the frequency at which a force acts."""
     value = section.data.get("harmonic", 1)
     whole = isinstance(value, int) and not isinstance(value, bool)
-    if not whole or not 1 <= value <= MOST_HARMONICS:
+    if not whole or not 1 <= value <= LIMITS.harmonics:
         what = quoted(value) if isinstance(value, str) else value
-        section.wrong("harmonic", f"must be a whole number from 1 to {MOST_HARMONICS}, is {what}")
+        section.wrong("harmonic", f"must be a whole number from 1 to {LIMITS.harmonics}, is {what}")
         return 1
     return int(value)
 
@@ -196,9 +187,9 @@ def response_table(top: Section, solved: bool) -> Section | None:
 def read_response(top: Section, section: Section | None, unit: str) -> tuple[tuple[float, float], float]:
     """The range of frequencies [rad/s], nan if there is none but a schedule, and the longest step."""
     if section is None:
-        return NO_RANGE, MAX_STEP
-    step = section.number("max_step", FRACTION, default=MAX_STEP)
-    if step < SHORTEST_STEP:  # and not nan, which is a mistake already
+        return NO_RANGE, LIMITS.longest_step
+    step = section.number("max_step", FRACTION, default=LIMITS.longest_step)
+    if step < LIMITS.shortest_step:  # and not nan, which is a mistake already
         section.wrong("max_step", step_fault(step))
     if "frequency" not in section.data and top.data.get("schedule"):
         return NO_RANGE, step
@@ -212,8 +203,8 @@ def read_response(top: Section, section: Section | None, unit: str) -> tuple[tup
     if low >= high:
         order, what = ("goes down", "give the lower one first") if low > high else ("is empty", ONE)
         section.wrong("frequency", f"{order}: [{ends[0]:g}, {ends[1]:g}]; {what}")
-    elif high - low < NARROWEST * high:
-        what = f"its ends differ by {(high - low) / high:.0e} of themselves, and must by {NARROWEST:g}"
+    elif high - low < LIMITS.narrowest * high:
+        what = f"its ends differ by {(high - low) / high:.0e} of themselves, and must by {LIMITS.narrowest:g}"
         section.wrong("frequency", f"is too narrow to follow a curve through: {what} or more")
     return (low, high), step
 
@@ -227,10 +218,10 @@ def read_harmonics(section: Section | None) -> tuple[tuple[int, ...] | None, flo
         return None, accuracy
     given = section.data["harmonics"]
     chosen = tuple(given) if isinstance(given, list) else (1,)
-    if isinstance(given, int) and not isinstance(given, bool) and 0 < given <= MOST_HARMONICS:
+    if isinstance(given, int) and not isinstance(given, bool) and 0 < given <= LIMITS.harmonics:
         chosen = tuple(range(1, given + 1))
     elif not isinstance(given, list) or harmonics_fault(chosen):
-        wanted = f"a number from 1 to {MOST_HARMONICS}, or a list of them such as [1, 2, 3, 9]"
+        wanted = f"a number from 1 to {LIMITS.harmonics}, or a list of them such as [1, 2, 3, 9]"
         section.wrong("harmonics", f"must be {wanted}, rising, the first of them 1; is {shown(given)}")
     if accuracy is not None:
         section.wrong("accuracy", "chooses the harmonics; give it or harmonics, not both")

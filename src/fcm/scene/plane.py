@@ -9,10 +9,9 @@ import numpy as np
 
 from fcm.model.scene import Contact, FloatArray, Scene
 from fcm.scene.errors import Mistakes, quoted
+from fcm.scene.options import TOLERANCES
 from fcm.scene.section import Section
 
-SAME = 1e-9  # relative: directions that differ by no more are one
-SQUARE = 1e-6  # cosine of the angle between two directions at right angles, at most
 TWO = 'two directions at right angles, such as ["x", "y"], for one that slides in a plane'
 
 Read = TypeVar("Read")
@@ -45,9 +44,9 @@ def check_axes(section: Section, directions: Mapping[str, Mapping[str, float]]) 
     size = np.linalg.norm(a), np.linalg.norm(b)
     if not size[0] or not size[1]:
         section.wrong("tangential", "has a direction with only zero weights, so it moves nothing")
-    elif abs(size[0] - size[1]) > SQUARE * max(size):
+    elif abs(size[0] - size[1]) > TOLERANCES.square * max(size):
         section.wrong("tangential", "has directions " + _scales(float(size[1] / size[0])))
-    elif abs(a @ b) > SQUARE * size[0] * size[1]:
+    elif abs(a @ b) > TOLERANCES.square * size[0] * size[1]:
         angle = np.degrees(np.arccos(min(abs(a @ b) / (size[0] * size[1]), 1.0)))
         section.wrong("tangential", f"must be {TWO}; these are {angle:.4g} degrees apart")
 
@@ -64,7 +63,10 @@ def check_plane(contact: Contact, mistakes: Mistakes, where: str) -> None:
     sizes = [np.sort(np.abs(direction[direction != 0.0])) for direction in (one, other)]
     if sizes[0].size == sizes[1].size:
         ratio = sizes[1] / sizes[0]
-        if np.ptp(ratio) <= SAME * ratio[0] and abs(ratio[0] - 1.0) > SAME:
+        if (
+            np.ptp(ratio) <= TOLERANCES.same_direction * ratio[0]
+            and abs(ratio[0] - 1.0) > TOLERANCES.same_direction
+        ):
             mistakes.add(where, f"{name} are {_scales(float(ratio[0]))}")
 
 
@@ -84,7 +86,7 @@ def _oblique(contact: Contact) -> bool:
     if contact.second is None:
         return False
     one, other = contact.tangential, contact.second
-    return bool(abs(one @ other) > SQUARE * np.linalg.norm(one) * np.linalg.norm(other))
+    return bool(abs(one @ other) > TOLERANCES.square * np.linalg.norm(one) * np.linalg.norm(other))
 
 
 def _scales(ratio: float) -> str:
@@ -97,4 +99,10 @@ def _scales(ratio: float) -> str:
 def _line(direction: FloatArray) -> bytes:
     """The same of directions that are equal up to sign and scale."""
     largest: Any = direction[int(np.abs(direction).argmax())]
-    return (np.round(direction / largest / SAME) * SAME + 0.0).tobytes() if largest else b""
+    return (
+        (
+            np.round(direction / largest / TOLERANCES.same_direction) * TOLERANCES.same_direction + 0.0
+        ).tobytes()
+        if largest
+        else b""
+    )

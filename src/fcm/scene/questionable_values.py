@@ -9,12 +9,10 @@ from typing import Any
 import numpy as np
 
 from fcm.scene.errors import bare, shown
+from fcm.scene.options import LIMITS
 from fcm.scene.rules import as_float
 from fcm.scene.section import Parts, Section
 from fcm.scene.sweep import Swept
-
-LARGEST_RATIO = 1.0  # from here on a mode does not vibrate, and more likely a percentage is meant
-LARGEST_ANGLE = 2.001 * pi  # [rad] a whole turn, and what "6.2832" is more
 
 
 def questions(top: Section, parts: Parts, swept: Sequence[Swept]) -> list[str]:
@@ -69,7 +67,7 @@ def _numbers(value: Any) -> list[float]:
 
 def _of_ratio(key: str, values: Iterable[float], whole: str) -> str:
     value = max(values, default=0.0)
-    if value < LARGEST_RATIO:
+    if value < LIMITS.damping_ratio:
         return ""
     meant = f"if {shown(value)} % is meant, write {value / 100.0:.12g}"
     return f"{key}: is {shown(value)} right? It is {100.0 * value:.12g} % of {whole}; {meant}"
@@ -77,7 +75,7 @@ def _of_ratio(key: str, values: Iterable[float], whole: str) -> str:
 
 def _of_angle(key: str, values: Iterable[float]) -> str:
     value = max(values, default=0.0, key=abs)
-    if abs(value) < LARGEST_ANGLE:
+    if abs(value) < LIMITS.angle:
         return ""
     swept = key.startswith("sweep.")
     meant = "write it in rad" if swept else f'write "{shown(value)}deg"'

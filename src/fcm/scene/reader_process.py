@@ -23,9 +23,8 @@ from fcm.scene.archive import Arrays
 from fcm.scene.errors import quoted
 from fcm.scene.files import DataFileError, Files, UnreadableError, megabytes, reason_of
 from fcm.scene.mat_tags import check_tags, of_struct
+from fcm.scene.options import FILES
 
-SPARE = 500_000_000  # bytes of memory for a reader itself
-COPIES = 3  # of the arrays, while they are read, converted and written
 REFUSED = 3  # exit code of the child when it says why
 NAMES = ".names"  # under which the names of all variables of a .mat file are given
 
@@ -60,7 +59,7 @@ def child(arguments: list[str]) -> None:
     """Read a file and write its arrays to standard output, in a process that may die of it."""
     path, largest, *wanted = arguments
     try:
-        _limit_memory(COPIES * int(largest) + SPARE)
+        _limit_memory(FILES.copies * int(largest) + FILES.memory)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             found = _READERS[Path(path).suffix.lower()](Path(path), wanted, int(largest))

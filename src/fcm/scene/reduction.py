@@ -8,15 +8,13 @@ import numpy as np
 
 from fcm.model.scene import FloatArray
 from fcm.scene.errors import counted
-from fcm.scene.modal_damping import WORTH_SAYING, Damping, damping_of
+from fcm.scene.modal_damping import Damping, damping_of
+from fcm.scene.options import LIMITS, MESSAGES, TOLERANCES
 from fcm.scene.rules import RULES
 from fcm.scene.section import Section
 from fcm.scene.structure_table import Matrices
 from fcm.structure.eigen import StructureError, unit_columns
 from fcm.structure.reduced import ModeSelection, Reduced, reduced
-
-MOST_OUTPUTS = 30  # degrees of freedom of results whose own flexibility is kept
-UNDAMPED = 1e-12  # of a frequency without damping: rounding that nobody would notice
 
 
 def modal_of_matrices(
@@ -69,19 +67,19 @@ def modal_of_matrices(
 
 def split(loads: FloatArray, outputs: list[int]) -> tuple[FloatArray, list[int]]:
     """Directions whose flexibility is kept, and outputs that are too many for that."""
-    few = len(outputs) if len(outputs) <= MOST_OUTPUTS else 0
+    few = len(outputs) if len(outputs) <= LIMITS.outputs else 0
     return np.concatenate((loads, unit_columns(len(loads), outputs[:few])), axis=1), outputs[few:]
 
 
 def at_many(matrices: Matrices, count: int, aside: tuple[float, float], lost: float) -> list[str]:
     """What is to be said of outputs whose own flexibility is not kept, where some is."""
-    if not (count > MOST_OUTPUTS and any(aside)):
+    if not (count > LIMITS.outputs and any(aside)):
         return []
     most = lost + aside[0] + 2.0 * (matrices.ratio or matrices.hysteretic / 2.0) * aside[1]
     off = f"are off by at most {_upwards(most)}" if np.isfinite(most) else "are off by what cannot be told"
     return [
-        f"structure: the {count} outputs are more than {MOST_OUTPUTS}, so that their own flexibility is not "
-        f"kept: receptances from contacts and forces to them {off}"
+        f"structure: the {count} outputs are more than {LIMITS.outputs}, so that their own flexibility is "
+        f"not kept: receptances from contacts and forces to them {off}"
     ]
 
 
@@ -95,7 +93,7 @@ def of_rounding(parts: list[Reduced], ratios: FloatArray) -> list[str]:
             f"{100 * unclear:.2g} % of the first elastic frequency cannot be told from rigid-body modes, and "
             "are taken for such: write it with more"
         )
-    if off > max(WORTH_SAYING * float(ratios.min(initial=1.0)), UNDAMPED):
+    if off > max(MESSAGES.damping_left_out * float(ratios.min(initial=1.0)), TOLERANCES.undamped):
         why = f"was written with {digits} digits" if digits else "has stiff parts that hide the soft ones"
         said.append(
             f"structure: rounding moves the frequencies of its modes by up to {_upwards(off)} of themselves, "

@@ -9,11 +9,9 @@ import numpy as np
 
 from fcm.model.ring import ComplexArray, FloatArray
 from fcm.scene.errors import kind, shown
+from fcm.scene.options import TOLERANCES
 from fcm.scene.rules import RULES, Rule, as_float
 from fcm.scene.section import Part, Section
-
-EQUAL = 1e-6  # relative difference of frequencies that are one
-ROTATED = 1e-8  # relative: of shapes that are real but for a factor, what is left of the imaginary part
 
 
 def complex_row(section: Section, value: Any, path: str, rule: Rule) -> ComplexArray | None:
@@ -114,7 +112,9 @@ def _check_no_pairs(section: Section, draft: Part, sectors: int) -> None:
     if draft["shapes"].imag.any():
         return
     diameter, frequency = draft["diameter"], draft["frequency"]
-    same = (np.diff(diameter) == 0) & (np.abs(np.diff(frequency)) <= EQUAL * frequency[1:])
+    same = (np.diff(diameter) == 0) & (
+        np.abs(np.diff(frequency)) <= TOLERANCES.equal_frequency * frequency[1:]
+    )
     double = np.flatnonzero(same & (diameter[1:] > 0) & (2 * diameter[1:] != sectors)).tolist()
     if double:
         which = f"modes {double[0] + 1} and {double[0] + 2} have one diameter and one frequency"
@@ -133,6 +133,6 @@ def _check_real(section: Section, draft: Part, sectors: int) -> None:
         largest = shapes[i, np.abs(shapes[i]).argmax()]
         if largest:
             shapes[i] *= abs(largest) / largest
-        if np.abs(shapes[i].imag).max() > ROTATED * abs(largest):
+        if np.abs(shapes[i].imag).max() > TOLERANCES.rotated * abs(largest):
             section.wrong(f"shapes[{i}]", f"is of diameter {diameter}, so it is real, but for a factor")
         shapes[i].imag = 0.0

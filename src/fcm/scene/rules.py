@@ -13,12 +13,9 @@ import numpy.typing as npt
 
 from fcm.model.scene import FloatArray, Scene
 from fcm.scene.errors import shown
+from fcm.scene.options import LIMITS
 
 IndexArray = npt.NDArray[np.intp]
-
-LARGEST = 1e100  # magnitudes beyond this overflow when three of them are multiplied
-MOST_HARMONICS = 50  # the greatest harmonic that can be asked for
-SMALLEST = 1e-100  # of those that are divided by
 
 
 @dataclass(frozen=True)
@@ -47,19 +44,24 @@ class Rule:
         right = self.low <= value <= self.high and (value or self.zero)
         if not right or (self.whole and value != int(value)):
             return f"must be {self.text}, is {shown(value)}"
-        if abs(value) > LARGEST:
-            return f"{shown(value)} is too large to calculate with (more than {LARGEST:g})"
-        if (self.low == 0 or self.scales) and 0 < abs(value) < SMALLEST:
-            return f"{shown(value)} is too small to calculate with (less than {SMALLEST:g})"
+        if abs(value) > LIMITS.largest:
+            return f"{shown(value)} is too large to calculate with (more than {LIMITS.largest:g})"
+        if (self.low == 0 or self.scales) and 0 < abs(value) < LIMITS.smallest:
+            return f"{shown(value)} is too small to calculate with (less than {LIMITS.smallest:g})"
         return ""
 
     def faulty(self, values: FloatArray) -> IndexArray:
         """Indices of the values that this rule does not allow, (fault, axis)."""
-        right = np.isfinite(values) & (values >= self.low) & (values <= self.high) & (abs(values) <= LARGEST)
+        right = (
+            np.isfinite(values)
+            & (values >= self.low)
+            & (values <= self.high)
+            & (abs(values) <= LIMITS.largest)
+        )
         if not self.zero:
             right &= values != 0
         if self.low == 0 or self.scales:
-            right &= (values == 0) | (abs(values) >= SMALLEST)
+            right &= (values == 0) | (abs(values) >= LIMITS.smallest)
         if self.whole:
             right &= values == np.rint(values)
         return np.argwhere(~right)
@@ -71,15 +73,13 @@ POSITIVE = Rule("greater than 0", low=0.0, zero=False)
 NOT_NEGATIVE = Rule("at least 0", low=0.0)
 FRACTION = Rule("greater than 0 and at most 1", low=0.0, high=1.0, zero=False)
 
-SHORTEST_STEP = 1e-5  # relative to a curve's extent: it then has a hundred thousand points and more
-
 
 def step_fault(step: float) -> str:
     """What is wrong with the longest step along a curve; empty when nothing is."""
-    if (fault := FRACTION.fault(step)) or step >= SHORTEST_STEP:
+    if (fault := FRACTION.fault(step)) or step >= LIMITS.shortest_step:
         return fault
     return (
-        f"must be at least {SHORTEST_STEP:g}, is {shown(step)}, by which a curve has at least "
+        f"must be at least {LIMITS.shortest_step:g}, is {shown(step)}, by which a curve has at least "
         f"{1.0 / step:.0e} points"
     )
 
@@ -87,12 +87,12 @@ def step_fault(step: float) -> str:
 def harmonics_fault(harmonics: Sequence[int]) -> str:
     """What is wrong with the harmonics of a balance; empty if nothing is."""
     whole = all(
-        isinstance(h, int) and not isinstance(h, bool) and 1 <= h <= MOST_HARMONICS for h in harmonics
+        isinstance(h, int) and not isinstance(h, bool) and 1 <= h <= LIMITS.harmonics for h in harmonics
     )
     rising = whole and all(a < b for a, b in pairwise(harmonics))
     if harmonics and rising and harmonics[0] == 1:
         return ""
-    return f"whole numbers from 1 to {MOST_HARMONICS}, rising, the first of them 1"
+    return f"whole numbers from 1 to {LIMITS.harmonics}, rising, the first of them 1"
 
 
 def harmonics_up_to(count: int) -> tuple[int, ...]:
@@ -101,7 +101,7 @@ def harmonics_up_to(count: int) -> tuple[int, ...]:
     >>> harmonics_up_to(3), len(harmonics_up_to(10**30))
     ((1, 2, 3), 51)
     """
-    return tuple(range(1, min(count, MOST_HARMONICS + 1) + 1))
+    return tuple(range(1, min(count, LIMITS.harmonics + 1) + 1))
 
 
 def least_points(scene: Scene) -> int:

@@ -10,10 +10,9 @@ import numpy as np
 from fcm.model.scene import FloatArray, Phase, Start
 from fcm.scene.keys import names
 from fcm.scene.modal import UNITS
+from fcm.scene.options import LIMITS
 from fcm.scene.rules import ANY, POSITIVE, RULES
 from fcm.scene.section import Section
-
-MOST_CYCLES = 10_000_000  # of all phases, hours of computing
 
 
 def read_schedule(top: Section, unit: str) -> tuple[Phase, ...]:
@@ -24,8 +23,8 @@ def read_schedule(top: Section, unit: str) -> tuple[Phase, ...]:
         frequency = section.number("frequency", POSITIVE) * UNITS[unit]
         phases.append(Phase(frequency, _whole(section.number("cycles", POSITIVE))))
     total = sum(phase.cycles for phase in phases)
-    if total > MOST_CYCLES:
-        top.wrong("schedule", f"asks for {total:g} cycles; there can be {MOST_CYCLES}")
+    if total > LIMITS.cycles:
+        top.wrong("schedule", f"asks for {total:g} cycles; there can be {LIMITS.cycles}")
     return tuple(phases)
 
 

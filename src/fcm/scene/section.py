@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 Part = dict[str, Any]  # what a table of the file says, as far as it is read, in the words of the file
 Parts = dict[str, Any]  # those of a scene by their names: modal, contact, force, ...
 
-LONGEST_NAME = 100  # bytes: "contact.NAME.tangential.NAME" names a variable of a file, of 256 at most
 
 SYNONYMS = {  # as others name what has another key here
     "k_t": "k_u", "kt": "k_u", "k_tau": "k_u", "k_n": "k_v", "kn": "k_v", "friction": "mu", "preload": "n_0",

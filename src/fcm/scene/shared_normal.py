@@ -8,9 +8,7 @@ import numpy as np
 
 from fcm.model.scene import Contact, FloatArray, Scene
 from fcm.scene.errors import bare, counted, quoted, shown
-
-SAME = 1e-9  # relative: directions that differ by no more are one
-MOST_NAMED = 3  # groups of contacts in the sentence
+from fcm.scene.options import MESSAGES, TOLERANCES
 
 
 def note_of_shared_normals(scene: Scene) -> list[str]:
@@ -28,8 +26,10 @@ def note_of_shared_normals(scene: Scene) -> list[str]:
     if not doubled:
         return []
     one, other = _two_directions(scene, doubled[0])
-    names = "; ".join(" and ".join(quoted(one.name) for one in group[:3]) for group in doubled[:MOST_NAMED])
-    more = f"; {counted(len(doubled), 'such place')} in all" if len(doubled) > MOST_NAMED else ""
+    names = "; ".join(
+        " and ".join(quoted(one.name) for one in group[:3]) for group in doubled[: MESSAGES.groups]
+    )
+    more = f"; {counted(len(doubled), 'such place')} in all" if len(doubled) > MESSAGES.groups else ""
     return [
         f"contacts {names} have the same normal displacement and different tangential ones{more}: their "
         "preloads and normal stiffnesses add up there, as those of several contacts side by side. If it is "
@@ -70,7 +70,9 @@ def note_of_own_normal(scene: Scene) -> list[str]:
     found = [one.name for one in rubbing if _presses_as_it_slides(one)]
     if not found:
         return []
-    names = " and ".join(map(quoted, found[:MOST_NAMED])) + (" and others" if found[MOST_NAMED:] else "")
+    names = " and ".join(map(quoted, found[: MESSAGES.groups])) + (
+        " and others" if found[MESSAGES.groups :] else ""
+    )
     return [
         f"the normal displacement of contact {names} is one along which it slides: is it meant? Its normal "
         "load then changes with its slip. Give another normal, or k_v = 0 where the load is constant"
@@ -83,7 +85,10 @@ def _presses_as_it_slides(contact: Contact) -> bool:
     if not contact.normal.any() or not sliding.any():
         return False
     shares = np.linalg.lstsq(sliding, contact.normal, rcond=None)[0]
-    return bool(np.abs(sliding @ shares - contact.normal).max() <= SAME * np.abs(contact.normal).max())
+    return bool(
+        np.abs(sliding @ shares - contact.normal).max()
+        <= TOLERANCES.same_direction * np.abs(contact.normal).max()
+    )
 
 
 def _counts_twice(group: list[Contact]) -> bool:
@@ -95,4 +100,10 @@ def _counts_twice(group: list[Contact]) -> bool:
 def _line(direction: FloatArray) -> bytes:
     """The same of directions that are equal up to sign and scale."""
     largest = direction[int(np.abs(direction).argmax())]
-    return (np.round(direction / largest / SAME) * SAME + 0.0).tobytes() if largest else b""
+    return (
+        (
+            np.round(direction / largest / TOLERANCES.same_direction) * TOLERANCES.same_direction + 0.0
+        ).tobytes()
+        if largest
+        else b""
+    )

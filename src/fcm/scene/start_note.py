@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from fcm.model.scene import Contact, Scene, Start
-
-ROUNDING = 1e-9  # of the limit
+from fcm.scene.options import MESSAGES
 
 
 def note_of_start(scene: Scene) -> list[str]:
@@ -20,7 +19,7 @@ def _beyond(scene: Scene) -> dict[int, list[tuple[Scene, float]]]:
         for place, contact in enumerate(curve.contacts if start is not None and start.friction.any() else ()):
             assert start is not None
             limit = _limit(curve, contact, start)
-            if abs(start.friction[place]) > limit * (1.0 + ROUNDING):
+            if abs(start.friction[place]) > limit * (1.0 + MESSAGES.start_rounding):
                 found.setdefault(place, []).append((curve, limit))
     return found
 

@@ -31,11 +31,9 @@ from fcm.scene.address import Addresses, overlap
 from fcm.scene.draws import FORMS as DRAWN
 from fcm.scene.draws import Correlation, Draws, read_correlation, read_draws
 from fcm.scene.errors import kind, quoted, shown
+from fcm.scene.options import LIMITS
 from fcm.scene.rules import ANY, RULES, Rule
 from fcm.scene.section import Section
-
-MOST_CURVES = 1_000_000
-OF_CURVE = 1000.0  # bytes of its numbers
 
 FORMS = (
     "a list of numbers, { from = , to = , count = }, "
@@ -82,13 +80,13 @@ def read_sweep(top: Section, parts: Mapping[str, Any], others: Sequence[Swept] =
         swept = _correlated(section, swept, correlation)
     _note_overlaps(section, swept)
     count = curves_of(swept)
-    if count > MOST_CURVES:
-        section.wrong("", f"asks for {count} curves; there can be {MOST_CURVES}")
-    elif count * OF_CURVE > (free := room.memory()):
+    if count > LIMITS.curves:
+        section.wrong("", f"asks for {count} curves; there can be {LIMITS.curves}")
+    elif count * LIMITS.bytes_of_curve > (free := room.memory()):
         section.wrong(
             "",
-            f"asks for {count} curves, which take {room.size(count * OF_CURVE)} of memory before they are "
-            f"traced, and {room.size(free)} are free: sweep or draw fewer values at a time",
+            f"asks for {count} curves, which take {room.size(count * LIMITS.bytes_of_curve)} of memory "
+            f"before they are traced, and {room.size(free)} are free: sweep or draw fewer values at a time",
         )
     return swept
 
@@ -263,7 +261,7 @@ def _integer(table: Section, key: str, least: int, default: int | None = None) -
         what = shown(value) if isinstance(value, bool | int | float) else kind(value)
         table.wrong(key, f"must be a whole number of at least {least}, is {what}")
         return None
-    if key == "count" and value > MOST_CURVES:
-        table.wrong(key, f"{shown(value)} is too many; there can be {MOST_CURVES} curves")
+    if key == "count" and value > LIMITS.curves:
+        table.wrong(key, f"{shown(value)} is too many; there can be {LIMITS.curves} curves")
         return None
     return value

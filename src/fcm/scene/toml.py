@@ -12,23 +12,18 @@ from typing import Any
 
 from fcm.files import no_file
 from fcm.scene.errors import SceneError
+from fcm.scene.options import TOML, TomlOptions
 from fcm.scene.toml_slips import slips
 
-PATIENCE = 2.0  # [s] without a byte from a pipe before that is said
-LARGEST_FILE = 10_000_000  # bytes; a larger one is a mistake, or its modes belong in a file of their own
-DEEPEST_KEY = 16  # parts of a dotted key: the parser takes the square of their number in time and memory
-
-# at the beginning of a line, a header or an inline table: a part and a dot, again and again
 _PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
-_DEEP_KEY = re.compile(rf"(?:^|[\[{{,])[ \t]*+(?:{_PART}[ \t]*+\.[ \t]*+){{{DEEPEST_KEY}}}", re.MULTILINE)
 
 
-def read_toml(path: Path, source: str) -> dict[str, Any]:
+def read_toml(path: Path, source: str, options: TomlOptions = TOML) -> dict[str, Any]:
     """The tables of a TOML file, which messages call `source`."""
-    text = _text(path, source)
-    if deep := _DEEP_KEY.search(text):
+    text = _text(path, source, options)
+    if deep := _deep_key(options.deepest_key).search(text):
         line = text.count("\n", 0, deep.start() + 1) + 1
-        raise SceneError(source, [f"line {line}: unknown key, of more than {DEEPEST_KEY} parts"])
+        raise SceneError(source, [f"line {line}: unknown key, of more than {options.deepest_key} parts"])
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError:
@@ -39,17 +34,22 @@ def read_toml(path: Path, source: str) -> dict[str, Any]:
         raise SceneError(source, ["has a number or a date that cannot be read"]) from None
 
 
-def _from_pipe(path: Path, source: str) -> bytes:
+def _deep_key(parts: int) -> re.Pattern[str]:
+    """A key of more parts, at the beginning of a line, of a header or of an inline table."""
+    return re.compile(rf"(?:^|[\[{{,])[ \t]*+(?:{_PART}[ \t]*+\.[ \t]*+){{{parts}}}", re.MULTILINE)
+
+
+def _from_pipe(path: Path, source: str, options: TomlOptions) -> bytes:
     """What is written to a pipe; that nothing is, which may be so for ever, is said."""
     with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as pipe:
-        if not select.select([pipe], [], [], PATIENCE)[0]:
+        if not select.select([pipe], [], [], options.patience)[0]:
             warnings.warn(f"{source} is a pipe: waiting until something is written to it", stacklevel=2)
             select.select([pipe], [], [])
         os.set_blocking(pipe.fileno(), True)
-        return pipe.read(LARGEST_FILE + 1)
+        return pipe.read(options.largest_file + 1)
 
 
-def _text(path: Path, source: str) -> str:
+def _text(path: Path, source: str, options: TomlOptions) -> str:
     """The text of a file."""
     try:
         if not source:
@@ -58,8 +58,8 @@ def _text(path: Path, source: str) -> str:
             raise SceneError(source, ["is a folder; name the TOML file in it"])
         if not path.is_fifo() and (what := no_file(path)):
             raise SceneError(source, [what])
-        pipe = _from_pipe(path, source) if path.is_fifo() else None
-        if max(len(pipe or b""), path.stat().st_size) > LARGEST_FILE:
+        pipe = _from_pipe(path, source, options) if path.is_fifo() else None
+        if max(len(pipe or b""), path.stat().st_size) > options.largest_file:
             raise SceneError(source, ["is too large; keep its modes in a file of their own"])
         return (path.read_bytes() if pipe is None else pipe).decode("utf-8-sig")
     except UnicodeDecodeError as error:

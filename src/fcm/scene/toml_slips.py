@@ -16,12 +16,7 @@ from math import pi
 from fcm.scene.errors import quoted
 from fcm.scene.keys import LISTS
 from fcm.scene.names import at_node
-
-MOST_SLIPS = 30  # that are looked for in one file
-MOST_READ = 5_000_000  # characters that are read to try remedies, in all: some seconds
-LONGEST_MENDED = 2_000  # characters of a line in which a remedy is looked for
-LONGEST_LINE = 70  # characters that are shown of a line; of a longer one those that change
-LINES_BEFORE = 3  # lines before the one where reading ends, on which a bracket may be missing
+from fcm.scene.options import TOML
 
 _AT = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 _ASIDE = re.compile(
@@ -70,8 +65,8 @@ def slips(text: str) -> list[str]:
     """  # noqa: E501
     lines, said = text.replace("\r\n", "\n").split("\n"), list[str]()
     slip: _Slip | None = None
-    tries = iter(range(MOST_READ // max(len(text), 1)))
-    while (fault := _fault(lines)) and len(said) < MOST_SLIPS:
+    tries = iter(range(TOML.most_read // max(len(text), 1)))
+    while (fault := _fault(lines)) and len(said) < TOML.most_slips:
         found: tuple[_Slip | str, list[str]] | None = _twice(lines, fault) or _wrong_digit(lines, fault)
         found = found or _mended(lines, fault, tries)
         if found is None:
@@ -96,7 +91,7 @@ class _Slip:
 
     def __str__(self) -> str:
         old, new = self.old, self.new
-        if max(len(old.strip()), len(new.strip())) > LONGEST_LINE:
+        if max(len(old.strip()), len(new.strip())) > TOML.longest_line:
             old, new = _changed(old, new)
         written = " and ".join(_plain(line) for line in new.split("\n"))
         return f"line {self.line + 1}, {_plain(old)}: {self.why}: write {written}"
@@ -118,8 +113,8 @@ def _fault(lines: list[str]) -> _Fault | None:
 def _mended(lines: list[str], fault: _Fault, tries: Iterator[int]) -> tuple[_Slip, list[str]] | None:
     """What to say of a slip, and the lines without it."""
     last = min(len(lines) - 1 if fault.line is None else fault.line, len(lines) - 1)
-    before = [at for at in range(last, -1, -1) if lines[at].strip()][: LINES_BEFORE + 1]
-    before = [at for at in before if len(lines[at]) <= LONGEST_MENDED]
+    before = [at for at in range(last, -1, -1) if lines[at].strip()][: TOML.lines_before + 1]
+    before = [at for at in before if len(lines[at]) <= TOML.longest_mended]
     for at in before:
         for why, remedy in _REMEDIES:
             line = remedy(lines[at])
@@ -152,14 +147,16 @@ def _changed(old: str, new: str) -> tuple[str, str]:
     begin = max((old.rfind(mark, 0, begin) for mark in " ,[{="), default=-1) + 1
     ends = zip(reversed(old[begin:]), reversed(new[begin:]), strict=False)
     same = next((i for i, (a, b) in enumerate(ends) if a != b), 0)
-    return old[begin : len(old) - same][:LONGEST_LINE], new[begin : len(new) - same][:LONGEST_LINE]
+    return old[begin : len(old) - same][: TOML.longest_line], new[begin : len(new) - same][
+        : TOML.longest_line
+    ]
 
 
 def _plain(line: str) -> str:
     """A line as a message shows it."""
     line = line.strip()
-    short = line if len(line) <= LONGEST_LINE else f"{line[:LONGEST_LINE]}..."
-    return short if short.isprintable() else quoted(short, LONGEST_LINE + 3)
+    short = line if len(line) <= TOML.longest_line else f"{line[: TOML.longest_line]}..."
+    return short if short.isprintable() else quoted(short, TOML.longest_line + 3)
 
 
 def _unmended(lines: list[str], fault: _Fault) -> str:

@@ -22,6 +22,7 @@ import numpy.typing as npt
 from fcm.scene.errors import choices, counted, quoted
 from fcm.scene.files import DataFileError
 from fcm.scene.number_text import NUMBER, fault_of_number, number_in
+from fcm.scene.options import TOLERANCES
 from fcm.scene.uff_contents import contents, units
 from fcm.scene.uff_datasets import Dataset, read_datasets
 
@@ -32,8 +33,6 @@ REAL, COMPLEX, DOUBLE = (2, 4), (5, 6), (4, 6)  # data types: of single and of d
 PER_LINE = 6  # reals on a line
 OF_DOUBLE = 3  # values at a node on a line, as some write them in double precision
 PER_LINE_OF_INTEGERS = 8
-SAME = 1e-6  # relative difference of what two datasets write of one mode
-COLLINEAR = 1e-4  # of a shape: what may be left when it is turned to be real
 _NUMBER = re.compile(NUMBER, re.ASCII)
 _BESIDE = re.compile(rf"{NUMBER}(?:(?=[-+]){NUMBER})*", re.ASCII)  # a sign alone may part them
 
@@ -187,7 +186,7 @@ def _real(mode: _Mode, dofs: list[str], number: int, faults: list[str]) -> list[
     shape = np.array([mode.values.get(dof, 0.0) for dof in dofs])
     if shape.imag.any():
         turned = shape * np.exp(-0.5j * np.angle((shape * shape).sum()))
-        if np.linalg.norm(turned.imag) > COLLINEAR * np.linalg.norm(turned):
+        if np.linalg.norm(turned.imag) > TOLERANCES.collinear * np.linalg.norm(turned):
             faults.append(f"its normal mode {number} is complex; a real one is needed")
         shape = turned
     return shape.real.tolist()  # type: ignore[no-any-return]
@@ -208,8 +207,12 @@ def _twice(frequency: npt.NDArray[np.float64], shapes: npt.NDArray[np.float64]) 
     """Which modes are there twice, as in a file that has them in datasets of both kinds."""
     said = []
     for one, other in combinations(range(frequency.size), 2):
-        near = abs(frequency[one] - frequency[other]) <= SAME * frequency[other]
-        if near and np.abs(shapes[one] - shapes[other]).max() <= SAME * np.abs(shapes[other]).max():
+        near = abs(frequency[one] - frequency[other]) <= TOLERANCES.same_mode * frequency[other]
+        if (
+            near
+            and np.abs(shapes[one] - shapes[other]).max()
+            <= TOLERANCES.same_mode * np.abs(shapes[other]).max()
+        ):
             said.append(f"its normal modes {one + 1} and {other + 1} are the same; leave one out")
     return said
 
