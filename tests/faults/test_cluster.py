@@ -13,6 +13,7 @@ import xarray
 
 import fcm
 from fcm.run import Gone, Lost, cluster, place_of, sweep
+from fcm.run.options import RunOptions
 
 from .conftest import FEW, SWEEP, session, variables
 
@@ -161,7 +162,7 @@ def silent():
 
 
 def test_a_port_that_is_silent_is_left_in_the_time_that_is_said(silent, monkeypatch):
-    monkeypatch.setattr(cluster, "ANSWER", 0.5)
+    monkeypatch.setattr(cluster, "RUN", RunOptions(scheduler_answer=0.5))
     with pytest.raises(cluster.ClusterError, match=r"within 0\.5 s"), cluster.connected(silent):
         pass
 
@@ -170,7 +171,10 @@ def test_a_port_that_is_silent_is_left_in_the_time_that_is_said(silent, monkeypa
 @pytest.mark.parametrize("which", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_the_wait_for_a_port_that_is_silent(program, silent, which):
     """Long before the ten minutes for which it would be waited for here."""
-    patient = FEW + "import fcm.run.cluster as cluster\ncluster.ANSWER = 600.0\nprint('now', flush=True)\n"
+    patient = (
+        f"{FEW}from fcm.run import cluster, options\n"
+        "cluster.RUN = options.RunOptions(scheduler_answer=600.0)\nprint('now', flush=True)\n"
+    )
     run = program.start("respond", "one.toml", "-o", "a.nc", "--cluster", silent, before=patient)
     assert run.stdout.readline().strip() == "now"
     time.sleep(2.0)
@@ -181,7 +185,7 @@ def test_a_signal_ends_the_wait_for_a_port_that_is_silent(program, silent, which
 
 @pytest.mark.slow
 def test_a_scheduler_without_a_worker_of_this_fcm(dask, monkeypatch):
-    monkeypatch.setattr(cluster, "FIRST", 0.1)
+    monkeypatch.setattr(cluster, "RUN", RunOptions(first_worker=0.1))
     with (
         pytest.raises(cluster.ClusterError, match="has no workers; one is started with"),
         cluster.connected(dask.address),

@@ -19,6 +19,7 @@ from fcm.response import groups, trace
 from fcm.run import Checkpoint, CheckpointError, Elsewhere, Lost, fingerprint, place_for, sweep
 from fcm.run.fingerprint import installed
 from fcm.run.fingerprint import program as of_program
+from fcm.run.options import RunOptions
 from fcm.run.records import Record, packed
 
 from ..interrupted import interrupted_beyond
@@ -552,7 +553,7 @@ def test_the_lock_goes_with_the_process(program):
 
 
 def test_checkpoints_have_a_limit_aside(tmp_path, monkeypatch):
-    monkeypatch.setattr("fcm.run.checkpoint.MOST_ASIDE", 3)
+    monkeypatch.setattr("fcm.run.checkpoint.RUN", RunOptions(most_aside=3))
     path = Path(tmp_path / "kept")
     for number in range(3):
         path.write_text("foreign")

@@ -7,6 +7,7 @@ import pytest
 
 import fcm
 from fcm.reduction import negligible_parts
+from fcm.reduction.options import REDUCTION
 from fcm.reduction.static_modes import condensed
 from fcm.response import trace
 from fcm.scene import scene_from_dict
@@ -50,7 +51,7 @@ def bound(response):
 def test_five_hundred_modes_within_the_bound():
     scene = structure(500, 4, 40, 300.0)
     light, full = trace(scene), trace(scene, tolerance=None)
-    assert full.left_out == [] and 0.0 < bound(light) <= negligible_parts.TOLERANCE
+    assert full.left_out == [] and 0.0 < bound(light) <= REDUCTION.tolerance
     one, other = light.curves[0], full.curves[0]
     assert len(one.folds) == len(other.folds)
     for dof, (amplitude, frequency, *_) in other.peaks.items():

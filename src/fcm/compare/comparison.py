@@ -11,7 +11,7 @@ from fcm.compare.errors import Errors, Reference, Shown, reference, worst
 from fcm.compare.methods import CLOSED_FORM, EXACT, Method, Run, run, solve, with_step
 from fcm.compare.startup import Startup, startup
 from fcm.model.scene import Scene
-from fcm.reduction.negligible_parts import TOLERANCE
+from fcm.reduction.options import REDUCTION
 from fcm.response.ring_limits import refuse_own_laws, refuse_plane, refuse_ring
 from fcm.response.sweep import trace
 from fcm.scene.errors import counted
@@ -119,7 +119,7 @@ def compare(
     scene: Scene,
     table: Path | None = None,
     progress: Progress | None = None,
-    tolerance: float = TOLERANCE,
+    tolerance: float = REDUCTION.tolerance,
 ) -> Comparison:
     """Run a scene by every method and measure error against run time.
 

@@ -6,12 +6,11 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.model.scene import FloatArray, Scene
+from fcm.reduction.options import REDUCTION
 from fcm.structure.linear import Linear, linear_of
 from fcm.structure.loads import driven_harmonics
 
 ComplexArray = npt.NDArray[np.complex128]
-SPREAD = 24  # frequencies of the range at which linear responses are looked at, besides resonances
-BESIDE = 1e-7  # relative distance from a resonance, where nothing is infinite
 
 
 def all_springs(scene: Scene) -> FloatArray:
@@ -23,9 +22,9 @@ def all_springs(scene: Scene) -> FloatArray:
 def telling_frequencies(scene: Scene, springs: FloatArray) -> FloatArray:
     """Frequencies spread over the range, and those in it at which a driven harmonic is in resonance."""
     low, high = scene.frequency_range
-    natural = resonances(scene, springs) * (1.0 + BESIDE)
+    natural = resonances(scene, springs) * (1.0 + REDUCTION.beside)
     at = np.concatenate([natural / harmonic for harmonic in driven_harmonics(scene)])
-    return np.concatenate((np.linspace(low, high, SPREAD), at[(at > low) & (at < high)]))
+    return np.concatenate((np.linspace(low, high, REDUCTION.spread), at[(at > low) & (at < high)]))
 
 
 def resonances(scene: Scene, springs: FloatArray) -> FloatArray:

@@ -6,25 +6,23 @@ import numpy as np
 
 from fcm.model.scene import Scene
 from fcm.reduction.negligible_parts import Lighter
+from fcm.reduction.options import REDUCTION
 from fcm.results.result import Curve, Response
 from fcm.shooting import harmonic_state, periodic
 from fcm.shooting.initial_orbits import inner_resonances, near_balance
 from fcm.time_domain.errors import SimulationError
 
-MOST_CURVES = 8  # of a sweep, of which points are looked at
-MOST_POINTS = 4  # of a curve, those of its peaks first
-
 
 def effect(response: Response, lighter: Lighter) -> float:
     """Greatest change of an amplitude, relative to the greatest of the point; inf where it cannot be told."""
-    numbers = np.unique(np.linspace(0, len(response.curves) - 1, MOST_CURVES).astype(int))
+    numbers = np.unique(np.linspace(0, len(response.curves) - 1, REDUCTION.curves).astype(int))
     each = (_of_curve(response.curves[k], lighter.exact[k]) for k in numbers)
     return max(each, default=0.0)
 
 
 def expected_effect(lighter: Lighter) -> float:
     """The same at the motions that the balance leads to, before any curve is followed."""
-    numbers = np.unique(np.linspace(0, len(lighter.full) - 1, MOST_CURVES).astype(int))
+    numbers = np.unique(np.linspace(0, len(lighter.full) - 1, REDUCTION.curves).astype(int))
     return max((_of_starts(lighter.curves[k], lighter.exact[k]) for k in numbers), default=0.0)
 
 
@@ -43,9 +41,9 @@ def _of_curve(curve: Curve, scene: Scene) -> float:
     if there.size == 0:
         return 0.0
     peaks = np.unique(there[curve.amplitude[there].argmax(axis=0)])
-    spread = there[np.linspace(0, there.size - 1, MOST_POINTS).astype(int)]
+    spread = there[np.linspace(0, there.size - 1, REDUCTION.points).astype(int)]
     points = dict.fromkeys([*peaks.tolist(), *spread.tolist()])
-    return max(_of_point(curve, scene, k) for k in list(points)[:MOST_POINTS])
+    return max(_of_point(curve, scene, k) for k in list(points)[: REDUCTION.points])
 
 
 def _of_point(curve: Curve, scene: Scene, k: int) -> float:

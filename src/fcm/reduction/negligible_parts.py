@@ -13,12 +13,10 @@ import numpy as np
 
 from fcm.contact.limits import BoolArray, FloatArray
 from fcm.model.scene import Contact, Modal, Scene
+from fcm.reduction.options import REDUCTION
 from fcm.reduction.sentences import has_friction, named
 from fcm.reduction.static_modes import with_static_modes
 from fcm.scene.errors import counted
-
-TOLERANCE = 1e-5  # of the response, for modes that are replaced
-ROUNDING = 1e-14  # relative: a sum of products this small is zero
 
 
 @dataclass(frozen=True)
@@ -45,7 +43,7 @@ def keep_all(curves: tuple[Scene, ...]) -> Lighter:
     return Lighter(curves, curves, curves, tuple(range(len(curves[0].contacts))), (), whole=True)
 
 
-def leave_out(curves: tuple[Scene, ...], tolerance: float = TOLERANCE, highest: int = 1) -> Lighter:
+def leave_out(curves: tuple[Scene, ...], tolerance: float = REDUCTION.tolerance, highest: int = 1) -> Lighter:
     """The scenes without what they do not need; a tolerance of 0 leaves out only what has no effect.
 
     highest : the greatest harmonic of the response, which modes that are far above are far above, too.
@@ -110,7 +108,7 @@ def _different(curves: tuple[Scene, ...]) -> list[Scene]:
 def _reaches(modal: Modal, direction: FloatArray) -> BoolArray:
     """Whether each mode moves along a direction, beyond rounding."""
     size = np.abs(modal.shapes) @ np.abs(direction)
-    reaches: BoolArray = np.abs(modal.shapes @ direction) > ROUNDING * size
+    reaches: BoolArray = np.abs(modal.shapes @ direction) > REDUCTION.rounding * size
     return reaches
 
 

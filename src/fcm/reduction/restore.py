@@ -11,13 +11,12 @@ from fcm.harmonic_balance.response_quantities import amplitudes_at, cycles, loop
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.reduction.negligible_parts import Lighter
+from fcm.reduction.options import REDUCTION
 from fcm.results.contact_maxima import greatest_of
 from fcm.results.result import Curve, Response
 from fcm.structure.layout import Layout
 
 IntArray = npt.NDArray[np.intp]
-MOST_CHECKED = 200  # points at which the response is compared with that of all modes
-EACH_CHECKED = 8  # points of one curve, besides its peaks
 
 
 def restored(response: Response, lighter: Lighter) -> Response:
@@ -32,9 +31,9 @@ def restored(response: Response, lighter: Lighter) -> Response:
 
 def checked(response: Response, lighter: Lighter) -> float:
     """Shift of the response, relative, when points of the curves are corrected with all modes."""
-    per_curve = max(min(EACH_CHECKED, MOST_CHECKED // len(response.curves)), 1)
+    per_curve = max(min(REDUCTION.checked_of_curve, REDUCTION.checked // len(response.curves)), 1)
     shifts = []
-    for number in _spread(len(response.curves), MOST_CHECKED):
+    for number in _spread(len(response.curves), REDUCTION.checked):
         curve, scene = response.curves[number], lighter.exact[number]
         at = _sample(curve, per_curve)
         if at.size and scene.contacts:

@@ -8,20 +8,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fcm.model.scene import Contact
+from fcm.reduction.options import REDUCTION
 from fcm.scene.errors import counted
 from fcm.units import UNIT
 
 if TYPE_CHECKING:
     from fcm.reduction.negligible_parts import Lighter
 
-MOST_NAMES = 6  # of contacts in one sentence
-
 
 def named(contacts: Sequence[Contact], numbers: Sequence[int]) -> str:
     """Contacts by their names, or by their numbers, the first few of them."""
     names = [contacts[i].name or str(i) for i in numbers]
-    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
-    return f"contact{'' if len(names) == 1 else 's'} {', '.join(names[:MOST_NAMES])}{more}"
+    more = f" and {len(names) - REDUCTION.names} more" if len(names) > REDUCTION.names else ""
+    return f"contact{'' if len(names) == 1 else 's'} {', '.join(names[: REDUCTION.names])}{more}"
 
 
 def has_friction(contact: Contact) -> bool:

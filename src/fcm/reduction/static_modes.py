@@ -16,12 +16,9 @@ import numpy as np
 from fcm.contact.limits import BoolArray, FloatArray
 from fcm.model.scene import Modal, Scene
 from fcm.reduction.linear import all_springs, linear_response, telling_frequencies
+from fcm.reduction.options import REDUCTION
 
 ABOVE = (2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0)  # times the range's end: where modes begin to be far above
-PAYS = 0.6  # of the modes may remain; otherwise nothing is gained
-FEWEST = 30  # modes of a structure for which it is worth trying
-INDEPENDENT = 1e-10  # relative size below which a static response is a combination of the others
-MARGIN = 0.5  # of the tolerance, for the estimate that decides
 
 
 def with_static_modes(scene: Scene, tolerance: float, highest: int = 1) -> tuple[Modal, float] | None:
@@ -30,15 +27,15 @@ def with_static_modes(scene: Scene, tolerance: float, highest: int = 1) -> tuple
     The error is estimated on the structure with all contacts open, and with all of them stuck.
     """
     modal = scene.modal
-    if modal.frequency.size < FEWEST or tolerance <= 0.0 or not scene.contacts:
+    if modal.frequency.size < REDUCTION.fewest or tolerance <= 0.0 or not scene.contacts:
         return None
     directions = _directions(scene)
     for factor in ABOVE:
         limit = factor * highest * scene.frequency_range[1]
         fewer = condensed(modal, directions, modal.frequency > limit)
-        if fewer.frequency.size > PAYS * modal.frequency.size:
+        if fewer.frequency.size > REDUCTION.pays * modal.frequency.size:
             return None
-        if _linear_error(scene, replace(scene, modal=fewer)) < MARGIN * tolerance:
+        if _linear_error(scene, replace(scene, modal=fewer)) < REDUCTION.margin * tolerance:
             return fewer, limit
     return None
 
@@ -51,7 +48,7 @@ def condensed(modal: Modal, directions: FloatArray, high: BoolArray) -> Modal:
     static = (shapes @ directions) / w[:, None]
     static = np.concatenate((_unit(static), _unit(_unit(static) / w[:, None] ** 2)), axis=1)
     left, singular, _ = np.linalg.svd(static, full_matrices=False)
-    basis = left[:, singular > INDEPENDENT * singular.max(initial=0.0)] / w[:, None]
+    basis = left[:, singular > REDUCTION.independent * singular.max(initial=0.0)] / w[:, None]
     # in this basis the stiffness is 1: the eigenvalues of the mass are 1 / frequency^2
     value, vector = np.linalg.eigh(basis.T @ basis)
     frequency = 1.0 / np.sqrt(value)

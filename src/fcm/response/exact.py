@@ -13,7 +13,8 @@ import numpy as np
 from fcm.model.scene import Scene
 from fcm.reduction.constant_state_contacts import on_contacts
 from fcm.reduction.mode_effect import effect, expected_effect
-from fcm.reduction.negligible_parts import TOLERANCE, leave_out_modes
+from fcm.reduction.negligible_parts import leave_out_modes
+from fcm.reduction.options import REDUCTION
 from fcm.reduction.sentences import on_modes
 from fcm.response.coexisting_orbits import Unreached
 from fcm.response.coexisting_search import FOUND
@@ -45,7 +46,7 @@ def trace_exact(
     keep: Path | Checkpoint | None = None,
     resume: bool = False,
     limit: float | None = None,
-    tolerance: float | None = TOLERANCE,
+    tolerance: float | None = REDUCTION.tolerance,
     only: str | None = None,
     periods: int = 1,
     shooting: ShootingOptions = SHOOTING,

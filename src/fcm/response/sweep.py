@@ -12,8 +12,9 @@ from pathlib import Path
 from fcm.harmonic_balance.sampled import check_own_laws
 from fcm.model.scene import Scene
 from fcm.reduction import sentences
-from fcm.reduction.negligible_parts import TOLERANCE, Lighter, keep_all, leave_out
-from fcm.reduction.restore import EACH_CHECKED, checked, restored
+from fcm.reduction.negligible_parts import Lighter, keep_all, leave_out
+from fcm.reduction.options import REDUCTION
+from fcm.reduction.restore import checked, restored
 from fcm.response.blades import with_blades
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.groups import Work
@@ -48,7 +49,7 @@ def trace(
     jobs: int = 1,
     place: Factory | None = None,
     peaks_only: bool = False,
-    tolerance: float | None = TOLERANCE,
+    tolerance: float | None = REDUCTION.tolerance,
     keep: Path | Checkpoint | None = None,
     resume: bool = False,
 ) -> Response:
@@ -169,7 +170,7 @@ class _Sweep:
     def run(self, lighter: Lighter, progress: Progress | None) -> Response:
         """Trace all groups that are not finished already."""
         batches = in_batches(tuple(replace(scene, draft=None) for scene in lighter.curves))
-        samples = EACH_CHECKED if lighter.above is not None else 0
+        samples = REDUCTION.checked_of_curve if lighter.above is not None else 0
         work = Work(replace(self.wanted, table=self._table(lighter)), self.peaks_only, samples)
         curves = self.curves.curves(work, batches, self.mark, progress)
         response = Response.of(self.scene, curves, self.method)

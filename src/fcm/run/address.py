@@ -15,8 +15,9 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
+from fcm.run.options import RUN
+
 SCHEMES = ("tcp", "tls", "ucx", "ws", "wss")
-BETWEEN = 0.05  # [s] between two looks at whether there is an answer
 LATE = TimeoutError("no answer in time")
 _FORM = re.compile(r"(?:(?P<scheme>[a-z]+)://)?(?:\[(?P<six>[^\]]+)\]|(?P<host>[^:/@\s]+)):(?P<port>\d{1,9})")
 
@@ -69,7 +70,7 @@ def unfit_host(host: str) -> str:
 
 
 def _listens(host: str, port: int, until: float) -> None:
-    with socket.create_connection((host, port), max(until - time.monotonic(), BETWEEN)):
+    with socket.create_connection((host, port), max(until - time.monotonic(), RUN.answer_interval)):
         pass
 
 
@@ -89,5 +90,5 @@ def within(call: Callable[[], Any], until: float) -> tuple[Any, BaseException | 
     thread = threading.Thread(target=run, daemon=True)
     thread.start()
     while thread.is_alive() and time.monotonic() < until:
-        thread.join(BETWEEN)
+        thread.join(RUN.answer_interval)
     return found[0], found[1]

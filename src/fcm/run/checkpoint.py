@@ -16,10 +16,9 @@ from typing import Any
 
 from fcm.files import real
 from fcm.run.lock import LENGTH, TITLE, CheckpointError, locked, same
+from fcm.run.options import RUN
 from fcm.run.records import Record, packed, unpacked, whole
 from fcm.signals import undisturbed
-
-MOST_ASIDE = 1000  # files moved aside for one output; then it is refused
 
 _STATE = -1  # and less are the numbers of records with states of batch 0 and more
 _WRITTEN = bytes(32)  # in the place of a fingerprint: how many points of all this a file has, and its name
@@ -196,8 +195,8 @@ def _write(file: int, data: bytes) -> None:
 
 def _free(path: Path) -> Path:
     """A name beside it that nobody has."""
-    for number in range(1, MOST_ASIDE):
+    for number in range(1, RUN.most_aside):
         aside = path.with_name(f"{path.name}.{number}")
         if not os.path.lexists(aside):
             return aside
-    raise CheckpointError(f"{path}: there are {MOST_ASIDE} of them already; remove some")
+    raise CheckpointError(f"{path}: there are {RUN.most_aside} of them already; remove some")

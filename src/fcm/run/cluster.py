@@ -18,16 +18,12 @@ from typing import Any
 
 from fcm.run.address import LATE, answering
 from fcm.run.address import within as _within
-from fcm.run.elsewhere import AHEAD, Elsewhere, Refused, identity, other_fcm, there
+from fcm.run.elsewhere import Elsewhere, Refused, identity, other_fcm, there
+from fcm.run.options import RUN
 from fcm.run.places import Again, Factory, Gone
 from fcm.run.work import Attempt, Compute
 from fcm.signals import undisturbed
 
-ANSWER = 10.0  # [s] in which a scheduler has to answer
-FIRST = 30.0  # [s] in which its first worker has to come
-ALONE = 60.0  # [s] for which it may be without workers in the middle of a run
-LOOK = 2.0  # [s] between two looks at how many there are
-LEAVE = 5.0  # [s] to part from it
 NOISY = r"(distributed|dask|tornado|asyncio)(\.|$)"  # modules
 
 
@@ -51,7 +47,7 @@ def connected(address: str) -> Iterator[Factory]:
             yield lambda compute, _count: Cluster(compute, workers)
         finally:
             with undisturbed(), suppress(Exception):
-                client.close(timeout=LEAVE)
+                client.close(timeout=RUN.leave)
 
 
 @contextmanager
@@ -76,13 +72,15 @@ def _client(address: str) -> Any:
         raise ClusterError(
             "a cluster needs dask.distributed, which is not installed: pip install 'fcm[cluster]'"
         ) from None
-    until = time.monotonic() + ANSWER
+    until = time.monotonic() + RUN.scheduler_answer
     fault = answering(address, until)
     if not fault:
         client, error = _within(lambda: _connected(Client, address, until - time.monotonic()), until)
         if error is None:
             return client
-        fault = f"it did not answer within {ANSWER:g} s" if error is LATE else _first_line(error)
+        fault = (
+            f"it did not answer within {RUN.scheduler_answer:g} s" if error is LATE else _first_line(error)
+        )
     raise ClusterError(
         f"no dask scheduler answers at {address!r} ({fault}); it is started with: dask scheduler"
     ) from None
@@ -101,9 +99,9 @@ class Workers:
         self.client, self.address, self.lost = client, address, f"the scheduler at {address} was lost"
         self.threads: dict[str, int] = {}  # of those that are there, by address
         self.fits: dict[str, bool] = {}  # of all that were asked
-        self._looked, self._last = -LOOK, time.monotonic()
+        self._looked, self._last = -RUN.worker_interval, time.monotonic()
         try:
-            client.wait_for_workers(1, timeout=FIRST)
+            client.wait_for_workers(1, timeout=RUN.first_worker)
         except Exception:
             raise ClusterError(
                 f"the scheduler at {address} has no workers; one is started with: dask worker {address}"
@@ -120,32 +118,37 @@ class Workers:
     @property
     def width(self) -> int:
         """Batches for them at a time; none as long as there is nobody to compute one."""
-        return AHEAD * sum(self.threads[address] for address in self.good)
+        return RUN.batches_ahead * sum(self.threads[address] for address in self.good)
 
     def poll(self) -> None:
         """See who is there, and ask those who are new; `Gone` if there has been nobody for long."""
-        if (now := time.monotonic()) - self._looked < LOOK:
+        if (now := time.monotonic()) - self._looked < RUN.worker_interval:
             return
         self._looked = now
         with suppress(Exception):  # that the scheduler is lost is told by every batch it has
-            threads = self.client.nthreads(callback_timeout=ANSWER)
+            threads = self.client.nthreads(callback_timeout=RUN.scheduler_answer)
             self._ask([address for address in threads if address not in self.fits])
             self.threads = {address: count for address, count in threads.items() if address in self.fits}
         if self.good:
             self._last = now
-        elif now - self._last > ALONE:
-            raise Gone(f"the scheduler at {self.address} has had no worker with this fcm for {ALONE:.0f} s")
+        elif now - self._last > RUN.without_workers:
+            raise Gone(
+                f"the scheduler at {self.address} has had no worker with this fcm "
+                f"for {RUN.without_workers:.0f} s"
+            )
 
     def look_again(self) -> None:
         """Somebody is there who was not: see at the next look."""
-        self._looked = -LOOK
+        self._looked = -RUN.worker_interval
 
     def _ask(self, new: list[str]) -> None:
         """Whether new ones have this fcm; of those that have not a warning says why they are refused."""
         if not new:
             return
         asked_by = identity()
-        answers = self.client.run(identity, workers=new, on_error="return", callback_timeout=ANSWER)
+        answers = self.client.run(
+            identity, workers=new, on_error="return", callback_timeout=RUN.scheduler_answer
+        )
         for address, found in answers.items():
             self.fits[address] = found == asked_by
             if not self.fits[address]:

@@ -12,12 +12,10 @@ from typing import Any
 
 import fcm
 from fcm.run.fingerprint import program
+from fcm.run.options import RUN
 from fcm.run.places import Gone, Place
 from fcm.run.work import Attempt, Batch, Compute, Lost, Report, attempt
 from fcm.threads import one_thread
-
-AHEAD = 2  # batches for each worker: one that it computes, one that waits for it
-UNKNOWN = 32  # workers of an executor that does not say how many it has
 
 
 class Refused(Exception):  # noqa: N818
@@ -54,7 +52,7 @@ class Elsewhere(Place):
 
     def __init__(self, compute: Compute, executor: Executor) -> None:
         self.compute, self.executor, self.asked_by = compute, executor, identity()
-        self.width = AHEAD * (getattr(executor, "_max_workers", None) or UNKNOWN)
+        self.width = RUN.batches_ahead * (getattr(executor, "_max_workers", None) or RUN.unknown_workers)
         self._sizes: dict[Future[Attempt], int] = {}  # of the batches that are there
 
     def submit(self, batch: Batch, report: Report) -> Future[Attempt]:

@@ -5,9 +5,8 @@ from __future__ import annotations
 import threading
 from collections.abc import Iterable, Sequence
 
+from fcm.run.options import RUN
 from fcm.run.work import Progress
-
-ALMOST = 0.999  # of a batch that is not known to be finished
 
 
 class Bar:
@@ -24,7 +23,7 @@ class Bar:
         """The progress of one batch; draw if it comes from the thread that may draw."""
 
         def show(fraction: float, text: str) -> None:
-            self._set(number, ALMOST * min(fraction, 1.0))
+            self._set(number, RUN.almost * min(fraction, 1.0))
             if draw:
                 self.text = text
                 self.draw()

@@ -11,13 +11,12 @@ from queue import Empty, SimpleQueue
 from typing import Any
 
 from fcm.run.checkpoint import Results
+from fcm.run.options import RUN
 from fcm.run.places import Again, Died, Factory, Gone, Here, Place, Threads
 from fcm.run.progress import Bar
 from fcm.run.work import Attempt, Batch, Compute, Lost, Progress, Report
 from fcm.threads import one_here
 
-POLL = 0.1  # [s] between two looks at the progress of others
-GRACE = 0.8  # [s] in which those who are asked to stop may hand over what they have
 DIED = "its process ended unexpectedly, perhaps for want of memory; try fewer --jobs"
 
 
@@ -166,7 +165,7 @@ class _Sweep:
         """The futures that are done, waited for a little; what was saved meanwhile is kept."""
         found = []
         try:
-            found.append(self.done.get(timeout=POLL))
+            found.append(self.done.get(timeout=RUN.poll))
             while True:
                 found.append(self.done.get_nowait())
         except Empty:
@@ -192,7 +191,7 @@ class _Sweep:
     def _hand_over(self, place: Place) -> None:
         """Ask everybody for what they have; whoever has no answer at once has none."""
         place.stop()
-        done, _ = wait(self.waiting, GRACE)
+        done, _ = wait(self.waiting, RUN.grace)
         self._keep_states()
         for future in done:
             number, found = self.waiting[future], None

@@ -15,10 +15,9 @@ from queue import SimpleQueue
 from typing import BinaryIO
 
 from fcm.run.frames import BATCH, PROGRESS, RESULT, SHARE, STATE, STOP, WORK, receive, send
+from fcm.run.options import RUN
 from fcm.run.places import until
 from fcm.run.work import Lost, Report, attempt
-
-SELDOM = 0.1  # [s] between two words of progress
 
 
 def main() -> None:
@@ -61,7 +60,7 @@ class _Said:
         self.results, self.last = results, 0.0
 
     def __call__(self, fraction: float, _text: str) -> None:
-        if (now := time.monotonic()) - self.last > SELDOM:
+        if (now := time.monotonic()) - self.last > RUN.progress_interval:
             self.last = now
             _sent(self.results, PROGRESS, SHARE.pack(fraction))
 
