@@ -58,6 +58,16 @@ def test_where_the_error_of_a_balanced_peak_is_not_told_it_says_why():
     assert "unknown" not in as_table({"curves": [curve({"u": 1.0})]}, "Hz")  # of the exact motion
 
 
+def test_a_range_with_residual_friction_that_is_not_known_is_a_dash_and_says_so():
+    one = curve({"u": 1.0, "v": 2.0}) | {"may_not_be_unique": 3}
+    for dof, change in (("u", 0.034), ("v", 0.0)):
+        one["peak"][dof]["residual_change"] = change
+    told = as_table({"curves": [one]}, "Hz").splitlines()
+    assert "3.4 %" in told[1] and told[-1].endswith("may change the peak") and told[0].count("residual") == 1
+    one["peak"]["u"]["residual_change"] = None
+    assert as_table({"curves": [one]}, "Hz").endswith("may change the peak, - unknown")
+
+
 def test_a_jump_to_no_stable_part_is_explained():
     jump = {"sweep": "up", "frequency": 1.2, "before": {"u": 1.0}, "after": {"u": None}}
     text = as_table({"curves": [curve({"u": 1.0}, [jump])]}, "Hz")

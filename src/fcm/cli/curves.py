@@ -132,7 +132,8 @@ def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: st
     if UNKNOWN in marks:
         lines.append(f"{UNKNOWN} stability is unknown there")
     if ranges_of:
-        lines.append(_OF_RESIDUAL)
+        unknown = any(_residual(curve, dof) == "-" for curve in curves for dof in ranges_of)
+        lines.append(_OF_RESIDUAL + (", - unknown" if unknown else ""))
     if any(_untold(curve, dof) for curve in curves for dof in dofs):
         lines.append(_OF_LEVELS if "level_folds" in curves[0] else _UNTOLD)
     return "\n".join(lines)
