@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import _thread
+import os
+import signal
 import tracemalloc
+from contextlib import suppress
+from threading import Event
 
 import numpy as np
 import pytest
@@ -19,6 +24,7 @@ from .solids import bricks
 
 PACKAGES = [
     FactorOptions("SuperLU"),
+    FactorOptions("SuperLU", long=0, poll=0.001),
     FactorOptions("SuperLU", dissected=0),
     FactorOptions("fronts"),
     FactorOptions("fronts", fronts=FrontOptions(zeros=0.0, zeros_of_few=0.0)),
@@ -153,6 +159,23 @@ def test_nothing_is_dense_in_the_number_of_rows(tmp_path):
     tracemalloc.stop()
     assert scene.modal.frequency[0] == pytest.approx(2 * np.sin(0.5 * np.pi / (rows + 1)), rel=1e-6)
     assert most < 300e6
+
+
+@pytest.mark.parametrize("by_signal", [True, False])  # or by another thread, as of a time limit
+def test_an_interruption_leaves_a_long_factorisation_behind(monkeypatch, by_signal):
+    """A compiled call that comes to no end, for one, and hears of no signal."""
+    never = Event()
+
+    def without_end(*_args, **_more):
+        with suppress(KeyboardInterrupt):
+            os.kill(os.getpid(), signal.SIGINT) if by_signal else _thread.interrupt_main()
+            never.wait(0.5)
+        never.wait(0.5)
+
+    monkeypatch.setattr("fcm.structure.factor.splu", without_end)
+    with pytest.raises(KeyboardInterrupt):
+        solver(bricks(2, 2, 2)[0], options=FactorOptions("SuperLU", long=0, poll=0.001))
+    never.set()
 
 
 def test_factors_that_the_memory_does_not_hold_are_said(monkeypatch):

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
+from threading import Thread
 from typing import Any
 
 import numpy as np
@@ -32,6 +34,8 @@ class FactorOptions:
     small: int = 600  # rows up to which SuperLU is taken: there the orderings of CHOLMOD gain nothing
     dissected: int = 5000  # rows from which on nested dissection pays
     light: int = 5_000_000  # entries of a factor up to which SuperLU and its copy take little memory
+    long: int = 200_000  # entries of a matrix from which on SuperLU has a thread that may be left behind
+    poll: float = 0.1  # [s] between looks at whether it is done, or the run interrupted
     fronts: FrontOptions = field(default_factory=FrontOptions)
 
 
@@ -81,12 +85,12 @@ def solver(matrix: Matrix, definite: bool = True, options: FactorOptions | None 
         if solve is not None:
             return solve
     if rows < options.dissected and options.package != "fronts":
-        return _superlu(matrix, definite)
+        return _superlu(matrix, definite, options)
     tree = tree_of(matrix, options.fronts)
     if options.package == "fronts" or (not options.package and tree.entries > options.light):
         return _fronts(matrix, definite, tree)
     order = tree.order
-    solve, back = _superlu(matrix[order][:, order], definite, "NATURAL"), np.argsort(order)
+    solve, back = _superlu(matrix[order][:, order], definite, options, "NATURAL"), np.argsort(order)
     return lambda loads: solve(np.asarray(loads)[order])[back]
 
 
@@ -113,13 +117,17 @@ def _fronts(matrix: Matrix, definite: bool, tree: Tree) -> Solve:
     return factor.solve
 
 
-def _superlu(matrix: Matrix, definite: bool, ordering: str = "MMD_AT_PLUS_A") -> Solve:
+def _superlu(
+    matrix: Matrix, definite: bool, options: FactorOptions, ordering: str = "MMD_AT_PLUS_A"
+) -> Solve:
     """By SuperLU without pivoting off the diagonal: the signs of its pivots are those of the eigenvalues.
 
     That is Sylvester's law of inertia, where no rows were exchanged.
     """
+    symmetric = {"SymmetricMode": True}
+    work = partial(splu, matrix, permc_spec=ordering, diag_pivot_thresh=0.0, options=symmetric)
     try:
-        factor = splu(matrix, permc_spec=ordering, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        factor = work() if matrix.nnz < options.long else _left_behind(work, options.poll)
     except RuntimeError:
         raise NotPositiveError(0) from None
     except MemoryError:
@@ -130,6 +138,29 @@ def _superlu(matrix: Matrix, definite: bool, ordering: str = "MMD_AT_PLUS_A") ->
         raise NotPositiveError(negative)
     solve: Solve = factor.solve
     return solve
+
+
+def _left_behind(work: Callable[[], Any], poll: float) -> Any:
+    """What a compiled call returns, made in a thread of its own; an interruption leaves it behind.
+
+    The call lets other threads run, but itself ends no sooner for a signal.
+    """
+    done: list[Any] = []
+    failed: list[BaseException] = []
+
+    def call() -> None:
+        try:
+            done.append(work())
+        except BaseException as error:  # is the caller's
+            failed.append(error)
+
+    thread = Thread(target=call, daemon=True)
+    thread.start()
+    while thread.is_alive():
+        thread.join(poll)  # with a limit, for an interruption by another thread wakes nobody
+    if failed:
+        raise failed[0]
+    return done[0]
 
 
 def _negative(factor: Any) -> int:
