@@ -99,6 +99,14 @@ def test_peaks_of_very_different_heights_are_all_to_be_seen_and_no_name_lies_on_
     assert [text.get_text() for text in legend.get_texts()] == ["peak of u", "peak of v"]
 
 
+def test_a_peak_that_falls_by_decades_is_to_be_seen_at_its_least_and_named():
+    number, none = np.linspace(1.0, 2.0, 5), np.zeros(5)
+    heights = np.array([[1.0], [0.1], [0.01], [0.001], [0.002]])
+    track = DrawnTrack("peak of u", number, number, heights, none, none, none + 1.0)
+    upper = draw_tracked(DrawnTracking("contact.c.n_0", ("u",), "Hz", (track,))).axes[0]
+    assert upper.get_yscale() == "log" and upper.get_ylabel() == "Peak amplitude of u"
+
+
 @pytest.mark.slow
 def test_the_error_of_tracked_curves_is_told_or_said_to_be_unknown(fcm):
     """Two of three cusps that lie close together move too far by more harmonics to be found again."""

@@ -53,12 +53,12 @@ def name_errors(
     from matplotlib.patches import Patch
 
     names: dict[str, Line2D | Patch] = {
-        "higher harmonics left out": Line2D([], [], color=colours[0], linewidth=width)
+        "error: higher harmonics left out": Line2D([], [], color=colours[0], linewidth=width)
     }
     names |= notes
     if (_largest(curves)[1] > 0.0).any():
         of_all = " (largest of all)" if len(curves) > 1 else ""
-        names[f"table, before correction{of_all}"] = Patch(color=_GREY)
+        names[f"error: table, before correction{of_all}"] = Patch(color=_GREY)
     figure.legend(names.values(), names.keys(), loc="outside lower center", ncols=2)
 
 

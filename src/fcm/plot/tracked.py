@@ -15,6 +15,7 @@ from fcm.plot.labels import frequency_label, staying, symbols, with_unit
 from fcm.plot.read import FloatArray, floats, opened
 from fcm.plot.reader_process import apart
 from fcm.plot.style import LAYOUT, has_decades, house_style, logarithmic_axis, new_figure, sequence_colours
+from fcm.rotation import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -133,22 +134,25 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
         names = list(dict.fromkeys(track.what for track in wanted))
         colours = dict(zip(names, sequence_colours(len(names)), strict=True))
-        highest: list[float] = []
+        heights: list[float] = []
         for track in wanted:
             name = dof or track.what.removeprefix("peak of ")
             column = drawn.dofs.index(name) if name in drawn.dofs else 0
             height = np.where(track.trough == 1.0, np.nan, track.amplitude[:, column])
             frequency = np.where(track.trough == 1.0, np.nan, track.frequency)
-            highest += (
-                height[track.trough != 1.0].max(keepdims=True).tolist() if not track.trough.all() else []
-            )
+            ends = height[track.trough != 1.0]
+            heights += [] if ends.size == 0 else [float(ends.min()), float(ends.max())]
             label = track.what if track.what in names else None  # once for all its curves
             names = [one for one in names if one != label]
             for axes, values, text in ((upper, height, label), (lower, frequency, None)):
                 _line(axes, track, values, colours[track.what], text)
-        upper.set_ylabel(with_unit("Peak amplitude", drawn.length), parse_math=False)
+        of_one = {dof or track.what.removeprefix("peak of ") for track in wanted} & set(drawn.dofs)
+        one = of_one.pop() if len(of_one) == 1 else ""
+        unit = unit_of(one, drawn.length) if one else drawn.length
+        height_label = with_unit(f"Peak amplitude of {one}" if one else "Peak amplitude", unit)
+        upper.set_ylabel(height_label, parse_math=False)
         lower.set_ylabel(frequency_label(drawn.frequency_unit).replace("Frequency", "Peak frequency"))
-        if highest and has_decades(highest):
+        if heights and has_decades(heights):
             logarithmic_axis(upper)
         if len(colours) > 1:
             figure.legend(*upper.get_legend_handles_labels(), loc="outside right upper")
