@@ -31,7 +31,7 @@ def test_the_greatest_peaks_of_all_curves_are_shown_in_the_order_of_the_file():
     two = {"a": 9.0, "b": 1.0, "c": 1.0, "d": 1.0, "e": 1.0, "f": 0.1}
     header, *rows = as_table({"curves": [curve(one), curve(two)]}, "Hz").splitlines()
     assert [word for word in header.split() if word in one] == ["a", "b", "c", "e"]
-    assert rows[-1] == "the 4 of 6 degrees of freedom with the greatest peaks"
+    assert rows[-1] == "shown: the 4 of 6 degrees of freedom with the greatest peaks"
 
 
 def test_rotations_are_in_radians_and_come_after_displacements():
@@ -187,3 +187,11 @@ def test_an_error_of_which_nothing_is_told_is_not_said_to_be_none():
     peak["u"]["error"] = 0.0
     said = cost_and_error({"curves": [curve], "seconds": 1.0, "method": "level of the forces"})
     assert said.endswith("0.0e+00 by leaving out higher harmonics")
+
+
+def test_the_greatest_error_of_a_peak_stands_beside_the_greatest_of_any_point():
+    """An error of 3 beside a fold is not one of the peaks that a designer reads."""
+    peak = {"u": {"amplitude": 1.0, "error": 0.01}, "v": {"amplitude": 1.0, "error": 0.02}}
+    curve = {"points": 3, "harmonics": [1, 3], "truncation_error": 3.0, "peak": peak}
+    said = cost_and_error({"curves": [curve], "seconds": 1.0, "method": "table"})
+    assert said.endswith("3.0e+00 by leaving out higher harmonics, of peaks 2.0e-02")

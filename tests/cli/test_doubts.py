@@ -9,7 +9,7 @@ import pytest
 
 from fcm.branches import search
 from fcm.branches.isolas import Crossings
-from fcm.cli.doubts import maybe_not_unique, nothing_stable, short_of_accuracy
+from fcm.cli.doubts import maybe_not_unique, nothing_stable, peaks_not_followed, short_of_accuracy
 from fcm.response.exact import trace_exact
 from fcm.scene import load_scene
 
@@ -37,6 +37,8 @@ def test_the_exact_motion_is_not_offered_for_contacts_in_a_plane():
     curves = [{"parameters": {}, "may_not_be_unique": 3}]
     on_line = {"curves": curves, "method": "table", "notes": []}
     assert maybe_not_unique(on_line).endswith("--method exact --at F tells how far the motions range")
+    driven = on_line | {"notes": ["force: at harmonics 1, 2 of the frequency, which are balanced"]}
+    assert maybe_not_unique(driven).endswith("--method exact --at F tells how far the motions range")
     in_plane = on_line | {"directions": {"joint": {"x": "1x", "y": "1y", "normal": "1z"}}}
     assert maybe_not_unique(in_plane).endswith("keeps a friction force that its past decides")
 
@@ -89,8 +91,10 @@ def test_where_folds_of_the_level_were_lost_a_run_says_once_that_branches_may_be
     )
     run = fcm("respond", scene, "--harmonics", "1", "--json", "-o", "a.nc")
     said = (
-        "isolated branches of 2 of 3 curves may be missing: from 1.25 rad/s on "
-        "the folds of the level of the forces were not followed to their end"
+        "isolated branches on 2 of 3 curves may be missing: the folds of the level of the forces were not "
+        "followed to their end from this frequency on: 1.25 rad/s (contact.0.n_0 = 1); folds_unsure_at with "
+        "--json has all; --level 0:4 --at F, with F beyond 1.25, or a sweep up and down by "
+        "--method exact --at FROM:TO:COUNT, looks there"
     )
     assert run.code == 0 and run.err.count(said) == 1 and run.err.count("may be missing") == 1
     curves = json.loads(run.out)["curves"]
@@ -99,3 +103,19 @@ def test_where_folds_of_the_level_were_lost_a_run_says_once_that_branches_may_be
     with netCDF4.Dataset(tmp_path / "b.nc") as data:
         kept = np.ma.filled(data["folds_unsure_at"][:], np.nan)
     assert np.array_equal(kept, [[1.25, 1.5], [np.nan] * 2, [1.0, np.nan]], equal_nan=True)
+
+
+@pytest.mark.parametrize(
+    ("reached", "said"),
+    [
+        ([[0.1, 15.0]], "no peak of u was followed with n_0 above 15: "),
+        ([[2.0, 30.0]], "no peak of u was followed with n_0 below 2: "),
+        ([[0.1, 15.0], [12.0, 30.0]], ""),  # two peaks, one after the other
+    ],
+)
+def test_an_optimum_says_for_which_numbers_no_peak_lies_within_the_frequencies(reached, said):
+    curves = [{"what": "peak of u", "parameters": {}, "number": ends} for ends in reached]
+    tracked = {"what": "optimum", "over": "n_0", "span": [0.1, 30.0], "curves": curves}
+    text = peaks_not_followed({"tracked": tracked})
+    assert text.startswith(said) if said else text == ""
+    assert peaks_not_followed({"tracked": tracked | {"what": "peaks"}}) == ""

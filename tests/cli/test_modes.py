@@ -165,6 +165,14 @@ def test_units_that_look_mixed_are_asked_about(listed, matrices, ends, more, sai
     assert [said in text for text in asked] == ([True] if said else [])
 
 
+def test_units_that_look_mixed_are_asked_about_where_a_curve_is_traced_too(matrices, tmp_path):
+    for ends, asked in (((13, 20), 1), ((50, 300), 0)):
+        scene = tmp_path / "range.toml"
+        scene.write_text(MATRICES.format(*ends))
+        done = called("respond", scene)
+        assert done.code == 0 and done.err.count('were in Hz: frequency_unit = "Hz"') == asked
+
+
 @pytest.mark.parametrize("rows", [3, 60])  # from 51 on those alone are kept that something is attached to
 def test_a_structure_alone_is_enough(listed, rows):
     """Without contacts, forces and a range: a chain between walls, w_i = 2 sin(i pi / (2 n + 2))."""

@@ -172,6 +172,16 @@ def test_draws_that_take_long_are_told_before_they_are_drawn(fcm, monkeypatch):
     assert said == 'sweep."force.u.amplitude": 9 draws of this distribution take about 0 s'
 
 
+def test_the_time_of_curves_is_not_told_by_a_first_one_that_loads_what_all_need(monkeypatch, capsys):
+    now = iter([0.0, 3.0, 5.5])
+    monkeypatch.setattr("fcm.cli.messages.time.monotonic", lambda: next(now))
+    messages = Messages()
+    messages.expect(40)
+    for share in (1 / 40, 30 / 40):
+        messages.progress(share)
+    assert not capsys.readouterr().err
+
+
 def test_how_long_all_curves_take_is_said_once_by_the_first(monkeypatch, capsys):
     now = iter([0.0, 1.0, 30.0, 40.0, 50.0])
     monkeypatch.setattr("fcm.cli.messages.time.monotonic", lambda: next(now))

@@ -70,8 +70,8 @@ def test_two_directions_of_pairs_of_nodes_are_axes():
         (X, False),
     ],
 )
-def test_a_normal_along_which_a_contact_slides_is_asked_about(contact, asked):
-    said = [one for one in scene(contact).notes if "is it meant? Its normal load" in one]
+def test_of_a_normal_along_which_a_contact_slides_it_is_said_what_that_means(contact, asked):
+    said = [one for one in scene(contact).notes if "slip changes the normal load" in one]
     assert len(said) == asked and all('contact "c0"' in one for one in said)
 
 

@@ -64,7 +64,7 @@ def test_motions_that_no_point_belongs_to_are_told_with_what_leads_to_them(optio
     (curve,) = json.loads(run.out)["curves"]
     (beside,) = curve["stuck_beside"]
     assert run.code == 0 and beside["regime"] == ["E"]
-    assert "in which a contact never slips, and which no point belongs to: 1" in run.err
+    assert "motions beside the curves, in which a contact never slips: 1" in run.err
     assert f"[start] friction = [{beside['start_friction'][0]:.5g}]" in run.err
     scene = fcm.load_scene(WEDGE)
     start = Start(np.zeros(1), np.zeros(1), np.array(beside["start_friction"]), 0.0)

@@ -121,7 +121,7 @@ def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: st
     lines = [aligned([header, *rows], left=2)]
     if (count := len(curves[0]["peak"])) > len(dofs):
         turning = ", displacements before rotations" if any(map(is_rotation, curves[0]["peak"])) else ""
-        lines.append(f"the {len(dofs)} of {count} degrees of freedom with the greatest peaks{turning}")
+        lines.append(f"shown: the {len(dofs)} of {count} degrees of freedom with the greatest peaks{turning}")
     if any(_at_rest(curve, dof) for curve in curves for dof in dofs):
         lines.append(_AT_REST)
     if any(_at_edge(curve, dof) for curve in curves for dof in dofs):
@@ -218,13 +218,19 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
         errors.append(f"{table:.1e} by the table, corrected at every point")
     if harmonic is not None:
         untold = any(_untold(curve, dof) for curve in curves for dof in curve["peak"])
-        but = ", and of some peaks unknown" if untold else ""
         told = [
-            one["error"] for curve in curves for one in curve["peak"].values() if one and one.get("error")
+            (one["error"], dof)
+            for curve in curves
+            for dof, one in curve["peak"].items()
+            if one and one.get("error")
         ]
-        harmonic = max([harmonic, *told])  # also where what lies around a peak is not told
+        shown = _greatest(curves)  # of which the table has the peaks
+        peaks = [error for error, dof in told if dof in shown]
+        harmonic = max([harmonic, *(error for error, _ in told)])  # also where what lies around is not told
         if harmonic > 0.0 or not untold:  # the 0 of a motion at rest tells nothing of peaks
-            errors.append(f"{harmonic:.1e} by leaving out higher harmonics{but}")
+            of_peaks = f", of peaks {max(peaks):.1e}" if peaks and max(peaks) < harmonic else ""
+            but = ", and of some peaks unknown" if untold else ""
+            errors.append(f"{harmonic:.1e} by leaving out higher harmonics{of_peaks}{but}")
     return (
         f"{count}, {points} points in {summary['seconds']:.2f} s\n"
         f"largest relative error: {'; '.join(errors) or 'not known'}"

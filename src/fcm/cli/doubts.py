@@ -8,6 +8,8 @@ from typing import Any
 from fcm.cli.columns import share_of
 
 _MOST_STRETCHES = 3  # of frequencies in a sentence
+_ROUNDING = 1e-6  # of the range of a number
+_BY_LEVEL = "--level 0:4 --at"  # follows the level of the forces, at a frequency
 
 
 def short_of_accuracy(summary: Mapping[str, Any]) -> str:
@@ -24,30 +26,45 @@ def short_of_accuracy(summary: Mapping[str, Any]) -> str:
 
 def branches_unsure(summary: Mapping[str, Any]) -> str:
     """Where solutions were not looked for to the end, so that branches may be missing; empty if nowhere."""
-    why = "the level of the forces was not followed to its end"
-    return _may_be_missing(summary, "branches_unsure_at", "other branches", f"at {{}} {why}")
+    why = "the level of the forces was not followed to its end at"
+    return _may_be_missing(summary, "branches_unsure_at", "other branches", why, f"{_BY_LEVEL} {{}}")
 
 
 def folds_unsure(summary: Mapping[str, Any]) -> str:
     """Where folds of the level were not followed to their end: branches may be missing; empty if nowhere."""
-    why = "the folds of the level of the forces were not followed to their end"
-    return _may_be_missing(summary, "folds_unsure_at", "isolated branches", f"from {{}} on {why}")
+    why = "the folds of the level of the forces were not followed to their end from this frequency on:"
+    helps = f"{_BY_LEVEL} F, with F beyond {{}}"
+    if how := _how(summary):
+        helps += f", or a sweep up and down by {how.replace('--at F', '--at FROM:TO:COUNT')},"
+    return _may_be_missing(summary, "folds_unsure_at", "isolated branches", why, helps)
 
 
 def symmetry_lost(summary: Mapping[str, Any]) -> str:
     """Where symmetric motions lose their symmetry by harmonics that are not balanced; empty if nowhere."""
-    why = "the symmetric motion loses its symmetry, by even harmonics that are not among those balanced"
-    return _may_be_missing(summary, "symmetry_lost_at", "unsymmetric branches", f"at {{}} {why}")
+    why = "the symmetric motion loses its symmetry, by even harmonics that are not among those balanced, at"
+    helps = "--harmonics with even ones, as 1-4,"
+    return _may_be_missing(summary, "symmetry_lost_at", "unsymmetric branches", why, helps, "finds them")
 
 
-def _may_be_missing(summary: Mapping[str, Any], key: str, what: str, where: str) -> str:
-    unsure = [curve[key] for curve in summary["curves"] if curve.get(key)]
+def _may_be_missing(
+    summary: Mapping[str, Any], key: str, what: str, why: str, helps: str, verb: str = "looks there"
+) -> str:
+    curves, unit = summary["curves"], summary["frequency_unit"]
+    unsure = [curve for curve in curves if curve.get(key)]
     if not unsure:
         return ""
-    count = len(summary["curves"])
-    which = "" if count == 1 else f"of {len(unsure)} of {count} curves "
-    at = f"{unsure[0][0]:.5g} {summary['frequency_unit']}"
-    return f"{what} {which}may be missing: {where.format(at)}"
+    (first, *more), given = unsure[0][key], _given(unsure[0])
+    at = f"{first:.5g}"
+    which, every = ("", "") if len(curves) == 1 else (f"on {len(unsure)} of {len(curves)} curves ", "")
+    if len(unsure) > 1 or more:
+        every = f"; {key} with --json has all"
+    swept = f" ({given})" if len(curves) > 1 and given else ""
+    return f"{what} {which}may be missing: {why} {at} {unit}{swept}{every}; {helps.format(at)} {verb}"
+
+
+def _given(curve: Mapping[str, Any]) -> str:
+    """The numbers of a sweep that a curve is for."""
+    return ", ".join(f"{key} = {value:.6g}" for key, value in curve.get("parameters", {}).items())
 
 
 def mirrored(summary: Mapping[str, Any]) -> str:
@@ -76,7 +93,30 @@ def tracked_unsure(summary: Mapping[str, Any]) -> str:
     number, frequency = unsure[0]
     at = f"with {tracked['over']} = {number:.6g} at {frequency:.5g} {summary['frequency_unit']}"
     why = "the level of the forces, or a fold of it, was not followed to its end"
-    return f"other tracked curves may be missing: {at} {why}"
+    helps = f"a scene with that number, by {_BY_LEVEL} {frequency:.5g}, looks there"
+    return f"other tracked curves may be missing: {at} {why}; {helps}"
+
+
+def peaks_not_followed(summary: Mapping[str, Any]) -> str:
+    """Towards which end of its range an optimum's number has no peak that was followed; empty if none."""
+    tracked = summary.get("tracked", {})
+    if tracked.get("what") != "optimum" or not tracked["over"]:  # of several numbers there is no one range
+        return ""
+    reach: dict[tuple[str, str], list[float]] = {}
+    for one in tracked["curves"]:
+        reach.setdefault((one["what"], _given(one)), []).extend(one["number"])
+    (low, high), key = tracked["span"], tracked["over"]
+    rounding = _ROUNDING * (high - low)
+    for (what, given), numbers in reach.items():
+        beyond = [f"below {min(numbers):.6g}"] if min(numbers) > low + rounding else []
+        beyond += [f"above {max(numbers):.6g}"] if max(numbers) < high - rounding else []
+        if beyond:
+            swept = f" ({given})" if given else ""
+            return (
+                f"no {what} was followed with {key} {' and '.join(beyond)}{swept}: within the range of "
+                "frequencies there is none, or it was lost; a wider [response] frequency may have it"
+            )
+    return ""
 
 
 def nothing_stable(summary: Mapping[str, Any]) -> str:
@@ -89,8 +129,7 @@ def nothing_stable(summary: Mapping[str, Any]) -> str:
     widest = sorted(_widest_first(every)[:_MOST_STRETCHES])
     ways = ", ".join(f"{low:.6g} and {high:.6g}" for low, high in widest)
     more = f" and in {len(every) - len(widest)} narrower ranges" if len(every) > len(widest) else ""
-    given = ", ".join(f"{key} = {value:.6g}" for key, value in found[0]["parameters"].items())
-    which = f" ({given}; on {len(found)} of {len(curves)} curves)" if len(curves) > 1 else ""
+    which = f" ({_given(found[0])}; on {len(found)} of {len(curves)} curves)" if len(curves) > 1 else ""
     shows = f"; {how} shows it" if (how := _how(summary)) else ""
     other = _not_looked_at(found[0])
     other += ", or has another residual friction" if found[0].get("may_not_be_unique") else ""
@@ -155,11 +194,10 @@ def residual_friction(summary: Mapping[str, Any]) -> str:
 
 def _how(summary: Mapping[str, Any]) -> str:
     """By which option the exact motion is visited at a frequency F; empty where it is not computed, as of a
-    ring, a mode, contacts in a plane or forces at other harmonics."""
+    ring, a mode or contacts in a plane."""
     if summary.get("directions"):
         return ""
     no_forces = any("mode" in curve for curve in summary["curves"])
-    not_exact = ("cyclic:", "force: at harmonic")
-    if no_forces or any(note.startswith(not_exact) for note in summary.get("notes", ())):
+    if no_forces or any(note.startswith("cyclic:") for note in summary.get("notes", ())):
         return ""
     return "--at F" if summary["method"] == "exact" else "--method exact --at F"

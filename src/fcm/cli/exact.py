@@ -180,7 +180,7 @@ def _unsure(found: Sequence[Orbits]) -> Iterator[str]:
     if count:
         yield (
             f"points that may not be unique: {count}; a contact never slips there, and not every residual "
-            "friction of it was reached (family_complete is 0)"
+            "friction of it was reached (family_complete is 0); [start] friction begins with another"
         )
 
 
@@ -233,7 +233,7 @@ def _stuck(response: Response) -> list[str]:
     start = ", ".join(f"{force:.5g}" for force in first.friction)
     swept = "".join(f"{key} = {value:g}, " for key, value in curve.parameters.items())
     return [
-        f"other motions, in which a contact never slips, and which no point belongs to: {len(beside)}; at "
-        f"{swept}{float(in_unit(first.frequency, unit)):.6g} {unit} one with {does}, which "
-        f"[start] friction = [{start}] leads to (stuck_beside with --json)"
+        f"motions beside the curves, in which a contact never slips: {len(beside)}; at "
+        f"{swept}{float(in_unit(first.frequency, unit)):.6g} {unit} one with {does}: "
+        f"[start] friction = [{start}] leads to it (stuck_beside with --json has all)"
     ]

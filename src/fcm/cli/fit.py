@@ -68,7 +68,8 @@ def as_table(result: Mapping[str, Any]) -> str:
             ]
         )
     note = (
-        "misfit: root mean square of the distances, of the greatest amplitude; of a backbone, of frequencies"
+        "misfit: root mean square distance of the points from the curve, as a share of the greatest "
+        "amplitude; of a backbone, as a share of the frequencies"
     )
     return f"{aligned(rows, left=1)}\n\n{aligned(data, left=1)}\n{note}"
 

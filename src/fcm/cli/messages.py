@@ -14,6 +14,9 @@ from fcm.room import duration
 _REDRAW = 0.1  # [s] shortest time between two drawings of the progress line
 _BAR = 24  # characters of the progress bar
 _LONG = 60.0  # [s] a run from which on its time is said
+_TOLD = (
+    5.0  # [s] after which curves tell how long others take: before, what is read and loaded once counts too
+)
 
 
 @dataclass
@@ -50,7 +53,7 @@ class Messages:
         """Redraw the progress line, on a terminal only and not too often; it never goes back."""
         now = time.monotonic()
         self._share = min(max(fraction, self._share), 1.0)
-        if self._share * self._curves >= 1.0:
+        if self._share * self._curves >= 1.0 and now - self._begun >= _TOLD:
             self._say_time(now - self._begun)
         if self.verbosity < 0 or now - self._drawn < _REDRAW or not sys.stderr.isatty():
             return

@@ -15,6 +15,7 @@ from fcm.cli.doubts import (
     maybe_not_unique,
     mirrored,
     nothing_stable,
+    peaks_not_followed,
     residual_friction,
     short_of_accuracy,
     symmetry_lost,
@@ -32,8 +33,11 @@ MANY_POINTS = 30_000  # some seconds, and files of 10 MB and more
 
 def announce(messages: Messages, scene: Scene, asked: Asked) -> None:
     """What is going to be computed; without being asked where that is a great deal."""
+    from fcm.scene.listing import units_doubt
     from fcm.scene.rules import least_points
 
+    if slip := units_doubt(scene):
+        messages.warning(f"no mode is near the range of frequencies; {slip}")
     count = len(scene.each_curve())
     method = asked.method if asked.mode is None else f"nonlinear mode {asked.mode}"
     messages.detail(f"{scene.title or scene.name}: curves to trace: {count}, method: {method}")
@@ -63,6 +67,8 @@ def close(messages: Messages, result: dict[str, Any], defects: list[str], writte
         messages.info(many)
     if nothing := nothing_stable(result):
         messages.info(nothing)
+    if beyond := peaks_not_followed(result):
+        messages.info(beyond)
     if short := short_of_accuracy(result):
         messages.warning(short)
     unsure = (branches_unsure, folds_unsure, symmetry_lost, tracked_unsure)

@@ -51,6 +51,18 @@ def listing(scene: Scene) -> dict[str, Any]:
     }
 
 
+def units_doubt(scene: Scene) -> str:
+    """Where no mode is near the range of frequencies, by which usual slip of units one would be; else ''."""
+    if not scene.has_range:
+        return ""
+    ring, modal = scene.ring, scene.modal
+    own = (
+        modal.frequency[: modal.frequency.size - modal.added] if ring is None else ring.frequency[~ring.added]
+    )
+    elastic = np.sort(own[own > 0.0])
+    return _slip_of_units(elastic, scene.frequency_range, scene.frequency_unit) if elastic.size else ""
+
+
 def _of_ring(scene: Scene, ring: Ring) -> dict[str, Any]:
     """The modes of every nodal diameter; shares are among those of one, displacements magnitudes."""
     directions = _directions(scene)
@@ -103,7 +115,7 @@ def _read(scene: Scene, frequency: FloatArray) -> list[str]:
     low, high = elastic[0], elastic[-1]
     in_hertz = f"{low / (2.0 * np.pi):.6g} to {high / (2.0 * np.pi):.6g} Hz"
     said = [*scene.read, f"{bodies}; others from {in_hertz}, which are {low:.6g} to {high:.6g} rad/s"]
-    if scene.has_range and (slip := _slip_of_units(elastic, scene.frequency_range, scene.frequency_unit)):
+    if slip := units_doubt(scene):
         said.append(slip)
     return said
 

@@ -73,9 +73,10 @@ def note_of_own_normal(scene: Scene) -> list[str]:
     names = " and ".join(map(quoted, found[: MESSAGES.groups])) + (
         " and others" if found[MESSAGES.groups :] else ""
     )
+    slides = "contact {} slides along its" if len(found) == 1 else "contacts {} slide along their"
     return [
-        f"the normal displacement of contact {names} is one along which it slides: is it meant? Its normal "
-        "load then changes with its slip. Give another normal, or k_v = 0 where the load is constant"
+        f"{slides.format(names)} normal displacement: slip changes the normal load, as on the slope of a "
+        "wedge. If that is not meant, give another normal, or k_v = 0 where the load is constant"
     ]
 
 
