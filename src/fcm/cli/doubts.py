@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import isclose
 from typing import Any
 
 from fcm.cli.columns import share_of
 
 _MOST_STRETCHES = 3  # of frequencies in a sentence
-_ROUNDING = 1e-6  # of the range of a number
 _BY_LEVEL = "--level 0:4 --at"  # follows the level of the forces, at a frequency
 
 
@@ -106,10 +106,13 @@ def peaks_not_followed(summary: Mapping[str, Any]) -> str:
     for one in tracked["curves"]:
         reach.setdefault((one["what"], _given(one)), []).extend(one["number"])
     (low, high), key = tracked["span"], tracked["over"]
-    rounding = _ROUNDING * (high - low)
     for (what, given), numbers in reach.items():
-        beyond = [f"below {min(numbers):.6g}"] if min(numbers) > low + rounding else []
-        beyond += [f"above {max(numbers):.6g}"] if max(numbers) < high - rounding else []
+        beyond = (
+            [f"below {min(numbers):.6g}"] if min(numbers) > low and not isclose(min(numbers), low) else []
+        )
+        beyond += (
+            [f"above {max(numbers):.6g}"] if max(numbers) < high and not isclose(max(numbers), high) else []
+        )
         if beyond:
             swept = f" ({given})" if given else ""
             return (
