@@ -113,6 +113,14 @@ def test_the_time_of_a_curve_grows_with_what_is_solved():
     assert seconds_of_curve(replace(many(100, 10), max_step=1e-3), 1) > 4.0 * few[0]
 
 
+def test_modes_far_above_the_range_take_no_time():
+    near = many(200, 400)
+    frequency = np.where(np.arange(400) < 10, near.modal.frequency, 100.0)
+    far = replace(near, modal=replace(near.modal, frequency=frequency))
+    assert seconds_of_curve(far, 1) < 0.5 * seconds_of_curve(near, 1)
+    assert seconds_of_curve(far, 1) == seconds_of_curve(many(200, 10), 1)
+
+
 def test_a_curve_that_takes_long_is_told_before_it_is_begun(fcm, monkeypatch):
     for options, said in (
         ((), "less with one harmonic (--harmonics 1), fewer contacts"),

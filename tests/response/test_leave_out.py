@@ -7,6 +7,7 @@ import pytest
 
 import fcm
 from fcm.reduction import negligible_parts
+from fcm.reduction.linear import change, linear_response, telling_frequencies
 from fcm.reduction.options import REDUCTION
 from fcm.reduction.static_modes import condensed
 from fcm.response import trace
@@ -91,6 +92,70 @@ def test_a_wrong_estimate_is_found_and_everything_kept(monkeypatch):
     assert not any("far above" in sentence for sentence in response.left_out)
     for dof, peak in reference.curves[0].peaks.items():
         assert response.curves[0].peaks[dof][:2] == pytest.approx(peak[:2], rel=1e-9)
+
+
+def strip(contacts):
+    """Two rows of masses and springs on contacts, one along and one across: all modes, lowest first."""
+    chain = np.diag([1.0, *[2.0] * (contacts - 2), 1.0]) - np.eye(contacts, k=1) - np.eye(contacts, k=-1)
+    frequency, shapes = [], []
+    names = [f"{axis}{i}" for axis in "uv" for i in range(contacts)]
+    for row, (stiffness, ground) in enumerate(((100.0, 20.0), (30.0, 50.0))):
+        square, vectors = np.linalg.eigh(stiffness * contacts**2 * chain + ground * np.eye(contacts))
+        frequency += np.sqrt(square).tolist()
+        shapes += [np.roll([*v, *[0.0] * contacts], row * contacts) for v in vectors.T * contacts**0.5]
+    order, last = np.argsort(frequency), contacts - 1
+    law = {"mu": 0.4, "k_u": 200.0 / contacts, "k_v": 300.0 / contacts, "n_0": 8.0 / contacts}
+    return scene_from_dict(
+        {
+            "modal": {
+                "dofs": names,
+                "frequency": np.array(frequency)[order],
+                "damping": 0.01,
+                "shapes": np.array(shapes)[order],
+            },
+            "contact": [
+                law | {"name": f"c{i}", "tangential": f"u{i}", "normal": f"v{i}"} for i in range(contacts)
+            ],
+            "force": [{"dof": f"u{last}", "amplitude": 1.5}, {"dof": f"v{last}", "amplitude": 0.6}],
+            "response": {"frequency": [8.0, 20.0], "harmonics": 1},
+        }
+    )
+
+
+def test_of_many_contacts_few_combinations_answer():
+    """Against the structure itself, solved as matrices, with springs that part of the contacts are."""
+    scene = strip(120)
+    (lighter,) = negligible_parts.leave_out((scene,)).curves
+    assert lighter.modal.frequency.size < 0.4 * scene.modal.frequency.size
+    assert negligible_parts.leave_out((scene,), 1e-6).curves[0].modal.frequency.size > (
+        lighter.modal.frequency.size
+    )
+
+    def response(modal, omega, springs):
+        """Amplitudes (dof,) by the dynamic stiffness of the modes with the springs (port,) in it."""
+        ports = modal.shapes @ np.array(scene.directions_of_contacts()).T
+        force = modal.shapes @ sum(f.direction * f.amplitude for f in scene.forces)
+        own = modal.mass * (modal.frequency**2 - omega**2 + 0.02j * modal.frequency * omega)
+        return np.linalg.solve(np.diag(own) + (ports * springs) @ ports.T, force) @ modal.shapes
+
+    springs = np.array([(c.k_u, c.k_v) for c in scene.contacts]).ravel()
+    front = np.clip(np.linspace(-1.0, 3.0, springs.size), 0.0, 1.0)
+    for stuck in (0.0, 1.0, front):
+        for omega in (8.0, 11.3, 20.0):
+            one, other = (response(each.modal, omega, springs * stuck) for each in (lighter, scene))
+            assert np.abs(one - other).max() < REDUCTION.tolerance * np.abs(other).max()
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
+def test_the_change_by_modes_left_out_is_the_difference_of_both_responses(share):
+    scene = strip(20)
+    fewer = replace(scene, modal=condensed(scene.modal, np.eye(40)[:, :3], scene.modal.frequency > 60.0))
+    springs = share * np.array([(c.k_u, c.k_v) for c in scene.contacts]).ravel()
+    omega = telling_frequencies(fewer, springs)
+    one, other = (linear_response(each, omega, springs) for each in (fewer, scene))
+    expected = (np.abs(one - other).max(axis=1) / np.abs(other).max(axis=1)).max()
+    assert expected > 1e-6
+    assert change(scene, fewer, springs) == pytest.approx(expected, rel=0.1)
 
 
 def oscillator(**more):

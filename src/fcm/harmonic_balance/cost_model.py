@@ -50,18 +50,21 @@ class CurveCost:
 
     evaluations: of a curve. of_point: of each point that it has by its longest step, where these are more.
     beside: seconds for each of them, contact and coefficient of its motion, of all that comes beside the
-    solution: levels, stability, errors.
+    solution: levels, stability, errors. far: times the highest frequency of the harmonics, from where on few
+    modes can do for all that are above.
     """
 
     evaluations: float = 1500.0
     of_point: float = 7.0
     beside: float = 2.5e-5
+    far: float = 2.0
 
 
 def seconds_of_curve(scene: Scene, harmonics: int, cost: CurveCost | None = None) -> float:
     """About what a curve of a scene takes, told from its sizes alone, before anything is made of it.
 
-    Many contacts are taken as condensed to all modes where these are fewer than half their directions.
+    Many contacts are taken as condensed to all modes where these are fewer than half their directions; modes
+    far above the harmonics are not counted.
 
     >>> from fcm import load_scene
     >>> f"{seconds_of_curve(load_scene('yang1998'), 1):.1f}"
@@ -69,7 +72,8 @@ def seconds_of_curve(scene: Scene, harmonics: int, cost: CurveCost | None = None
     """
     cost = cost or CurveCost()
     layout = layout_of(len(scene.contacts), scene.directions_of_contact, harmonics)
-    modes, many = scene.modal.frequency.size, layout.unknowns >= OPTIONS.fewest
+    highest = cost.far * harmonics * scene.frequency_range[1]
+    modes, many = int((scene.modal.frequency <= highest).sum()), layout.unknowns >= OPTIONS.fewest
     few = many and scene.ring is None and modes < OPTIONS.share * layout.ports
     each = _evaluation(layout, modes * (1 + 2 * harmonics) if few else 0)
     beside = cost.beside * layout.contacts * (1 + harmonics)

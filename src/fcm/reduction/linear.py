@@ -36,20 +36,55 @@ def linear_response(scene: Scene, omega: FloatArray, springs: FloatArray) -> Com
     """Amplitudes (driven frequency, dof) with springs (port,) for contacts, of one driven harmonic after the
     other."""
     linear = linear_of(scene)
-    found = [_answer(linear, k, h, omega, springs) for k, h in enumerate(linear.driven)]
-    return np.concatenate(found)
+    found = [_Driven(linear, k, omega, springs).response for k in range(len(linear.driven))]
+    return np.concatenate([modes @ linear.dofs for modes in found])
 
 
-def _answer(linear: Linear, k: int, h: int, omega: FloatArray, springs: FloatArray) -> ComplexArray:
-    """To the forces number k, at harmonic h: (frequency, dof)."""
+def change(full: Scene, fewer: Scene, springs: FloatArray) -> float:
+    """Greatest relative change of the response with springs (port,) for contacts, all modes in the place of
+    fewer ones: to first order in what these leave out.
+
+    Solved are systems as large as the modes are few; all modes answer to forces that are known then.
+    """
+    omega = telling_frequencies(fewer, springs)
+    linear, few = linear_of(full), linear_of(fewer)
+    worst = 0.0
+    for k, h in enumerate(linear.driven):
+        driven = _Driven(few, k, omega, springs)
+        ports = driven.response @ few.ports
+        compliance = _compliance(linear, h * omega[:, None])
+        moved = compliance * (_force(linear, k, omega) - (springs * ports) @ linear.ports.T)
+        error = moved @ linear.ports - ports
+        error -= driven.solved((springs * error) @ few.ports.T) @ few.ports
+        moved -= compliance * ((springs * error) @ linear.ports.T)
+        whole = moved @ linear.dofs
+        size = np.abs(whole).max(axis=1)
+        off = np.abs(whole - driven.response @ few.dofs).max(axis=1)
+        worst = max(worst, float((off / np.where(size > 0.0, size, 1.0)).max()))
+    return worst
+
+
+class _Driven:
+    """A structure with springs for contacts at frequencies; response (frequency, mode) to its forces number
+    k."""
+
+    def __init__(self, linear: Linear, k: int, omega: FloatArray, springs: FloatArray) -> None:
+        stiffness = 1.0 / _compliance(linear, linear.driven[k] * omega[:, None])
+        held = (linear.ports * springs) @ linear.ports.T
+        self.matrix = stiffness[..., None] * np.eye(linear.natural.size) + held
+        self.response = self.solved(_force(linear, k, omega))
+
+    def solved(self, force: ComplexArray) -> ComplexArray:
+        """Amplitudes (frequency, mode) under forces on the modes."""
+        return np.asarray(np.linalg.solve(self.matrix, force[..., None])[..., 0])
+
+
+def _compliance(linear: Linear, w: FloatArray) -> ComplexArray:
+    """Of each mode (frequency, mode)."""
     natural, rate = linear.natural, 2.0 * linear.damping * linear.natural
-    w = h * omega[:, None]
-    compliance = 1.0 / ((natural - w) * (natural + w) + 1j * rate * w)
-    G = np.einsum("ip,wi,iq->wpq", linear.ports, compliance, linear.ports, optimize=True)
-    force = linear.force[k] + omega[:, None] ** 2 * linear.square[k]
-    external = (compliance * force) @ linear.ports
-    matrix = np.eye(springs.size) + G * springs
-    ports = np.linalg.solve(matrix, external[..., None])[..., 0]
-    load = force - (springs * ports) @ linear.ports.T
-    response: ComplexArray = (compliance * load) @ linear.dofs
-    return response
+    return np.asarray(1.0 / ((natural - w) * (natural + w) + 1j * rate * w))
+
+
+def _force(linear: Linear, k: int, omega: FloatArray) -> ComplexArray:
+    """The forces number k on each mode (frequency, mode)."""
+    return np.asarray(linear.force[k] + omega[:, None] ** 2 * linear.square[k])

@@ -25,6 +25,8 @@ class ReductionOptions:
     pays: float = 0.6  # of the modes may remain; otherwise nothing is gained
     fewest: int = 30  # modes of a structure for which it is worth trying
     independent: float = 1e-10  # relative size below which a static response is a combination of the others
+    first: int = 8  # combinations of many directions that are tried first
+    more: float = 1.5  # times as many after those that are too few
     margin: float = 0.5  # of the tolerance, for the estimate that decides
 
 

@@ -5,17 +5,26 @@ with some mass. Kept is the subspace of their static response to those direction
 response to the inertia of that (Ritz, Galerkin): 2 p modes whose flexibility errs by the order
 (omega / omega_high)^4 at every degree of freedom. Their damping is right one by one, and not between them:
 an error of the order 2 zeta omega / omega_high times the small share that the flexibility varies by.
+
+Many contacts have as many directions, and most of the flexibility between them is small beside that of the
+contacts themselves. With their springs k and the static response S of the high modes to their directions,
+
+    k^(1/2) S^T S k^(1/2) = V diag(s) V^T,
+
+and along a combination V_i k^(1/2) of the directions the structure yields s_i of what the contacts do. As
+many of the greatest are kept as the accuracy needs, and the directions of all forces.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from fcm.contact.limits import BoolArray, FloatArray
 from fcm.model.scene import Modal, Scene
-from fcm.reduction.linear import all_springs, linear_response, telling_frequencies
+from fcm.reduction.linear import all_springs, change
 from fcm.reduction.options import REDUCTION
 
 ABOVE = (2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0)  # times the range's end: where modes begin to be far above
@@ -24,19 +33,23 @@ ABOVE = (2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0)  # times the range's end: where m
 def with_static_modes(scene: Scene, tolerance: float, highest: int = 1) -> tuple[Modal, float] | None:
     """Fewer modes for the scene, and the frequency above which they are replaced; None if it does not pay.
 
-    The error is estimated on the structure with all contacts open, and with all of them stuck.
+    The error is estimated on the structure with springs for contacts, see `_linear_error`.
     """
     modal = scene.modal
     if modal.frequency.size < REDUCTION.fewest or tolerance <= 0.0 or not scene.contacts:
         return None
-    directions = _directions(scene)
+    most = REDUCTION.pays * modal.frequency.size
     for factor in ABOVE:
         limit = factor * highest * scene.frequency_range[1]
-        fewer = condensed(modal, directions, modal.frequency > limit)
-        if fewer.frequency.size > REDUCTION.pays * modal.frequency.size:
+        high = modal.frequency > limit
+        if modal.frequency.size - int(high.sum()) > most:
             return None
-        if _linear_error(scene, replace(scene, modal=fewer)) < REDUCTION.margin * tolerance:
-            return fewer, limit
+        for directions in _choices(scene, high):
+            fewer = condensed(modal, directions, high)
+            if fewer.frequency.size > most:
+                break
+            if _linear_error(scene, replace(scene, modal=fewer)) < REDUCTION.margin * tolerance:
+                return fewer, limit
     return None
 
 
@@ -71,19 +84,31 @@ def _unit(columns: FloatArray) -> FloatArray:
     return unit
 
 
-def _directions(scene: Scene) -> FloatArray:
-    """Directions of all contacts, forces and loads as columns, (dof, direction)."""
-    return np.array(scene.directions()).T
+def _choices(scene: Scene, high: BoolArray) -> Iterator[FloatArray]:
+    """Directions (dof, direction) to which the modes marked high may answer: all where these are few, else
+    those of the forces and more and more of the combinations along which these modes yield most."""
+    contacts, pushes = (np.array(d).T for d in (scene.directions_of_contacts(), scene.pushes()))
+    every = contacts.shape[1] + pushes.shape[1]
+    if 2 * every <= REDUCTION.pays * scene.modal.frequency.size - int((~high).sum()):
+        yield np.concatenate((contacts, pushes), axis=1)
+        return
+    weighted = contacts * np.sqrt(all_springs(scene))
+    modal = scene.modal
+    yields = (modal.shapes[high] @ weighted) / (np.sqrt(modal.mass) * modal.frequency)[high, None]
+    order = np.linalg.eigh(yields.T @ yields)[1][:, ::-1]
+    number = REDUCTION.first
+    while number < contacts.shape[1]:
+        yield np.concatenate((pushes, weighted @ order[:, :number]), axis=1)
+        number = int(REDUCTION.more * number)
 
 
 def _linear_error(full: Scene, fewer: Scene) -> float:
-    """Greatest relative difference of the two linear responses, contacts all open and all stuck."""
-    worst = 0.0
-    for stuck in (0.0, 1.0):
-        springs = stuck * all_springs(full)
-        omega = telling_frequencies(fewer, springs)
-        one, other = (linear_response(scene, omega, springs) for scene in (full, fewer))
-        size = np.abs(one).max(axis=1)
-        difference = np.abs(one - other).max(axis=1)
-        worst = max(worst, float((difference / np.where(size > 0.0, size, 1.0)).max()))
-    return worst
+    """Greatest relative change of the linear responses: contacts all open, all stuck, and in part.
+
+    Where contacts begin to slip the friction bends from one to the next but does not jump: as of springs that
+    are none in the first half of the contacts, grow over a quarter, and are whole in the rest.
+    """
+    springs = all_springs(full)
+    along = np.arange(springs.size) / springs.size
+    in_part = np.clip(4.0 * along - 2.0, 0.0, 1.0)
+    return max(change(full, fewer, springs * stuck) for stuck in (0.0, 1.0, in_part))
