@@ -10,13 +10,12 @@ import click
 
 from fcm.cli.drawing import ENDINGS, picture_of, save_picture
 from fcm.cli.files import largest_file_option, output_option
+from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.scene_name import scene_argument
 
 if TYPE_CHECKING:
     from fcm.model.scene import Scene
-
-MOST_HARMONICS = 10  # of which it is said what they meet
 
 
 @click.command()
@@ -82,7 +81,7 @@ def numbers(scene: Scene) -> dict[str, Any]:
             {
                 "engine_order": order,
                 "speeds": [end / abs(order) for end in span] if order and span else None,
-                "nodal_diameters": [of_order.meets(h) for h in range(MOST_HARMONICS + 1)],
+                "nodal_diameters": [of_order.meets(h) for h in range(SENTENCES.harmonics + 1)],
                 "resonances": _resonances(diameters, of_order.meets(1), span),
             }
             for order, of_order in orders.items()

@@ -10,22 +10,20 @@ import click
 
 from fcm.cli.drawing import ENDINGS, angles, save_picture, shorten
 from fcm.cli.files import check_not_read, output_option
+from fcm.cli.limits import REQUESTS
 from fcm.cli.messages import Messages, pass_messages
 
 if TYPE_CHECKING:
     from fcm.contact.surface import Plane
 
-MOST_PANELS = 8  # that can be read in one picture
-FARTHEST = 1e6  # of a range that is drawn; beyond, nothing changes that could be seen
 NORMAL_RANGE, NORMAL_POINTS = (-2.0, 2.0), 401  # from open to closed, as figure 12
-LONGEST_NAME = 50  # characters
 SPACE_STEPS = (100, 40)  # of a surface in space; finer ones can not be seen
 
 
 def _range(_ctx: click.Context, _param: click.Parameter, value: tuple[float, float]) -> tuple[float, float]:
     low, high = value
-    if not -FARTHEST <= low < high <= FARTHEST:
-        raise click.BadParameter(f"a lower and a higher number within ±{FARTHEST:g} are needed.")
+    if not -REQUESTS.farthest <= low < high <= REQUESTS.farthest:
+        raise click.BadParameter(f"a lower and a higher number within ±{REQUESTS.farthest:g} are needed.")
     return value
 
 
@@ -83,8 +81,8 @@ def _panels(
     from fcm.contact.surface import Plane
 
     coefficients, phases = tuple(dict.fromkeys(coefficients)), tuple(dict.fromkeys(phases))
-    if (count := len(coefficients) * len(phases)) > MOST_PANELS:
-        raise click.UsageError(f"{count} panels are too many for a picture: at most {MOST_PANELS}.")
+    if (count := len(coefficients) * len(phases)) > REQUESTS.panels:
+        raise click.UsageError(f"{count} panels are too many for a picture: at most {REQUESTS.panels}.")
     planes = [Plane(phi, n0_range, b_range) for phi in phases]
     if len(phases) == 2:
         return [(name, plane) for name in coefficients for plane in planes]
@@ -159,7 +157,7 @@ def error(
     opened = _opened(table)
     maps = [error_map(name, plane, opened) for name, plane in shown]
     name = "the shipped table" if table is None else Path(table).name
-    save_picture(draw_errors(maps, f"Error of {shorten(name, LONGEST_NAME)}"), output)
+    save_picture(draw_errors(maps, f"Error of {shorten(name, REQUESTS.longest_name)}"), output)
     worst = max(maps, key=lambda one: one.largest)
     n0, b = worst.worst
     messages.info(

@@ -7,6 +7,7 @@ from typing import Any
 
 from fcm.cli.columns import UNKNOWN, UNSTABLE, aligned, number, ranges, share_of, short, swept
 from fcm.cli.jump_table import jump_table, untold_table
+from fcm.cli.limits import SENTENCES
 from fcm.rotation import MOST_DOFS, greatest_first, is_rotation, unit_of
 
 Curve = Mapping[str, Any]  # one of the summary's "curves"
@@ -17,7 +18,6 @@ _UNTOLD = "- unknown error: with more harmonics no peak is near this one, or a h
 _OF_LEVELS = "- unknown error: what more harmonics would change could not be estimated at this peak"
 _RESIDUAL = "residual"  # heads a column of shares
 _OF_RESIDUAL = "residual: up to this share of it the friction that stuck contacts keep may change the peak"
-_MOST_FOLDS = 12  # of which a line has all
 
 
 def as_table(summary: Mapping[str, Any], unit: str) -> str:
@@ -198,8 +198,8 @@ def _curve_row(curve: Curve, dofs: list[str], ranges_of: list[str], balanced: bo
 
 def _folds(folds: Sequence[float | None]) -> str:
     """All of them, or of very many the first and how many there are."""
-    shown = "  ".join(map(number, folds[:_MOST_FOLDS])) or "none"
-    return shown if len(folds) <= _MOST_FOLDS else f"{shown}  ... {len(folds)} in all"
+    shown = "  ".join(map(number, folds[: SENTENCES.folds])) or "none"
+    return shown if len(folds) <= SENTENCES.folds else f"{shown}  ... {len(folds)} in all"
 
 
 def cost_and_error(summary: Mapping[str, Any]) -> str:

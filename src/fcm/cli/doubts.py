@@ -7,8 +7,8 @@ from math import isclose
 from typing import Any
 
 from fcm.cli.columns import share_of
+from fcm.cli.limits import SENTENCES
 
-_MOST_STRETCHES = 3  # of frequencies in a sentence
 _BY_LEVEL = "--level 0:4 --at"  # follows the level of the forces, at a frequency
 
 
@@ -129,7 +129,7 @@ def nothing_stable(summary: Mapping[str, Any]) -> str:
     if not found:
         return ""
     every = found[0]["no_stable_motion"]
-    widest = sorted(_widest_first(every)[:_MOST_STRETCHES])
+    widest = sorted(_widest_first(every)[: SENTENCES.stretches])
     ways = ", ".join(f"{low:.6g} and {high:.6g}" for low, high in widest)
     more = f" and in {len(every) - len(widest)} narrower ranges" if len(every) > len(widest) else ""
     which = f" ({_given(found[0])}; on {len(found)} of {len(curves)} curves)" if len(curves) > 1 else ""

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from fcm.cli.limits import REQUESTS, SENTENCES
 from fcm.cli.messages import Messages
 
 if TYPE_CHECKING:
@@ -15,9 +16,6 @@ if TYPE_CHECKING:
     from fcm.response import Response
     from fcm.results.orbits import Orbits
 
-MOST_PERIODS = 8  # that --periods can ask for
-MOST_FREQUENCIES = 100_000  # that can be asked for; each takes milliseconds at least
-MOST_NAMED = 3  # motions, and degrees of freedom, in a sentence
 FORMS = "give a frequency, as in 1.2, or a range FROM:TO:COUNT, as in 0.7:1.7:41"
 _DOES = {"E": "closed all through", "S": "open all through"}  # without slip; else its states are named
 OF_NO_USE = {  # with --method exact, and why
@@ -31,8 +29,8 @@ def frequencies(
 ) -> tuple[float, ...] | None:
     """The frequencies of all --at, in the scene's unit; None if there is none."""
     found = tuple(value for text in texts for value in _values(text))
-    if len(found) > MOST_FREQUENCIES:
-        raise click.BadParameter(f"{len(found)} frequencies; there can be {MOST_FREQUENCIES}.")
+    if len(found) > REQUESTS.frequencies:
+        raise click.BadParameter(f"{len(found)} frequencies; there can be {REQUESTS.frequencies}.")
     return found or None
 
 
@@ -49,8 +47,8 @@ def _values(text: str) -> list[float]:
         raise click.BadParameter(f"{text!r}: {FORMS}.")
     if not all(0.0 < end < np.inf for end in ends):
         raise click.BadParameter(f"{text!r}: a frequency must be finite and greater than 0.")
-    if len(parts) == 3 and not 2 <= count <= MOST_FREQUENCIES:
-        raise click.BadParameter(f"{text!r}: the count must be from 2, both ends, to {MOST_FREQUENCIES}.")
+    if len(parts) == 3 and not 2 <= count <= REQUESTS.frequencies:
+        raise click.BadParameter(f"{text!r}: the count must be from 2, both ends, to {REQUESTS.frequencies}.")
     if len(parts) == 3 and not ends[0] < ends[1]:
         raise click.BadParameter(
             f"{text!r}: the frequencies must rise; they are visited upward, then downward."
@@ -131,7 +129,7 @@ def _doubles(found: Sequence[Orbits], unit: str) -> Iterator[str]:
         return
     periods = max(int(np.nanmax(orbits.repeats)) for orbits in found)
     first = f"{float(in_unit(doubles[0], unit)):.6g} {unit}"
-    more = f": --periods {2 * periods} follows what begins there" if periods < MOST_PERIODS else ""
+    more = f": --periods {2 * periods} follows what begins there" if periods < REQUESTS.periods else ""
     yield f"places at which the period doubles: {len(doubles)}, the first at {first}{more}"
 
 
@@ -200,13 +198,13 @@ def _unreached(response: Response) -> list[str]:
     if not found:
         return []
     named = []
-    for curve, orbits, k in found[:MOST_NAMED]:
+    for curve, orbits, k in found[: SENTENCES.named]:
         swept = "".join(f"{key} = {value:g}, " for key, value in curve.parameters.items())
         where = f"{float(in_unit(curve.frequency[k], response.frequency_unit)):.6g} {response.frequency_unit}"
-        sizes = zip(response.dofs[:MOST_NAMED], curve.amplitude[k], strict=False)
+        sizes = zip(response.dofs[: SENTENCES.named], curve.amplitude[k], strict=False)
         again = _again(int(orbits.repeats[k]))
         named.append(f"{swept}{where}{again} with " + ", ".join(f"{dof} {size:.5g}" for dof, size in sizes))
-    more = "; ..." if len(found) > MOST_NAMED else ""
+    more = "; ..." if len(found) > SENTENCES.named else ""
     return [
         f"motions that neither sweep comes to (points without a sweep): {len(found)}, at "
         f"{'; at '.join(named)}{more}"

@@ -15,12 +15,12 @@ import click
 
 from fcm import signals
 from fcm.cli import terminal
+from fcm.cli.limits import REQUESTS
 from fcm.cli.messages import Messages
 
 DEFECT = 1  # of fcm
 WRONG_INPUT = 2
 NOT_COMPLETED = signals.NOT_COMPLETED
-LEAST_MEMORY = 240_000_000  # bytes of addresses (`ulimit -v`) that numpy, scipy and HDF5 take
 
 _EXIT_CODES = (
     ("fcm.scene", "SceneError", WRONG_INPUT),
@@ -84,7 +84,7 @@ def _check_memory() -> None:
     except ImportError:  # a system without limits
         return
     limit = resource.getrlimit(resource.RLIMIT_AS)[0]
-    if limit != resource.RLIM_INFINITY and limit < LEAST_MEMORY:
+    if limit != resource.RLIM_INFINITY and limit < REQUESTS.least_memory:
         raise MemoryError
 
 

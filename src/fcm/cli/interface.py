@@ -7,11 +7,11 @@ from pathlib import Path
 import click
 
 from fcm.cli.drawing import drawing, draws_file, is_page, picture_of, save_picture_of
+from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.options import FiniteRange
 from fcm.files import replacing
 
-MOST_ROWS = 10  # of the table: contacts that take most
 HEAD = ("contact", "state", "energy", "of all", "slip path", "normal force")
 
 
@@ -56,7 +56,7 @@ def contacts(
     where = read.places if places is None else read_places(places, read.contacts)
     each = [curve for curve in curves for _ in at or (0.0,)]
     for point, curve in zip(points, each, strict=True):
-        rows = [HEAD, *greatest_takers(read, point, MOST_ROWS)]
+        rows = [HEAD, *greatest_takers(read, point, SENTENCES.rows)]
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         for row in rows:
             messages.info("  ".join(word.rjust(width) for word, width in zip(row, widths, strict=True)))

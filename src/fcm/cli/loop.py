@@ -14,6 +14,7 @@ from click.core import ParameterSource
 
 from fcm.cli.drawing import ENDINGS, angle, angles, save_picture, save_picture_of
 from fcm.cli.files import check_not_read, check_output, output_option
+from fcm.cli.limits import REQUESTS
 from fcm.cli.messages import Messages, pass_messages
 
 if TYPE_CHECKING:
@@ -22,12 +23,9 @@ if TYPE_CHECKING:
     from fcm.cli.loop_cases import Case, PlanarCase
     from fcm.cli.loop_names import Harmonic
 
-MOST_LOOPS = 12  # in a picture: three rows
-HIGHEST = 100  # harmonic of a motion
 OF_FILE = ("curves", "at", "contact", "solution", "dimensionless")
 OF_RATIOS = ("n0_bars", "b_bars")
 OF_CONTACT = ("mu", "k_u", "k_v", "n_0", "a", "b")
-LARGEST = 1e6  # of a ratio that is drawn; beyond, nothing changes that could be seen
 
 
 def _number(low: float | None, strict: bool = False) -> Callable[..., Any]:
@@ -47,8 +45,8 @@ def _number(low: float | None, strict: bool = False) -> Callable[..., Any]:
 def _ratio(low: float) -> Callable[..., Any]:
     def check(_ctx: click.Context, _param: click.Parameter, values: tuple[float, ...]) -> tuple[float, ...]:
         for value in values:
-            if not low <= value <= LARGEST:
-                raise click.BadParameter(f"{value:g} is not between {low:g} and {LARGEST:g}.")
+            if not low <= value <= REQUESTS.farthest:
+                raise click.BadParameter(f"{value:g} is not between {low:g} and {REQUESTS.farthest:g}.")
         return tuple(dict.fromkeys(values))
 
     return check
@@ -80,7 +78,9 @@ def _parameters(command: Any) -> Any:
     """The options that give a contact without a file."""
     positive, amplitude = _number(0.0, strict=True), _number(0.0)
     options = (
-        _several("--n0-bar", "n0_bars", _ratio(-LARGEST), "Preload mu n_0 / (k_u a).  [default: 0.8]"),
+        _several(
+            "--n0-bar", "n0_bars", _ratio(-REQUESTS.farthest), "Preload mu n_0 / (k_u a).  [default: 0.8]"
+        ),
         _several("--b-bar", "b_bars", _ratio(0.0), "Load variation mu k_v b / (k_u a).  [default: 1]"),
         click.option(
             "--phi", "phases", multiple=True, default=("45deg",), callback=angles,
@@ -95,7 +95,7 @@ def _parameters(command: Any) -> Any:
         _several("--b", "b", amplitude, "and that of the normal motion."),
         click.option(
             "--harmonic", "harmonics", multiple=True, callback=_harmonics, metavar="u|v H AMPLITUDE PHASE",
-            type=(click.Choice(["u", "v"]), click.IntRange(2, HIGHEST), float, str),
+            type=(click.Choice(["u", "v"]), click.IntRange(2, REQUESTS.highest_harmonic), float, str),
             help="Beside --a and --b a harmonic of the tangential or normal motion, as u 3 0.1 20deg: 0.1 "
             "sin(3 theta + 20deg).",
         ),
@@ -163,8 +163,8 @@ def loop(
     cases = _cases(given, file, options, units)
     if len(cases) > 1 and isinstance(cases[0], PlanarCase):
         raise click.UsageError(f"{len(cases)} loops in a plane are too many for a picture: say which one.")
-    if len(cases) > MOST_LOOPS:
-        raise click.UsageError(f"{len(cases)} loops are too many for a picture: at most {MOST_LOOPS}.")
+    if len(cases) > REQUESTS.loops:
+        raise click.UsageError(f"{len(cases)} loops are too many for a picture: at most {REQUESTS.loops}.")
     if output is None:
         output = Path("loop.png") if file is None else file.with_name(f"{file.stem}-loop.png")
         check_output(output, ENDINGS)

@@ -13,14 +13,13 @@ import click
 
 from fcm.cli.columns import ranges
 from fcm.cli.drawing import shorten
+from fcm.cli.limits import SENTENCES
 from fcm.cli.loop_names import Harmonic, Name, named, phase_of, unit_of
 
 if TYPE_CHECKING:
     from fcm.contact import Loop, PeriodicLoop
     from fcm.contact.plane.loop import PlanarLoop
     from fcm.plot.loop_file import LoopFile, LoopPoint, PlanePoint
-
-LONGEST = 24  # characters of a contact's name
 
 
 @dataclass(frozen=True)
@@ -199,7 +198,7 @@ def _said(point: LoopPoint, file: LoopFile) -> tuple[tuple[Name, ...], str, dict
         f"{key} = {value:g} {file.units.get(key, '')}".rstrip() for key, value in point.parameters.items()
     )
     names: tuple[Name, ...] = (
-        Name(shorten(point.contact, LONGEST).replace("$", r"\$"), point.contact),
+        Name(shorten(point.contact, SENTENCES.contact_name).replace("$", r"\$"), point.contact),
         Name(curve_label(point.parameters, units=file.units), swept),
         Name(f"{symbol} = {at}", at),
     )

@@ -9,14 +9,8 @@ from dataclasses import dataclass, field
 
 import click
 
+from fcm.cli.limits import SENTENCES
 from fcm.room import duration
-
-_REDRAW = 0.1  # [s] shortest time between two drawings of the progress line
-_BAR = 24  # characters of the progress bar
-_LONG = 60.0  # [s] a run from which on its time is said
-_TOLD = (
-    5.0  # [s] after which curves tell how long others take: before, what is read and loaded once counts too
-)
 
 
 @dataclass
@@ -53,12 +47,12 @@ class Messages:
         """Redraw the progress line, on a terminal only and not too often; it never goes back."""
         now = time.monotonic()
         self._share = min(max(fraction, self._share), 1.0)
-        if self._share * self._curves >= 1.0 and now - self._begun >= _TOLD:
+        if self._share * self._curves >= 1.0 and now - self._begun >= SENTENCES.time_told:
             self._say_time(now - self._begun)
-        if self.verbosity < 0 or now - self._drawn < _REDRAW or not sys.stderr.isatty():
+        if self.verbosity < 0 or now - self._drawn < SENTENCES.redraw or not sys.stderr.isatty():
             return
-        full = int(_BAR * self._share)
-        line = f"[{'#' * full}{'.' * (_BAR - full)}] {int(100 * self._share):3d} %  {text}"
+        full = int(SENTENCES.bar * self._share)
+        line = f"[{'#' * full}{'.' * (SENTENCES.bar - full)}] {int(100 * self._share):3d} %  {text}"
         self._draw(line.ljust(self._width))
         self._drawn, self._width = now, len(line)
 
@@ -66,7 +60,7 @@ class Messages:
         """How long all curves take, where that is long."""
         curves, self._curves = self._curves, 0
         first = int(self._share * curves)
-        if (every := taken / self._share) > _LONG and first < curves:
+        if (every := taken / self._share) > SENTENCES.long_run and first < curves:
             those = "first of them" if first == 1 else f"first {first} of them"
             self.info(f"{curves} curves take about {duration(every)}: the {those} took {duration(taken)}")
 

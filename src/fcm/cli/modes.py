@@ -9,11 +9,9 @@ import click
 
 from fcm.cli.columns import aligned, number
 from fcm.cli.files import largest_file_option
+from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.scene_name import scene_argument
-
-_MOST_DIRECTIONS = 6  # whose participation fits beside each other on a line,
-_MOST_FORCES = 2  # these of them, where contacts need the others
 
 
 @click.command()
@@ -87,8 +85,8 @@ def _shown(found: dict[str, Any]) -> list[str]:
     every = list(found["modes"][0]["participation"])
     contacts = [name for name in every if name.startswith("contact.")]
     forces = [name for name in every if name not in contacts]
-    few = forces[: max(_MOST_FORCES, _MOST_DIRECTIONS - len(contacts))]
-    return contacts[: _MOST_DIRECTIONS - len(few)] + few
+    few = forces[: max(SENTENCES.forces, SENTENCES.directions - len(contacts))]
+    return contacts[: SENTENCES.directions - len(few)] + few
 
 
 def _short(direction: str) -> str:

@@ -9,14 +9,13 @@ from typing import Any
 import numpy as np
 
 from fcm.cli.files import check_not_read
+from fcm.cli.limits import REQUESTS
 from fcm.cli.messages import Messages
 from fcm.run import Progress
 from fcm.table import TableError, open_table
 from fcm.table.build import charts
 from fcm.table.part import Part, Reach
 from fcm.table.tabulated import Resolution
-
-REPEATS = 3  # the best of so many times is reported
 
 
 def reached(
@@ -61,7 +60,7 @@ def saving(path: Path, part: Part) -> tuple[dict[str, Any], str]:
     """
     whole = Part.all_of(part.resolution)
     build = _seconds(lambda: charts(part), 1)
-    opening = _seconds(lambda: open_table(path), REPEATS)
+    opening = _seconds(lambda: open_table(path), REQUESTS.repeats)
     times = whole.nodes / part.nodes
     found = {
         "nodes": part.nodes,
@@ -78,7 +77,7 @@ def saving(path: Path, part: Part) -> tuple[dict[str, Any], str]:
     reference = _shipped(part.resolution)
     if reference is None:
         return found, f"{sentence}; opens in {1e3 * opening:.0f} ms"
-    found["seconds_to_open_all"] = _seconds(lambda: open_table(reference), REPEATS)
+    found["seconds_to_open_all"] = _seconds(lambda: open_table(reference), REQUESTS.repeats)
     return (
         found,
         f"{sentence}; opens in {1e3 * opening:.0f} ms instead of {1e3 * found['seconds_to_open_all']:.0f}",

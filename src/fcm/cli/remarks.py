@@ -22,13 +22,12 @@ from fcm.cli.doubts import (
     tracked_unsure,
 )
 from fcm.cli.guard import DEFECT, NOT_COMPLETED
+from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages
 from fcm.cli.respond_options import Asked
 
 if TYPE_CHECKING:
     from fcm.model.scene import Scene
-
-MANY_POINTS = 30_000  # some seconds, and files of 10 MB and more
 
 
 def announce(messages: Messages, scene: Scene, asked: Asked) -> None:
@@ -42,7 +41,7 @@ def announce(messages: Messages, scene: Scene, asked: Asked) -> None:
     method = asked.method if asked.mode is None else f"nonlinear mode {asked.mode}"
     messages.detail(f"{scene.title or scene.name}: curves to trace: {count}, method: {method}")
     in_steps = asked.at is None and asked.mode is None and scene.has_range
-    if in_steps and (points := least_points(scene)) > MANY_POINTS:
+    if in_steps and (points := least_points(scene)) > SENTENCES.many_points:
         curves = f"{count} curve{'s' * (count > 1)}"
         messages.info(f"at least {points} points: {curves} in steps of {scene.max_step:g} at most")
 

@@ -7,16 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fcm import room
+from fcm.cli.limits import REQUESTS, SENTENCES
 from fcm.cli.messages import Messages
 from fcm.cli.respond_options import Asked
 from fcm.files import real
 
 if TYPE_CHECKING:
     from fcm.model.scene import Scene
-
-TOLD = 500e6  # bytes of results
-LONG = 60.0  # seconds of a curve: of many short ones the first tells
-CSV = 2.5  # times the bytes of netCDF that the digits of a number take
 
 
 def check_room(messages: Messages, scene: Scene, count: int, asked: Asked) -> None:
@@ -42,14 +39,14 @@ def check_room(messages: Messages, scene: Scene, count: int, asked: Asked) -> No
             f"{said} {take} at least {room.size(results + matrices)} of memory, and {room.size(free)} are "
             f"free: {_remedy(matrices > results, asked)}"
         )
-    if results + matrices > TOLD:
+    if results + matrices > SENTENCES.memory:
         messages.info(f"{said} {take} at least {room.size(results + matrices)} of memory")
-    if (seconds := _seconds_of_curve(scene, len(harmonics), asked)) > LONG:
+    if (seconds := _seconds_of_curve(scene, len(harmonics), asked)) > SENTENCES.long_curve:
         messages.info(
             f"{'each of ' * (count > 1)}{said} takes at least about {room.duration(seconds)} of processor "
             f"time: less with {_lighter(harmonics, asked)}; --time-limit ends it"
         )
-    for path, times in ((asked.output, 1.0), (asked.csv, CSV)):
+    for path, times in ((asked.output, 1.0), (asked.csv, REQUESTS.csv_size)):
         if path is not None and times * results > (left := room.disk(_folder(path))):
             raise ResponseError(
                 f"{path} takes at least {room.size(times * results)}, and {room.size(left)} are free on its "

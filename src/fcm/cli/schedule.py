@@ -10,6 +10,7 @@ import click
 from click.core import ParameterSource
 
 from fcm.cli.columns import aligned, number, swept
+from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages
 from fcm.rotation import MOST_DOFS
 
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
 Summary = Mapping[str, Any]  # one of the summary's "histories"
 
-_MOST_CONTACTS = 3  # that fit beside the degrees of freedom on a line
 _OF_CURVES = {  # options that mean nothing without a range of frequencies
     "method": "--method", "table": "--table", "max_step": "--max-step", "jobs": "--jobs",
     "tolerance": "--leave-out-tolerance", "keep_all": "--keep-all",
@@ -80,7 +80,7 @@ def as_table(histories: Sequence[Summary], unit: str) -> str:
     first = next((one["phases"][0] for one in histories if one["phases"]), None)
     if first is None:
         return "\n".join(dict.fromkeys(f"no cycle of the schedule: {one['reason']}" for one in histories))
-    dofs, contacts = list(first["amplitude"])[:MOST_DOFS], list(first["regime"])[:_MOST_CONTACTS]
+    dofs, contacts = list(first["amplitude"])[:MOST_DOFS], list(first["regime"])[: SENTENCES.contacts]
     names = list(short_names(histories[0]["parameters"]).values())
     amplitudes = [f"amplitude {dof}" for dof in dofs]
     header = [*names, "phase", unit, "cycles", *amplitudes, "transitions", *contacts, "settled", ""]

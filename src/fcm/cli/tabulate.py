@@ -12,6 +12,7 @@ import click
 from fcm.cli.files import alone, output_option
 from fcm.cli.guard import NOT_COMPLETED
 from fcm.cli.interruptible import Interruptible
+from fcm.cli.limits import REQUESTS, SENTENCES
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.scene_name import complete_scene
 from fcm.cli.table_study import write_study
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
     from fcm.table.tabulated import Resolution
 
 DEFAULT_OUTPUT = "table.nc"
-HALF = 0.5  # of the progress bar is for the scene's response, where a part is built for one
-POINTS_OF_PART = 100_000  # at which the error of a part is measured, unless the user says
 
 
 @click.command()
@@ -87,7 +86,7 @@ def tabulate(
             write_study(messages, study, to_json)
     else:
         if scene is not None and ctx.get_parameter_source("points") is click.core.ParameterSource.DEFAULT:
-            points = POINTS_OF_PART
+            points = REQUESTS.points_of_part
         with alone([output]):
             _build(messages, output, preset, nodes, scene, points, to_json)
 
@@ -129,7 +128,10 @@ def _build(
         made_by = f"fcm tabulate --nodes {' '.join(map(str, resolution))} --points {points}"
         part, begin = None, 0.0
         if scene is not None:
-            part, begin = reached(messages, scene, output, resolution, share(progress, 0.0, HALF)), HALF
+            part, begin = (
+                reached(messages, scene, output, resolution, share(progress, 0.0, SENTENCES.response_share)),
+                SENTENCES.response_share,
+            )
         made_by += "" if scene is None else f" --for {plain(scene)}"
         table = build_table(output, resolution, points, share(progress, begin, 1.0), made_by, part)
     seconds = time.perf_counter() - began

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fcm.cli.columns import UNKNOWN, UNSTABLE, aligned, share_of, short, swept
+from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages
 from fcm.cli.terminal import plain
 
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from fcm.model.scene import Scene
     from fcm.response import Response
 
-SHOWN = 3  # problems on a terminal; --json has all
 WHAT = ("folds", "peaks", "slip", "separation", "closing")
 _SAID = {
     UNSTABLE: f"\n{UNSTABLE} unstable: the motion is not stable there: none stays at this peak",
@@ -261,5 +261,5 @@ def incomplete(result: Mapping[str, Any]) -> str:
     stopped = sum(not curve["complete"] for curve in tracked["curves"])
     said = [f"{stopped} of {len(tracked['curves'])} tracked curves not complete"] if stopped else []
     problems = tracked["problems"]
-    more = [f"and so {len(problems) - SHOWN} more"] if len(problems) > SHOWN else []
-    return "; ".join([*said, *problems[:SHOWN], *more])
+    more = [f"and so {len(problems) - SENTENCES.problems} more"] if len(problems) > SENTENCES.problems else []
+    return "; ".join([*said, *problems[: SENTENCES.problems], *more])
