@@ -1,5 +1,7 @@
 """Pictures of the contacts of a response, and what is read for them."""
 
+import re
+
 import netCDF4
 import numpy as np
 import pytest
@@ -154,7 +156,8 @@ def test_curves_of_a_sweep_are_columns_each_at_its_own_peak(tmp_path, fcm):
     heads = [axes.get_title() for axes in figure.axes[:2]]
     assert "0.01" in heads[0] and "20" in heads[1]
     done = fcm("plot", "contacts", output, "--curve", "0", "--curve", "2", "-o", tmp_path / "a.svg")
-    assert done.code == 0 and "curve 0; 2" in done.err and "curve 2; 2" in done.err
+    swept = [re.search(rf"curve {k} \(.*= ([0-9.]+)\); 2", done.err) for k in (0, 2)]
+    assert done.code == 0 and [one and one[1] for one in swept] == ["0.01", "20"]
     few = [word for k in (0, 1, 2) for word in ("--curve", k)]
     many = [word for at in ("1.2", "1.3", "1.4") for word in ("--at", at)]
     assert "ask for 9 points" in fcm("plot", "contacts", output, *few, *many).err

@@ -60,7 +60,8 @@ def contacts(
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         for row in rows:
             messages.info("  ".join(word.rjust(width) for word, width in zip(row, widths, strict=True)))
-        of = f", curve {curve}" if len(read.frequency) > 1 else ""
+        swept = f" ({' '.join(point.curve.split())})" if point.curve else ""
+        of = f", curve {curve}{swept}" if len(read.frequency) > 1 else ""
         messages.info(f"at {point.frequency:.6g} {read.unit}{of}; {len(read.contacts)} contacts")
     if is_page(output):
         from fcm.plot.interactive import contacts_page
