@@ -1,6 +1,7 @@
 """The Jacobian of the forces in the plane: against differences that are extrapolated, and closed forms."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -29,16 +30,24 @@ def differences(contact, x, law, column, step):
     return rows[-1], np.abs(rows[-1] - before).max()
 
 
+def along_a_line(case, rng):
+    """The motion of u_x in any direction, but for a little."""
+    u_y = rng.normal() * case.u_x + rng.choice([0.0, 1e-8, 1e-4]) * case.u_y
+    return replace(case, u_y=u_y)
+
+
+@pytest.mark.parametrize("nearly_straight", [False, True])
 @pytest.mark.parametrize("seed", range(4))
-def test_against_differences(seed):
+def test_against_differences(seed, nearly_straight):
     """Where the differences themselves settle: not at a tangency, which their steps go past."""
-    settled = 0
+    settled, rng = 0, np.random.default_rng(seed)
     for case in random_planars(12, 20 + seed, 3):
+        case = along_a_line(case, rng) if nearly_straight else case
         contact, x = kernel(case, case.u_x.size + 1)
         law = (case.mu, case.k_u, case.k_v, case.n_0)
-        contact.cycle.slider.tolerance = 1e-11
         contact.at(x, *law)
         J, size = np.array(contact.jacobian), max(case.k_u, case.k_v)
+        contact.cycle.slider.tolerance = 1e-11
         for column in range(x.size):
             tried = [differences(contact, x, law, column, step) for step in (1e-2, 1e-3)]
             found, error = min(tried, key=lambda one: one[1])
@@ -47,6 +56,22 @@ def test_against_differences(seed):
             settled += 1
             assert np.abs(J[:, column] - found).max() <= 1e-8 * size, (case, column)
     assert settled > 100
+
+
+def test_across_a_line_from_closing_to_opening():
+    """Slip in one direction from closing to opening: only what turns it needs small panels."""
+    u = np.array([0.0, -0.27540 - 2.72263j, -0.95127 - 1.72890j])
+    v = np.array([-2.4976, -0.3159 - 0.0248j, 0.1809 - 0.4311j])
+    case = Planar(0.8 * u, 0.6 * u, v, 0.318, 1.419, 7.636, 14.0126)
+    assert case.sequence() == "PS"
+    contact, x = kernel(case)
+    law = (case.mu, case.k_u, case.k_v, case.n_0)
+    contact.at(x, *law)
+    J = np.array(contact.jacobian)
+    for column in range(x.size):
+        found, error = differences(contact, x, law, column, 1e-2)
+        assert error < 1e-8
+        assert np.abs(J[:, column] - found).max() <= 1e-8 * case.k_v
 
 
 def test_of_a_circle():

@@ -76,6 +76,7 @@ cdef class Derivatives:
     cdef void rest(self, double e_x, double e_y) noexcept nogil
     cdef void close(self) noexcept nogil
     cdef void close_sliding(self, double e_x, double e_y, double rate) noexcept nogil
+    cdef double greatest(self) noexcept nogil
     cdef void carry(self, bint gather) noexcept nogil
     cdef void solve(self, bint gather) noexcept nogil
     cdef void weigh(self) noexcept nogil

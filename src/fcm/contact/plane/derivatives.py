@@ -168,6 +168,14 @@ class Derivatives:
             self.turn[j + 2], self.turn[j + 3] = -e_x * order * s, -e_x * order * c
             self.turn[j + 4], self.turn[j + 5] = -by * rate * c, by * rate * s
 
+    def greatest(self) -> float:
+        """The greatest derivative of the direction."""
+        j: cython.int
+        most: float = 0.0
+        for j in range(self.low, self.high):
+            most = max(most, fabs(self.turn[j]))
+        return most
+
     def carry(self, gather: bool) -> None:
         """Through the panel, whose matrix is that of its last step; if wanted their part of the Jacobian."""
         i: cython.int

@@ -20,6 +20,8 @@ class PlanarOptions:
     steepest : t at the end of a panel, at most, to begin with.
     widest : of t; directions are then within 100 degrees of that at the start.
     growth : exponent by which directions may part in a panel.
+    varied : times the derivative of the force by the direction at the start of a panel, the last coefficient
+        of how that goes on, and likewise; where derivatives are wanted.
     light : times the length of a panel, where the load is small: tolerance of derivatives there.
     shrink, grow, safety : limits of the ratio of two lengths, and what it is multiplied by.
     near : before it opens, times the highest harmonic, panels are graded towards that.
@@ -62,6 +64,7 @@ class PlanarOptions:
     widest: float = 1.2
     growth: float = 2.0
     light: float = 10.0
+    varied: float = 3e-5
     shrink: float = 0.2
     grow: float = 2.5
     safety: float = 0.7
@@ -86,8 +89,8 @@ class PlanarOptions:
     faint: float = 1e-150
 
 
-OPTIONS = PlanarOptions()  # of a balance of harmonics, again and again: forces within 1e-10, derivatives 1e-8
+OPTIONS = PlanarOptions()  # of a balance of harmonics, again and again: forces within 1e-10, derivatives 1e-6
 FINE = replace(
-    OPTIONS, tolerance=1e-9, resolved=4.0, converged=1e-9
-)  # of `planar_forces`: forces within 1e-11
+    OPTIONS, tolerance=1e-9, resolved=4.0, converged=1e-9, varied=1e-3
+)  # of `planar_forces`: forces within 1e-11, derivatives 1e-8
 FINEST = replace(FINE, tolerance=1e-11)  # of a loop, whose polynomials are read between the ends of panels

@@ -84,6 +84,7 @@ cdef class Panel:
     cdef bint eliminate(self) noexcept nogil
     cdef bint finish(self) noexcept nogil
     cdef double rest(self) noexcept nogil
+    cdef double rest_of_variation(self) noexcept nogil
     cdef double end_of_slip(self) noexcept nogil
     cdef (double, double) pushed(self, double x) noexcept nogil
     cdef double root(self, double low, double high) noexcept nogil

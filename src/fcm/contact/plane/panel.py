@@ -242,6 +242,28 @@ class Panel:
         rest: float = max(fabs(last), self.before * fabs(before))
         return rest
 
+    def rest_of_variation(self) -> float:
+        """`rest` of the derivative of t by t at the start, which falls where t itself may be a straight line.
+
+        Of motion along a line the direction stays, and what turns it fades all the same.
+        """
+        i: cython.int
+        k: cython.int
+        before: float = self.tail[0, 0]
+        last: float = self.tail[1, 0]
+        for i in range(STAGES):
+            self.right[i] = -self.r[i] * self.slopes[i + 1, 0]
+            for k in range(i):
+                self.right[i] -= self.matrix[STAGES * i + k] * self.right[k]
+        for i in range(STAGES - 1, -1, -1):
+            for k in range(i + 1, STAGES):
+                self.right[i] -= self.matrix[STAGES * i + k] * self.right[k]
+            self.right[i] *= self.matrix[STAGES * i + i]
+            before += self.tail[0, i + 1] * self.right[i]
+            last += self.tail[1, i + 1] * self.right[i]
+        rest: float = max(fabs(last), self.before * fabs(before))
+        return rest
+
     def end_of_slip(self) -> float:
         """The part of the panel after which lambda is no more than rounding; 2 if it does not fall so far."""
         j: cython.int

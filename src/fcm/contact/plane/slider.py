@@ -74,6 +74,7 @@ class Slider:
             given.nothing,
         )
         self.light, self.shrink, self.grow, self.safety = given.light, given.shrink, given.grow, given.safety
+        self.varied = given.varied
         self.motion = motion
         self.panel = Panel(motion)
         self.sums = Sums(motion, max(outputs, default=0))
@@ -196,22 +197,29 @@ class Slider:
             self.motion.bend(SCAN)
             bend = self.turning(SCAN, rate)
         near: float = self.near / max(self.motion.highest, 1)
+        nothing: float = self.nothing * self.motion.reach
         while self.theta < end and not self.failed:
-            if r <= self.nothing * self.motion.reach:
+            if r <= nothing:
                 push = self.realign(push)
             left = end - self.theta
             if left < (self.negligible if opens else self.shortest):
                 self.theta = end
                 return
-            graded: cython.bint = opens and r > self.nothing * self.motion.reach and left < near
-            if graded and self.stray(end) * r * left < self.ends * self.tolerance * self.motion.reach:
+            graded: cython.bint = opens and r > nothing and left < near
+            with_turns: cython.bint = self.gathering and self.gradient
+            turned: float = self.derivatives.greatest() if with_turns else 0.0
+            if (
+                graded
+                and self.stray(end) * r * left < self.ends * self.tolerance * self.motion.reach
+                and self.varied * turned * r * left <= self.ends * self.tolerance
+            ):
                 graded = False
                 self.next_length = left
             length = min(self.next_length, left, self.longest)
             if graded:
                 length = min(length, self.deepest * left)
-            elif length > 0.6 * left and length < left:
-                length = 0.6 * left
+            elif length > 0.6 * left and (length < left or (with_turns and opens and r <= nothing)):
+                length = 0.6 * left  # nor from closing to opening at once: turns matter between alone
             for tries in range(200):  # noqa: B007
                 rest = 1e300
                 if self.panel.solve(
@@ -222,6 +230,9 @@ class Slider:
                         max(r, self.motion.value[STAGES, 2]) / self.motion.reach,
                         min(self.light * length, 1.0),
                     )
+                    if with_turns:
+                        part = turned * max(r, self.motion.value[STAGES, 2])
+                        rest = max(rest, self.varied * part * self.panel.rest_of_variation())
                     if rest <= self.tolerance:
                         break
                 part = (self.tolerance / rest) ** (1.0 / STAGES) if rest < 1e300 else 0.0
