@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 SCAN = 4000  # steps of a period in which a stick is followed
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
-END = 1e-9  # [rad] before it opens, where the march ends
+END = 1e-7  # [rad] before it opens, where the march ends: later the rounding over r is more than 1e-8
 
 
 class March:
