@@ -85,10 +85,12 @@ def tabulate(
         with alone([study]):
             write_study(messages, study, to_json)
     else:
+        from fcm.table.nodes import PRESETS
+
         if scene is not None and ctx.get_parameter_source("points") is click.core.ParameterSource.DEFAULT:
             points = REQUESTS.points_of_part
         with alone([output]):
-            _build(messages, output, preset, nodes, scene, points, to_json)
+            _build(messages, output, nodes or PRESETS[preset], scene, points, to_json)
 
 
 def _resolution(value: tuple[int, int, int, int] | None) -> tuple[int, int, int, int] | None:
@@ -111,8 +113,7 @@ def _alone(ctx: click.Context, option: str) -> None:
 def _build(
     messages: Messages,
     output: Path,
-    preset: str,
-    nodes: Resolution | None,
+    resolution: Resolution,
     scene: str | None,
     points: int,
     to_json: bool,
@@ -120,9 +121,7 @@ def _build(
     from fcm.cli.part import reached, saving
     from fcm.run.progress import part as share
     from fcm.table import build_table
-    from fcm.table.nodes import PRESETS
 
-    resolution = PRESETS[preset] if nodes is None else nodes
     began = time.perf_counter()
     with Interruptible(messages, f"nothing was written, {output} is as it was") as progress:
         made_by = f"fcm tabulate --nodes {' '.join(map(str, resolution))} --points {points}"

@@ -94,7 +94,7 @@ def _room_for(top: Section, directions: int, rows: int) -> bool:
 def check_matrices(top: Section, matrices: Matrices, cyclic: list[Part], ends: tuple[float, float]) -> None:
     """Note that matrices are not those of a structure, of a scene that has other mistakes."""
     from fcm.scene.reduction import modal_of_matrices
-    from fcm.scene.ring_reduction import modal_of_ring
+    from fcm.scene.ring_reduction import LoadedRing, modal_of_ring
 
     rows = len(matrices.dofs)
     none: list[int] = []
@@ -102,16 +102,15 @@ def check_matrices(top: Section, matrices: Matrices, cyclic: list[Part], ends: t
     if not cyclic:
         modal_of_matrices(top, matrices, np.zeros((rows, 0)), np.zeros(0), none, ends)
     elif np.isfinite(sectors := cyclic[0]["sectors"]):
-        modal_of_ring(
-            top, matrices, int(sectors), np.zeros((2 * rows, 0)), np.zeros(0), np.zeros((rows, 0)), none, ends
-        )
+        unloaded = np.zeros((2 * rows, 0)), np.zeros(0), np.zeros((rows, 0))
+        modal_of_ring(top, LoadedRing(matrices, int(sectors), *unloaded), none, ends)
 
 
 def _of_ring(
     top: Section, parts: Parts, matrices: Matrices, output: list[str], ends: tuple[float, float], unit: str
 ) -> tuple[Parts, list[str]]:
     """As `with_modes`, with the modes of every nodal diameter."""
-    from fcm.scene.ring_reduction import mass_of_all_alike, modal_of_ring
+    from fcm.scene.ring_reduction import LoadedRing, mass_of_all_alike, modal_of_ring
     from fcm.structure.eigen import unit_columns
 
     dofs, own = parts["modal"]["dofs"], parts["modal"]["dofs"].own
@@ -124,7 +123,10 @@ def _of_ring(
     only = [own.place[name] for name in output]
     sectors = int(parts["cyclic"][0]["sectors"])
     draft, notes = modal_of_ring(
-        top, matrices, sectors, pushed, _springs(parts, pushed.shape[1]), distributed, only, ends
+        top,
+        LoadedRing(matrices, sectors, pushed, _springs(parts, pushed.shape[1]), distributed),
+        only,
+        ends,
     )
     if draft is None:
         return parts, notes

@@ -26,24 +26,27 @@ class Diameter:
     damping: Damping
 
 
+@dataclass(frozen=True)
+class LoadedRing:
+    """The matrices of a ring's sector, and what acts on it."""
+
+    matrices: Matrices
+    sectors: int
+    pushed: FloatArray  # (rows of two sectors, load) directions of contacts and forces
+    springs: FloatArray  # (load,) stiffness of contacts along theirs
+    distributed: FloatArray  # (row, load) loads on the sector alone
+
+
 def modal_of_ring(
-    top: Section,
-    matrices: Matrices,
-    sectors: int,
-    pushed: FloatArray,
-    springs: FloatArray,
-    distributed: FloatArray,
-    outputs: list[int],
-    ends: tuple[float, float],
+    top: Section, ring: LoadedRing, outputs: list[int], ends: tuple[float, float]
 ) -> tuple[dict[str, Any] | None, list[str]]:
     """Modal table (frequencies in rad/s, shapes at all rows), and what is to be said.
 
-    pushed (rows of two sectors, load) are the directions of contacts and forces, springs (load,) the
-    stiffness of contacts along theirs, distributed (row, load) loads on the sector alone, outputs the
-    rows that are only reported; `ends` is the range of frequencies.
+    outputs are the rows that are only reported; `ends` is the range of frequencies.
     """
+    matrices, sectors, pushed, distributed = ring.matrices, ring.sectors, ring.pushed, ring.distributed
     rows = len(pushed) // 2
-    springs = np.append(springs, np.zeros(distributed.shape[1]))
+    springs = np.append(ring.springs, np.zeros(distributed.shape[1]))
     diameters = []
     for number in range(sectors // 2 + 1):
         turn = np.exp(2j * np.pi * number / sectors)
