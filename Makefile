@@ -38,7 +38,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help docs reference guide-figures measured oblique design fuzz kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence fold-curves multipliers kept-modes demo picture paper figures test test-all check tables \
+.PHONY: help docs reference guide-figures measured oblique joint design fuzz kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence fold-curves multipliers kept-modes demo picture paper figures test test-all check tables \
 	clean bench study
 
 help:  ## this list
@@ -247,6 +247,9 @@ measured: $(VENV)/installed  ## two measured joints fitted, in build/measured; D
 
 oblique: $(VENV)/installed  ## two bodies on an oblique plane, built with CalculiX, in build/oblique; minutes
 	$(BIN)/python -m tests.studies.oblique
+
+joint: $(VENV)/installed  ## two bolted beams with 100 pairs in the plane: bending modes, map of slip, in build/joint; minutes
+	$(BIN)/python -m tests.studies.joint
 
 docs: $(VENV)/installed-dev  ## the guide as a site that can be searched, in build/docs: to be served, as by python3 -m http.server -d build/docs
 	$(BIN)/python -m mkdocs build --quiet --config-file .github/mkdocs.yml

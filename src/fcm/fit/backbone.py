@@ -81,7 +81,7 @@ class _Followed:
         if not len(self.mode.path.z):
             raise NoMotionError
         self.problem: Autonomous = self.mode.problem
-        self.newton = Newton(self.problem)
+        self.newton = Newton(self.problem, self.problem.precision)
         sizes = (
             self.mode.amplitude if self.dof is None else np.array([self._size(z) for z in self.mode.path.z])
         )

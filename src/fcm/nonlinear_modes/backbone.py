@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
+import numpy.typing as npt
 
 from fcm.continuation import FollowOptions, Path
 from fcm.continuation.corrector import Newton
@@ -32,6 +33,21 @@ class RoundingOptions:
     """last_digits : units of the last digit of float64 that a sum of forces may be off."""
 
     last_digits: float = 100.0
+
+
+@dataclass(frozen=True)
+class TruncationOptions:
+    """At which points of a mode the error by the harmonics left out is told.
+
+    dear : unknowns with twice as many harmonics, from which on it is not told at all of them but at some,
+        evenly spread, of which the last is one:
+    least : at so many of them or more,
+    share : as many as take this part of the time of the mode, which grows as the cube of the unknowns.
+    """
+
+    dear: int = 500
+    least: int = 2
+    share: float = 0.5
 
 
 @dataclass(frozen=True)
@@ -74,9 +90,9 @@ def nonlinear_mode(system: System, number: int, span: tuple[float, float], max_s
     low, high = (float(np.log(a)) for a in span)
     for guess in guesses:
         problem, new_problem = Autonomous(system, guess), partial(Autonomous, followed, guess)
-        path = follow_past_corners(
-            new_problem, new_problem().start(low), (low, high), FollowOptions(max_step)
-        )
+        first = new_problem()
+        options = FollowOptions(max_step, newton=first.precision)
+        path = follow_past_corners(new_problem, first.start(low), (low, high), options)
         if path.z.shape[0]:
             break
     if followed is not system:
@@ -169,22 +185,23 @@ def _squares(system: System, share: FloatArray | bool) -> tuple[FloatArray, Floa
     return squares, shapes
 
 
-def truncation(mode: Mode) -> tuple[FloatArray, FloatArray]:
+def truncation(mode: Mode, options: TruncationOptions | None = None) -> tuple[FloatArray, FloatArray]:
     """Error by the harmonics left out, (point,): the change of frequency or damping by twice as many; and
     what the contacts bear with these, (point, contact, 4).
 
-    Relative, of the damping to the greatest of the mode; NaN where there is no such motion.
+    Relative, of the damping to the greatest of the mode; NaN where there is no such motion, and of many
+    unknowns at the points where it is not told.
     """
     system, old = mode.system, mode.problem
     highest = min(2 * system.harmonics[-1] + 1, LIMITS.harmonics)
     larger = without_even(system.with_harmonics(tuple(range(1, highest + 1))))
     finer = Autonomous(larger, old.guess)
-    newton = Newton(finer)
+    newton = Newton(finer, finer.precision)
     newton.row[-1] = 1.0
     error = np.full(mode.omega.size, np.nan)
     contacts = np.zeros((mode.omega.size, finer.contact_unknowns + 1))
-    for i, z in enumerate(mode.path.z):
-        start = finer.carried(z, old)
+    for i in _told(mode, finer.n, options or TruncationOptions()):
+        start = finer.carried(mode.path.z[i], old)
         finer.measure(start)
         newton.scale[:], newton.z[:] = finer.scale, start
         if newton.correct(1.0):
@@ -195,3 +212,13 @@ def truncation(mode: Mode) -> tuple[FloatArray, FloatArray]:
     borne = borne_along(larger, contacts)
     borne[np.isnan(error)] = np.nan
     return error, borne
+
+
+def _told(mode: Mode, unknowns: int, options: TruncationOptions) -> npt.NDArray[np.intp]:
+    """The points at which the error is told that so many unknowns tell."""
+    points = len(mode.path.z)
+    if unknowns < options.dear:
+        return np.arange(points)
+    affordable = int(options.share * points * (mode.problem.n / unknowns) ** 3)
+    spread = np.linspace(0, points - 1, max(affordable, options.least) + 1)
+    return np.unique(spread[1:].round().astype(np.intp))

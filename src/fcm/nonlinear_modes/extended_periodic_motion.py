@@ -18,7 +18,7 @@ motion may come to have no receptance there; their Q are unknowns beside the dis
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import exp
 from typing import Any
 
@@ -26,6 +26,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Problem
+from fcm.continuation.options import NewtonOptions
 from fcm.harmonic_balance.contact_law import kind_of
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
@@ -51,6 +52,21 @@ class Guess:
 
 
 @dataclass(frozen=True)
+class ManyOptions:
+    """How a mode of many contacts is followed: by steps of nearly ln a, past the corners of single contacts.
+
+    Each contact that begins to slip turns its mean displacement like a root. Most of them turn frequency and
+    damping by nothing that matters.
+
+    many : contacts from which on no corner is looked for
+    coarse : and the units of all unknowns but ln a are so many times as large.
+    """
+
+    many: int = 16
+    coarse: float = 100.0
+
+
+@dataclass(frozen=True)
 class Motion:
     """Of a point: a, omega, D, and modal amplitudes over a: mean (mode,), harmonics (harmonic, mode)."""
 
@@ -62,17 +78,25 @@ class Motion:
 
 
 class Autonomous(Problem):
-    """The unknowns: those of the contacts as in `law`, over a; Re and Im of the kept Q; omega; D."""
+    """The unknowns: those of the contacts as in `law`, over a; Re and Im of the kept Q; omega; D.
 
-    def __init__(self, system: System, guess: Guess) -> None:
+    precision: of Newton's method, in the units of `measure`.
+    """
+
+    def __init__(self, system: System, guess: Guess, options: ManyOptions | None = None) -> None:
         self.contacts, self.linear, self.guess = ScaledContacts(system), system.linear, guess
+        options = options or ManyOptions()
+        many = len(self.contacts.laws) >= options.many
+        self.coarse = options.coarse if many else 1.0
+        self.precision = _finer_by(self.coarse)
         self.h = np.array(system.harmonics, dtype=np.float64)
         self.driven = system.harmonics.index(1)
         self.mean_rows, self.rows = self.contacts.mean_rows, self.contacts.rows
         self.ports = self.mean_rows.size
         self.contact_unknowns, self.kept = self.contacts.unknowns, guess.kept.size
         count = self.contact_unknowns + 2 * self.kept + 2
-        super().__init__(count, sum(law.margins for law in self.contacts.laws), 2)
+        margins = 0 if many else sum(law.margins for law in self.contacts.laws)
+        super().__init__(count, margins, 2)
         self.n, self.rooted = count, any(law.directions > 2 for law in self.contacts.laws)
         self.static = self.linear.ports.T @ self.linear.flexibility @ self.linear.ports
         self.largest = np.zeros(self.ports)
@@ -189,14 +213,16 @@ class Autonomous(Problem):
         self.largest = np.maximum(self.largest, size)
         floor = np.maximum(OWN_FLOOR * self.largest, OTHER_FLOOR * self.largest.max(initial=0.0))
         unit = np.maximum(size, floor)
-        unit = np.where(unit > 0.0, unit, 1.0) * np.sqrt(max(self.ports, 1))
-        scale[:] = 1.0
+        unit = np.where(unit > 0.0, unit, 1.0) * np.sqrt(max(self.ports, 1)) * self.coarse
+        scale[:] = self.coarse
         scale[self.mean_rows] = scale[self.rows] = scale[self.rows + 1] = unit
-        scale[self.n - 2 :] = self.guess.omega, DAMPING, DECADE
+        scale[self.n - 2 :] = self.coarse * self.guess.omega, self.coarse * DAMPING, DECADE
         return 0
 
     def bound(self, z: Any) -> int:
         """The margins of the contacts, one after the other."""
+        if self.margins == 0:
+            return 0
         z = np.asarray(z)
         x, at = self.modal_amplitude(z) * z[: self.contact_unknowns], 0
         for c, law in enumerate(self.contacts.laws):
@@ -232,3 +258,10 @@ class Autonomous(Problem):
 def _complex(values: FloatArray, rows: npt.NDArray[np.intp]) -> ComplexArray:
     found: ComplexArray = values[rows] + 1j * values[rows + 1]
     return found
+
+
+def _finer_by(coarse: float) -> NewtonOptions:
+    """Lengths that are as short in units so many times as large."""
+    usual = NewtonOptions()
+    lengths = ("close", "small", "exact", "rough", "left", "chord", "brief", "coarsest")
+    return replace(usual, **{name: getattr(usual, name) / coarse for name in lengths})

@@ -39,7 +39,7 @@ def follow_past_corners(
         whole = path if whole is None else whole.then(path)
         if ended:
             return whole
-        beyond = _beyond(new_problem(), path.z[-1])
+        beyond = _beyond(new_problem(), path.z[-1], options)
         if beyond is None or beyond[-1] >= span[1]:
             return whole
         start, low = beyond, float(beyond[-1])
@@ -71,9 +71,9 @@ def _part(
         return replace(path, status=Status.STALLED), path.status is not Status.COMPLETE
 
 
-def _beyond(problem: Problem, z: FloatArray) -> FloatArray | None:
+def _beyond(problem: Problem, z: FloatArray, options: FollowOptions) -> FloatArray | None:
     """The solution a little further on that is nearest; None if there is none near."""
-    newton = Newton(problem)
+    newton = Newton(problem, options.newton)
     newton.row[-1] = 1.0
     problem.measure(np.ascontiguousarray(z))
     for step in ON:
