@@ -90,7 +90,7 @@ def test_the_least_beside_a_gap_between_pieces():
 def test_least_peaks_of_several_numbers_by_trials_say_so():
     found = Optimal(
         {}, {"contact.c.n_0": 1.0, "contact.c.k_u": 2.0}, ("peak.u",), 3.0, (("u", 1.2),), "trials", (1,),
-        stable=(1.0,),
+        stable=(1.0,), residual=(0.0,),
     )  # fmt: skip
     shown = as_table({"optimum": [found.summary("rad/s")], "tracked": {"what": "optimum"}}, "rad/s")
     assert "contact.c.k_u = 2; along each number known by trials alone" in shown
