@@ -9,7 +9,7 @@ from fcm.stability.disturbance import Stiffness
 from fcm.stability.eigenvalues import eigenvalues
 from fcm.stability.many_monodromy import ManyMonodromy
 from fcm.stability.monodromy import Monodromy
-from fcm.stability.multipliers import MANY_CONTACTS
+from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.time_domain.segment_sequence import SegmentSequence
 from fcm.time_domain.segments import Segments
 from fcm.time_domain.system import System
@@ -20,7 +20,7 @@ ComplexArray = npt.NDArray[np.complex128]
 class Floquet:
     """`multipliers` of motions of a scene at any frequency; a workspace."""
 
-    def __init__(self, system: System) -> None:
+    def __init__(self, system: System, options: StabilityOptions = STABILITY) -> None:
         scene, unit = system.scene, 1.0 / np.sqrt(system.scene.modal.mass)
         held = [one.contact for one in scene.held if not one.open]
         contacts = (*scene.contacts, *held)
@@ -30,7 +30,7 @@ class Floquet:
         ports = (modal.shapes * unit[:, None]) @ directions.reshape(-1, modal.shapes.shape[1]).T
         self.states = SegmentSequence(law, len(held), system.tangential, system.normal)
         self.monodromy: Monodromy | ManyMonodromy
-        if len(law) < MANY_CONTACTS:
+        if len(law) < options.structure.contacts:
             stiffness = Stiffness(ports, modal.frequency, modal.damping, None, law)
             self.monodromy = Monodromy(stiffness, self.states)
         else:

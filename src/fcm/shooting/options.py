@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from fcm.stability.options import STABILITY, StabilityOptions
+
 
 @dataclass(frozen=True)
 class ClosureOptions:
@@ -242,15 +244,14 @@ class FamilyOptions:
 class StabilityChangeOptions:
     """Where stability changes along a curve.
 
-    looks: at places between two points, at most. excess: of a multiplier over 1, up to which a motion is
-    stable. sure: part of the excess, by which a multiplier may differ from it where stability changes.
+    looks: at places between two points, at most. sure: part of the excess of a multiplier over 1 up to which
+    a motion is stable, by which it may differ from that where stability changes.
     dips: divisions of the way between two points in search of a window of stability. safe: logarithm of the
     greatest multiplier of both; below it no window is looked for. ranges: of the frequency without a stable
     motion, in whose middle the motion is simulated, the widest first.
     """
 
     looks: int = 60
-    excess: float = 1e-7
     sure: float = 0.01
     dips: int = 4
     safe: float = -0.3
@@ -302,6 +303,7 @@ class ShootingOptions:
     family: FamilyOptions = FamilyOptions()
     stability: StabilityChangeOptions = StabilityChangeOptions()
     search: BranchSearchOptions = BranchSearchOptions()
+    floquet: StabilityOptions = STABILITY
 
 
 SHOOTING = ShootingOptions()  # where nothing else is said

@@ -54,7 +54,7 @@ def _place(problem: OrbitProblem, part: float, z: FloatArray, direction: FloatAr
     """Its excess is counted from half of what is sure below the limit, so that what is there is stable."""
     shot = problem.shot(z)
     others = np.zeros(0) if shot is None else np.abs(shot.others)
-    options = problem.options.stability
-    room = 0.5 * options.sure * options.excess
-    excess = float(np.log(others.max(initial=1e-300)) - np.log1p(options.excess) + room)
-    return Place(part, excess, z, direction, abs(excess) <= room)
+    excess = problem.options.floquet.verdict.excess
+    room = 0.5 * problem.options.stability.sure * excess
+    beyond = float(np.log(others.max(initial=1e-300)) - np.log1p(excess) + room)
+    return Place(part, beyond, z, direction, abs(beyond) <= room)

@@ -18,9 +18,11 @@ import numpy.typing as npt
 
 from fcm.continuation import Path, Segment
 from fcm.model.scene import FloatArray
+from fcm.shooting.options import ShootingOptions
 from fcm.shooting.periodic import within_unit_circle
 from fcm.shooting.problem import OrbitProblem
-from fcm.stability.bifurcation_functions import LEAST, MANY, Seen, dip, foretold, products, seen
+from fcm.stability.bifurcation_functions import LEAST, Seen, dip, foretold, products, seen
+from fcm.stability.options import StabilityOptions
 from fcm.stability.verdict import Bifurcation, Verdict
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -60,21 +62,23 @@ class _Known(NamedTuple):
         rows = zip(*(values[first:end].tolist() for values in self), strict=True)
         return [Seen(*row) for row in rows]
 
-    def suspected(self, jumps: npt.NDArray[np.bool_], safe: float) -> list[int]:
+    def suspected(self, jumps: npt.NDArray[np.bool_], options: ShootingOptions) -> list[int]:
         """The points after which there may be a window: where a dip is foretold, or multipliers may jump."""
         low, high = self.stable[:-1], self.stable[1:]
-        dips = np.where(low, self._dips(self.flip, self.pair), self._dips(self.growth))
-        near = np.maximum(self.growth[:-1], self.growth[1:]) >= safe
+        dips = np.where(
+            low, self._dips(options.floquet, self.flip, self.pair), self._dips(options.floquet, self.growth)
+        )
+        near = np.maximum(self.growth[:-1], self.growth[1:]) >= options.stability.safe
         found: list[int] = np.flatnonzero((low == high) & near & (jumps | dips)).tolist()
         return found
 
-    def _dips(self, *functions: FloatArray) -> npt.NDArray[np.bool_]:
+    def _dips(self, options: StabilityOptions, *functions: FloatArray) -> npt.NDArray[np.bool_]:
         """Whether a dip of any of them is foretold after each point but the last."""
         s, before = self.length, self.stable[:-2] == self.stable[1:-1]
         alike = before & (self.stable[1:-1] == self.stable[2:])
         found = np.zeros(max(s.size - 1, 0), dtype=bool)
         for values in functions:
-            sides = foretold(s, values, logarithms=len(functions) > 1)
+            sides = foretold(s, values, len(functions) > 1, options)
             for k, side in enumerate(sides):  # between the first two of three points, and the last two
                 found[k : found.size - 1 + k] |= side & alike
         return found
@@ -87,11 +91,10 @@ def with_windows(problem: OrbitProblem, path: Path, points: Sequence[Point]) -> 
     """
     if not points:
         return path, []
-    known = _known(path, points)
+    known = _known(path, points, problem.options.floquet)
     jumps = np.array([one.states != other.states for one, other in pairwise(points)], dtype=bool)
     looked = (
-        _window(problem, path, known, k, bool(jumps[k]))
-        for k in known.suspected(jumps, problem.options.stability.safe)
+        _window(problem, path, known, k, bool(jumps[k])) for k in known.suspected(jumps, problem.options)
     )
     found = [one for one in looked if one is not None]
     if not found:
@@ -123,7 +126,8 @@ def _window(problem: OrbitProblem, path: Path, known: _Known, k: int, jumps: boo
         """Whether one is found, the way divided so often already; `between` is there then."""
         nonlocal between
         alike = [one for one in (*before, low, high, *after) if one.stable == low.stable]
-        length = dip(low, high, alike, times) if times < problem.options.stability.dips else None
+        again = times < problem.options.stability.dips
+        length = dip(low, high, alike, times, problem.options.floquet) if again else None
         if length is None and jumps and times == 0:
             length = 0.5 * (low.length + high.length)
         if length is None:
@@ -134,7 +138,8 @@ def _window(problem: OrbitProblem, path: Path, known: _Known, k: int, jumps: boo
         shot = problem.shot(between.z)
         if shot is None:
             return False
-        there = _seen(length, shot.multipliers, within_unit_circle(shot.multipliers, problem.options))
+        stable = within_unit_circle(shot.multipliers, problem.options)
+        there = _seen(length, shot.multipliers, stable, problem.options.floquet)
         return (
             there.stable != low.stable
             or inside(before, low, there, [high], times + 1)
@@ -147,20 +152,21 @@ def _window(problem: OrbitProblem, path: Path, known: _Known, k: int, jumps: boo
     return Window(k, between.z, between.direction, between.orientation)
 
 
-def _seen(length: float, multipliers: ComplexArray, stable: bool) -> Seen:
+def _seen(length: float, multipliers: ComplexArray, stable: bool, options: StabilityOptions) -> Seen:
     """A point; of contacts that always stick, or stay closed smooth, multipliers are 1 and tell nothing."""
-    values = tuple(multipliers[multipliers != 1.0].tolist()[:MANY])
+    values = tuple(multipliers[multipliers != 1.0].tolist()[: options.windows.multipliers])
     growth = math.log(max((abs(value) for value in values), default=0.0) + 1e-300)
-    return seen(length, Verdict(float(stable), growth, Bifurcation.NEIMARK_SACKER, values=values))
+    verdict = Verdict(float(stable), growth, Bifurcation.NEIMARK_SACKER, values=values)
+    return seen(length, verdict, options)
 
 
-def _known(path: Path, points: Sequence[Point]) -> _Known:
+def _known(path: Path, points: Sequence[Point], options: StabilityOptions) -> _Known:
     """The points of a path, all at once."""
     values = np.array([point.multipliers for point in points])
-    kept = (values != 1.0) & (np.cumsum(values != 1.0, axis=1) <= MANY)
+    kept = (values != 1.0) & (np.cumsum(values != 1.0, axis=1) <= options.windows.multipliers)
     growth = np.log(np.where(kept, np.abs(values), 0.0).max(axis=1, initial=0.0) + LEAST)
     stable = np.array([point.stable for point in points])
-    flip, pair = (np.where(stable, each, 0.0) for each in products(np.where(kept, values, 0.0)))
+    flip, pair = (np.where(stable, each, 0.0) for each in products(np.where(kept, values, 0.0), options))
     return _Known(_lengths(path), stable, growth, flip, pair)
 
 

@@ -16,11 +16,12 @@ from fcm.continuation import Mark, Path, Segment
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
-from fcm.stability.bifurcation_functions import MANY, Seen, seen
+from fcm.stability.bifurcation_functions import Seen, seen
 from fcm.stability.floquet import multipliers_of
 from fcm.stability.inserted_points import Inserted
 from fcm.stability.multipliers import far_above
-from fcm.stability.verdict import SMALL, Verdict, apart
+from fcm.stability.options import STABILITY, StabilityOptions
+from fcm.stability.verdict import Verdict, apart
 
 EITHER = (0.0, 1.0)  # what the finer motion says is enough, stable or not
 
@@ -31,14 +32,14 @@ class Verdicts:
     rotation (point,) [rad]: by how much multipliers that are not small have turned up to each point, about.
     """
 
-    def __init__(self, system: System, path: Path) -> None:
-        self.path, self.evaluations = path, 0
+    def __init__(self, system: System, path: Path, options: StabilityOptions = STABILITY) -> None:
+        self.path, self.evaluations, self.options = path, 0, options
         self._verdicts: dict[float, Verdict] = {}
         self.between: dict[float, Inserted] = {}
         self._places: list[float] = []  # with a verdict, in order
-        self.multipliers = multipliers_of(system, float(path.parameter.max(initial=0.0)))
+        self.multipliers = multipliers_of(system, float(path.parameter.max(initial=0.0)), self.options)
         self.fold = (path.mark & Mark.FOLD) != 0
-        self.rotation = _rotation(system, path)
+        self.rotation = _rotation(system, path, self.options)
         self._system, self._seen, self._apart = system, dict[float, Seen](), dict[float, float]()
 
     @cached_property
@@ -115,13 +116,13 @@ class Verdicts:
         if t not in self._seen:
             k, part = int(t), t - int(t)
             length = self.length[k] + (part * (self.length[k + 1] - self.length[k]) if part else 0.0)
-            self._seen[t] = seen(float(length), self._verdicts[t])
+            self._seen[t] = seen(float(length), self._verdicts[t], self.options)
         return self._seen[t]
 
     def apart(self, t: float) -> float:
         """[rad] by which multipliers at a place with a verdict have to turn until two of them meet."""
         if t not in self._apart:
-            self._apart[t] = apart(self._verdicts[t])
+            self._apart[t] = apart(self._verdicts[t], self.options)
         return self._apart[t]
 
     def way(self, a: float, b: float) -> float:
@@ -156,12 +157,17 @@ def _lengths(path: Path) -> FloatArray:
     return np.concatenate(([0.0], np.cumsum(steps)))
 
 
-def _rotation(system: System, path: Path) -> FloatArray:
+def _rotation(system: System, path: Path, options: StabilityOptions = STABILITY) -> FloatArray:
     """As of `Verdicts`; 0 where there are so many multipliers that two are always about to meet."""
     linear, omega = system.linear, path.parameter
-    near = ~far_above(linear.natural, float(omega.max(initial=0.0)), [int(h) for h in system.harmonics])
-    lasting = np.exp(-2.0 * np.pi * linear.damping * linear.natural / omega.min(initial=np.inf)) > SMALL
-    few = 2 * near.sum() + len(system.scene.contacts) <= MANY
+    near = ~far_above(
+        linear.natural, float(omega.max(initial=0.0)), [int(h) for h in system.harmonics], options
+    )
+    lasting = (
+        np.exp(-2.0 * np.pi * linear.damping * linear.natural / omega.min(initial=np.inf))
+        > options.verdict.small
+    )
+    few = 2 * near.sum() + len(system.scene.contacts) <= options.windows.multipliers
     fastest = float(linear.natural[lasting & near].max(initial=0.0)) if few else 0.0
     angle = 2.0 * np.pi * fastest / omega
     return np.concatenate(([0.0], np.cumsum(np.abs(angle[1:] - angle[:-1]))))

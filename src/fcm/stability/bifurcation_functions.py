@@ -20,15 +20,10 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.model.scene import FloatArray
+from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.verdict import Verdict
 
-DOUBT = 0.1  # of the differences between three values, by which what they foretell may be too high,
-CLOSER = 0.5  # and this part of it where the way was divided: differences fall by squares, errors by cubes
-MANY = 60  # multipliers, of more of which two are always about to meet
-LESS = 0.5  # size of multipliers that matter: one of a pair of 0.75 is not less as the other leaves
-NARROW = 1e-3  # a way, relative to the size of the solution, that is not divided
 LEAST = 1e-300  # a product, or a length
-NEAR = 0.1  # of the way between two places: nearer to one no other is looked at, but a window may begin there
 
 
 class Seen(NamedTuple):
@@ -41,11 +36,13 @@ class Seen(NamedTuple):
     pair: float
 
 
-def seen(length: float, verdict: Verdict) -> Seen:
+def seen(length: float, verdict: Verdict, options: StabilityOptions = STABILITY) -> Seen:
     """A place with its verdict; of the products where it is stable, otherwise they are of no use."""
     if verdict.stable != 1.0:
         return Seen(length, verdict.stable, verdict.growth, 0.0, 0.0)
-    values = np.array([value for value in verdict.values if abs(value) > LESS], dtype=np.complex128)
+    values = np.array(
+        [value for value in verdict.values if abs(value) > options.windows.size], dtype=np.complex128
+    )
     i, j = _pairs(values.size)
     products = np.abs(1.0 + values), np.abs(1.0 - values[i] * values[j])
     sums = (float(np.log(product + LEAST).sum()) for product in products)
@@ -58,7 +55,9 @@ def _pairs(count: int) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
     return i, j
 
 
-def dip(low: Seen, high: Seen, places: Sequence[Seen], divided: int = 0) -> float | None:
+def dip(
+    low: Seen, high: Seen, places: Sequence[Seen], divided: int = 0, options: StabilityOptions = STABILITY
+) -> float | None:
     """Length at which a product is foretold to be so small that stability may have changed; None if nowhere.
 
     Parameters
@@ -70,8 +69,9 @@ def dip(low: Seen, high: Seen, places: Sequence[Seen], divided: int = 0) -> floa
     divided : int
         Times that the way between places was.
     """
-    near, most, at = NEAR * (high.length - low.length), 0.0, None
-    if high.length - low.length < NARROW:
+    windows = options.windows
+    near, most, at = windows.near * (high.length - low.length), 0.0, None
+    if high.length - low.length < windows.narrow:
         return None
     for k in range(len(places) - 2):
         three = places[k : k + 3]
@@ -82,7 +82,7 @@ def dip(low: Seen, high: Seen, places: Sequence[Seen], divided: int = 0) -> floa
                 continue
             place = min(max(place, low.length + near), high.length - near)
             greatest = max(values)
-            doubt = (DOUBT * CLOSER**divided * (greatest - least) - least) / greatest
+            doubt = (windows.doubt * windows.divided**divided * (greatest - least) - least) / greatest
             if doubt > most:
                 most, at = doubt, place
     return at
@@ -114,13 +114,15 @@ def _lowest(s: list[float], f: list[float]) -> tuple[float, float]:
     return at, f[0] + (at - s[0]) * (first + bend * (at - s[1]))
 
 
-def products(values: npt.NDArray[np.complex128]) -> tuple[FloatArray, FloatArray]:
+def products(
+    values: npt.NDArray[np.complex128], options: StabilityOptions = STABILITY
+) -> tuple[FloatArray, FloatArray]:
     """The logarithms of both products, (place,) each, of multipliers (place, n); 0 is none.
 
     >>> [each.round(2).tolist() for each in products(np.array([[-0.9, 0.9j, -0.9j]]))]
     [[-1.71], [-1.16]]
     """
-    values = np.where(np.abs(values) > LESS, values, 0.0)
+    values = np.where(np.abs(values) > options.windows.size, values, 0.0)
     flip: FloatArray = np.log(np.abs(1.0 + values) + LEAST).sum(axis=1)
     pair = np.zeros(len(values))
     for i in range(values.shape[1] - 1):
@@ -128,7 +130,9 @@ def products(values: npt.NDArray[np.complex128]) -> tuple[FloatArray, FloatArray
     return flip, pair
 
 
-def foretold(s: FloatArray, f: FloatArray, logarithms: bool) -> tuple[npt.NDArray[np.bool_], ...]:
+def foretold(
+    s: FloatArray, f: FloatArray, logarithms: bool, options: StabilityOptions = STABILITY
+) -> tuple[npt.NDArray[np.bool_], ...]:
     """Whether `dip` finds a place by any three in a row of the values f at lengths s, all alike: between the
     first two of them, and between the last two; (place - 2,) each."""
     three = np.array([f[:-2], f[1:-1], f[2:]])
@@ -141,6 +145,6 @@ def foretold(s: FloatArray, f: FloatArray, logarithms: bool) -> tuple[npt.NDArra
         up = bend > 0.0
         at = 0.5 * (s[:-2] + s[1:-1] - slope[0] / np.where(up, bend, 1.0))
         least = three[0] + (at - s[:-2]) * (slope[0] + bend * (at - s[1:-1]))
-        deep = up & (DOUBT * (three.max(axis=0) - least) > least)
-    sides, wide = (slice(-1), slice(1, None)), width >= NARROW
+        deep = up & (options.windows.doubt * (three.max(axis=0) - least) > least)
+    sides, wide = (slice(-1), slice(1, None)), width >= options.windows.narrow
     return tuple(deep & (s[:-1][k] <= at) & (at <= s[1:][k]) & wide[k] for k in sides)

@@ -22,28 +22,14 @@ from fcm.harmonic_balance.runs import runs
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.along_branch import Verdicts
-from fcm.stability.bifurcation_functions import MANY, dip
+from fcm.stability.bifurcation_functions import dip
 from fcm.stability.inserted_points import Crossing, Inserted, with_points
-from fcm.stability.multipliers import MANY_CONTACTS
-from fcm.stability.verdict import FLIP_NEAR, Bifurcation, Verdict
+from fcm.stability.options import STABILITY, StabilityOptions
+from fcm.stability.verdict import Bifurcation, Verdict
 
 IntArray = npt.NDArray[np.intp]
 
 __all__ = ["Bifurcation", "Crossing", "Inserted", "Stability", "stability", "with_points"]
-
-SPAN = 16  # points of one harmonic, which misses windows anyway, between two that are always looked at;
-SPAN_OF_MANY = 8  # of many contacts with more harmonics: each changes the growth by little
-DEVIATION = 1.0  # of the growth from a straight line, over its own size, that is followed up
-SAFE = -0.05  # growth that is not followed up
-ENOUGH = -0.3  # growth that is as good as any that is less
-FINE = 1e-7  # of a step: a crossing is known to this where the growth jumps, otherwise to a growth of ZERO;
-BETWEEN = 1e-4  # to this where verdicts are confirmed: the jump may be from one motion to a finer one
-ZERO = 1e-10
-LOOKS = 60  # at a crossing
-EDGE = 0.3  # of a step: between places nearer than this the edge of a window is not looked for
-DIPS = 4  # times that a way between two points is divided in search of a window
-PHASE = 1.5  # [rad] by which multipliers that are not small turn at most between points that are looked at
-AHEAD, ABOUT = 1.5, 0.4  # times that, and [rad], by which two of them may come nearer to one another
 
 
 @dataclass(frozen=True)
@@ -61,21 +47,29 @@ class Stability:
         return sorted((*self.crossings, *self.inside), key=lambda one: one.place)
 
 
-def stability(system: System, path: Path, beyond: npt.NDArray[np.bool_] | None = None) -> Stability:
+def stability(
+    system: System,
+    path: Path,
+    beyond: npt.NDArray[np.bool_] | None = None,
+    options: StabilityOptions = STABILITY,
+) -> Stability:
     """Stability of the points of a path followed in the frequency, and where it changes between folds.
 
     A fold counts to the stable side, a crossing to neither. What is stable with the balanced harmonics and
     not with the next ones that their forces make, or the other way round, is nan; and so is what is
     beyond (point,), too far from the motion, and that the determinant allows to be stable.
     """
-    return _Along(system, path).run(np.zeros(path.z.shape[0], dtype=np.bool_) if beyond is None else beyond)
+    none = np.zeros(path.z.shape[0], dtype=np.bool_)
+    return _Along(system, path, options).run(none if beyond is None else beyond)
 
 
 class _Along:
-    def __init__(self, system: System, path: Path) -> None:
-        self.path, self.verdicts = path, Verdicts(system, path)
-        self.many = len(system.scene.contacts) >= MANY_CONTACTS
-        self.span = SPAN if len(system.harmonics) == 1 else SPAN_OF_MANY if self.many else 1
+    def __init__(self, system: System, path: Path, options: StabilityOptions) -> None:
+        self.path, self.verdicts, self.options = path, Verdicts(system, path, options), options
+        self.many = len(system.scene.contacts) >= self.options.structure.contacts
+        self.span = options.along.many_contacts if self.many else 1
+        if len(system.harmonics) == 1:
+            self.span = options.along.one_harmonic
 
     def run(self, beyond: npt.NDArray[np.bool_]) -> Stability:
         even = self._even()
@@ -109,7 +103,7 @@ class _Along:
         """Enough points of a run."""
         parts = max(-(-(last - first) // self.span), 1)
         angle = self.verdicts.rotation[first : last + 1]
-        passed = np.floor((angle - angle[0]) / PHASE)
+        passed = np.floor((angle - angle[0]) / self.options.along.phase)
         some = (first + k * (last - first) // parts for k in range(parts + 1))
         nodes = sorted({*some, *(first + 1 + (passed[1:] != passed[:-1]).nonzero()[0]).tolist()})
         for i in nodes:
@@ -125,7 +119,7 @@ class _Along:
 
     def _dips(self, before: list[float], ends: tuple[float, float], after: list[float], divided: int) -> None:
         """Divide the way between two places as long as what both and their neighbours tell is in doubt."""
-        t = self._doubtful(before, ends, after, divided) if divided < DIPS else None
+        t = self._doubtful(before, ends, after, divided) if divided < self.options.windows.dips else None
         if t is None or not ends[0] < t < ends[1]:
             return
         one, found, other = (self.verdicts[place].stable for place in (ends[0], t, ends[1]))
@@ -142,9 +136,9 @@ class _Along:
     ) -> float | None:
         """A place between two, with its verdict, at which stability may be another; None if there is none."""
         one, other = self.verdicts[ends[0]], self.verdicts[ends[1]]
-        if one.passive or other.passive or max(one.growth, other.growth) < ENOUGH:
+        if one.passive or other.passive or max(one.growth, other.growth) < self.options.along.enough:
             return None
-        if max(len(one.values), len(other.values)) > MANY:
+        if max(len(one.values), len(other.values)) > self.options.windows.multipliers:
             return None
         if math.isnan(one.stable) != math.isnan(other.stable):
             return self._edge(*ends)
@@ -153,21 +147,22 @@ class _Along:
         verdicts, seen = self.verdicts, self.verdicts.seen
         alike = [t for t in (*before, *ends, *after) if verdicts[t].stable == one.stable]
         low, high = (seen(t) for t in ends)
-        length = dip(low, high, [seen(t) for t in alike if not verdicts[t].passive], divided)
+        length = dip(low, high, [seen(t) for t in alike if not verdicts[t].passive], divided, self.options)
         # a place like its ends is no window, whatever the balanced harmonics say of it
         return None if length is None else self.verdicts.put(length, enough=(one.stable,))
 
     def _edge(self, a: float, b: float) -> float | None:
         """A place between one that is told and one that is not: this may be the edge of a window."""
         verdicts = self.verdicts
-        if verdicts.grows(a) == verdicts.grows(b) or not EDGE < b - a <= 1.0 or not verdicts.framed(a, b):
+        apart = self.options.windows.edge < b - a <= 1.0
+        if verdicts.grows(a) == verdicts.grows(b) or not apart or not verdicts.framed(a, b):
             return None
         return verdicts.put(0.5 * (verdicts.seen(a).length + verdicts.seen(b).length))
 
     def _may_meet(self, a: float, b: float) -> bool:
         """Whether two multipliers may meet between two places of a stable way."""
         nearest = self.verdicts.apart(a) + self.verdicts.apart(b)
-        return nearest < AHEAD * self.verdicts.way(a, b) + ABOUT
+        return nearest < self.options.windows.ahead * self.verdicts.way(a, b) + self.options.windows.about
 
     def _inside(self, stable: FloatArray) -> Iterator[Inserted]:
         """The places between points that are stable where both neighbours are not, or the other way round."""
@@ -182,7 +177,7 @@ class _Along:
             return
         one, middle, other = self.verdicts.at(a), (a + b) // 2, self.verdicts.at(b)
         passive = one.passive and other.passive
-        if not passive and not _straight(one, self.verdicts.at(middle), other, self.many):
+        if not passive and not _straight(one, self.verdicts.at(middle), other, self.many, self.options):
             self._between(a, middle)
             self._between(middle, b)
 
@@ -211,27 +206,29 @@ class _Along:
         """Where the growth changes sign between two places."""
         first, found, enough = int(a), None, self.verdicts.enough(a, b)
         curve = self.verdicts.curve(first)
-        before, after = (max(self.verdicts[t].growth, ENOUGH) for t in (a, b))
+        before, after = (max(self.verdicts[t].growth, self.options.along.enough) for t in (a, b))
         kind = self.verdicts[a if before > 0.0 else b].kind
         sides = Secants(a - first, b - first, before, after, may_jump=True)
-        fine = FINE if enough else BETWEEN
-        for _ in range(LOOKS):
+        fine = self.options.along.fine if enough else self.options.along.confirmed
+        for _ in range(self.options.along.looks):
             at = sides.at
             if sides.width < fine or not curve.put(at):
                 break
             verdict = self.verdicts.judge(curve.z, enough)
-            now = max(verdict.growth, ENOUGH)
+            now = max(verdict.growth, self.options.along.enough)
             if math.isnan(now):
                 break
             kind = verdict.kind if now > 0.0 else kind
             found = Crossing(first + at, curve.z, curve.direction, curve.orientation, kind=kind)
-            if abs(now) < ZERO:
+            if abs(now) < self.options.along.zero:
                 break
             sides.saw(at, now)
         return found
 
 
-def _straight(one: Verdict, middle: Verdict, other: Verdict, many: bool) -> bool:
+def _straight(
+    one: Verdict, middle: Verdict, other: Verdict, many: bool, options: StabilityOptions = STABILITY
+) -> bool:
     """Whether three verdicts agree, with growths so nearly on a line that none between has another sign.
 
     Of many contacts one begins to slip everywhere, and of their many multipliers one is near to a flip: there
@@ -244,16 +241,16 @@ def _straight(one: Verdict, middle: Verdict, other: Verdict, many: bool) -> bool
     if (
         not many
         and stable[0] == 1.0
-        and min(one.before_flip, middle.before_flip, other.before_flip) < FLIP_NEAR
+        and min(one.before_flip, middle.before_flip, other.before_flip) < options.verdict.flip
     ):
         return False
-    safe = max(growth) < SAFE
+    safe = max(growth) < options.along.safe
     if not many and not safe and not one.held == middle.held == other.held:
         return False
     if stable[0] == 1.0 and (safe or one.passive or middle.passive or other.passive):
         return True
-    a, b, c = (max(size, ENOUGH) for size in growth)
-    return abs(b - 0.5 * (a + c)) < DEVIATION * min(abs(a), abs(b), abs(c))
+    a, b, c = (max(size, options.along.enough) for size in growth)
+    return abs(b - 0.5 * (a + c)) < options.along.deviation * min(abs(a), abs(b), abs(c))
 
 
 def _nearer(at: IntArray, first: int, last: int) -> IntArray:

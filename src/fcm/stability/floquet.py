@@ -11,10 +11,9 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.hill import HillMultipliers
 from fcm.stability.multipliers import Multipliers
+from fcm.stability.options import STABILITY, StabilityOptions
 
 ComplexArray = npt.NDArray[np.complex128]
-
-SMALLEST = 12  # disturbances up to which nothing is remembered of the states of the contacts
 
 
 class _Last(threading.local):
@@ -28,26 +27,28 @@ class _Last(threading.local):
 _LAST = _Last()
 
 
-def multipliers_of(system: System, highest: float) -> Multipliers | HillMultipliers:
+def multipliers_of(
+    system: System, highest: float, options: StabilityOptions = STABILITY
+) -> Multipliers | HillMultipliers:
     """The workspace for a system, be it a structure or a sector of a ring; the last one if it is small, and
     the contacts alone are others, as in a sweep. Hill's method where a contact has a law of its own."""
     if system.own_laws:
-        return HillMultipliers(system)
+        return HillMultipliers(system, options)
     if system.scene.ring is not None:
         from fcm.stability.ring_multipliers import RingMultipliers
 
-        return RingMultipliers(system, highest)
+        return RingMultipliers(system, highest, options=options)
     linear = system.linear
-    if 2 * linear.natural.size + len(system.scene.contacts) > SMALLEST:
-        return Multipliers(system, highest)
-    key = (*linear.numbers, system.harmonics)
+    if 2 * linear.natural.size + len(system.scene.contacts) > options.structure.remembered:
+        return Multipliers(system, highest, options=options)
+    key = (*linear.numbers, system.harmonics, options)
     if _LAST.multipliers is None or _LAST.key != key:
-        _LAST.key, _LAST.multipliers = key, Multipliers(system, highest)
+        _LAST.key, _LAST.multipliers = key, Multipliers(system, highest, options=options)
     _LAST.multipliers.take(system)
     return _LAST.multipliers
 
 
-def multipliers(system: System, z: FloatArray) -> ComplexArray:
+def multipliers(system: System, z: FloatArray, options: StabilityOptions = STABILITY) -> ComplexArray:
     """Floquet multipliers of a solution, the greatest first.
 
     Parameters
@@ -55,6 +56,8 @@ def multipliers(system: System, z: FloatArray) -> ComplexArray:
     system : System
     z : (unknown + 1,)
         A point of a path: displacements of the contacts, and the frequency [rad/s].
+    options : StabilityOptions, optional
+        Tolerances and limits.
 
     Returns
     -------
@@ -78,5 +81,5 @@ def multipliers(system: System, z: FloatArray) -> ComplexArray:
     >>> abs(multipliers(system, z)).max().round(2)
     np.float64(0.88)
     """
-    values = multipliers_of(system, float(z[-1])).of(np.ascontiguousarray(z, dtype=np.float64))
+    values = multipliers_of(system, float(z[-1]), options).of(np.ascontiguousarray(z, dtype=np.float64))
     return np.array(sorted(values or [], key=abs, reverse=True), dtype=np.complex128)

@@ -24,13 +24,11 @@ import numpy.typing as npt
 
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
+from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.verdict import UNKNOWN, Spectrum, Verdict
 from fcm.structure.layout import Layout
 
 ComplexArray = npt.NDArray[np.complex128]
-
-ASIDE = 0.25  # mean harmonic of a disturbance, from which on another one may be the same
-SAME = 1e-9  # relative difference of the multipliers of two that are
 
 
 class Same:
@@ -45,7 +43,8 @@ class Same:
 class HillMultipliers:
     """The multipliers of solutions of a system; a workspace, as `Multipliers` is."""
 
-    def __init__(self, system: System) -> None:
+    def __init__(self, system: System, options: StabilityOptions = STABILITY) -> None:
+        self.options = options
         self.system, self.finer = system, Same()
         linear, layout = system.linear, system.layout
         self.harmonics = tuple(range(1, max(system.harmonics) + 1))
@@ -82,7 +81,8 @@ class HillMultipliers:
         for k in np.argsort(np.abs(off), kind="stable").tolist():
             value = complex(np.exp(2.0 * np.pi / omega * exponents[k]))
             # of a pair at -1 both signs of the imaginary part are the same multiplier
-            twice = abs(off[k]) > ASIDE and any(abs(value - one) < SAME * abs(one) for one in found)
+            same = any(abs(value - one) < self.options.hill.same * abs(one) for one in found)
+            twice = same and abs(off[k]) > self.options.hill.offset
             (again if twice else found).append(value)
         return [*found, *again][: 2 * self.modes]
 
@@ -115,7 +115,7 @@ class HillMultipliers:
         values = self.of(z)
         if values is None:
             return UNKNOWN
-        spectrum = Spectrum(values)
+        spectrum = Spectrum(values, self.options)
         return spectrum.verdict(spectrum.odd or turning)
 
     def refined(self, z: FloatArray, persistent: bool) -> Verdict | None:

@@ -27,25 +27,11 @@ from fcm.stability.eigenvalues import eigenvalues
 from fcm.stability.force_harmonics import PORTS, Finer, beyond
 from fcm.stability.many_monodromy import ManyMonodromy
 from fcm.stability.monodromy import Monodromy
+from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.planar_monodromy import PlanarMonodromy, PlanarSequence
 from fcm.stability.rebalanced import Refined
 from fcm.stability.state_sequence import BalancedSequence
 from fcm.stability.verdict import PASSIVE, UNKNOWN, Spectrum, Verdict, doubtful, either, even, meeting
-
-FEW = 24  # modes; with more, those far above the excitation follow without delay
-MANY_CONTACTS = 12  # from which on a change of one's state is followed as that
-STIFF = 1e-3  # part of the contacts' displacement that a far mode gives, below which it is left out
-FAR, FURTHER = 6.0, 1.5  # times the excitation, and times the highest harmonic
-SAFE = 0.05  # decay in a period that truncation hardly makes a growth,
-LIGHT = 200.0  # if it is also this many times what further harmonics add: light impacts make that of it
-SLIGHT = 4.0  # the same of a growth that truncation may have made
-ROUNDING = 1e-6  # a shift that may be none: at a resonance, what slides without friction adds some of that
-TURNED = 1e-4  # relative change of the frequency at which it is seen how fast a pair turns towards -1,
-FURTHEST = 0.05  # the most until it meets there,
-MEETINGS = 8  # looks until then,
-MET = 1e-3  # the square of the angle [rad] that is then left,
-STABLE_BY = 1e-3  # and by how much it decays there
-NEUTRAL = 1e-5  # distance from 1 of the multipliers of a mode adrift, which nothing holds
 
 
 class Followed(NamedTuple):
@@ -58,16 +44,18 @@ class Followed(NamedTuple):
 class Multipliers:
     """The multipliers of solutions of a system up to a frequency [rad/s]; a workspace."""
 
-    def __init__(self, system: System, highest: float, last: bool = False) -> None:
+    def __init__(
+        self, system: System, highest: float, last: bool = False, options: StabilityOptions = STABILITY
+    ) -> None:
         """The last balances no further harmonics where the finer motion leaves a verdict in doubt."""
-        linear = system.linear
+        linear, self.options = system.linear, options
         self.system, self.highest, self.last = system, highest, last
         self.contacts = len(system.scene.contacts)
         law = [[c.mu, c.k_u, c.k_v, c.n_0] for c in system.scene.contacts]
         self.contact = contact = np.array(law, dtype=np.float64).reshape(self.contacts, 4)  # all look at it
         harmonics = [int(h) for h in system.harmonics]
         finer = beyond(harmonics)
-        far = far_above(linear.natural, highest, harmonics)
+        far = far_above(linear.natural, highest, harmonics, self.options)
         self.adrift = int(np.count_nonzero(linear.adrift))
         summed = linear.ports.shape[1] <= PORTS
         seen = linear.receptance(np.array(finer, dtype=np.float64), summed)
@@ -75,7 +63,10 @@ class Multipliers:
         self.far = far
         self.states: tuple[BalancedSequence, BalancedSequence] | tuple[PlanarSequence, PlanarSequence]
         if system.scene.planar:
-            self.states = PlanarSequence(contact, tuple(finer)), PlanarSequence(contact, tuple(harmonics))
+            self.states = (
+                PlanarSequence(contact, tuple(finer), options.planar),
+                PlanarSequence(contact, tuple(harmonics), options.planar),
+            )
         else:
             self.states = BalancedSequence(contact, finer), BalancedSequence(contact, harmonics)
         self.fine, self.plain = self._followed()
@@ -97,8 +88,8 @@ class Multipliers:
         """The finer motion and that of the balanced harmonics."""
         fine, plain = self.states
         if isinstance(fine, BalancedSequence) and isinstance(plain, BalancedSequence):
-            make = _many if len(self.contact) >= MANY_CONTACTS else _few
-            return make(self.system, self.far, self.contact, (fine, plain))
+            make = _many if len(self.contact) >= self.options.structure.contacts else _few
+            return make(self.system, self.far, self.contact, (fine, plain), self.options)
         linear = self.system.linear
         structure = linear.ports, linear.natural, linear.damping, self.far
         planar = (one for one in self.states if isinstance(one, PlanarSequence))
@@ -125,7 +116,7 @@ class Multipliers:
         """
         fine, plain, omega = self.fine.states, self.plain.states, float(z[-1])
         self.finer.at(z)
-        if self.finer.shift < ROUNDING:
+        if self.finer.shift < self.options.confirmation.rounding:
             if not self.see(plain, z):
                 return UNKNOWN
             if plain.moving == 0:  # nor does the finer motion, which has no further harmonics
@@ -135,7 +126,7 @@ class Multipliers:
         values = self._values(self.fine, omega)
         if values is None:
             return UNKNOWN
-        found = self._found(Spectrum(values), z, turning, enough)
+        found = self._found(Spectrum(values, self.options), z, turning, enough)
         return either(found, self._resting(omega))._replace(held=fine.held) if fine.held else found
 
     def _found(self, fine: Spectrum, z: FloatArray, turning: bool, enough: Sequence[float]) -> Verdict:
@@ -145,31 +136,34 @@ class Multipliers:
         which may be the last.
         """
         alone = fine.verdict(turning)
-        safe = alone.growth < -max(SAFE, LIGHT * self.finer.shift)
+        options = self.options.confirmation
+        safe = alone.growth < -max(options.decay, options.safe * self.finer.shift)
         if not fine.odd and (safe or alone.stable in enough):
             return alone
         if self.finer.shift == 0.0:  # both motions are the same, as where no contact slips but one just would
-            return even(fine, fine, turning)
+            return even(fine, fine, turning, self.options)
         values = self._values(self.plain, float(z[-1])) if self.see(self.plain.states, z) else None
         if values is None:
             return UNKNOWN
-        plain = Spectrum(values)
-        found = even(fine, plain, turning)
+        plain = Spectrum(values, self.options)
+        found = even(fine, plain, turning, self.options)
         if turning:
             return found
         if self.last:
             doubt = self._doubtful(found, fine, plain, 1.0, float(z[-1]))
             return found._replace(stable=math.nan) if doubt else found
-        slight = 0.0 < found.growth < max(SAFE, SLIGHT * self.finer.shift)
-        if slight or self._doubtful(found, fine, plain, SLIGHT, float(z[-1])):
+        slight = 0.0 < found.growth < max(options.decay, options.slight * self.finer.shift)
+        if slight or self._doubtful(found, fine, plain, options.slight, float(z[-1])):
             return self.refined(z, persistent=found.stable == 1.0) or found._replace(stable=math.nan)
         return found
 
     def _doubtful(self, found: Verdict, fine: Spectrum, plain: Spectrum, times: float, omega: float) -> bool:
         """As `doubtful`, but for a pair that decays also where it meets at -1."""
-        if not doubtful(found, fine, plain, times):
+        if not doubtful(found, fine, plain, times, options=self.options):
             return False
-        return doubtful(found, fine, plain, times, False) or not self._meets_in_decay(found.values, omega)
+        return doubtful(found, fine, plain, times, False, self.options) or not self._meets_in_decay(
+            found.values, omega
+        )
 
     def _meets_in_decay(self, values: Sequence[complex], omega: float) -> bool:
         """Whether the pair nearest to -1, of values of the finer motion, decays where it meets there.
@@ -177,35 +171,35 @@ class Multipliers:
         The same motion is taken at frequencies at which the pair comes to -1: as far as it parts there, the
         changing contacts drive it.
         """
-        at, seen = [0.0], [meeting(values)]
-        ahead = TURNED
-        for _ in range(MEETINGS):
+        at, seen = [0.0], [meeting(values, self.options)]
+        ahead = self.options.confirmation.step
+        for _ in range(self.options.confirmation.looks):
             there = self._values(self.fine, omega * (1.0 + ahead))
             if there is None:
                 return False
             at.append(ahead)
-            seen.append(meeting(there))
+            seen.append(meeting(there, self.options))
             if not math.isfinite(seen[-1][0]):
                 return False
-            if len(at) > 2 and abs(seen[-1][0]) < MET:
+            if len(at) > 2 and abs(seen[-1][0]) < self.options.confirmation.met:
                 break
             roots = [math.copysign(math.sqrt(abs(apart)), apart) for apart, _ in seen[-2:]]
             slope = (roots[1] - roots[0]) / (at[-1] - at[-2])
-            if slope == 0.0 or abs(roots[1] / slope) > FURTHEST:
+            if slope == 0.0 or abs(roots[1] / slope) > self.options.confirmation.furthest:
                 return False
             ahead = at[-1] - roots[1] / slope
         else:
             return False
         bend, tilt, level = np.polyfit(at[-3:], [apart for apart, _ in seen[-3:]], 2)
         least = level - 0.25 * tilt**2 / bend if bend > 0.0 else -math.inf
-        return bool(math.sqrt(max(-least, 0.0)) + seen[-1][1] < -STABLE_BY)
+        return bool(math.sqrt(max(-least, 0.0)) + seen[-1][1] < -self.options.confirmation.meeting)
 
     def refined(self, z: FloatArray, persistent: bool) -> Verdict | None:
         """Of the solution with the harmonics of the finer motion, which was looked at last, balanced; None
         where there is none near."""
         if self.further is None:
-            refined = Refined(self.system, beyond([int(h) for h in self.system.harmonics]))
-            self.further = refined, type(self)(refined.system, self.highest, last=True)
+            refined = Refined(self.system, beyond([int(h) for h in self.system.harmonics]), self.options)
+            self.further = refined, type(self)(refined.system, self.highest, True, self.options)
         refined, judge = self.further
         if refined.fewer is not self.system:
             refined.take(self.system)
@@ -222,7 +216,7 @@ class Multipliers:
         values = self.of_period(found)
         for _ in range(2 * self.adrift):
             nearest = min(values, key=_from_one)
-            if _from_one(nearest) < NEUTRAL:
+            if _from_one(nearest) < self.options.verdict.neutral:
                 values.remove(nearest)
         return values
 
@@ -233,11 +227,15 @@ class Multipliers:
         self.see(states, self.finer.x)
         values = self._values(self.fine, omega) if states.moving else []
         states.yielding = True
-        return UNKNOWN if values is None else Spectrum(values).verdict()
+        return UNKNOWN if values is None else Spectrum(values, self.options).verdict()
 
 
 def _few(
-    system: System, far: npt.NDArray[np.bool_], contact: FloatArray, states: Sequence[BalancedSequence]
+    system: System,
+    far: npt.NDArray[np.bool_],
+    contact: FloatArray,
+    states: Sequence[BalancedSequence],
+    options: StabilityOptions,
 ) -> list[Followed]:
     """Each state of the contacts put together anew."""
     linear = system.linear
@@ -249,19 +247,26 @@ def _few(
 
 
 def _many(
-    system: System, far: npt.NDArray[np.bool_], contact: FloatArray, states: Sequence[BalancedSequence]
+    system: System,
+    far: npt.NDArray[np.bool_],
+    contact: FloatArray,
+    states: Sequence[BalancedSequence],
+    options: StabilityOptions,
 ) -> list[Followed]:
     """Each change of one contact's state as that, without far modes that hardly yield beside the contacts."""
-    linear, kept = system.linear, ~far | (system.yields > STIFF)
+    linear, kept = system.linear, ~far | (system.yields > options.structure.displacement)
     shown = linear.ports[kept], linear.natural[kept], linear.damping[kept], far[kept]
     return [Followed(one, ManyMonodromy(*shown, contact, one)) for one in states]
 
 
-def far_above(natural: FloatArray, highest: float, harmonics: list[int]) -> npt.NDArray[np.bool_]:
+def far_above(
+    natural: FloatArray, highest: float, harmonics: list[int], options: StabilityOptions = STABILITY
+) -> npt.NDArray[np.bool_]:
     """Which of many modes are so far above the excitation that they follow without delay."""
-    if natural.size <= FEW:
+    if natural.size <= options.structure.modes:
         return np.zeros(natural.size, dtype=bool)
-    far: npt.NDArray[np.bool_] = natural > highest * max(FAR, FURTHER * max(harmonics))
+    times = max(options.structure.above_excitation, options.structure.above_harmonics * max(harmonics))
+    far: npt.NDArray[np.bool_] = natural > highest * times
     return far
 
 

@@ -36,35 +36,11 @@ from fcm.contact.plane.forces import PlanarContact
 from fcm.contact.plane.loop import directions as slip_directions
 from fcm.contact.plane.loop import visible
 from fcm.model.scene import FloatArray
+from fcm.stability.options import STABILITY, PlanarStabilityOptions
 
 IntArray = npt.NDArray[np.intp]
 TWO_PI = 2.0 * np.pi
-SAME = 1e-13  # [rad] events that are no further apart are one
-ASIDE = 1e-10  # [rad] within a state, from an event at which it begins or ends
 GAUSS = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)  # points of a step
-
-
-@dataclass(frozen=True)
-class PlanarStabilityOptions:
-    """How disturbances of contacts in a plane are followed.
-
-    step : longest step while a contact slips, times its highest harmonic [rad].
-    turn : by which a direction turns, and a slider follows (lambda / r), in a step, at most [rad].
-    graded : steps towards an angle at which the radius vanishes, each so much shorter than the last.
-    shrink : by that factor.
-    most : disturbances that are followed; with more, stability is not told.
-    panels : of slip that are recorded for a contact at first.
-    """
-
-    step: float = 0.5
-    turn: float = 0.3
-    graded: int = 8
-    shrink: float = 0.35
-    most: int = 160
-    panels: int = 200
-
-
-OPTIONS = PlanarStabilityOptions()  # where nothing else is said
 
 
 @dataclass
@@ -116,7 +92,7 @@ class PlanarSequence:
 
     contact: FloatArray
     harmonics: tuple[int, ...]
-    options: PlanarStabilityOptions = OPTIONS
+    options: PlanarStabilityOptions = STABILITY.planar
     cycles: list[Cycle] = field(default_factory=list)
     moving: int = 0  # contacts that slip with friction, or open and close
     held: int = 0  # none: a slider that never slips stays where it is
@@ -224,7 +200,7 @@ class PlanarMonodromy:
         steps = self._steps(moving, start, np.array([at for at, _, _ in events]))
         carried, at = self._exponentials(omega, moving, start, steps), 0
         for angle, k, i in events:
-            while at < len(carried) and steps[at] < angle - SAME:
+            while at < len(carried) and steps[at] < angle - options.same:
                 Y = carried[at] @ Y
                 at += 1
             Y = self._happened(moving, states, k, i, start + angle, Y)
@@ -251,7 +227,7 @@ class PlanarMonodromy:
                 edges.append(np.mod(one.panels[:, 0] - start, TWO_PI))
             edges += [self._graded(one, j, start) for j in range(len(one.begin))]
         edge = np.unique(np.concatenate(edges))
-        edge = edge[np.concatenate(([True], np.diff(edge) > SAME))]
+        edge = edge[np.concatenate(([True], np.diff(edge) > options.same))]
         length = np.diff(edge)
         parts = np.ones(length.size)
         middle = start + edge[:-1] + 0.5 * length
@@ -310,7 +286,7 @@ class PlanarMonodromy:
                 rubs = k_u if cycles[c].state[0] == "E" else 0.0
                 K[:, range(3 * c, 3 * c + 3), range(3 * c, 3 * c + 3)] = rubs, rubs, k_v
         for k, c in enumerate(moving):
-            self._contact(c, k, theta, K, L, B, D)
+            self._contact(c, k, theta, (K, L, B, D))
         shapes = np.broadcast_to(self.shapes.T, (theta.size, ports, m))
         seen: FloatArray = shapes
         through = np.zeros((theta.size, ports, 2 * len(moving)))
@@ -329,17 +305,9 @@ class PlanarMonodromy:
         A[:, range(2 * m, size), range(2 * m, size)] -= D
         return A
 
-    def _contact(
-        self,
-        c: int,
-        k: int,
-        theta: FloatArray,
-        K: FloatArray,
-        L: FloatArray,
-        B: FloatArray,
-        D: FloatArray,
-    ) -> None:
-        """Fill the parts of one contact, number k of those that move."""
+    def _contact(self, c: int, k: int, theta: FloatArray, parts: tuple[FloatArray, ...]) -> None:
+        """Fill the parts K, L, B, D of one contact, number k of those that move."""
+        K, L, B, D = parts
         one, (mu, k_u, k_v, _) = self.sequence.cycles[c], self.sequence.contact[c]
         x, y, v = range(3 * c, 3 * c + 3)
         state = one.states(theta)
@@ -378,14 +346,14 @@ class PlanarMonodromy:
             _, rate = one.rates(np.array([theta]))
             mu, k_u, k_v, _ = self.sequence.contact[c]
         if now == "P":
-            e = one.directions(np.array([theta + ASIDE]))[0]
+            e = one.directions(np.array([theta + self.sequence.options.inside]))[0]
             across = np.array([-e[1], e[0]])
             made[0] = across @ (du[:2] if before == "S" else kept)
         elif now == "E" and before == "S":
             load = rate[0, 2] * k_u / (mu * k_v)  # v'
             made[:] = du[:2] - np.outer(rate[0, :2] / load, du[2])
         elif now == "E":
-            e = one.directions(np.array([theta - ASIDE]))[0]
+            e = one.directions(np.array([theta - self.sequence.options.inside]))[0]
             across = np.array([-e[1], e[0]])
             made[:] = np.outer(e, e @ du[:2] - mu * k_v / k_u * du[2]) + np.outer(across, kept[0])
         Y = Y.copy()
@@ -400,9 +368,9 @@ class PlanarMonodromy:
         ports, memories = 3 * self.contacts, 2 * len(moving)
         K, L = np.zeros((1, ports, ports)), np.zeros((1, ports, memories))
         B, D = np.zeros((1, memories, ports)), np.zeros((1, memories))
-        at = np.array([theta - ASIDE])
+        at = np.array([theta - self.sequence.options.inside])
         for k, c in enumerate(moving):
-            self._contact(c, k, at, K, L, B, D)
+            self._contact(c, k, at, (K, L, B, D))
         for c in set(range(self.contacts)) - set(moving):
             if self.sequence.cycles[c].state[0] != "S":
                 _, k_u, k_v, _ = self.sequence.contact[c]

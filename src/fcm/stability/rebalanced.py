@@ -10,16 +10,14 @@ from fcm.continuation.corrector import Newton, settle
 from fcm.harmonic_balance.homotopy import Homotopy
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
-
-FAR = 0.5  # of a solution's size: what lies further away is another one
-PARTS = (0.1, 0.25, 0.45, 0.7, 1.0)  # of the further harmonics' equations, where all at once are too much
-DEAR = 240  # unknowns, from which on they are not tried by parts
+from fcm.stability.options import STABILITY, StabilityOptions
 
 
 class Refined:
     """`beside` a point of a system's balance is one of the balance with more harmonics; a workspace."""
 
-    def __init__(self, system: System, more: Sequence[int]) -> None:
+    def __init__(self, system: System, more: Sequence[int], options: StabilityOptions = STABILITY) -> None:
+        self.options = options.confirmation
         self.harmonics, self.more, self.fewer = system.harmonics, tuple(more), system
         self.system = system.with_harmonics(self.more)
         self.balance = self.system.balance()
@@ -48,18 +46,20 @@ class Refined:
         newton, lack = self.newton, np.array(self.balance.residual)
         newton.z[:-1], newton.z[-1] = x, z[-1]
         newton.scale[:] = self.balance.scale
-        if self._settled(lack, 1.0) or (persistent and len(lack) < DEAR and self._by_parts(here, lack)):
+        by_parts = persistent and len(lack) < self.options.unknowns
+        if self._settled(lack, 1.0) or (by_parts and self._by_parts(here, lack)):
             return np.array(newton.z)
         return None
 
     def _settled(self, lack: FloatArray, part: float) -> bool:
         """Whether Newton's method leads to a solution near, of a part of the further harmonics' equations."""
         self.homotopy.removed[:] = np.where(self.balanced, lack, (1.0 - part) * lack)
-        return settle(self.newton, FAR) and self.newton.moved <= FAR
+        distance = self.options.distance
+        return settle(self.newton, distance) and self.newton.moved <= distance
 
     def _by_parts(self, here: FloatArray, lack: FloatArray) -> bool:
         """The same from where all of them are lacking, to a solution that is near that, too."""
         self.newton.z[:] = here
-        if not all(self._settled(lack, part) for part in PARTS):
+        if not all(self._settled(lack, part) for part in self.options.parts):
             return False
-        return bool(np.linalg.norm((self.newton.z - here) / self.balance.scale) <= FAR)
+        return bool(np.linalg.norm((self.newton.z - here) / self.balance.scale) <= self.options.distance)

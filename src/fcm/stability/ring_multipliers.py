@@ -21,16 +21,16 @@ from fcm.stability.disturbance import Stiffness
 from fcm.stability.force_harmonics import Finer, beyond
 from fcm.stability.monodromy import RingMonodromy
 from fcm.stability.multipliers import Followed, Multipliers, far_above
+from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.planar_monodromy import PlanarMonodromy, PlanarSequence
 from fcm.stability.state_sequence import BalancedSequence
 from fcm.stability.verdict import Verdict
 from fcm.structure.ring import RingLinear
 
 MOST_NAMED = 8  # diameters in a sentence
-MOST = 600  # disturbances: with more, finding what they grow by takes seconds a point
 
 
-def stability_unknown(system: System, highest: float) -> str:
+def stability_unknown(system: System, highest: float, options: StabilityOptions = STABILITY) -> str:
     """Why the stability of a system's waves cannot be told; empty if it can."""
     ring = system.scene.ring
     assert ring is not None
@@ -39,10 +39,11 @@ def stability_unknown(system: System, highest: float) -> str:
         diameters = ", ".join(map(str, missing[:MOST_NAMED])) + (", ..." if len(missing) > MOST_NAMED else "")
         return f"there are no modes of nodal diameter {diameters}, which disturbances have"
     natural = ring.frequency[_places(ring)]
-    near = ~far_above(natural, highest, [int(h) for h in system.harmonics])
+    near = ~far_above(natural, highest, [int(h) for h in system.harmonics], options)
     count = 2 * int(near.sum()) + ring.period * len(system.scene.contacts)
-    if count > MOST:
-        return f"{count} disturbances of {ring.period} sectors are too many; up to {MOST} are looked at"
+    if count > options.structure.disturbances:
+        most = options.structure.disturbances
+        return f"{count} disturbances of {ring.period} sectors are too many; up to {most} are looked at"
     return ""
 
 
@@ -64,7 +65,10 @@ class Around:
 class RingMultipliers(Multipliers):
     """The multipliers of solutions of one sector."""
 
-    def __init__(self, system: System, highest: float, last: bool = False) -> None:
+    def __init__(
+        self, system: System, highest: float, last: bool = False, options: StabilityOptions = STABILITY
+    ) -> None:
+        self.options = options
         self.system, self.highest, self.last, self.further = system, highest, last, None
         linear, ring = system.linear, system.scene.ring
         assert isinstance(linear, RingLinear) and ring is not None
@@ -74,9 +78,9 @@ class RingMultipliers(Multipliers):
         contact = np.tile(of_one, (n, 1))
         harmonics = [int(h) for h in system.harmonics]
         finer = beyond(harmonics)
-        self.unknown = bool(stability_unknown(system, highest))
+        self.unknown = bool(stability_unknown(system, highest, self.options))
         around = modes_around(linear, ring)
-        far = far_above(around.natural, highest, harmonics)
+        far = far_above(around.natural, highest, harmonics, self.options)
         self.adrift = int(np.count_nonzero(linear.adrift))
         seen = linear.receptance(np.array(finer, dtype=np.float64))
         self.finer = Finer(seen, system.exact_laws(tuple(finer)), harmonics)
@@ -85,7 +89,9 @@ class RingMultipliers(Multipliers):
             structure = around.ports, around.natural, around.damping, far
             self.fine, self.plain = (
                 Followed(states, PlanarMonodromy(*structure, states))
-                for states in (PlanarSequence(contact, tuple(numbers)) for numbers in (finer, harmonics))
+                for states in (
+                    PlanarSequence(contact, tuple(numbers), options.planar) for numbers in (finer, harmonics)
+                )
             )
         else:
             soft = None

@@ -7,11 +7,7 @@ from collections.abc import Sequence
 from enum import Enum
 from typing import NamedTuple
 
-STABLE = 1e-7  # by which a multiplier may exceed 1
-SURELY = 0.02  # logarithm of a real multiplier that truncation may put on the wrong side of 1 in any case
-SHIFTED = 2.0  # or, of one that it shifts, as far as this many times the shift
-FLIP_NEAR = 0.4  # [rad] from -1 within which a pair is followed as it passes: there modes flip
-SMALL = 0.75  # multipliers below are far from growth, wherever they turn
+from fcm.stability.options import STABILITY, StabilityOptions
 
 
 class Bifurcation(Enum):
@@ -54,7 +50,8 @@ class Spectrum:
     kind: Bifurcation  # of that
     before_flip: float  # as in `Verdict`
 
-    def __init__(self, values: list[complex]) -> None:
+    def __init__(self, values: list[complex], options: StabilityOptions = STABILITY) -> None:
+        self.options = options
         self.values, self.kind, self.before_flip = tuple(values), Bifurcation.NEIMARK_SACKER, math.pi
         self.nearest, self.odd, self.real, self.real_but_nearest = math.nan, False, -math.inf, -math.inf
         self.other = 0.0
@@ -68,7 +65,7 @@ class Spectrum:
                     size,
                     Bifurcation.NEIMARK_SACKER if value.imag != 0.0 else Bifurcation.PERIOD_DOUBLING,
                 )
-            if size > SMALL and value.imag != 0.0:
+            if size > self.options.verdict.small and value.imag != 0.0:
                 self.before_flip = min(self.before_flip, math.pi - abs(math.atan2(value.imag, value.real)))
         self.other = math.log(self.other) if self.other > 0.0 else -math.inf
 
@@ -77,9 +74,9 @@ class Spectrum:
         farther = size
         if not abs(size) >= abs(self.nearest):
             farther, self.nearest = self.nearest, size
-        if farther > STABLE:
+        if farther > self.options.verdict.excess:
             self.real_but_nearest = max(self.real_but_nearest, farther)
-        if size > STABLE:
+        if size > self.options.verdict.excess:
             self.odd = not self.odd
             self.real = max(self.real, size)
 
@@ -90,7 +87,7 @@ class Spectrum:
         growth = self.other
         if not growth >= most:
             growth, kind = most, Bifurcation.REAL
-        stable = 1.0 if growth <= STABLE else 0.0
+        stable = 1.0 if growth <= self.options.verdict.excess else 0.0
         return Verdict(stable, growth, kind, self.before_flip, False, 0, self.values)
 
 
@@ -103,12 +100,12 @@ def bifurcation_of(multipliers: Sequence[complex]) -> Bifurcation:
     return Spectrum(list(multipliers)).verdict().kind
 
 
-def apart(verdict: Verdict) -> float:
+def apart(verdict: Verdict, options: StabilityOptions = STABILITY) -> float:
     """[rad] that multipliers which are not small have to turn at least until two of them meet."""
     angles: list[float] = []
     for value in verdict.values:
         angle = abs(math.atan2(value.imag, value.real))
-        if angle > 0.0 and math.hypot(value.real, value.imag) > SMALL:
+        if angle > 0.0 and math.hypot(value.real, value.imag) > options.verdict.small:
             angles.append(angle)
     angles.sort()
     nearest: float = math.pi - angles[len(angles) - 1] if angles else math.inf
@@ -117,7 +114,9 @@ def apart(verdict: Verdict) -> float:
     return nearest
 
 
-def even(fine: Spectrum, plain: Spectrum, turning: bool = False) -> Verdict:
+def even(
+    fine: Spectrum, plain: Spectrum, turning: bool = False, options: StabilityOptions = STABILITY
+) -> Verdict:
     """Verdict of two approximations to a spectrum whose number of real multipliers above 1 is even.
 
     Where it is odd, the nearest to 1 is on the wrong side, if it is shifted enough from one to the other. At
@@ -125,7 +124,7 @@ def even(fine: Spectrum, plain: Spectrum, turning: bool = False) -> Verdict:
     """
     if fine.odd and plain.odd and not turning:
         off = abs(fine.nearest)
-        if off > max(SURELY, SHIFTED * abs(plain.nearest - fine.nearest)):
+        if off > max(options.verdict.real, options.verdict.shifts * abs(plain.nearest - fine.nearest)):
             return UNKNOWN
     found = fine.verdict(fine.odd or turning)
     if found.stable != plain.verdict(plain.odd or turning).stable:
@@ -133,7 +132,14 @@ def even(fine: Spectrum, plain: Spectrum, turning: bool = False) -> Verdict:
     return found
 
 
-def doubtful(found: Verdict, fine: Spectrum, plain: Spectrum, times: float, meetings: bool = True) -> bool:
+def doubtful(
+    found: Verdict,
+    fine: Spectrum,
+    plain: Spectrum,
+    times: float,
+    meetings: bool = True,
+    options: StabilityOptions = STABILITY,
+) -> bool:
     """Whether a verdict may be another once the motion has changed further, as it did from plain to fine.
 
     That is so where it is none, of a decay that is less than its change, of a growth that is less than some
@@ -147,21 +153,27 @@ def doubtful(found: Verdict, fine: Spectrum, plain: Spectrum, times: float, meet
     change = abs(one.growth - other.growth)
     if found.stable != 1.0:
         return found.growth < times * change
-    near, turned = to_flip(one), abs(to_flip(one) - to_flip(other))
-    flips = near < min(max(FLIP_NEAR, turned), SHIFTED * turned)
-    far = (fine.odd and abs(fine.nearest) > SURELY) or (plain.odd and abs(plain.nearest) > SURELY)
+    near, turned = to_flip(one, options), abs(to_flip(one, options) - to_flip(other, options))
+    flips = near < min(max(options.verdict.flip, turned), options.verdict.shifts * turned)
+    far = (fine.odd and abs(fine.nearest) > options.verdict.real) or (
+        plain.odd and abs(plain.nearest) > options.verdict.real
+    )
     return (meetings and flips) or -found.growth < change or far
 
 
-def meeting(values: Sequence[complex]) -> tuple[float, float]:
+def meeting(values: Sequence[complex], options: StabilityOptions = STABILITY) -> tuple[float, float]:
     """How far a pair is from -1, and the logarithm of its size; nan if there is none that is not small.
 
     The pair's sum over its size, plus 2: the square of the angle that is left until both meet, or, less than
     0, that of the logarithm by which they have parted along the axis. It changes evenly where they do so.
     """
-    pairs = [value for value in values if value.imag > 0.0 and abs(value) > SMALL and value.real < 0.0]
+    pairs = [
+        value
+        for value in values
+        if value.imag > 0.0 and abs(value) > options.verdict.small and value.real < 0.0
+    ]
     axis = sorted(value.real for value in values if value.imag == 0.0 and value.real < 0.0)
-    if len(axis) > 1 and axis[0] * axis[1] > SMALL**2:
+    if len(axis) > 1 and axis[0] * axis[1] > options.verdict.small**2:
         size = math.sqrt(axis[0] * axis[1])
         return (axis[0] + axis[1]) / size + 2.0, math.log(size)
     if not pairs:
@@ -170,9 +182,9 @@ def meeting(values: Sequence[complex]) -> tuple[float, float]:
     return 2.0 * nearest.real / abs(nearest) + 2.0, math.log(abs(nearest))
 
 
-def to_flip(verdict: Verdict) -> float:
+def to_flip(verdict: Verdict, options: StabilityOptions = STABILITY) -> float:
     """[rad] from the negative real axis to the nearest pair that is not small; 0 where one has come there."""
-    met = verdict.kind is Bifurcation.PERIOD_DOUBLING and verdict.growth > math.log(SMALL)
+    met = verdict.kind is Bifurcation.PERIOD_DOUBLING and verdict.growth > math.log(options.verdict.small)
     return 0.0 if met else verdict.before_flip
 
 

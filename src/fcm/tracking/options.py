@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fcm.continuation.options import StepOptions
+from fcm.stability.options import STABILITY, StabilityOptions
 
 PIECE_STEPS = StepOptions(first=1e-3, shortest=1e-7, most=3000, back=())
 
@@ -217,6 +218,7 @@ class TrackingOptions:
     envelope: EnvelopeOptions = EnvelopeOptions()
     stability: LimitOptions = LimitOptions()
     trials: TrialOptions = TrialOptions()
+    floquet: StabilityOptions = STABILITY
 
 
 @dataclass(frozen=True)

@@ -92,7 +92,7 @@ class _Along:
         """With the numbers as the problem has them."""
         varied = self.problem.varied
         if self.known is None or varied.structure:
-            known = multipliers_of(varied.system, self.highest)
+            known = multipliers_of(varied.system, self.highest, self.way.options.floquet)
             assert isinstance(known, Multipliers)  # no law of one's own is tracked
             self.known = known
         self.known.take(varied.system)

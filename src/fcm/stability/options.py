@@ -1,0 +1,181 @@
+"""Tolerances and limits of the stability of balanced motions.
+
+`StabilityOptions` has them all. It is an argument of `multipliers_of` and of `stability`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class VerdictOptions:
+    """What multipliers say of one solution.
+
+    excess: of a multiplier over 1, up to which a motion is stable. real: logarithm of a real multiplier that
+    truncation may put on the wrong side of 1 in any case. shifts: times the shift of one from the balanced
+    harmonics to more, which may be on the wrong side, too. flip: [rad] from -1, within which a pair is
+    followed as it passes, as modes flip there. small: multipliers below are far from growth, wherever they
+    turn. neutral: distance from 1 of the multipliers of a mode of zero frequency that nothing holds.
+    """
+
+    excess: float = 1e-7
+    real: float = 0.02
+    shifts: float = 2.0
+    flip: float = 0.4
+    small: float = 0.75
+    neutral: float = 1e-5
+
+
+@dataclass(frozen=True)
+class StructureOptions:
+    """The structure whose disturbances are followed.
+
+    modes: with more, those far above the excitation follow without delay. contacts: from so many on a change
+    of one's state is followed as that. displacement: part of the contacts' displacement that a far mode
+    gives; one that gives less is left out. above_excitation, above_harmonics: times the excitation, and times
+    the highest harmonic, from where modes are far. remembered: disturbances; with fewer the last workspace is
+    used again. disturbances: of the sectors of a ring; with more a point takes seconds, and stability is not
+    told.
+    """
+
+    modes: int = 24
+    contacts: int = 12
+    displacement: float = 1e-3
+    above_excitation: float = 6.0
+    above_harmonics: float = 1.5
+    remembered: int = 12
+    disturbances: int = 600
+
+
+@dataclass(frozen=True)
+class ConfirmationOptions:
+    """Whether further harmonics may change a verdict.
+
+    decay: logarithm in a period, which truncation hardly makes a growth. safe: times what further harmonics
+    add to the displacements, that such a decay also is; light impacts make that of it. slight: the same of a
+    growth that truncation may have made. rounding: part of the displacements that further harmonics add;
+    less may be none.
+
+    step: relative change of the frequency, by which it is found how fast a pair turns towards -1. furthest:
+    change of the frequency until it meets there. looks: until then. met: square of the angle [rad] that is
+    then left. meeting: logarithm of the decay there.
+
+    distance: of a solution's size; one with more harmonics that is further away is another. parts: of the
+    further harmonics' equations, where all at once are too much. unknowns: from so many on these are not
+    tried.
+    """
+
+    decay: float = 0.05
+    safe: float = 200.0
+    slight: float = 4.0
+    rounding: float = 1e-6
+    step: float = 1e-4
+    furthest: float = 0.05
+    looks: int = 8
+    met: float = 1e-3
+    meeting: float = 1e-3
+    distance: float = 0.5
+    parts: tuple[float, ...] = (0.1, 0.25, 0.45, 0.7, 1.0)
+    unknowns: int = 240
+
+
+@dataclass(frozen=True)
+class WindowOptions:
+    """Windows of stability that are hidden between two points.
+
+    doubt: part of the differences between three values, by which what they foretell may be too high.
+    divided: of it, each time that the way was divided, as differences fall by squares and errors by cubes.
+    multipliers: with more, two are always about to meet. size: of multipliers that matter. narrow: a way,
+    relative to the size of the solution, that is not divided. near: part of the way between two places; none
+    nearer to one of them is looked at, but a window may begin there. dips: divisions of a way, at most.
+    edge: part of a step; between places nearer than this the edge of a window is not looked for. ahead,
+    about: times the angle by which multipliers turn, and [rad], by which two may come nearer to one another.
+    """
+
+    doubt: float = 0.1
+    divided: float = 0.5
+    multipliers: int = 60
+    size: float = 0.5
+    narrow: float = 1e-3
+    near: float = 0.1
+    dips: int = 4
+    edge: float = 0.3
+    ahead: float = 1.5
+    about: float = 0.4
+
+
+@dataclass(frozen=True)
+class AlongOptions:
+    """Which points of a path are looked at, and where stability changes between them.
+
+    one_harmonic: points of one harmonic, between two that are always looked at. many_contacts: the same of
+    many contacts with more harmonics, of which each changes the growth by little. deviation: of the growth
+    from a straight line, over its own size, that is followed up. safe: growth; less is not followed up.
+    enough: growth that counts as any that is less. phase: [rad] by which multipliers that are not small turn
+    between points that are looked at, at most.
+
+    fine: part of a step, to which a crossing is known where the growth jumps. confirmed: the same where
+    verdicts are confirmed, as the jump may be from one motion to a finer one. zero: growth at a crossing.
+    looks: at a crossing, at most.
+    """
+
+    one_harmonic: int = 16
+    many_contacts: int = 8
+    deviation: float = 1.0
+    safe: float = -0.05
+    enough: float = -0.3
+    phase: float = 1.5
+    fine: float = 1e-7
+    confirmed: float = 1e-4
+    zero: float = 1e-10
+    looks: int = 60
+
+
+@dataclass(frozen=True)
+class HillOptions:
+    """Hill's method, of contacts with laws of one's own.
+
+    offset: mean harmonic of a disturbance, from which on another one may be the same. same: relative
+    difference of the multipliers of two that are.
+    """
+
+    offset: float = 0.25
+    same: float = 1e-9
+
+
+@dataclass(frozen=True)
+class PlanarStabilityOptions:
+    """How disturbances of contacts in a plane are followed.
+
+    step: longest, while a contact slips, times its highest harmonic [rad]. turn: of a direction, and of a
+    slider that follows (lambda / r), in a step, at most [rad]. graded: steps towards an angle at which the
+    radius vanishes, each shorter than the last. shrink: by this factor. most: disturbances that are followed;
+    with more, stability is not told. panels: of slip that are recorded for a contact at first. same: [rad]
+    between events that are one. inside: [rad] within a state, from an event at which it begins or ends.
+    """
+
+    step: float = 0.5
+    turn: float = 0.3
+    graded: int = 8
+    shrink: float = 0.35
+    most: int = 160
+    panels: int = 200
+    same: float = 1e-13
+    inside: float = 1e-10
+
+
+@dataclass(frozen=True)
+class StabilityOptions:
+    """All of the package, by what they are for: see the class of each field."""
+
+    verdict: VerdictOptions = VerdictOptions()
+    structure: StructureOptions = StructureOptions()
+    confirmation: ConfirmationOptions = ConfirmationOptions()
+    windows: WindowOptions = WindowOptions()
+    along: AlongOptions = AlongOptions()
+    hill: HillOptions = HillOptions()
+    planar: PlanarStabilityOptions = PlanarStabilityOptions()
+
+
+STABILITY = StabilityOptions()  # where nothing else is said
