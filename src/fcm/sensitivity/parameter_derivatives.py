@@ -25,14 +25,13 @@ from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.scene.draft import Number, number_of
+from fcm.sensitivity.options import SENSITIVITY, SensitivityOptions
 from fcm.structure.layout import Layout
 from fcm.structure.linear import Linear, linear_of
 
 ComplexArray = npt.NDArray[np.complex128]
 
-STEP = 3e-3  # of a difference, relative to the number
 STENCIL = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))  # of the first derivative, of the sixth order
-LEAST_MU = 1e-9  # in the place of no friction at all, to see what the first of it does
 ARRAYS = ("natural", "damping", "ports", "dofs", "force", "square", "load", "flexibility", "counted")
 
 
@@ -43,6 +42,7 @@ class Rates:
     contact: FloatArray
     linear: Linear  # of rates, not a structure
     system: System
+    options: SensitivityOptions = SENSITIVITY
 
     def at(self, balance: Balance, z: FloatArray) -> tuple[FloatArray, ComplexArray]:
         """Rates of the residual (unknown,) and of the displacements X (harmonic, dof) reported, at fixed z.
@@ -118,12 +118,12 @@ class Rates:
             first = i * balance.width
             block = z[first : first + balance.width]
             if rate.any():
-                found[first : first + balance.width] = rate @ law_rates(balance.laws[i], block)
+                found[first : first + balance.width] = rate @ law_rates(balance.laws[i], block, self.options)
             found[first + normal] -= self.linear.counted[i] * block[normal]
         return found
 
 
-def law_rates(law: Law, x: FloatArray) -> FloatArray:
+def law_rates(law: Law, x: FloatArray, options: SensitivityOptions = SENSITIVITY) -> FloatArray:
     """Derivatives of a contact's forces by mu, k_u, k_v, n_0, (4, width), at its unknowns x (width,)."""
     mu, k_u, k_v, n_0 = law.mu, law.k_u, law.k_v, law.n_0
     layout = Layout(1, law.directions, (x.size // law.directions - 1) // 2)
@@ -131,14 +131,14 @@ def law_rates(law: Law, x: FloatArray) -> FloatArray:
     unit = np.ascontiguousarray(np.where(normal, k_v, k_u) * x)  # with stiffnesses of 1
     load = unit * normal
     load[mean] += n_0
-    law.k_u, law.k_v, law.mu = 1.0, 1.0, mu or LEAST_MU
+    law.k_u, law.k_v, law.mu = 1.0, 1.0, mu or options.friction
     law.evaluate(unit, 0)
     slope, force = np.array(law.tangent), np.array(law.force)
     law.mu = mu
     if mu == 0.0:
         law.evaluate(unit, 0)
         slope = np.array(law.tangent)
-        by_mu = force / LEAST_MU
+        by_mu = force / options.friction
     else:
         by_mu = slope @ load / mu
     law.k_u, law.k_v = k_u, k_v
@@ -160,7 +160,7 @@ def growth_of(balance: Balance, X: ComplexArray) -> FloatArray:
     return growth
 
 
-def rates_of(system: System, address: str) -> Rates:
+def rates_of(system: System, address: str, options: SensitivityOptions = SENSITIVITY) -> Rates:
     """The rates of a system when a number moves by one of its unit; ones of several add up.
 
     Parameters
@@ -191,9 +191,11 @@ def rates_of(system: System, address: str) -> Rates:
     total = {name: np.zeros_like(getattr(system.linear, name)) for name in ARRAYS}
     for one, value, weight in number.each(system.scene):
         contact += weight * (_numbers(one.put(system.scene, 1.0)) - _numbers(one.put(system.scene, 0.0)))
-        for name, rate in _linear(system, one, value):
+        for name, rate in _linear(system, one, value, options):
             total[name] = total[name] + weight * rate
-    return Rates(contact, Linear(**total, adrift=system.linear.adrift, driven=system.linear.driven), system)
+    return Rates(
+        contact, Linear(**total, adrift=system.linear.adrift, driven=system.linear.driven), system, options
+    )
 
 
 def _numbers(scene: Scene) -> FloatArray:
@@ -201,7 +203,9 @@ def _numbers(scene: Scene) -> FloatArray:
     return np.array([(c.mu, c.k_u, c.k_v, c.n_0) for c in scene.contacts]).reshape(-1, 4)
 
 
-def _linear(system: System, number: Number, value: float) -> Iterator[tuple[str, npt.NDArray[np.inexact]]]:
+def _linear(
+    system: System, number: Number, value: float, options: SensitivityOptions = SENSITIVITY
+) -> Iterator[tuple[str, npt.NDArray[np.inexact]]]:
     """Derivatives of the arrays of the structure."""
     kind, field = number.addresses[0][0], number.addresses[0][-1]
     rigid = bool((system.linear.natural == 0.0).any())
@@ -211,7 +215,7 @@ def _linear(system: System, number: Number, value: float) -> Iterator[tuple[str,
         (kind == "modal" and "damping" not in number.addresses[0]) or (kind == "contact" and not value)
     ):
         raise ValueError(f"{number.key} changes the rigid-body motions of the structure")
-    step = STEP if field == "phase" else STEP * (abs(value) or 1.0)
+    step = options.number if field == "phase" else options.number * (abs(value) or 1.0)
     around = {k: linear_of(number.put(system.scene, value + k * step)) for k in (-3, -2, -1, 1, 2, 3)}
     for name in ARRAYS:
         yield (

@@ -14,16 +14,11 @@ from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.scene.draft import Number
+from fcm.sensitivity.options import SENSITIVITY, SensitivityOptions
 from fcm.sensitivity.parameter_derivatives import Rates, growth_of
 
-STEP = 1e-4  # of a difference: of a number, and of a length along the curve in its own units
-NEAR = 1e-6  # length along the curve to both sides of a peak, where its slope has the one sign and the other
-FLAT = 1e-5  # slope over size at a distance NEAR, below which a peak is smooth
 STENCIL = ((1, 2.0 / 3.0), (2, -1.0 / 12.0))  # of the first derivative, of the fourth order
 ONE_SIDED = ((0, -25.0 / 12.0), (1, 4.0), (2, -3.0), (3, 4.0 / 3.0), (4, -0.25))  # for numbers at a limit
-LOOKS = 8  # Newton steps from where a peak is said to be to where it is
-REACH, LANDED = 1e-2, 1e-14  # lengths along the curve: within which a corner moves, and to which it is found
-FOUND = 1e-10  # length of the last of them
 
 
 class Kind(Enum):
@@ -42,10 +37,12 @@ class Moved:
     terms: list[tuple[float, Newton]]
 
 
-def moved_by(scene: Scene, number: Number, harmonics: tuple[int, ...]) -> Moved:
+def moved_by(
+    scene: Scene, number: Number, harmonics: tuple[int, ...], options: SensitivityOptions = SENSITIVITY
+) -> Moved:
     each = number.each(scene)
     size = max(abs(value) for _, value, _ in each)
-    step = STEP * (size or 1.0)
+    step = options.step * (size or 1.0)
     inside = all(not number.rule.fault(value - 2.0 * step) for _, value, _ in each)
     terms = [(sign * k, sign * w) for k, w in STENCIL for sign in (1, -1)] if inside else list(ONE_SIDED)
     draft = scene.draft
@@ -61,7 +58,10 @@ def moved_by(scene: Scene, number: Number, harmonics: tuple[int, ...]) -> Moved:
 class Peak:
     """One peak: the point, the direction of the curve, and what it is."""
 
-    def __init__(self, system: System, dof: int, z: FloatArray, edge: bool) -> None:
+    def __init__(
+        self, system: System, dof: int, z: FloatArray, edge: bool, options: SensitivityOptions = SENSITIVITY
+    ) -> None:
+        self.options = options
         self.dof, self.newton, self.edge = dof, Newton(system.balance()), edge
         self.kind, self.margin, self.curvature = Kind.UNKNOWN, -1, np.nan
         balance = self.newton.problem
@@ -101,11 +101,11 @@ class Peak:
 
     def _kind(self) -> Kind:
         """Find the peak next to where it is said to be, and what it is."""
-        before, after = self._beside(-NEAR), self._beside(NEAR)
+        before, after = self._beside(-self.options.side), self._beside(self.options.side)
         size = self._height(self.newton, self.z)
         if before is None or after is None:
             return Kind.UNKNOWN
-        if abs(before[0]) < FLAT * size and abs(after[0]) < FLAT * size:
+        if abs(before[0]) < self.options.flat * size and abs(after[0]) < self.options.flat * size:
             return Kind.SMOOTH if self._climb() else Kind.UNKNOWN
         changed = np.flatnonzero(before[1] * after[1] < 0.0)
         if changed.size != 1:
@@ -123,17 +123,17 @@ class Peak:
 
     def _climb(self) -> bool:
         """Newton's method along the curve to where the slope is 0."""
-        for _ in range(LOOKS):
+        for _ in range(self.options.iterations):
             self.curvature = bend = self.bend()
             point = self.solved(self.newton, self.z)
             if point is None or not bend < 0.0:
                 return False
             step = -self.slope(self.newton, point) / bend
-            if abs(step) < FOUND:
+            if abs(step) < self.options.tolerance:
                 self.z = point
                 self.unit = np.array(self.newton.tangent)
                 return True
-            if abs(step) > STEP:
+            if abs(step) > self.options.step:
                 return False
             moved = self.solved(self.newton, self.along(step))
             if moved is None:
@@ -146,8 +146,8 @@ class Peak:
         terms = ((sign * k, sign * w) for k, w in STENCIL for sign in (1, -1))
         total = 0.0
         for k, weight in terms:
-            point = self.solved(self.newton, self.along(k * STEP))
-            total += np.nan if point is None else weight / STEP * self.slope(self.newton, point)
+            point = self.solved(self.newton, self.along(k * self.options.step))
+            total += np.nan if point is None else weight / self.options.step * self.slope(self.newton, point)
         return total
 
     def derivatives(self, rates: Rates, moved: Moved) -> tuple[float, float]:
@@ -208,7 +208,7 @@ class Peak:
             return float(newton.problem.margin[self.margin])
 
         try:
-            at = brentq(margin, -REACH, REACH, xtol=LANDED)
+            at = brentq(margin, -self.options.corner, self.options.corner, xtol=self.options.corner_tolerance)
             return self.solved(newton, self.along(at))
         except (ArithmeticError, ValueError):  # no curve there, or no such corner
             return None

@@ -22,6 +22,7 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.scene.address import Addresses
 from fcm.scene.draft import Draft, Number, number_of
+from fcm.sensitivity.options import SENSITIVITY, SensitivityOptions
 from fcm.sensitivity.parameter_derivatives import rates_of
 from fcm.sensitivity.peak import Kind, Peak, moved_by
 
@@ -77,7 +78,11 @@ def settled(scene: Scene) -> Scene:
 
 
 def sensitivities(
-    scene: Scene, harmonics: tuple[int, ...], peaks: Sequence[tuple[int, FloatArray, bool]], dofs: int
+    scene: Scene,
+    harmonics: tuple[int, ...],
+    peaks: Sequence[tuple[int, FloatArray, bool]],
+    dofs: int,
+    options: SensitivityOptions = SENSITIVITY,
 ) -> Sensitivities:
     """Derivatives of peaks by every number of a scene (of one curve).
 
@@ -88,18 +93,20 @@ def sensitivities(
         peak is where the range ends.
     dofs : int
         How many degrees of freedom there are.
+    options : SensitivityOptions, optional
+        Steps and tolerances.
     """
     scene = settled(scene)
     system = System(scene, harmonics)
-    points = [Peak(system, d, z, edge) for d, z, edge in peaks]
+    points = [Peak(system, d, z, edge, options) for d, z, edge in peaks]
     numbers = numbers_of(scene)
     height, frequency = (np.full((dofs, len(numbers)), np.nan) for _ in range(2))
     for k, number in enumerate(numbers):
         try:
-            rates = rates_of(system, number.key)
+            rates = rates_of(system, number.key, options)
         except ValueError:  # it changes what rigid-body motions there are
             continue
-        moved = moved_by(scene, number, harmonics)
+        moved = moved_by(scene, number, harmonics, options)
         for point in points:
             height[point.dof, k], frequency[point.dof, k] = point.derivatives(rates, moved)
     kind = [Kind.UNKNOWN] * dofs
