@@ -9,6 +9,7 @@ import pytest
 
 from fcm.shooting import periodic
 from fcm.time_domain import SimulationError, State, energy, simulate, simulate_schedule
+from fcm.time_domain.options import SimulationOptions, TimeOptions
 
 from .cases import one_mode, two_contacts, yang
 
@@ -119,10 +120,10 @@ def test_a_contact_that_chatters():
     assert energy(motion).error < 1e-12
 
 
-def test_chattering_without_end_is_refused(monkeypatch):
-    monkeypatch.setattr("fcm.time_domain.simulation.MOST_TRANSITIONS", 20)
+def test_chattering_without_end_is_refused():
+    few = TimeOptions(simulation=SimulationOptions(transitions=20))
     with pytest.raises(SimulationError, match="chatter"):
-        simulate(yang(k_u=1e6), 1.3, 2)
+        simulate(yang(k_u=1e6), 1.3, 2, options=few)
 
 
 @pytest.mark.parametrize("frequency", [0.0, -1.0, np.nan, np.inf])

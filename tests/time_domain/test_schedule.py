@@ -12,7 +12,8 @@ import fcm
 from fcm.scene import Phase, Start
 from fcm.shooting import periodic
 from fcm.time_domain import State, energy, histories, simulate_phases
-from fcm.time_domain.schedule_plan import FEWEST_SAMPLES, MOST_NUMBERS, Plan
+from fcm.time_domain.options import TIME, SimulationOptions
+from fcm.time_domain.schedule_plan import Plan
 from fcm.time_domain.schedule_record import INTERRUPTED, NOT_BEGUN, record
 from fcm.time_domain.settling import unsettled
 from fcm.time_domain.system import LETTERS
@@ -116,7 +117,7 @@ def test_the_lower_state_at_n_0_5_ends_between_1235_and_1240():
 def test_plans_of_any_length_are_bounded():
     for cycles, columns in [(10, 2), (30_000, 2), (100_000, 2), (1_000_000, 2), (1000, 300), (7, 10**6)]:
         plan = Plan([Phase(1.0, cycles)], columns)
-        assert plan.instants * columns <= MOST_NUMBERS + 2 * FEWEST_SAMPLES * columns
+        assert plan.instants * columns <= TIME.history.displacements + 2 * TIME.history.fewest * columns
         assert plan.time.size == plan.cycles.size == plan.instants
         assert (np.diff(plan.time) > 0.0).all() and plan.cycles[-1] == cycles
     assert Plan([Phase(1.0, 10)], 2).samples == 64
@@ -126,7 +127,7 @@ def test_plans_of_any_length_are_bounded():
 
 def test_a_decimated_history_is_part_of_the_whole():
     scene = scheduled(yang(), Phase(1.3, 5.0))
-    thin = Plan(scene.schedule, MOST_NUMBERS // 16)
+    thin = Plan(scene.schedule, TIME.history.displacements // 16)
     assert (thin.samples, thin.every) == (8, 3)
     whole, part = record(scene), record(scene, thin)
     assert part.displacement == pytest.approx(whole.displacement[[*range(0, 64, 8), *range(192, 321, 8)]])
@@ -176,9 +177,9 @@ def test_interrupted_before_anything_is_finished(monkeypatch):
         histories(scheduled(yang()))
 
 
-def test_contacts_that_chatter_without_end_leave_it_incomplete(monkeypatch):
-    monkeypatch.setattr("fcm.time_domain.simulation.MOST_TRANSITIONS", 20)
-    kept = record(scheduled(yang(k_u=1e6), Phase(1.3, 3.0)))
+def test_contacts_that_chatter_without_end_leave_it_incomplete():
+    few = replace(TIME, simulation=SimulationOptions(transitions=20))
+    kept = record(scheduled(yang(k_u=1e6), Phase(1.3, 3.0)), options=few)
     assert "the contacts chatter" in kept.reason and kept.cycles == 1.0
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from fcm.at_rest import at_rest
 from fcm.model.scene import Scene
 from fcm.time_domain.errors import SimulationError
+from fcm.time_domain.options import TIME, TimeOptions
 from fcm.time_domain.schedule_plan import Plan
 from fcm.time_domain.schedule_record import Passed, Record, record, unfinished
 from fcm.time_domain.simulation import Progress
@@ -45,7 +46,9 @@ class Kept(Protocol):
         """A phase of a curve is."""
 
 
-def histories(scene: Scene, progress: Progress | None = None, kept: Kept | None = None) -> Histories:
+def histories(
+    scene: Scene, progress: Progress | None = None, kept: Kept | None = None, options: TimeOptions = TIME
+) -> Histories:
     """Simulate the schedule of a scene, for each combination of its swept values.
 
     Parameters
@@ -73,10 +76,10 @@ def histories(scene: Scene, progress: Progress | None = None, kept: Kept | None 
     """
     if not scene.schedule:
         raise SimulationError("the scene has no [[schedule]]; give it one, or simulate one frequency")
-    begin, curves, plan = time.perf_counter(), scene.each_curve(), _plan(scene)
+    begin, curves, plan = time.perf_counter(), scene.each_curve(), _plan(scene, options)
     records: list[Record] = []
     for number, curve in enumerate(curves):
-        made = _record(number, curve, plan, _share(progress, number, len(curves)), kept)
+        made = _record(number, curve, plan, _share(progress, number, len(curves)), kept, options)
         records.append(made)
         if made.interrupted:
             break
@@ -96,15 +99,22 @@ def _without_rounding(record: Record) -> Record:
     return replace(record, phases=phases, amplitude=amplitude)
 
 
-def _record(number: int, curve: Scene, plan: Plan, progress: Progress | None, kept: Kept | None) -> Record:
+def _record(
+    number: int,
+    curve: Scene,
+    plan: Plan,
+    progress: Progress | None,
+    kept: Kept | None,
+    options: TimeOptions = TIME,
+) -> Record:
     """The record of a curve, from what is kept of it on."""
     if kept is None:
-        return record(curve, plan, progress)
+        return record(curve, plan, progress, options=options)
     if number in kept.finished:
         whole: Record = kept.finished[number][0]
         return whole
     passed: Sequence[Passed] = kept.states.get(number, ())
-    made = record(curve, plan, progress, passed, lambda one: kept.save(number, one))
+    made = record(curve, plan, progress, passed, lambda one: kept.save(number, one), options)
     if not made.interrupted:
         kept.add(number, [made])
     return made
@@ -123,5 +133,5 @@ def not_begun(scene: Scene) -> Histories:
     return Histories(scene, plan, [unfinished(curve, plan) for curve in scene.each_curve()], 0.0)
 
 
-def _plan(scene: Scene) -> Plan:
-    return Plan(scene.schedule, len(scene.modal.dofs) * len(scene.each_curve()))
+def _plan(scene: Scene, options: TimeOptions = TIME) -> Plan:
+    return Plan(scene.schedule, len(scene.modal.dofs) * len(scene.each_curve()), options)

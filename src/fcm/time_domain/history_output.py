@@ -13,6 +13,7 @@ import numpy.typing as npt
 from fcm.files import replacing
 from fcm.time_domain.energy import Energy
 from fcm.time_domain.histories import Histories
+from fcm.time_domain.options import TIME, TimeOptions
 from fcm.time_domain.schedule_record import NOT_REACHED, PhaseResult, Record
 from fcm.time_domain.state import State
 from fcm.time_domain.system import LETTERS
@@ -20,7 +21,6 @@ from fcm.units import CF_UNIT, in_unit
 
 Variable = tuple[tuple[str, ...], npt.NDArray[Any], dict[str, Any]]  # dimensions, values, attributes
 MEANINGS = "not_reached separation stick positive_slip negative_slip"  # of -1 and the indices of LETTERS
-LONGEST = 40  # letters of a sequence of states in a summary
 
 
 def variables(found: Histories) -> dict[str, Variable]:
@@ -162,13 +162,17 @@ def _of_state(end: State) -> dict[str, Any]:
     return {name: array.tolist() for name, array in arrays.items()} | {"angle": end.angle}
 
 
-def _shortened(states: str) -> str:
+def _shortened(states: str, options: TimeOptions = TIME) -> str:
     """A sequence of states that a line can hold.
 
     >>> _shortened("SPEN"), _shortened("EP" * 100)
     ('SPEN', 'EPEPEPEPEPEPEPEPEPEPEPEPEPEPEPEPEPEPEPEP... (200)')
     """
-    return states if len(states) <= LONGEST else f"{states[:LONGEST]}... ({len(states)})"
+    return (
+        states
+        if len(states) <= options.history.letters
+        else f"{states[: options.history.letters]}... ({len(states)})"
+    )
 
 
 def write_csv(found: Histories, path: str | Path) -> None:

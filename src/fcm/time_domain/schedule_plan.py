@@ -12,9 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.model.scene import FloatArray, Phase
-
-MOST_SAMPLES, FEWEST_SAMPLES = 64, 8  # in a cycle
-MOST_NUMBERS = 4_000_000  # displacements that are sampled, of all curves: 32 MB before compression
+from fcm.time_domain.options import TIME, TimeOptions
 
 IntArray = npt.NDArray[np.intp]
 
@@ -27,6 +25,8 @@ class Plan:
     phases : sequence of Phase
     columns : int
         Displacements that are sampled at an instant: degrees of freedom times curves.
+    options : TimeOptions, optional
+        How many of them, at most.
 
     Examples
     --------
@@ -39,7 +39,7 @@ class Plan:
     '64 samples a cycle'
     """
 
-    def __init__(self, phases: Sequence[Phase], columns: int) -> None:
+    def __init__(self, phases: Sequence[Phase], columns: int, options: TimeOptions = TIME) -> None:
         counts = [int(np.ceil(phase.cycles)) for phase in phases]
         self.period = 2.0 * np.pi / np.array([phase.frequency for phase in phases])  # (phase,) [s]
         self.length = np.array([phase.cycles for phase in phases])  # (phase,) in cycles
@@ -49,7 +49,7 @@ class Plan:
         self.elapsed = _before(self.length)[self.phase] + within  # (cycle,) cycles at its start
         self.phase_start = _before(self.length * self.period)  # (phase,) [s]
         self.start = self.phase_start[self.phase] + within * self.period[self.phase]  # (cycle,) [s]
-        self.samples, self.every = _density(self.phase.size, columns)
+        self.samples, self.every = _density(self.phase.size, columns, options)
         sampled = np.ceil(self.part * self.samples - 1e-9).astype(np.intp)
         sampled[np.arange(sampled.size) % self.every > 0] = 0
         sampled[-1] = max(np.ceil(self.part[-1] * self.samples - 1e-9), 1)
@@ -92,9 +92,9 @@ def _before(values: FloatArray | IntArray) -> FloatArray:
     return np.concatenate(([0.0], np.cumsum(values)[:-1]))
 
 
-def _density(cycles: int, columns: int) -> tuple[int, int]:
+def _density(cycles: int, columns: int, options: TimeOptions = TIME) -> tuple[int, int]:
     """Samples in a cycle, and of so many cycles one is sampled."""
-    samples = MOST_SAMPLES
-    while samples > FEWEST_SAMPLES and cycles * samples * columns > MOST_NUMBERS:
+    samples = options.history.samples
+    while samples > options.history.fewest and cycles * samples * columns > options.history.displacements:
         samples //= 2
-    return samples, max(int(np.ceil(cycles * samples * columns / MOST_NUMBERS)), 1)
+    return samples, max(int(np.ceil(cycles * samples * columns / options.history.displacements)), 1)

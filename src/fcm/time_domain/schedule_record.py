@@ -15,6 +15,7 @@ from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.cycle_measures import measure
 from fcm.time_domain.energy import Energy, energy
 from fcm.time_domain.errors import SimulationError
+from fcm.time_domain.options import TIME, TimeOptions
 from fcm.time_domain.schedule_plan import Plan
 from fcm.time_domain.settling import unsettled
 from fcm.time_domain.simulation import Progress, cycles_from
@@ -23,8 +24,6 @@ from fcm.time_domain.system import LETTERS, System
 from fcm.time_domain.trajectory import Motion, dof_rows
 
 NOT_REACHED = -1  # state of a contact at an instant that was not simulated
-SETTLED = 1e-3  # relative change of the amplitudes that is still to come
-MOST_TRANSITIONS = 1_000_000  # kept with their times; all are counted
 INTERRUPTED = "interrupted"
 NOT_BEGUN = "interrupted before it was simulated"
 
@@ -47,7 +46,7 @@ class PhaseResult:
     @property
     def settled(self) -> bool:
         """Whether the motion is shown to have become periodic."""
-        return self.unsettled <= SETTLED
+        return self.unsettled <= TIME.settling.settled
 
 
 @dataclass
@@ -107,6 +106,7 @@ def record(
     progress: Progress | None = None,
     passed: Sequence[Passed] = (),
     save: Callable[[Passed], None] | None = None,
+    options: TimeOptions = TIME,
 ) -> Record:
     """Simulate the schedule of a scene, and keep what is reported of it.
 
@@ -123,13 +123,15 @@ def record(
     """
     begin = time.perf_counter()
     plan = plan or Plan(scene.schedule, len(scene.modal.dofs))
-    recorder, reason, interrupted = _Recorder(scene, plan), "", False
+    recorder, reason, interrupted = _Recorder(scene, plan, options), "", False
     try:
         recorder.end = State.start(scene)
         for one in passed:
             recorder.take(one)
         for number, phase in list(enumerate(scene.schedule))[len(passed) :]:
-            for cycle, end in cycles_from(System(scene, phase.frequency), phase.cycles, recorder.end):
+            for cycle, end in cycles_from(
+                System(scene, phase.frequency), phase.cycles, recorder.end, options
+            ):
                 recorder.add(number, cycle, end)
                 if progress is not None:
                     progress(recorder.done / plan.phase.size, f"phase {number + 1}, cycle {recorder.done}")
@@ -170,7 +172,8 @@ class _Tally:
 class _Transitions:
     """All changes of state are counted; their times are kept while there is room."""
 
-    def __init__(self) -> None:
+    def __init__(self, options: TimeOptions) -> None:
+        self.options = options
         self.times, self.contacts, self.states = array("d"), array("h"), array("b")
         self.letters = ""  # the states until now
 
@@ -182,7 +185,7 @@ class _Transitions:
                 if before == letter:
                     continue
                 found += 1
-                if len(self.times) < MOST_TRANSITIONS:
+                if len(self.times) < self.options.history.transitions:
                     self.times.append(start + begun)
                     self.contacts.append(j)
                     self.states.append(LETTERS.index(letter))
@@ -191,13 +194,14 @@ class _Transitions:
 
 
 class _Recorder:
-    def __init__(self, scene: Scene, plan: Plan) -> None:
+    def __init__(self, scene: Scene, plan: Plan, options: TimeOptions = TIME) -> None:
+        self.options = options
         dofs, contacts = len(scene.modal.dofs), len(scene.contacts)
         self.scene, self.plan, self.end, self.done = scene, plan, State.unloaded(scene), 0
         self.measures = np.full((4, plan.phase.size, dofs), np.nan)
         self.displacement = np.full((plan.instants, dofs), np.nan)
         self.state = np.full((plan.instants, contacts), NOT_REACHED, dtype=np.int8)
-        self.transitions = _Transitions()
+        self.transitions = _Transitions(options)
         self.tallies: list[_Tally] = []
 
     def add(self, phase: int, cycle: Cycle, end: State) -> None:
@@ -286,5 +290,5 @@ class _Recorder:
         amplitude, mean = (values[cycles][:whole] for values in self.measures[:2])
         return PhaseResult(
             phase.frequency, float(part.sum()), amplitude[-1], mean[-1], tally.states or (),
-            tally.transitions, unsettled(amplitude), tally.energy,
+            tally.transitions, unsettled(amplitude, self.options), tally.energy,
         )  # fmt: skip

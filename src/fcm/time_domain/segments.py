@@ -98,31 +98,22 @@ class Pool:
         """Memory of the pool."""
         return sum(made.nbytes for made in self._pool.values())
 
-    def add(
-        self,
-        states: Any,
-        step: float,
-        halved: bool,
-        rows: FloatArray,
-        owner: list[int],
-        goal: list[int],
-        power: FloatArray,
-        change: FloatArray,
-        series: FloatArray,
-        sizes: FloatArray,
-        table: FloatArray,
-        pushes: FloatArray,
-    ) -> int:
-        """Put a flow into the pool: see `fcm.time_domain.contact_states`; returns its place."""
-        k, exits, made = self._place(), len(owner), self._pool
-        made["states"][k], made["step"][k], made["exits"][k], made["made_for"][k] = states, step, exits, -1.0
-        made["halved"][k] = halved
-        made["owner"][k, :exits], made["goal"][k, :exits], made["row"][k, :exits] = owner, goal, rows
+    def add(self, flow: Any) -> int:
+        """Put a `fcm.time_domain.contact_states.Flow` into the pool; returns its place."""
+        k, exits, made = self._place(), len(flow.owner), self._pool
+        rows, table, series, pushes = flow.rows, flow.table, flow.series, flow.pushes
+        made["states"][k], made["step"][k], made["halved"][k] = flow.states, flow.step, flow.halved
+        made["exits"][k], made["made_for"][k] = exits, -1.0
+        made["owner"][k, :exits], made["goal"][k, :exits], made["row"][k, :exits] = (
+            flow.owner,
+            flow.goal,
+            rows,
+        )
         made["first"][k, :exits] = (rows != 0.0).argmax(axis=1) if exits else 0
-        made["power"][k, 0], made["sizes"][k], made["used"][k] = power, sizes, self.clock
+        made["power"][k, 0], made["sizes"][k], made["used"][k] = flow.power, flow.sizes, self.clock
         made["squared"][k] = made["spelled"][k] = 0
         if made["terms"].shape[1]:
-            made["terms"][k, 0], made["terms"][k, 1] = np.eye(self.linear).ravel(), change.ravel()
+            made["terms"][k, 0], made["terms"][k, 1] = np.eye(self.linear).ravel(), flow.change.ravel()
         made["table"][k, :, : table.shape[1]], made["series"][k, :, : series.shape[1]] = table, series
         made["push"][k], made["kick"][k, :exits] = pushes[:2], np.einsum("ei,kci->eck", rows, pushes)
         made["pushed"][k] = np.tensordot(PUSHED, pushes, 1).swapaxes(0, 1)

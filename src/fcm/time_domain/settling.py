@@ -5,13 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from fcm.model.scene import FloatArray
-
-WINDOW = 10  # cycles
-ROUNDING = 1e-9  # changes below are none, relative
-LEAST = 1e-6  # of the greatest amplitude: smaller ones are not judged
+from fcm.time_domain.options import TIME, TimeOptions
 
 
-def unsettled(amplitude: FloatArray) -> float:
+def unsettled(amplitude: FloatArray, options: TimeOptions = TIME) -> float:
     """Relative change that is still to come, were what is left to decay as it did of late.
 
     With the ranges d_1 and d_2 of the amplitude over the last WINDOW cycles and the ones before, what is
@@ -36,13 +33,13 @@ def unsettled(amplitude: FloatArray) -> float:
     >>> unsettled(np.arange(60.0)[:, None])
     inf
     """
-    if amplitude.shape[0] < 2 * WINDOW + 1:
+    if amplitude.shape[0] < 2 * options.settling.cycles + 1:
         return float("nan")
     size = np.abs(amplitude[-1])
-    size = np.maximum(size, LEAST * size.max(initial=0.0))
+    size = np.maximum(size, options.settling.least * size.max(initial=0.0))
     size = np.where(size > 0.0, size, 1.0)
-    later = np.ptp(amplitude[-WINDOW - 1 :], axis=0) / size
-    earlier = np.ptp(amplitude[-2 * WINDOW - 1 : -WINDOW], axis=0) / size
+    later = np.ptp(amplitude[-options.settling.cycles - 1 :], axis=0) / size
+    earlier = np.ptp(amplitude[-2 * options.settling.cycles - 1 : -options.settling.cycles], axis=0) / size
     decays = earlier > later
     left = np.where(decays, later**2 / np.where(decays, earlier - later, 1.0), np.inf)
-    return float(np.where(later <= ROUNDING, later, left).max(initial=0.0))
+    return float(np.where(later <= options.settling.rounding, later, left).max(initial=0.0))

@@ -12,6 +12,7 @@ from fcm.time_domain.contact_states import Codes
 from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.errors import CycleError, SimulationError
 from fcm.time_domain.integrator import March
+from fcm.time_domain.options import TIME, TimeOptions
 from fcm.time_domain.segments import Segments
 from fcm.time_domain.state import State, entered, entry, leave, set_angle
 from fcm.time_domain.stop_reason import Stopped
@@ -21,10 +22,10 @@ from fcm.units import spoken
 
 Progress = Callable[[float, str], None]
 
-MOST_TRANSITIONS = 200_000  # in one cycle
 
-
-def simulate(scene: Scene, frequency: float, cycles: float, state: State | None = None) -> Motion:
+def simulate(
+    scene: Scene, frequency: float, cycles: float, state: State | None = None, options: TimeOptions = TIME
+) -> Motion:
     """The exact motion of a scene at one frequency.
 
     Between transitions of its contacts (stick, positive and negative slip, separation; sections 3.1 and
@@ -41,6 +42,8 @@ def simulate(scene: Scene, frequency: float, cycles: float, state: State | None 
         Periods of the force to simulate; need not be whole.
     state : State, optional
         Where to start from: rest by default.
+    options : TimeOptions, optional
+        Limits.
 
     Returns
     -------
@@ -60,10 +63,12 @@ def simulate(scene: Scene, frequency: float, cycles: float, state: State | None 
     >>> motion.measures()[-1].amplitude.round(4)  # u, v: half the peak-to-peak
     array([7.1681, 7.1663])
     """
-    return simulate_phases(scene, [Phase(frequency, cycles)], state)
+    return simulate_phases(scene, [Phase(frequency, cycles)], state, options=options)
 
 
-def simulate_schedule(scene: Scene, state: State | None = None, progress: Progress | None = None) -> Motion:
+def simulate_schedule(
+    scene: Scene, state: State | None = None, progress: Progress | None = None, options: TimeOptions = TIME
+) -> Motion:
     """The exact motion of a scene through its schedule, each phase continuing the last.
 
     The state continues, and so does the phase angle of the forces: it does not jump when the frequency
@@ -76,11 +81,15 @@ def simulate_schedule(scene: Scene, state: State | None = None, progress: Progre
     """
     if not scene.schedule:
         raise SimulationError("the scene has no [[schedule]]; give it one, or simulate one frequency")
-    return simulate_phases(scene, scene.schedule, state or State.start(scene), progress)
+    return simulate_phases(scene, scene.schedule, state or State.start(scene), progress, options)
 
 
 def simulate_phases(
-    scene: Scene, phases: Sequence[Phase], state: State | None = None, progress: Progress | None = None
+    scene: Scene,
+    phases: Sequence[Phase],
+    state: State | None = None,
+    progress: Progress | None = None,
+    options: TimeOptions = TIME,
 ) -> Motion:
     """The exact motion through phases, each continuing the last; see `simulate_schedule`."""
     state = State.rest(scene) if state is None else state
@@ -89,7 +98,7 @@ def simulate_phases(
     for phase in phases:
         if not (np.isfinite(phase.cycles) and phase.cycles > 0.0):
             raise SimulationError(f"a phase has {phase.cycles:g} cycles; it needs more than none")
-        for cycle, end in cycles_from(System(scene, phase.frequency), phase.cycles, state):
+        for cycle, end in cycles_from(System(scene, phase.frequency), phase.cycles, state, options):
             start = done[-1].start + done[-1].duration if done else 0.0
             done.append(replace(cycle, start=start))
             state = end
@@ -98,33 +107,37 @@ def simulate_phases(
     return Motion(scene, tuple(done), state)
 
 
-def cycles_from(system: System, cycles: float, state: State) -> Iterator[tuple[Cycle, State]]:
+def cycles_from(
+    system: System, cycles: float, state: State, options: TimeOptions = TIME
+) -> Iterator[tuple[Cycle, State]]:
     """The cycles from a state on, each with the state at its end; the last one may be a part."""
     y, states = entry(system, state)
     for k in range(int(np.ceil(cycles))):
         part = min(1.0, cycles - k)
         set_angle(system, y, state.angle)
-        segments, y, states = march(system, y, states, part * system.period)
+        segments, y, states = march(system, y, states, part * system.period, options)
         angle = (state.angle + 2.0 * np.pi * (part % 1.0)) % (2.0 * np.pi)
         cycle = Cycle(system, k * system.period, part * system.period, state.angle, segments)
         yield cycle, leave(system, y, angle)
 
 
 def march(
-    system: System, y: FloatArray, states: Codes, duration: float
+    system: System, y: FloatArray, states: Codes, duration: float, options: TimeOptions = TIME
 ) -> tuple[Segments, FloatArray, Codes]:
     """The segments of the motion over a duration [s], the state vector and the states at its end."""
     march = system.march()
-    march.begins(y, states, duration, MOST_TRANSITIONS)
-    segments = _marched(system, march)
+    march.begins(y, states, duration, options.simulation.transitions)
+    segments = _marched(system, march, options)
     return segments, np.array(march.y)[0], np.array(march.states)[0]
 
 
-def march_from(system: System, x: FloatArray, duration: float) -> tuple[Segments, FloatArray]:
+def march_from(
+    system: System, x: FloatArray, duration: float, options: TimeOptions = TIME
+) -> tuple[Segments, FloatArray]:
     """The segments from x = (q, q', f) at the forces' angle 0 on, and the state vector at their end."""
     march = entered(system, x)
-    march.lasts(duration, MOST_TRANSITIONS)
-    segments = _marched(system, march)
+    march.lasts(duration, options.simulation.transitions)
+    segments = _marched(system, march, options)
     return segments, np.array(march.y)[0]
 
 
@@ -132,14 +145,14 @@ def _at(system: System) -> str:
     return spoken(system.omega, system.scene.frequency_unit)
 
 
-def _marched(system: System, march: March) -> Segments:
+def _marched(system: System, march: March, options: TimeOptions = TIME) -> Segments:
     """The segments of a march to its end."""
     while (stopped := march.go()) != Stopped.DONE:
         if stopped == Stopped.MISSING:
             system.make(np.asarray(march.states)[0])
-        elif stopped == Stopped.FULL and len(march.segments) > MOST_TRANSITIONS:
+        elif stopped == Stopped.FULL and len(march.segments) > options.simulation.transitions:
             raise CycleError(
-                f"more than {MOST_TRANSITIONS} transitions in one cycle at {_at(system)}: "
+                f"more than {options.simulation.transitions} transitions in one cycle at {_at(system)}: "
                 "the contacts chatter; give the modes more damping, or the contacts less stiffness"
             )
         elif stopped == Stopped.UNDECIDED:

@@ -136,7 +136,7 @@ class System:
 
     def make(self, states: Codes) -> int:
         """Put the flow of a combination of states into the pool; returns its place."""
-        return int(self.flows.add(*made(self, states)))
+        return int(self.flows.add(made(self, states)))
 
     def steps(self, segments: Segments) -> Steps:
         """The steps of segments at this frequency."""
