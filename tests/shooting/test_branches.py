@@ -28,7 +28,7 @@ from fcm.shooting import (
     trace,
 )
 from fcm.shooting.damping_homotopy import less_damped, more_damped
-from fcm.shooting.fixed_frequency import held
+from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.harmonic_balance_branches import passes
 from fcm.shooting.initial_orbits import Along, first_point, inner_resonances, near_balance, starts
 from fcm.shooting.trace import explore, incomplete, known, spread
@@ -116,7 +116,7 @@ def test_a_motion_between_points_of_a_path_is_on_it_and_on_no_other():
     assert len(paths) == 2 and not missed
     for path, other in (paths, paths[::-1]):
         k, newton = len(path.z) // 2, Newton(problem)
-        assert held(newton, 0.3 * path.z[k] + 0.7 * path.z[k + 1])
+        assert correct_at_frequency(newton, 0.3 * path.z[k] + 0.7 * path.z[k + 1])
         z = np.array(newton.z)
         assert passes(path, z, problem) and not passes(other, z, problem)
         assert not passes(path, np.append(1.01 * z[:-1], z[-1]), problem)

@@ -118,7 +118,7 @@ def test_a_solution_with_many_harmonics_takes_few_jacobians():
         if finer.shift == 0.0:  # nothing slips
             continue
         before = refined.newton.evaluations
-        there = refined.beside(z, finer.x)
+        there = refined.rebalance(z, finer.x)
         if there is None:
             continue
         found, taken = found + 1, taken + refined.newton.evaluations - before

@@ -19,7 +19,7 @@ from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray, Scene
 from fcm.results.jumps import Jump
 from fcm.run import Report
-from fcm.shooting.fixed_frequency import held
+from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.initial_orbits import first_point, solution_at
 from fcm.shooting.orbit_record import Sample, sampled, settled
 from fcm.shooting.periodic import Poll, shoot, without_end
@@ -158,7 +158,7 @@ class Visitor:
 
     def _take(self, z: FloatArray) -> bool:
         """Continue with a periodic solution near z at its frequency, if it is stable."""
-        if not held(self.newton, z):
+        if not correct_at_frequency(self.newton, z):
             return False
         direction = np.asarray(self.newton.tangent) * np.asarray(self.newton.scale)
         sample = sampled(self.problem, np.array(self.newton.z), direction)
@@ -215,7 +215,7 @@ class Visitor:
             return False
         guess = here.z + way
         guess[-1] = omega
-        if not held(self.newton, guess, length):
+        if not correct_at_frequency(self.newton, guess, length):
             return False
         astray = float(np.linalg.norm((np.asarray(self.newton.z) - guess) / scale))
         return astray <= max(ASTRAY * length, CLOSE) and self._take(np.array(self.newton.z))

@@ -101,7 +101,7 @@ class Peak:
 
     def _kind(self) -> Kind:
         """Find the peak next to where it is said to be, and what it is."""
-        before, after = self._beside(-self.options.side), self._beside(self.options.side)
+        before, after = self._at_length(-self.options.side), self._at_length(self.options.side)
         size = self._height(self.newton, self.z)
         if before is None or after is None:
             return Kind.UNKNOWN
@@ -113,7 +113,7 @@ class Peak:
         self.margin = int(changed[0])
         return Kind.CORNER
 
-    def _beside(self, length: float) -> tuple[float, FloatArray] | None:
+    def _at_length(self, length: float) -> tuple[float, FloatArray] | None:
         """Slope and margins at a length along the curve."""
         point = self.solved(self.newton, self.along(length))
         if point is None:

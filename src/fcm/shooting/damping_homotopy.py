@@ -9,7 +9,7 @@ import numpy as np
 
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray, Scene
-from fcm.shooting.fixed_frequency import held
+from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.problem import OrbitProblem
 
@@ -36,7 +36,7 @@ def less_damped(
     while factor > 1.0 and ratio < options.damping.smallest:
         new = max(1.0, factor * ratio)
         found = next(
-            _held(OrbitProblem(damped(scene, new), options=options), _guesses(points, np.log(new))), None
+            _corrected(OrbitProblem(damped(scene, new), options=options), _guesses(points, np.log(new))), None
         )
         if found is None:
             ratio = np.sqrt(ratio)
@@ -54,9 +54,9 @@ def _guesses(points: list[tuple[float, FloatArray]], at: float) -> Iterator[Floa
     yield points[-1][1]
 
 
-def _held(problem: OrbitProblem, guesses: Iterator[FloatArray]) -> Iterator[FloatArray]:
+def _corrected(problem: OrbitProblem, guesses: Iterator[FloatArray]) -> Iterator[FloatArray]:
     """The motions that Newton's method comes to at the frequency of each guess."""
     newton = Newton(problem)
     for guess in guesses:
-        if held(newton, guess):
+        if correct_at_frequency(newton, guess):
             yield np.array(newton.z)

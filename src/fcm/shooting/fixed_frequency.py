@@ -8,7 +8,7 @@ from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
 
 
-def held(newton: Newton, z: FloatArray, reach: float = 1.0) -> bool:
+def correct_at_frequency(newton: Newton, z: FloatArray, reach: float = 1.0) -> bool:
     """Whether Newton's method comes to the curve from near z, with the frequency held."""
     newton.problem.measure(z)
     np.asarray(newton.scale)[:] = newton.problem.scale

@@ -19,7 +19,7 @@ from fcm.continuation import Checkpoint, Events, FollowOptions, Path, Status, al
 from fcm.continuation.all_branches import Follow
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray, Scene
-from fcm.shooting.fixed_frequency import held
+from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.force_level_problem import AtLevel, LevelProblem
 from fcm.shooting.linear_orbits import about_rest
 from fcm.shooting.options import SHOOTING, ShootingOptions
@@ -183,7 +183,7 @@ def _begun(problem: LevelProblem, linear: float) -> Iterator[FloatArray]:
     for level in dict.fromkeys(max(weak, linear) for weak in WEAK):
         for state in about_rest(problem.scene, problem.omega, level):
             z = np.append(problem.shooting.unknowns(state), level)
-            if held(newton, z):
+            if correct_at_frequency(newton, z):
                 yield np.array(newton.z)
                 break
 

@@ -13,7 +13,7 @@ from fcm.continuation import Path
 from fcm.continuation.all_branches import SAME
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray, Scene
-from fcm.shooting.fixed_frequency import held
+from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.harmonic_balance_state import computed_state
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic import Poll
@@ -45,7 +45,7 @@ def passes(path: Path, z: FloatArray, problem: OrbitProblem) -> bool:
 
 def _leads_to(newton: Newton, guess: FloatArray, z: FloatArray, scale: FloatArray) -> bool:
     """Whether Newton's method leads from a guess to the motion z, at its frequency."""
-    there = held(newton, np.append(guess[:-1], z[-1]))
+    there = correct_at_frequency(newton, np.append(guess[:-1], z[-1]))
     return there and bool(np.linalg.norm((np.asarray(newton.z) - z) / scale) < SAME)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.damping_homotopy import less_damped, more_damped
-from fcm.shooting.fixed_frequency import held
+from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.harmonic_balance_branches import Place, is_stable, states_along
 from fcm.shooting.harmonic_balance_state import balanced_states, computed_state
 from fcm.shooting.linear_orbits import started_states
@@ -86,7 +86,7 @@ class Along(NamedTuple):
 
     points: list[FloatArray]
     alike: bool
-    lacking: list[tuple[float, float]]
+    unreached: list[tuple[float, float]]
 
 
 def along_balance(problem: OrbitProblem, found: Outline, poll: Poll = without_end) -> Along:
@@ -96,7 +96,7 @@ def along_balance(problem: OrbitProblem, found: Outline, poll: Poll = without_en
     exact motion alone.
     poll is called now and then.
     """
-    points, alike, lacking = list[FloatArray](), True, list[tuple[float, float]]()
+    points, alike, unreached = list[FloatArray](), True, list[tuple[float, float]]()
     for height, top, places in states_along(problem.scene, found, problem.options):
         there, high = list[tuple[float, FloatArray]](), False
         for place in islice(places, problem.options.start.guesses):
@@ -108,8 +108,8 @@ def along_balance(problem: OrbitProblem, found: Outline, poll: Poll = without_en
             _add(problem, points, max(there, key=lambda one: one[0])[1])
         alike = alike and high
         if not high and is_stable(found, top):
-            lacking.append((float(top[-1]), height))
-    return Along(points, alike, lacking)
+            unreached.append((float(top[-1]), height))
+    return Along(points, alike, unreached)
 
 
 def height_of(problem: OrbitProblem, z: FloatArray) -> float:
@@ -180,7 +180,10 @@ def _corrected_states(
     for solution in solutions(one, omega).solutions:
         z = more.extended(solution, options.start.harmonics)
         yield computed_state(
-            scene, options.start.corrected, np.array(newton.z) if held(newton, z) else z, options
+            scene,
+            options.start.corrected,
+            np.array(newton.z) if correct_at_frequency(newton, z) else z,
+            options,
         )
 
 
@@ -272,7 +275,7 @@ def first_point(problem: OrbitProblem, orbit: Orbit, poll: Poll = without_end) -
     if member is not None:
         z = np.append(member.x[problem.free], orbit.frequency)
     newton = Newton(problem)
-    if not held(newton, z):
+    if not correct_at_frequency(newton, z):
         if near is not None and member is None and any(choice.gap for choice in near.chosen):
             raise SimulationError(rests_elsewhere(problem.scene, orbit, near))
         raise SimulationError(not_determined(orbit, problem.options))

@@ -9,7 +9,7 @@ import numpy as np
 from fcm.continuation import Mark
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
-from fcm.shooting.fixed_frequency import held
+from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.orbit_record import Sample, sampled
 from fcm.shooting.problem import OrbitProblem
 
@@ -51,7 +51,9 @@ def _at(problem: OrbitProblem, newton: Newton, one: Sample, other: Sample, omega
     share = (omega - one.frequency) / (other.frequency - one.frequency)
     guess = one.z + share * (other.z - one.z)
     guess[-1] = omega
-    if not held(newton, guess) or newton.moved > np.linalg.norm((other.z - one.z) / np.asarray(newton.scale)):
+    if not correct_at_frequency(newton, guess) or newton.moved > np.linalg.norm(
+        (other.z - one.z) / np.asarray(newton.scale)
+    ):
         return None
     direction = np.asarray(newton.tangent) * np.asarray(newton.scale)
     if direction @ (other.z - one.z) < 0.0:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from fcm.continuation import FollowOptions, Mark, Path, follow
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
-from fcm.shooting.fixed_frequency import held
+from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.orbit_record import Sample, sampled
 from fcm.shooting.problem import OrbitProblem
@@ -59,7 +59,9 @@ def _on_curve(problem: OrbitProblem, guess: Guess) -> FloatArray | None:
     size = float(np.linalg.norm(row))
     np.asarray(newton.scale)[:], np.asarray(newton.z)[:] = scale, z
     np.asarray(newton.row)[:] = row / size if size > 0.0 else np.eye(z.size)[-1]
-    if (newton.correct(1.0) or held(newton, z)) and newton.moved < problem.options.peaks.distance:
+    if (
+        newton.correct(1.0) or correct_at_frequency(newton, z)
+    ) and newton.moved < problem.options.peaks.distance:
         return np.array(newton.z)
     return None
 

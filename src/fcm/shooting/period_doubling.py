@@ -15,7 +15,7 @@ from fcm.continuation import Events, FollowOptions, Mark, Path
 from fcm.continuation.all_branches import Follow, contains, through
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
-from fcm.shooting.fixed_frequency import held
+from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.orbit_record import Sample
 from fcm.shooting.periodic import Poll, converged, without_end
 from fcm.shooting.problem import OrbitProblem
@@ -109,7 +109,7 @@ def doubled_starts(
     found, lost = list[FloatArray](), 0
     for points in branches:
         for k in flips(points):
-            z = next(_beside(problem, points, k, poll), None)
+            z = next(_near_flip(problem, points, k, poll), None)
             if z is None:
                 lost += 1
             else:
@@ -117,7 +117,7 @@ def doubled_starts(
     return found, lost
 
 
-def _beside(problem: Doubled, points: list[Sample], k: int, poll: Poll) -> Iterator[FloatArray]:
+def _near_flip(problem: Doubled, points: list[Sample], k: int, poll: Poll) -> Iterator[FloatArray]:
     """Motions of twice the periods at the frequencies of points beside a flip, the unstable ones first.
 
     Not at flips themselves, beside which a motion hardly changes that does not repeat. Where none is near an
@@ -176,5 +176,5 @@ def _held(problem: Doubled, point: Sample, shot: Shot) -> Iterator[FloatArray]:
     if Shot(shot.system, shot.x, periods=problem.once.repeats).residual < problem.options.doubling.closure:
         return
     newton = Newton(problem)
-    if held(newton, np.append(shot.x[problem.free], point.frequency)):
+    if correct_at_frequency(newton, np.append(shot.x[problem.free], point.frequency)):
         yield np.array(newton.z)

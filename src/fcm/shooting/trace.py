@@ -171,7 +171,7 @@ class _Search:
             self.doubts.take(balance.traced)
             along = along_balance(problem, balance, bounded.outside)
             paths, high = self.with_motions(paths, along.points), along.alike
-            self.unreached += along.lacking
+            self.unreached += along.unreached
         if high:
             return paths
 

@@ -76,7 +76,7 @@ class Verdicts:
         found = of.refined(z, persistent=True) if of.finer.shift > 0.0 else None
         return of.finer.shift == 0.0 or (found is not None and found.stable == stable)
 
-    def astray(self, stable: FloatArray, first: int, last: int) -> list[int]:
+    def unconfirmed(self, stable: FloatArray, first: int, last: int) -> list[int]:
         """The points from first to last that alone are told, between two that are not, and not confirmed."""
         told = ~np.isnan(stable[first : last + 1])
         lone = first + 1 + (told[1:-1] & ~told[:-2] & ~told[2:]).nonzero()[0]

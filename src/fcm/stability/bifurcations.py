@@ -85,7 +85,7 @@ class _Along:
             known = np.array([self.verdicts[i].stable for i in at.tolist()])
             # points between two that were looked at have neighbours that agree
             stable[first : last + 1] = known[_nearer(at, first, last)]
-            stable[self.verdicts.astray(stable, first, last)] = math.nan
+            stable[self.verdicts.unconfirmed(stable, first, last)] = math.nan
             found = list(self._crossings(places))
             for one in found:
                 for way in (range(one.after, first - 1, -1), range(one.after + 1, end)):

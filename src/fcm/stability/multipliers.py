@@ -204,7 +204,7 @@ class Multipliers:
         if refined.fewer is not self.system:
             refined.take(self.system)
             judge.take(refined.system)
-        there = refined.beside(z, self.finer.x, persistent)
+        there = refined.rebalance(z, self.finer.x, persistent)
         return None if there is None else judge.verdict(there)
 
     def _values(self, followed: Followed, omega: float) -> list[complex] | None:

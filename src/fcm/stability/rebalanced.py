@@ -34,7 +34,7 @@ class Refined:
         self.balance.laws = self.system.laws()
         self.balance.largest[:] = 0.0
 
-    def beside(self, z: FloatArray, x: FloatArray, persistent: bool = False) -> FloatArray | None:
+    def rebalance(self, z: FloatArray, x: FloatArray, persistent: bool = False) -> FloatArray | None:
         """The solution (unknown of more + 1,) for z (unknown + 1,), sought from the finer motion x.
 
         The forces are those of z, whatever their level: what the harmonics balanced there lack is kept. None

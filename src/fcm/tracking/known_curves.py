@@ -28,10 +28,10 @@ def passed(curve: Track, condition: Condition, spot: Spot, way: Way) -> bool:
     points = (np.array([one.z for one in curve.spots]) - spot.z) / scale
     if np.linalg.norm(points, axis=1).min() < way.options.known.same:
         return True
-    return any(_crosses(curve, i, spot, way, scale) for i in _beside(points, way.options))
+    return any(_crosses(curve, i, spot, way, scale) for i in _nearest_chords(points, way.options))
 
 
-def _beside(points: FloatArray, options: TrackingOptions = TRACKING) -> npt.NDArray[np.intp]:
+def _nearest_chords(points: FloatArray, options: TrackingOptions = TRACKING) -> npt.NDArray[np.intp]:
     """The chords between points next to which the origin lies, the nearest first."""
     chord = np.diff(points, axis=0)
     length = np.linalg.norm(chord, axis=1)

@@ -21,7 +21,7 @@ def by_trials(search: Search) -> Least | None:
         _greatest(search, value)
     minimize_scalar(
         lambda value: _greatest(search, float(value)),
-        bounds=_beside(search, _lowest(search)),
+        bounds=_neighbours(search, _lowest(search)),
         method="bounded",
         options={"xatol": options.nearest * (high - low), "maxiter": options.closer},
     )
@@ -30,7 +30,7 @@ def by_trials(search: Search) -> Least | None:
     if not top.value > 0.0:
         return None
     kind = "bound" if s in search.span else "trials"
-    return Least(s, top.value, (top,), kind, _beside(search, s))
+    return Least(s, top.value, (top,), kind, _neighbours(search, s))
 
 
 def _greatest(search: Search, value: float) -> float:
@@ -45,7 +45,7 @@ def _lowest(search: Search) -> float:
     return min(search.seen, key=lambda value: search.seen[value].value or np.inf)
 
 
-def _beside(search: Search, s: float) -> tuple[float, float]:
+def _neighbours(search: Search, s: float) -> tuple[float, float]:
     """The values on either side of one that were tried."""
     tried = sorted(search.seen)
     i = tried.index(s)
