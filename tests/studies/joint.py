@@ -30,6 +30,7 @@ from ..program import called
 FloatArray = npt.NDArray[np.float64]
 MODES = {7: "across the joint", 8: "along its plane"}  # first bending; six move the beams as one
 LEVELS = 3e-6, 6e-4  # modal amplitudes
+STEP = 0.1  # longest, of a decade of the amplitude
 SHOWN = 1e-5, 1e-4, 5e-4  # of the map of slip
 
 
@@ -199,7 +200,7 @@ dof = "1z"
 amplitude = 1.0
 
 [response]
-frequency = [150.0, 250.0]
+frequency = [10.0, 250.0]
 harmonics = {harmonics}
 output = ["1y", "1z"]
 
@@ -220,7 +221,7 @@ def main(out: str = "build/joint", along: str = "20", across: str = "5") -> None
     scene = write(folder, int(along), int(across))
     for number, name in MODES.items():
         result, span = folder / f"mode{number}.nc", ":".join(map(str, LEVELS))
-        done = called("respond", scene, "--mode", number, "--level", span, "-o", result)
+        done = called("respond", scene, "--mode", number, "--level", span, "--max-step", STEP, "-o", result)
         print(done.err, file=sys.stderr)
         with xarray.open_dataset(result) as data:
             columns = "modal_amplitude", "frequency", "damping_ratio", "truncation_error"
