@@ -233,8 +233,8 @@ def main(out: str = "build/joint", along: str = "20", across: str = "5") -> None
         called("plot", "mode", result, "-o", folder / f"mode{number}.png")
         at = [word for one in np.interp(np.log(SHOWN), np.log(a), f) for word in ("--at", one)]
         called("plot", "contacts", result, *at, "-o", folder / f"slip{number}.png")
-    small(folder / "mode7.png", folder / "mode7.png")
-    small(folder / "slip7.png", folder / "slip7.png")
+        for picture in (folder / f"mode{number}.png", folder / f"slip{number}.png"):
+            small(picture, picture)
 
 
 if __name__ == "__main__":
