@@ -44,12 +44,15 @@ def with_static_modes(scene: Scene, tolerance: float, highest: int = 1) -> tuple
         high = modal.frequency > limit
         if modal.frequency.size - int(high.sum()) > most:
             return None
-        for directions in _choices(scene, high):
+        choices = list(_choices(scene, high))
+        for directions in choices:
             fewer = condensed(modal, directions, high)
             if fewer.frequency.size > most:
                 break
             if _linear_error(scene, replace(scene, modal=fewer)) < REDUCTION.margin * tolerance:
                 return fewer, limit
+        if len(choices) > 1:  # what is missing are combinations, at any limit
+            return None
     return None
 
 
