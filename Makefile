@@ -39,7 +39,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PHONY: help docs reference guide-figures measured oblique joint design fuzz kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence fold-curves multipliers kept-modes demo picture paper figures test test-all check tables \
-	clean bench study
+	clean bench study study-plane
 
 help:  ## this list
 	@sed -n 's/^\([a-z-]*\):.*##/  make \1  -/p' $(MAKEFILE_LIST)
@@ -145,6 +145,11 @@ study: $(VENV)/installed  ## bundled and two hundred random scenes: do three ste
 	$(BIN)/python tests/response/random_peaks.py >> build/study.partial
 	$(BIN)/python tests/response/lightly_damped.py >> build/study.partial
 	@mv build/study.partial build/study.txt; cat build/study.txt
+
+study-plane: $(VENV)/installed  ## random scenes of contacts in a plane: peaks, errors and stability against marches; half an hour
+	@mkdir -p build
+	$(BIN)/python tests/response/random_planes.py > build/study-plane.partial
+	@mv build/study-plane.partial build/study-plane.txt; cat build/study-plane.txt
 
 calibration: $(VENV)/installed  ## estimated over true errors of hard curves; some minutes
 	@mkdir -p build

@@ -116,6 +116,20 @@ def test_motions_against_a_march(oscillators, omega, sequence):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("oscillators", [ELLIPSE, OBLIQUE])
+def test_peaks_with_the_default_accuracy_against_a_march(oscillators):
+    """Within it, and the error told is the true one."""
+    scene = replace(oscillators.scene((0.6, 1.8)), harmonics=None)
+    found = fcm.respond(scene, "closed-form").sel(dof="x")
+    top, aside = float(found.peak_frequency[0]), 2e-3
+    low, middle, high = (oscillators.extrapolated(top + k * aside, 60, 200)[0] for k in (-1, 0, 1))
+    marched = middle + (high - low) ** 2 / (8.0 * (2.0 * middle - low - high))
+    error = abs(float(found.peak_amplitude[0]) / marched - 1.0)
+    assert error < 1e-3
+    assert float(found.peak_error[0]) == pytest.approx(error, rel=0.1)
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("oscillators", "omega"), [(CIRCLE, 0.9), (OBLIQUE, 0.9), (ELLIPSE, 0.9), (ELLIPSE, 1.25), (OPENS, 1.25)]
 )

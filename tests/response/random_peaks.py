@@ -106,6 +106,12 @@ def main(count: int = 200, at_once: int = 2) -> None:
         late += [seed] if some is None else []
         found += some or []
     print(f"Peaks of {count} random scenes with the accuracy {ACCURACY:g}, beside those of the exact motion;")
+    report(found)
+    print(f"not done within {SECONDS} s of a processor, or failed: {len(late)}:", sorted(late))
+
+
+def report(found: Sequence[Peak]) -> None:
+    """Print how true peaks and their errors are."""
     print(f"estimates are compared where the error or the estimate is above {SMALLEST:g}")
     print("contacts  peaks  alone  within    median    9 in 10 untold  compared in 2x  low3 high3")
     for contacts in sorted({peak.contacts for peak in found}):
@@ -119,7 +125,6 @@ def main(count: int = 200, at_once: int = 2) -> None:
     print(
         "low by more than three (seed, estimated, true):", [(p.seed, p.estimate, p.error) for p in worst[:10]]
     )
-    print(f"not done within {SECONDS} s of a processor, or failed: {len(late)}:", sorted(late))
 
 
 if __name__ == "__main__":
