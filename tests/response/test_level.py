@@ -71,8 +71,12 @@ def test_where_the_level_is_not_followed_to_its_end_branches_are_not_said_to_be_
     for frequency in (*scene.frequency_range, *resonances(system)):
         end = highest(system, frequency)
         linear = min(0.9 * least(system, frequency), 1.0)  # from where the response begins, too
-        path = level_curve(system, frequency, (0.0, end), linear=linear)
-        reached = path.parameter[-1] == pytest.approx(end)
+        exactly = level_curve(system, frequency, (0.0, end), linear=linear)
+        over_slight_corners = level_curve(
+            system, frequency, (0.0, end), linear=linear, hasty=True, lightly=True
+        )
+        paths = exactly, over_slight_corners
+        reached = any(path.parameter[-1] == pytest.approx(end) for path in paths)
         assert (frequency in curve.unsure) != reached
     assert curve.unsure and curve.summary()["branches_unsure_at"] == curve.unsure
     assert not trace(load_scene("yang1998-n5")).curves[0].unsure

@@ -7,6 +7,7 @@ from math import pi
 import pytest
 
 from fcm.scene import scene_from_dict
+from fcm.scene.listing import units_doubt
 
 from ..program import called
 
@@ -74,3 +75,18 @@ def test_the_run_goes_on(tmp_path):
     (tmp_path / "s.toml").write_text(text)
     done = called("respond", tmp_path / "s.toml")
     assert done.code == 0 and done.err.count(" right? ") == 2 and "right?" not in done.out
+
+
+def test_a_mode_that_contacts_bring_near_the_range_is_no_slip_of_units():
+    """One mode at 10 rad/s, and at 316 where the contact sticks: 31.6 times as high, as a slip in millimetres."""
+    modal = {
+        "dofs": ["u", "v"],
+        "frequency": [10.0, 1e4],
+        "damping": 0.01,
+        "shapes": [[1.0, 0.0], [0.0, 1.0]],
+    }
+    contact = {"name": "a", "tangential": "u", "normal": "v", "mu": 0.3, "k_u": 1e5, "k_v": 1.0, "n_0": 1.0}
+    rest = {"response": {"frequency": [310, 320]}, "force": [{"dof": "u", "amplitude": 1.0}]}
+    assert not units_doubt(scene_from_dict({"modal": modal, "contact": [contact], **rest}))
+    weak = contact | {"k_u": 1.0}
+    assert "give the mass in t" in units_doubt(scene_from_dict({"modal": modal, "contact": [weak], **rest}))

@@ -59,8 +59,24 @@ def units_doubt(scene: Scene) -> str:
     own = (
         modal.frequency[: modal.frequency.size - modal.added] if ring is None else ring.frequency[~ring.added]
     )
-    elastic = np.sort(own[own > 0.0])
-    return _slip_of_units(elastic, scene.frequency_range, scene.frequency_unit) if elastic.size else ""
+    elastic, ends, unit = own[own > 0.0], scene.frequency_range, scene.frequency_unit
+    slip = _slip_of_units(np.sort(elastic), ends, unit) if elastic.size else ""
+    if slip and ring is None:  # contacts that stick may bring a mode there
+        slip = _slip_of_units(np.sort(np.concatenate((elastic, _stuck(scene)))), ends, unit)
+    return slip
+
+
+def _stuck(scene: Scene) -> FloatArray:
+    """Frequencies (mode,) [rad/s] of the structure whose contacts all stick, in its modes."""
+    modal, springs = scene.modal, list[tuple[float, FloatArray]]()
+    for contact in scene.contacts:
+        springs += [(contact.k_u, contact.tangential), (contact.k_v, contact.normal)]
+        if contact.second is not None:
+            springs.append((contact.k_u, contact.second))
+    along = modal.shapes @ np.array([direction for _, direction in springs]).T / np.sqrt(modal.mass)[:, None]
+    stiffness = np.diag(modal.frequency**2) + (along * np.array([k for k, _ in springs])) @ along.T
+    squares = np.linalg.eigvalsh(stiffness)
+    return np.sqrt(squares[squares > 0.0])
 
 
 def _of_ring(scene: Scene, ring: Ring) -> dict[str, Any]:
