@@ -78,7 +78,7 @@ def test_the_run_goes_on(tmp_path):
 
 
 def test_a_mode_that_contacts_bring_near_the_range_is_no_slip_of_units():
-    """One mode at 10 rad/s, and at 316 where the contact sticks: 31.6 times as high, as a slip in millimetres."""
+    """One mode at 10 rad/s, at 316 where the contact sticks: 31.6 times as high, as by a slip of units."""
     modal = {
         "dofs": ["u", "v"],
         "frequency": [10.0, 1e4],

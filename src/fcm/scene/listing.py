@@ -61,7 +61,7 @@ def units_doubt(scene: Scene) -> str:
     )
     elastic, ends, unit = own[own > 0.0], scene.frequency_range, scene.frequency_unit
     slip = _slip_of_units(np.sort(elastic), ends, unit) if elastic.size else ""
-    if slip and ring is None:  # contacts that stick may bring a mode there
+    if slip and ring is None and scene.contacts:  # contacts that stick may bring a mode there
         slip = _slip_of_units(np.sort(np.concatenate((elastic, _stuck(scene)))), ends, unit)
     return slip
 
