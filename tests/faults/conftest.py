@@ -22,7 +22,8 @@ ONE = TITLE + oscillator("[response]\nfrequency = [0.8, 1.6]\nmax_step = 0.2\n")
 # groups of few curves, so that a short sweep is worth interrupting
 FEW = (
     "from fcm import signals\nsignals.take()\n"  # as the program does, before anything is imported
-    "import fcm.response.sweep as sweep; sweep.BATCH = 2\n"
+    "import fcm.response.options as options, fcm.response.sweep as sweep\n"
+    "sweep.SWEEP = options.SweepOptions(batch=2)\n"
 )
 TIMED = {"seconds"}  # parts of a summary that differ from run to run
 

@@ -12,6 +12,7 @@ import pytest
 import xarray
 
 import fcm
+from fcm.response.options import SweepOptions
 from fcm.run import Gone, Lost, cluster, place_of, sweep
 from fcm.run.options import RunOptions
 
@@ -240,7 +241,7 @@ class Breaks(Executor):
 
 
 def test_an_executor_that_breaks_leaves_what_is_finished(swept, alone, monkeypatch):
-    monkeypatch.setattr("fcm.response.sweep.BATCH", 4)
+    monkeypatch.setattr("fcm.response.sweep.SWEEP", SweepOptions(batch=4))
     with pytest.warns(UserWarning, match="computes nothing any more .BrokenExecutor: for a test"):
         part = fcm.respond(swept, executor=Breaks(1))
     assert part.complete.values.tolist() == [1] * 4 + [0] * 8

@@ -25,7 +25,7 @@ from fcm.run.records import Record, packed
 from ..interrupted import interrupted_beyond
 from .conftest import FEW, ONE, SWEEP, end, session, variables
 
-ALONE = FEW.replace("= 2", "= 1")
+ALONE = FEW.replace("batch=2", "batch=1")
 SLOW = (
     ALONE
     + """

@@ -11,6 +11,7 @@ import pytest
 
 import fcm
 from fcm.response import groups, sweep
+from fcm.response.options import SweepOptions
 from fcm.response.sweep import trace
 from fcm.results.result import NOT_BEGUN
 
@@ -34,7 +35,7 @@ def scene():
 
 @pytest.fixture
 def small_groups(monkeypatch):
-    monkeypatch.setattr(sweep, "BATCH", 2)
+    monkeypatch.setattr(sweep, "SWEEP", SweepOptions(batch=2))
 
 
 @pytest.fixture(scope="module")
@@ -116,7 +117,7 @@ def test_an_interrupted_sweep_is_continued(scene, small_groups, tmp_path, monkey
 @pytest.mark.parametrize("slow", [False, True])
 def test_what_is_finished_of_a_group_is_not_traced_again(scene, small_groups, tmp_path, monkeypatch, slow):
     """Be it saved when the interruption comes, or before, as the curves take long."""
-    monkeypatch.setattr(groups, "SLOW", 0.0 if slow else np.inf)
+    monkeypatch.setattr(groups, "SWEEP", SweepOptions(saved=0.0 if slow else np.inf))
     reference = trace(scene, "closed-form")
     keep = tmp_path / "a.nc.unfinished"
     with monkeypatch.context() as patch:
@@ -158,7 +159,7 @@ max_step = 0.2
 "contact.shroud.mu" = { normal = [0.4, 0.05], count = 90, seed = 1 }
 "contact.shroud.n_0" = { normal = [10, 3], count = 90, seed = 1 }
 """)
-GROUPS = "import fcm.response.sweep as sweep\nsweep.BATCH = 5"
+GROUPS = "from fcm.response import options, sweep\nsweep.SWEEP = options.SweepOptions(batch=5)"
 
 
 @pytest.mark.slow
@@ -200,9 +201,9 @@ SCRIPT = """
 from dataclasses import replace
 import fcm
 from deadly import Deadly
-from fcm.response import sweep
+from fcm.response import options, sweep
 
-sweep.BATCH = 1
+sweep.SWEEP = options.SweepOptions(batch=1)
 scene = replace(fcm.load_scene("yang1998-n5"), max_step=0.3)
 curves = [replace(scene, contacts=(replace(scene.contacts[0], n_0=n),)) for n in (50.0, 1e12, 60.0)]
 response = sweep.trace(replace(scene, curves=tuple(curves)), table=Deadly(), jobs=2)

@@ -16,6 +16,7 @@ from fcm.continuation.corrector import Newton
 from fcm.continuation.path import Path as Followed
 from fcm.response import exact_curve
 from fcm.response.exact import trace_exact
+from fcm.response.options import ExactOptions
 from fcm.response.trace import traced_curve
 from fcm.scene import Force, Modal, scene_from_dict
 from fcm.shooting import (
@@ -333,7 +334,7 @@ def test_of_a_contact_too_stiff_to_follow_it_is_said_what_would_do(monkeypatch):
     def of(k_u):
         return replace(bundled, contacts=(replace(bundled.contacts[0], k_u=k_u),))
 
-    monkeypatch.setattr("fcm.response.exact_curve.ENOUGH", 1e-9)
+    monkeypatch.setattr("fcm.response.exact_curve.EXACT_CURVES", ExactOptions(stiff=1e-9))
     curve = curve_of(of(1e12))
     said = re.fullmatch(
         r"not finished in 1e-09 s of processor time, at the start; the k_u of contact wall is 1e\+12 times "

@@ -11,6 +11,7 @@ import pytest
 
 from fcm import load_scene
 from fcm.response.exact import trace_exact
+from fcm.response.options import ExactOptions
 from fcm.time_domain import simulate
 
 from ..time_domain.cases import one_mode, two_contacts, yang
@@ -66,7 +67,7 @@ def test_a_contact_a_hundred_thousand_times_as_stiff_as_the_structure_that_stick
 
 
 def test_of_a_contact_too_stiff_to_visit_it_is_said_what_would_do(monkeypatch):
-    monkeypatch.setattr("fcm.response.exact_curve.ENOUGH", 1e-9)
+    monkeypatch.setattr("fcm.response.exact_curve.EXACT_CURVES", ExactOptions(stiff=1e-9))
     (curve,) = trace_exact(yang(k_u=1e12), [1.0, 1.3]).curves
     assert re.fullmatch(
         r"not finished in 1e-09 s of processor time, at the start; the k_u of contact \S+ is \S+ times as "

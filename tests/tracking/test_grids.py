@@ -15,6 +15,7 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import Aim, Optimum
 from fcm.response import least_peak
 from fcm.response.optimum import optimise
+from fcm.response.options import OptimumOptions
 from fcm.response.tracked_work import conditions_of
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
@@ -100,7 +101,7 @@ def test_an_optimum_short_of_the_accuracy_says_so(scene, monkeypatch):
 def test_an_optimum_short_of_the_accuracy_says_what_fewer_harmonics_found(scene, monkeypatch):
     aimed = replace(scene, optimum=Optimum((PRELOAD,), ((2.0, 20.0),), (Aim("u"),)))
     (fewer,) = optimise(aimed, harmonics=1).tracking.optima
-    monkeypatch.setattr(least_peak, "ROUNDS", 2)
+    monkeypatch.setattr(least_peak, "OPTIMUM", OptimumOptions(rounds=2))
     monkeypatch.setattr(least_peak, "AGAIN", 0.2)
     short = optimise(aimed, accuracy=1e-7)
     assert short.tracking.optima[0].error > 1e-7 and len(short.tracking.harmonics) > 1

@@ -10,10 +10,9 @@ from fcm.accuracy.options import REFINEMENT
 from fcm.accuracy.refinement import Accurate
 from fcm.accuracy.stability_limits import Lost
 from fcm.harmonic_balance.cost_model import PATIENCE
+from fcm.response.options import MESSAGES
 from fcm.scene.errors import counted
 from fcm.units import in_unit
-
-MOST_NAMES = 3  # of degrees of freedom in one sentence
 
 
 def short_of(found: Accurate, lost: Sequence[Lost], accuracy: float) -> str:
@@ -57,8 +56,8 @@ def _whose(found: Accurate, accuracy: float) -> str:
     if not 0 < off.size < len(dofs):
         return ""
     worst = off[np.argsort(-np.nan_to_num(found.peak[off], nan=np.inf), kind="stable")]
-    more = f" and {off.size - MOST_NAMES} more" if off.size > MOST_NAMES else ""
-    return f" (of {len(dofs)} peaks, those of {', '.join(dofs[i] for i in worst[:MOST_NAMES])}{more})"
+    more = f" and {off.size - MESSAGES.dofs} more" if off.size > MESSAGES.dofs else ""
+    return f" (of {len(dofs)} peaks, those of {', '.join(dofs[i] for i in worst[: MESSAGES.dofs])}{more})"
 
 
 def _of_stability(found: Accurate, off: Sequence[Lost]) -> str:

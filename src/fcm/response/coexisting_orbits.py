@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fcm.model.scene import FloatArray, Scene
+from fcm.response.options import COEXISTING
 from fcm.run import Report
 from fcm.shooting.harmonic_balance_branches import states_across
 from fcm.shooting.harmonic_balance_state import balance_solutions
@@ -29,8 +30,6 @@ from fcm.shooting.work_budget import Doubts
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.state import State
 from fcm.time_domain.system import System
-
-SAME = 1e-5  # difference of two periodic motions, relative to them, below which they are one
 
 
 @dataclass(frozen=True)
@@ -115,7 +114,7 @@ def _orbit_from(
 
 def _stable(problem: OrbitProblem, orbit: Orbit | None, known: Sequence[Sample], poll: Poll) -> Sample | None:
     """The point of a motion that is stable and not known."""
-    if orbit is None or not orbit.stable or any(_as_large(orbit, one, SAME) for one in known):
+    if orbit is None or not orbit.stable or any(_as_large(orbit, one, COEXISTING.orbits) for one in known):
         return None
     z = first_point(problem, orbit, poll)
     sample = sampled(problem, z, np.zeros(z.size))
@@ -143,7 +142,9 @@ def _simulated(
 
 def _same(one: Sample, other: Sample) -> bool:
     """Whether two motions are one; of those that do not repeat, whether they are as large."""
-    return _as_large(one, other, SHOOTING.steady.near if 0 in (one.repeats, other.repeats) else SAME)
+    return _as_large(
+        one, other, SHOOTING.steady.near if 0 in (one.repeats, other.repeats) else COEXISTING.orbits
+    )
 
 
 def _as_large(one: Sample | Orbit, other: Sample, near: float) -> bool:

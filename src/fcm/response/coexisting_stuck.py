@@ -10,11 +10,10 @@ import numpy.typing as npt
 from fcm.harmonic_balance.wave_extremes import half_peak_to_peak
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.friction_extent import NotUnique
+from fcm.response.options import COEXISTING
 from fcm.results.orbits import Stuck
 from fcm.shooting.linear_orbits import linear_motions
 from fcm.structure.loads import driven_harmonics
-
-SAME = 1e-3  # relative difference of amplitudes up to which a motion is within an extent
 
 
 def stuck_beside(
@@ -49,6 +48,6 @@ def stuck_beside(
 
 def _within(amplitude: FloatArray, least: FloatArray, greatest: FloatArray) -> bool:
     """Whether amplitudes lie in one of some extents."""
-    room = SAME * greatest
+    room = COEXISTING.within * greatest
     inside = (amplitude >= least - room) & (amplitude <= greatest + room)
     return bool(inside.all(axis=1).any())

@@ -20,6 +20,7 @@ from fcm.response.coexisting_orbits import Unreached
 from fcm.response.coexisting_search import FOUND
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.exact_curve import ExactWork
+from fcm.response.options import EXACT_CURVES, INPUT_LIMITS
 from fcm.response.request import ResponseError
 from fcm.response.resumable_branches import LEGS
 from fcm.response.ring_limits import refuse_own_laws, refuse_plane, refuse_ring
@@ -32,8 +33,6 @@ from fcm.units import UNIT
 
 METHOD = "exact"
 ONLY = "of the exact curves all points but their peaks, folds and jumps"
-FAR = 1e6  # times the highest natural frequency, beyond which a frequency is a mistake of units
-HIGHEST = 3  # harmonic up to which modes are kept as they are; what that does is measured
 
 
 def trace_exact(
@@ -121,9 +120,9 @@ class _Run:
         scenes = scene.each_curve()
         if tolerance is None:
             return self._swept(scene, scenes, progress)  # the comparison's, which leaves out by itself
-        lighter = leave_out_modes(scenes, tolerance, HIGHEST)
+        lighter = leave_out_modes(scenes, tolerance, EXACT_CURVES.highest)
         if lighter.above is not None and 2.0 * expected_effect(lighter) > tolerance:
-            lighter = leave_out_modes(scenes, 0.0, HIGHEST)
+            lighter = leave_out_modes(scenes, 0.0, EXACT_CURVES.highest)
         response, said = self._swept(scene, lighter.curves, progress), list(lighter.sentences)
         if lighter.above is not None and not response.interrupted:
             change = effect(response, lighter)
@@ -155,10 +154,11 @@ def _checked(scene: Scene, at: Sequence[float] | None) -> tuple[float, ...] | No
         what = f"{wrong[0]:g} is none" if wrong.size else "none is given"
         raise ResponseError(f"frequencies to visit must be positive numbers; {what}")
     highest = _highest(scene) / UNIT[scene.frequency_unit]
-    if highest > 0.0 and frequencies[-1] > FAR * highest:
+    if highest > 0.0 and frequencies[-1] > INPUT_LIMITS.frequency * highest:
         raise ResponseError(
             f"a frequency to visit of {frequencies[-1]:g} {scene.frequency_unit} is a mistake of units: the "
-            f"scene has no natural frequency above {highest:.2g}, and the greatest is {FAR:g} times that"
+            f"scene has no natural frequency above {highest:.2g}, and the greatest is "
+            f"{INPUT_LIMITS.frequency:g} times that"
         )
     return tuple((frequencies * UNIT[scene.frequency_unit]).tolist())
 

@@ -15,6 +15,7 @@ from fcm.response.coexisting_orbits import unreached
 from fcm.response.coexisting_search import Search
 from fcm.response.groups import Group, lost_curve
 from fcm.response.only_peaks import Alone, peaks_alone, peaks_curve, peaks_of
+from fcm.response.options import EXACT_CURVES
 from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.orbit_curve import orbit_curve, visited_curve
 from fcm.response.reinstated_contacts import Released
@@ -32,9 +33,6 @@ from fcm.shooting.trace import explore, incomplete, reached, shown
 from fcm.shooting.work_budget import Doubts
 from fcm.time_domain.errors import SimulationError
 
-FEWEST = 2  # contacts of a scene of which some may be foreseen to keep their state
-ENOUGH = 10.0  # [s] of processor time for a curve that a stiff contact may keep from ever being finished
-BESIDE = 0.5  # of the time for a curve, that the search for what leads to further branches may take
 AT_END = f"{INTERRUPTED} at its end, while other motions beside its points were sought"
 
 
@@ -77,7 +75,7 @@ class ExactWork:
         followed = _Followed(report, clock, stiff, self.periods, options=self.shooting)
         if self.only_peaks:
             return followed.peaks(scene)
-        if self.whole or len(scene.contacts) < FEWEST:
+        if self.whole or len(scene.contacts) < EXACT_CURVES.contacts:
             return followed.curve(scene)
         return followed.lightly(scene)
 
@@ -159,7 +157,9 @@ class _Followed:
             for problem, found in self.before:
                 legs.take(Released(problem, problems[0]).legs(found.found(problem)))
             self.before[:] = [(problems[0], legs)]
-            paths, without = explore(problems[0], legs, legs.poll, self.clock.share(BESIDE), self.doubts)
+            paths, without = explore(
+                problems[0], legs, legs.poll, self.clock.share(EXACT_CURVES.beside), self.doubts
+            )
             reason = incomplete(scene, paths, without)
             groups.append(OrbitBranches(problems[0], paths))
             while 2 * problems[-1].repeats <= self.periods and not reason:
@@ -230,7 +230,7 @@ def _too_stiff(scene: Scene, limit: float | None) -> tuple[str, float | None]:
     whole = scene.whole()
     resists = whole.contacts and whole.modal.frequency.all()
     stiff = too_stiff(System(whole, (1,)), moves=True) if resists else ""
-    return stiff, ENOUGH if stiff and limit is None else limit
+    return stiff, EXACT_CURVES.stiff if stiff and limit is None else limit
 
 
 def _visited(scene: Scene, at: tuple[float, ...], report: Report, limit: float | None) -> Curve:

@@ -21,6 +21,7 @@ from fcm.model.scene import FloatArray, Measured, Scene
 from fcm.nonlinear_modes.backbone import ModeError
 from fcm.response.curve_sweep import checkpoint_of
 from fcm.response.mode import check_free
+from fcm.response.options import FITTED_RESPONSE
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.sweep import trace
@@ -31,9 +32,6 @@ from fcm.run.progress import part
 from fcm.scene.draft import LEVEL, number_of
 from fcm.scene.errors import quoted
 from fcm.units import EXCITED
-
-ROUNDS = 3  # of more harmonics, until the response takes no more than the fit had
-FITTING = 0.8  # share of the bar that is over when the numbers are found
 
 
 def fit(
@@ -93,10 +91,12 @@ def _fit(
     plain = replace(scene, fit=None)
     chosen, fitted = wanted.harmonics or (1,), None
     response = Response.without_curves(plain)
-    for _ in range(ROUNDS):
+    for _ in range(FITTED_RESPONSE.rounds):
         near = None if fitted is None else fitted[1].values
         try:
-            found = _found(plain, scene, chosen, part(progress, 0.0, FITTING), near, checkpoint)
+            found = _found(
+                plain, scene, chosen, part(progress, 0.0, FITTED_RESPONSE.fitting), near, checkpoint
+            )
         except KeyboardInterrupt:
             if fitted is None:
                 raise
@@ -109,7 +109,11 @@ def _fit(
         asked = {"harmonics": chosen} if wanted.harmonics else {"accuracy": wanted.accuracy}
         try:
             response = trace(
-                there, progress=part(progress, FITTING, 1.0), keep=checkpoint, **asked, **options
+                there,
+                progress=part(progress, FITTED_RESPONSE.fitting, 1.0),
+                keep=checkpoint,
+                **asked,
+                **options,
             )
         except KeyboardInterrupt:
             response = Response.without_curves(plain)

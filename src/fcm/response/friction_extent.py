@@ -10,6 +10,7 @@ import numpy as np
 from fcm.at_rest import RestOptions
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.coexisting_search import Extents, Search
+from fcm.response.options import COEXISTING
 from fcm.response.resumable_branches import TimeOver
 from fcm.results.orbits import Stuck
 from fcm.shooting.orbit_record import Sample
@@ -20,7 +21,6 @@ from fcm.time_domain.equations import has_friction
 from fcm.time_domain.errors import SimulationError
 
 REST = RestOptions()
-UNIQUE = 1e-6  # relative range of amplitudes below which they are the same
 
 
 @dataclass
@@ -56,7 +56,11 @@ def _told(scene: Scene, points: list[Sample], out: Extents, search: Search) -> E
     """What is found at the points of one frequency."""
     families, amplitude = dict[int, Family](), out.amplitude
     for k, point in enumerate(points):
-        same = [one for one in families if np.allclose(amplitude[one], amplitude[k], rtol=UNIQUE, atol=0.0)]
+        same = [
+            one
+            for one in families
+            if np.allclose(amplitude[one], amplitude[k], rtol=COEXISTING.unique, atol=0.0)
+        ]
         found = families[same[0]] if same else _family(scene, point, out.whole, k, search.poll)
         if found is not None:
             families[k] = found
@@ -70,7 +74,9 @@ def _told(scene: Scene, points: list[Sample], out: Extents, search: Search) -> E
         least = np.min([found.least, *(one.family.least for one in those)], axis=0)
         greatest = np.max([found.greatest, *(one.family.greatest for one in those)], axis=0)
         whole = found.complete and not search.over
-        if (greatest - least > UNIQUE * greatest + REST.displacement * greatest.max(initial=0.0)).any():
+        if (
+            greatest - least > COEXISTING.unique * greatest + REST.displacement * greatest.max(initial=0.0)
+        ).any():
             out.least[k], out.greatest[k], out.whole[k] = least, greatest, whole
         elif not whole:
             out.whole[k] = 0.0

@@ -12,6 +12,7 @@ import numpy as np
 
 from fcm.branches.shared_levels import forget
 from fcm.model.scene import Scene
+from fcm.response.options import SWEEP
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.results.cause import Cause
@@ -25,7 +26,6 @@ from fcm.results.result import DEFECT, Curve
 from fcm.run import Interrupted, Lost, Report
 
 Group = Sequence[Scene]
-SLOW = 1.0  # [s] after which finished curves are saved before their group is, and no kill can lose them
 KINDS = (
     Cause,
     Curve,
@@ -59,7 +59,7 @@ class Work:
         begin, saved = time.monotonic(), len(curves)
         forget()
         for number, scene in list(enumerate(group))[len(curves) :]:
-            if time.monotonic() - begin > SLOW:
+            if time.monotonic() - begin > SWEEP.saved:
                 saved, begin = _save(curves, saved, report), time.monotonic()
             try:
                 report(number / len(group), "")

@@ -13,11 +13,10 @@ from fcm.harmonic_balance.stiff_contacts import too_stiff
 from fcm.harmonic_balance.system import System
 from fcm.harmonic_balance.well_posedness import REASONS, undetermined
 from fcm.model.scene import FloatArray
+from fcm.response.options import MESSAGES
 from fcm.units import in_unit
 
 FLOATING = "; rigid-body modes are at rest only while closed contacts hold them"
-RESONANT = 1e-5  # relative, of a harmonic's frequency where a curve stops, from a resonance that it stops at
-SOFT = 30.0  # times below that resonance a spring to the ground shifts it by 1/1800
 UNDAMPED = "; nothing damps the structure, so that it may turn back on the spot: try a damping ratio of 1e-4"
 
 
@@ -79,9 +78,9 @@ def _resonant(system: System, omega: float) -> str:
         return ""
     met = linear.stiffened(system.springs(stuck=True))
     for h in system.harmonics:
-        near = met[np.abs(met - h * omega) < RESONANT * met]
+        near = met[np.abs(met - h * omega) < MESSAGES.resonant * met]
         if near.size:
-            at, soft = (float(in_unit(x, unit)) for x in (near[0], near[0] / SOFT))
+            at, soft = (float(in_unit(x, unit)) for x in (near[0], near[0] / MESSAGES.soft))
             hold = f"try a modal.frequency of {soft:.1g} for them, with a ratio of 0.01"
             if system.scene.of_matrices:
                 spring = f"the frequencies of their modes to some {soft:.1g} {unit}"

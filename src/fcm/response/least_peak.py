@@ -11,6 +11,7 @@ from fcm.accuracy.refinement import enlarged, estimated
 from fcm.harmonic_balance.cost_model import AGAIN
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
+from fcm.response.options import OPTIMUM
 from fcm.response.request import ResponseError
 from fcm.response.tracked_work import as_curve
 from fcm.results.tracked import Optimal, TrackedCurve
@@ -24,8 +25,6 @@ from fcm.tracking.peak_envelope import UNFINISHED, Least, Target
 from fcm.tracking.stability import stability_along
 from fcm.tracking.trials import by_trials
 
-ROUNDS = 4  # of choosing harmonics by the accuracy at the optimum
-COUNTS = 1e-6  # of the greatest: peaks that are lower are none
 Found = tuple[Optimal, list[TrackedCurve]]  # an optimum, and the curves of peaks on which it is
 
 
@@ -69,8 +68,8 @@ def optimum(task: Task, harmonics: tuple[int, ...] | None, progress: Progress | 
     chosen, seconds = harmonics or (1,), AGAIN
     known: Lowest | None = None
     task.fewer = None
-    for i in range(ROUNDS):
-        shown = part(progress, i / ROUNDS, (i + 1) / ROUNDS)
+    for i in range(OPTIMUM.rounds):
+        shown = part(progress, i / OPTIMUM.rounds, (i + 1) / OPTIMUM.rounds)
         if len(task.numbers) == 1:
             task.seeking = search = _search(task, chosen)
             known = search.run(known, _sharing(shown))
@@ -104,7 +103,7 @@ def enough(
     while True:
         there = estimated(System(scene, harmonics), task.accuracy)
         height = np.max([one.amplitude.max(axis=0) for one in there.shown], axis=0, initial=0.0)[dofs]
-        worst = float(there.peak[dofs][height > COUNTS * height.max()].max(initial=0.0))
+        worst = float(there.peak[dofs][height > OPTIMUM.counts * height.max()].max(initial=0.0))
         there = replace(there, worst=worst)
         if worst <= task.accuracy:
             return harmonics, taken

@@ -30,6 +30,7 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.groups import anonymous, lost_curve
 from fcm.response.incomplete import because, no_steady_states
+from fcm.response.options import INPUT_LIMITS
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_modes
 from fcm.response.serial_sweep import one_by_one
@@ -43,9 +44,6 @@ from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
 from fcm.run import Checkpoint, Progress, fingerprint
 from fcm.scene.errors import counted
 from fcm.units import EXCITATION, UNIT, in_unit
-
-FAR = 1e6  # a level beyond this is a mistake of units
-REST = 1e-3  # a level below which there is but rest
 
 
 def trace_levels(
@@ -106,9 +104,9 @@ def level_fault(low: float, high: float) -> str:
     """What is wrong with a span of levels of the forces; empty if nothing is."""
     if fault := span_fault(low, high):
         return fault
-    if high > FAR:
-        return f"a level beyond {FAR:g} is a mistake of units"
-    return "" if high > REST else f"up to a level of {REST:g} there is but rest"
+    if high > INPUT_LIMITS.level:
+        return f"a level beyond {INPUT_LIMITS.level:g} is a mistake of units"
+    return "" if high > INPUT_LIMITS.rest else f"up to a level of {INPUT_LIMITS.rest:g} there is but rest"
 
 
 def _without(scene: Scene, omega: float, reason: str, cause: Cause = Cause.CALCULATION) -> Curve:

@@ -17,24 +17,23 @@ from fcm.accuracy.refinement import Accurate, judged
 from fcm.harmonic_balance.reported_quantities import reported
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
+from fcm.response.options import OPTIMUM
 from fcm.results.peak import Peak
 from fcm.sensitivity.between_points import tops_between
 from fcm.structure.linear import Linear, linear_of
 from fcm.structure.ring import RingLinear
 
-FEW = 50  # degrees of freedom, up to which a curve is followed by all: their peaks are points of it
-
 
 def leading(scene: Scene) -> Scene:
     """The scene at the degrees of freedom that lead in its first curve; itself if there are few."""
     dofs = scene.modal.dofs
-    if len(dofs) <= FEW:
+    if len(dofs) <= OPTIMUM.dofs:
         return scene
     natural, shapes = _modes(linear_of(scene.each_curve()[0]))
     order = np.argsort(natural)
     within = 1 + int(np.count_nonzero(natural <= scene.frequency_range[1]))
     chosen = np.zeros(len(dofs), dtype=np.bool_)
-    chosen[np.abs(shapes[order[: min(within, FEW)]]).argmax(axis=1)] = True
+    chosen[np.abs(shapes[order[: min(within, OPTIMUM.dofs)]]).argmax(axis=1)] = True
     return scene.at_attached_and(chosen)
 
 

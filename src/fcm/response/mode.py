@@ -22,6 +22,7 @@ from fcm.nonlinear_modes.backbone import Mode, ModeError, nonlinear_mode, trunca
 from fcm.nonlinear_modes.forced_response import flanks, modal_force, resonances, resonant_level
 from fcm.response.groups import anonymous, lost_curve
 from fcm.response.incomplete import because, no_steady_states
+from fcm.response.options import INPUT_LIMITS
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_other_harmonics, refuse_own_laws
 from fcm.response.serial_sweep import one_by_one
@@ -35,9 +36,6 @@ from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
 from fcm.run import Checkpoint, Progress, fingerprint
 from fcm.scene.errors import counted
 from fcm.units import in_unit
-
-WIDEST = 1e15  # ratio of amplitudes beyond which a span is a mistake
-FAR = 1e6  # a level of the forces beyond this is a mistake of units
 
 
 def trace_modes(
@@ -67,12 +65,12 @@ def trace_modes(
         If nothing is finished then; else what is finished is returned.
     """
     low, high = span
-    if not 0.0 < low < high <= WIDEST * low:
+    if not 0.0 < low < high <= INPUT_LIMITS.amplitudes * low:
         raise ResponseError(
             f"level is from {low:g} to {high:g}, but the modal amplitudes must rise, from more than 0, by at "
-            f"most a factor of {WIDEST:g}"
+            f"most a factor of {INPUT_LIMITS.amplitudes:g}"
         )
-    if not all(0.0 < level <= FAR for level in force_levels):
+    if not all(0.0 < level <= INPUT_LIMITS.level for level in force_levels):
         raise ResponseError("a level of the forces must be finite and greater than 0")
     check_free(scene)
     begin = time.perf_counter()

@@ -15,9 +15,10 @@ from fcm.continuation import Mark
 from fcm.model.scene import FloatArray, Scene
 from fcm.reduction.restore import unknowns
 from fcm.response.coexisting_search import Search
+from fcm.response.options import EXACT_CURVES, INPUT_LIMITS
 from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.orbit_curve import curve_of_points, orbit_curve
-from fcm.response.request import ACCURACY, ONE_HARMONIC, Request
+from fcm.response.request import ONE_HARMONIC, Request
 from fcm.response.trace import traced_curve
 from fcm.results.jumps import Jump, Swept
 from fcm.results.result import Curve
@@ -31,9 +32,6 @@ from fcm.shooting.periodic import Poll
 from fcm.shooting.problem import OrbitProblem
 from fcm.shooting.work_budget import Doubts
 from fcm.time_domain.errors import SimulationError
-
-HIGH = 0.9  # of the greatest amplitude of a degree of freedom: peaks of the balance that may be the highest
-NEARLY = 0.1  # error of peaks by one harmonic, beyond which one that is near enough has too many
 
 
 @dataclass(frozen=True)
@@ -53,7 +51,7 @@ def peaks_alone(scene: Scene, known: list[Sample], report: Report, poll: Poll) -
     """
     if not _leads_on(traced_curve(scene, ONE_HARMONIC, poll)):
         return None
-    balanced = traced_curve(scene, Request(None, ACCURACY), poll)
+    balanced = traced_curve(scene, Request(None, INPUT_LIMITS.accuracy), poll)
     swept = balanced.swept()
     if not balanced.complete or swept.untold or not _at_folds(swept, balanced):
         return None
@@ -108,7 +106,7 @@ def _leads_on(single: Curve) -> bool:
     Else a balance that is near enough takes longer than to follow the exact curve, and often that is
     followed after all.
     """
-    near = all(peak.error <= NEARLY for peak in single.peaks.values())
+    near = all(peak.error <= EXACT_CURVES.near for peak in single.peaks.values())
     swept = single.swept()
     told = bool(single.folds) or not swept.untold  # beside folds more harmonics tell
     return single.complete and near and told and _at_folds(swept, single)
@@ -142,7 +140,7 @@ def _summits(curve: Curve, dof: int) -> list[int]:
     """Points that are higher than their neighbours, and nearly as high as the highest."""
     a = np.where(np.isfinite(curve.amplitude[:, dof]), curve.amplitude[:, dof], -np.inf)
     padded = np.concatenate(([-np.inf], a, [-np.inf]))
-    tops = (a >= padded[:-2]) & (a >= padded[2:]) & (a >= HIGH * a.max()) & (a > 0.0)
+    tops = (a >= padded[:-2]) & (a >= padded[2:]) & (a >= EXACT_CURVES.high * a.max()) & (a > 0.0)
     return [int(k) for k in np.flatnonzero(tops)]
 
 

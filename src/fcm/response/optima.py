@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
-from fcm.response.least_peak import ROUNDS, Found, Task, enough, optimum
+from fcm.response.least_peak import Found, Task, enough, optimum
+from fcm.response.options import OPTIMUM
 from fcm.results.tracked import Optimal, TrackedCurve
 from fcm.run import Checkpoint, Progress, Results, fingerprint
 from fcm.run.progress import part
@@ -78,7 +79,7 @@ def _with_the_same(tasks: list[Task], found: list[Found], checkpoint: Checkpoint
     every = {h for one, _ in found for h in one.harmonics}
     if all(len(one.harmonics) == len(every) for one, _ in found):
         return found
-    for _ in range(ROUNDS):
+    for _ in range(OPTIMUM.rounds):
         chosen = tuple(sorted(every))
         others = [task for task, one in zip(tasks, found, strict=True) if one[0].harmonics != chosen]
         again = _sought(others, chosen, checkpoint, None)

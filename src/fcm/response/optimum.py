@@ -14,6 +14,7 @@ from fcm.model.scene import Optimum, Scene
 from fcm.response.curve_sweep import checkpoint_of
 from fcm.response.least_peak import Found, Task, with_values
 from fcm.response.optima import optima
+from fcm.response.options import OPTIMUM
 from fcm.response.request import ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.sweep import trace
@@ -28,9 +29,6 @@ from fcm.scene.draft import Draft, Number, number_of
 from fcm.scene.errors import counted
 from fcm.tracking.options import SEARCH
 from fcm.tracking.peak_envelope import UNFINISHED
-
-SEEKING = 0.8  # share of the bar that is over when the optimum is found
-SAME_PLACE = 1e-6  # relative difference of frequencies at which a peak was tracked and traced
 
 
 def optimise(
@@ -72,12 +70,12 @@ def optimise(
     wanted = request_of(scene, harmonics, accuracy)
     tasks = [Task(curve, numbers, wanted.accuracy) for curve in free.each_curve()]
     with checkpoint_of(keep, resume) as checkpoint:
-        found, stopped = optima(tasks, wanted.harmonics, checkpoint, part(progress, 0.0, SEEKING))
+        found, stopped = optima(tasks, wanted.harmonics, checkpoint, part(progress, 0.0, OPTIMUM.seeking))
         tracking = _tracking(scene.optimum, found)
         if stopped:
             return _unfinished(free, tracking, len(tasks), begin)
         there, options = _at(free, numbers, tracking.optima), {**options, "keep": checkpoint}
-        shown = part(progress, SEEKING, 1.0)
+        shown = part(progress, OPTIMUM.seeking, 1.0)
         response = trace(there, progress=shown, harmonics=tracking.harmonics, **options)
         if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
             checkpoint.done()
@@ -174,9 +172,9 @@ def _told(curve: Curve, dof: str, omega: float) -> Peak:
     That need not be its greatest amplitude, which may be at an end of the range. NaN where it is not known.
     """
     greatest, d = curve.peaks[dof], list(curve.peaks).index(dof)
-    if abs(greatest.frequency - omega) <= SAME_PLACE * omega:
+    if abs(greatest.frequency - omega) <= OPTIMUM.place * omega:
         return greatest
-    at = np.flatnonzero(np.abs(curve.frequency - omega) <= SAME_PLACE * omega)
+    at = np.flatnonzero(np.abs(curve.frequency - omega) <= OPTIMUM.place * omega)
     residual = np.nan if curve.undetermined else 0.0
     if not at.size:
         return Peak(np.nan, omega, residual=residual)

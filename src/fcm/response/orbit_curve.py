@@ -22,6 +22,7 @@ from fcm.response.coexisting_search import Search
 from fcm.response.coexisting_stuck import stuck_beside
 from fcm.response.friction_extent import NotUnique, not_unique
 from fcm.response.groups import lost_curve
+from fcm.response.options import MESSAGES
 from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.stepped_sweep import Visitor
 from fcm.response.undetermined_traction import undetermined
@@ -32,8 +33,6 @@ from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve
 from fcm.shooting.orbit_record import Sample
 from fcm.shooting.period_doubling import bifurcations, flip, flips
-
-LONGEST_REGIME = 60  # letters; a contact that chatters has more, and the rest is cut off
 
 
 def orbit_curve(groups: Sequence[OrbitBranches], reason: str, search: Search) -> Curve:
@@ -213,7 +212,7 @@ def _regimes(points: Sequence[Sample | None], contacts: int) -> npt.NDArray[np.s
 
 
 def _short(states: str) -> str:
-    return states if len(states) <= LONGEST_REGIME else states[: LONGEST_REGIME - 3] + "..."
+    return states if len(states) <= MESSAGES.states else states[: MESSAGES.states - 3] + "..."
 
 
 def _residual(amplitude: FloatArray, others: NotUnique, untold: npt.NDArray[np.bool_]) -> FloatArray:

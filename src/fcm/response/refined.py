@@ -22,9 +22,8 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.further_levels import with_levels_below_peaks, with_levels_where_unstable, with_traced
 from fcm.response.master_dofs import of_all
+from fcm.response.options import SWEEP
 from fcm.stability.bifurcations import Inserted, stability, with_points
-
-ROUNDS = 4  # of more harmonics: what then is left is said
 
 Rows = npt.NDArray[np.intp]
 Harmonics = tuple[int, ...]
@@ -71,7 +70,7 @@ def refined(found: Accurate, accuracy: float | None, scene: Scene, keep: Keep) -
     """
     now, before = Refined(found), None
     stages: Sequence[Stage] = (_with_branches, _with_events, _with_all_dofs)
-    for left in reversed(range(ROUNDS + 1)):
+    for left in reversed(range(SWEEP.rounds + 1)):
         again = None
         for stage in stages:
             now, more = stage(now, before, accuracy, scene)

@@ -17,11 +17,10 @@ from fcm.continuation.checkpoint import state_of
 from fcm.continuation.point_store import Points, Stored
 from fcm.continuation.stepper import Stepper
 from fcm.model.scene import FloatArray
+from fcm.response.options import CONTACT_CHANGES
 from fcm.response.resumable_branches import Leg, kind_of
 from fcm.shooting.problem import OrbitProblem
 from fcm.time_domain.equations import has_friction
-
-CLOSE = 1e-8  # distance, in the problem's scale, that rounding may put between the same point of two problems
 
 
 class Released:
@@ -110,7 +109,10 @@ class Released:
         if not stepper.begin(there, row):
             return None
         off = (np.asarray(stepper.here.z) - there) / np.asarray(stepper.newton.scale)
-        same = np.linalg.norm(off) < CLOSE and np.asarray(stepper.here.tangent) @ row > 1.0 - CLOSE
+        same = (
+            np.linalg.norm(off) < CONTACT_CHANGES.point
+            and np.asarray(stepper.here.tangent) @ row > 1.0 - CONTACT_CHANGES.point
+        )
         return stepper if same else None
 
     def _heading(self, checkpoint: Checkpoint) -> FloatArray:

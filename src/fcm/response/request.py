@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 
 from fcm.model.scene import Scene
+from fcm.response.options import INPUT_LIMITS
 from fcm.scene.rules import harmonics_fault, harmonics_up_to
 from fcm.table import Table
-
-ACCURACY = 1e-2  # of peaks and folds, where nothing else is said
 
 
 class ResponseError(ValueError):
@@ -29,7 +28,7 @@ class Request:
     """
 
     harmonics: tuple[int, ...] | None = (1,)
-    accuracy: float = ACCURACY
+    accuracy: float = INPUT_LIMITS.accuracy
     table: Table | None = None
     corrected: bool = True
 
@@ -50,7 +49,7 @@ def request_of(scene: Scene, harmonics: int | Sequence[int] | None, accuracy: fl
     if harmonics is None and accuracy is None:
         harmonics, accuracy = scene.harmonics, scene.accuracy
     if harmonics is None:
-        accuracy = ACCURACY if accuracy is None else accuracy
+        accuracy = INPUT_LIMITS.accuracy if accuracy is None else accuracy
         if not isinstance(accuracy, Real) or not 0.0 < accuracy < 1.0:
             value = f"{accuracy:g}" if isinstance(accuracy, Real) else repr(accuracy)
             raise ResponseError(f"accuracy is {value}, but it is a relative error between 0 and 1")

@@ -13,15 +13,12 @@ from fcm.continuation import Checkpoint, Events, FollowOptions, Path, Status, fo
 from fcm.continuation.all_branches import SAME
 from fcm.continuation.point_store import Points, Stored
 from fcm.model.scene import FloatArray
+from fcm.response.options import RESUMABLE
 from fcm.run import Report
 from fcm.shooting.orbit_record import recorded
 from fcm.shooting.period_doubling import Doubled
 from fcm.shooting.periodic import without_end
 from fcm.shooting.problem import OrbitProblem
-
-OFTEN = 0.5  # [s] between two savings of a curve that is being followed
-SHARE = 0.05  # of the time, that saving may take
-SELDOM = 0.05  # [s] between two looks at the processor time, which takes long to tell on some machines
 
 
 @dataclass(frozen=True)
@@ -78,7 +75,7 @@ class Clock:
         if self._end is not None and time.monotonic() > self._ask:
             if self.over:
                 raise TimeOver
-            self._ask = time.monotonic() + SELDOM
+            self._ask = time.monotonic() + RESUMABLE.seldom
 
 
 class Legs:
@@ -161,7 +158,7 @@ class Legs:
         self._begun = problem, checkpoint
         self._record(problem, checkpoint)
         covered = abs(float(checkpoint.z[-1]) - begin) / (self.high - self.low)
-        if time.monotonic() - self._seen > max(OFTEN, self._took / SHARE):
+        if time.monotonic() - self._seen > max(RESUMABLE.often, self._took / RESUMABLE.share):
             self.keep()
         self.report(covered, f"{checkpoint.kept.number} points")
         if self.passing is not None:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from fcm.harmonic_balance.residual_spectrum import HIGHEST
 from fcm.model.scene import Scene
+from fcm.response.options import MESSAGES
 from fcm.response.request import Request, ResponseError
 from fcm.scene.cyclic import WHOLE_RING, lacks
 from fcm.scene.errors import quoted
 from fcm.structure.loads import driven_harmonics
 
-MOST_NAMED = 6  # harmonics in a sentence
 PLANE = (
     "is computed of contacts on a line alone, between whose events the structure is linear; while one slips "
     "in a plane its direction turns with the motion: more harmonics (--harmonics, --accuracy) come as near"
@@ -82,8 +82,8 @@ def unknown(scene: Scene, wanted: Request) -> list[str]:
         assert curve.ring is not None
         lacking = curve.ring.lacking(range(1, HIGHEST + 1))
         if lacking:
-            named = ", ".join(map(str, list(lacking)[:MOST_NAMED])) + (
-                ", ..." if len(lacking) > MOST_NAMED else ""
+            named = ", ".join(map(str, list(lacking)[: MESSAGES.harmonics])) + (
+                ", ..." if len(lacking) > MESSAGES.harmonics else ""
             )
             diameters = ", ".join(map(str, sorted(set(lacking.values()))))
             found[

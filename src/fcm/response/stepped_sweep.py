@@ -17,6 +17,7 @@ import numpy as np
 
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray, Scene
+from fcm.response.options import MESSAGES, STEPPED
 from fcm.results.jumps import Jump
 from fcm.run import Report
 from fcm.shooting.fixed_frequency import correct_at_frequency
@@ -31,16 +32,6 @@ from fcm.time_domain.errors import CycleError, SimulationError
 from fcm.time_domain.simulation import cycles_from
 from fcm.time_domain.state import State
 from fcm.time_domain.system import System
-
-FAR = 0.5  # distance along the curve, in units of the motion, that is not continued at once
-ASTRAY = 0.6  # distance from what the direction foretells, relative to the way, beyond which a solution
-CLOSE = 0.05  # is another branch; but never within this distance
-SMALLEST = 1e-6  # part of the way between two frequencies that is not divided further: jumps are known to it
-BEYOND = 0.1  # part of it, past the end of a branch, where the motion is simulated: nearer it would linger
-LEAP = 0.005  # part of the frequency by which a motion that repeats after no single period is taken at once,
-ON_THE_WAY = 10  # and the cycles for which it is simulated after each leap
-MOST_NAMED = 5  # frequencies in a sentence
-JUMP = 0.01  # relative change of an amplitude that is one
 
 
 @dataclass(frozen=True)
@@ -116,8 +107,12 @@ class Visitor:
         refused = next(iter(self.refused.values()), "")
         if not self.restless:
             return refused
-        first = list(self.restless)[:MOST_NAMED]
-        more = f" and {len(self.restless) - MOST_NAMED} more" if len(self.restless) > MOST_NAMED else ""
+        first = list(self.restless)[: MESSAGES.frequencies]
+        more = (
+            f" and {len(self.restless) - MESSAGES.frequencies} more"
+            if len(self.restless) > MESSAGES.frequencies
+            else ""
+        )
         cycles = sum(self.problem.options.steady.cycles)
         restless = f"at {', '.join(first)}{more} the motion does not become steady within {cycles} cycles"
         return f"{restless}; {refused}" if refused else restless
@@ -126,7 +121,7 @@ class Visitor:
         """Bring the motion to a frequency."""
         while self._here is not None and not self._continue(omega):
             lost, before = float(self._here.z[-1]), self._sample
-            self._settle(self._here.state, lost + BEYOND * (omega - lost))
+            self._settle(self._here.state, lost + STEPPED.beyond * (omega - lost))
             after = self._sample
             if self._here is None:
                 self._settle(self._state, omega)
@@ -169,7 +164,7 @@ class Visitor:
     def _note_jump(self, sweep: str, at: float, before: Sample | None, after: Sample | None) -> None:
         if before is not None and after is not None:
             old, new = before.measure.amplitude, self._brought_back(after, at).measure.amplitude
-            if (np.abs(new - old) > JUMP * np.maximum(new, old)).any():
+            if (np.abs(new - old) > STEPPED.jump * np.maximum(new, old)).any():
                 self.jumps.append(Jump(sweep, at, old, new))
 
     def _brought_back(self, after: Sample, at: float) -> Sample:
@@ -191,7 +186,7 @@ class Visitor:
         """Follow the periodic solution to a frequency, or as near as it is stable."""
         assert self._here is not None
         step = omega - float(self._here.z[-1])
-        smallest = SMALLEST * abs(step)
+        smallest = STEPPED.smallest * abs(step)
         while (left := omega - float(self._here.z[-1])) != 0.0:
             self.poll()
             if self._near(omega if abs(step) >= abs(left) else omega - left + step):
@@ -211,20 +206,20 @@ class Visitor:
         rate = here.direction[-1]
         way = here.direction * ((omega - here.z[-1]) / rate) if rate else np.full(here.z.size, np.inf)
         length = float(np.linalg.norm(way / scale))  # of arc
-        if not length <= FAR:
+        if not length <= STEPPED.far:
             return False
         guess = here.z + way
         guess[-1] = omega
         if not correct_at_frequency(self.newton, guess, length):
             return False
         astray = float(np.linalg.norm((np.asarray(self.newton.z) - guess) / scale))
-        return astray <= max(ASTRAY * length, CLOSE) and self._take(np.array(self.newton.z))
+        return astray <= max(STEPPED.astray * length, STEPPED.close) and self._take(np.array(self.newton.z))
 
     def _sweep(self, begin: float, omega: float) -> None:
         """Simulate the way from one frequency to another: a leap may end in another motion than a sweep."""
-        count = int(np.ceil(abs(omega - begin) / (LEAP * min(omega, begin))))
+        count = int(np.ceil(abs(omega - begin) / (STEPPED.leap * min(omega, begin))))
         for between in np.linspace(begin, omega, count + 1)[1:-1].tolist():
-            for _, end in cycles_from(System(self.scene, between), ON_THE_WAY, self._state):
+            for _, end in cycles_from(System(self.scene, between), STEPPED.cycles, self._state):
                 self.poll()
                 self._state = end
 

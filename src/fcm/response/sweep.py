@@ -18,6 +18,7 @@ from fcm.reduction.restore import checked, restored
 from fcm.response.blades import with_blades
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.groups import Work
+from fcm.response.options import SWEEP
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_modes, unknown
 from fcm.response.trace import METHODS
@@ -28,9 +29,6 @@ from fcm.run.progress import part
 from fcm.structure.loads import driven_harmonics
 from fcm.table import Table
 
-BATCH = 10  # curves, which are finished or interrupted together
-HIGHEST_EXPECTED = 9  # harmonic, where an accuracy decides
-FIRST = 0.9  # share of the bar at which the curves are traced; then they are checked
 HILL = (
     "the sequence of states of contacts with laws of their own: stability is by Hill's method, with the "
     "harmonics of the balance"
@@ -125,19 +123,19 @@ def trace(
 def _traced(sweep: _Sweep, tolerance: float | None, progress: Progress | None) -> Response:
     """The curves without what they do not need; where that turns out to be needed, once more with it."""
     curves = sweep.scene.each_curve()
-    highest = max((*(sweep.wanted.harmonics or (HIGHEST_EXPECTED,)), *driven_harmonics(sweep.scene)))
+    highest = max((*(sweep.wanted.harmonics or (SWEEP.highest,)), *driven_harmonics(sweep.scene)))
     if tolerance is None or sweep.scene.ring is not None or sweep.scene.with_own_laws:
         lighter = keep_all(curves)
     else:
         lighter = leave_out(curves, tolerance, highest)
-    response, said = sweep.run(lighter, part(progress, 0.0, FIRST)), list(lighter.sentences)
+    response, said = sweep.run(lighter, part(progress, 0.0, SWEEP.traced)), list(lighter.sentences)
     if lighter.above is not None and tolerance is not None:
         shift = checked(response, lighter)
         if 2.0 * shift <= tolerance or response.interrupted:
             said.append(sentences.on_modes(lighter, shift))
         else:  # the estimate was too good: with all modes after all
             lighter = leave_out(curves, 0.0, highest)
-            response = sweep.run(lighter, part(progress, FIRST, 1.0))
+            response = sweep.run(lighter, part(progress, SWEEP.traced, 1.0))
     response = restored(response, lighter)
     response.curves = [without_rounding(one) for one in response.curves]
     if sweep.table_idle:
@@ -196,4 +194,4 @@ def _shipped_table() -> Table:
 
 def in_batches(curves: tuple[Scene, ...]) -> list[tuple[Scene, ...]]:
     """The curves in batches; each curve is computed alone, so that no result depends on them."""
-    return [curves[first : first + BATCH] for first in range(0, len(curves), BATCH)]
+    return [curves[first : first + SWEEP.batch] for first in range(0, len(curves), SWEEP.batch)]

@@ -17,6 +17,7 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import Scene
 from fcm.response.curve_sweep import checkpoint_of
 from fcm.response.master_dofs import leading
+from fcm.response.options import INPUT_LIMITS
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.tracked_work import KINDS, STATES, Followed, TrackedWork
@@ -38,7 +39,6 @@ from fcm.scene.errors import counted
 from fcm.structure.linear import linear_of
 from fcm.tracking.onset_functions import KINDS as ONSETS
 
-NARROWEST = 1e-6  # of its ends: of a narrower span not even the first steps can be told from rounding
 WHAT = ("folds", "peaks", *ONSETS)
 
 
@@ -198,7 +198,7 @@ def _check(scene: Scene, number: Number, span: tuple[float, float]) -> None:
     both = dict(enumerate(span))
     if not low < high:
         raise SpanError(both, f"{number.key} must rise")
-    if high - low < NARROWEST * max(abs(low), abs(high)):
+    if high - low < INPUT_LIMITS.narrowest * max(abs(low), abs(high)):
         raise SpanError(both, "too narrow to follow anything in", digits=17)
     if number.key == LEVEL and low <= 0.0:
         raise SpanError({0: low}, "the level must be positive: at 0 nothing moves, and nothing is special")

@@ -10,9 +10,8 @@ import numpy.typing as npt
 from fcm.harmonic_balance.residual_traction import peak_changes
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
+from fcm.response.options import CONTACT_CHANGES
 from fcm.structure.linear import Linear
-
-FELT = 1e-9  # change of a contact's load, relative to the residual friction of another: less is rounding
 
 
 def undetermined(scene: Scene, states: npt.NDArray[np.str_]) -> npt.NDArray[np.bool_]:
@@ -100,4 +99,4 @@ def _felt(scene: Scene, closed: npt.NDArray[np.bool_], stuck: npt.NDArray[np.boo
     except np.linalg.LinAlgError:  # a mode is free to drift with it
         return True
     load[whose, np.arange(whose.size)] = 0.0
-    return bool((np.abs(load[:, stuck[whose]]) > FELT).any())
+    return bool((np.abs(load[:, stuck[whose]]) > CONTACT_CHANGES.felt).any())
