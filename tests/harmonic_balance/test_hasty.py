@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from fcm.branches import force_level
-from fcm.branches.force_level import BEFORE, LEVELS, LONG, STEP, LevelOptions, level_curve, looked_at
+from fcm.branches.force_level import LEVELS, LevelOptions, level_curve, looked_at
 from fcm.branches.linear_limits import highest, least
+from fcm.branches.options import LEVEL_CURVE
 from fcm.harmonic_balance.system import System
 from fcm.scene import load_scene
 
@@ -19,11 +20,13 @@ def test_a_hasty_curve_of_many_contacts_comes_to_the_same_with_less():
     system = System(load_scene("blade").each_curve()[0], (1, 2, 3))
     hasty = careful = passed = 0
     for omega in looked_at(system):
-        linear, top = BEFORE * least(system, omega), min(highest(system, omega), 20.0)
+        linear, top = LEVEL_CURVE.before * least(system, omega), min(highest(system, omega), 20.0)
         if linear >= top:
             continue
-        one = level_curve(system, omega, (0.0, top), LONG, (1.0,), linear, hasty=True, lightly=True)
-        other = level_curve(system, omega, (0.0, top), STEP, (1.0,), linear)
+        one = level_curve(
+            system, omega, (0.0, top), LEVEL_CURVE.long, (1.0,), linear, hasty=True, lightly=True
+        )
+        other = level_curve(system, omega, (0.0, top), LEVEL_CURVE.step, (1.0,), linear)
         there, true = (path.z[path.parameter == 1.0, :-1] for path in (one, other))
         assert there == pytest.approx(true, abs=1e-9 * np.abs(other.z[:, :-1]).max())
         hasty, careful = hasty + one.evaluations, careful + other.evaluations

@@ -13,7 +13,8 @@ import numpy as np
 
 from fcm.accuracy.budget import Budget
 from fcm.accuracy.options import PairOptions
-from fcm.branches.force_level import NEAR, solutions
+from fcm.branches.force_level import solutions
+from fcm.branches.options import LEVEL_CURVE
 from fcm.continuation import Events, FollowOptions, Path, Status
 from fcm.continuation.follow import Follower
 from fcm.continuation.options import EventOptions
@@ -137,7 +138,7 @@ class Stretches:
         work, before = self.finer.work, self.finer.work.seconds
         try:
             with work.up_to(before + max(self.budget.left, 0.0)):
-                return solutions(self.finer, omega, NEAR).solutions
+                return solutions(self.finer, omega, LEVEL_CURVE.near).solutions
         except TooLongError:
             return ()
         finally:

@@ -17,33 +17,19 @@ import numpy as np
 
 from fcm.branches.level_turns import Turn, turns_of
 from fcm.branches.linear_limits import (
-    GREATEST,
     closed_at_rest,
     foresee,
     highest,
     least,
     linear_responses,
 )
+from fcm.branches.options import LEVEL_CURVE, LINEAR_LIMITS
 from fcm.branches.shared_levels import in_common, passings
 from fcm.continuation import Events, FollowOptions, Mark, Path, Status, follow
 from fcm.continuation.corrector import Newton
 from fcm.harmonic_balance.cost_model import paid, seconds_of
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
-
-WEAK = (1e-3, 1e-6, 1e-9)  # levels at which contacts are nearly linear
-BEFORE = 0.9  # times the least level at which a contact is nonlinear: up to there nothing is to be followed
-STEP = 0.2  # longest, along the curve of a level,
-LONG = 1.0  # and where its passings of the level 1 alone matter
-SHORTER = 0.5  # of that, where a curve has stalled,
-FINER = 0.25  # and where it has gone back on itself
-FEW = 5  # harmonics, whose curve tells those of more how far they are to be followed,
-UNKNOWNS = 64  # or as many as make this many unknowns
-ENOUGH = 3  # harmonics, with which a peak that one harmonic has at twice its height is within some per cent
-NEAR = 3.0  # level that a curve has to stay above for that of more harmonics not to come back to 1
-FURTHER = 2.0  # times its greatest level before, up to which that of more is followed
-ROUNDED = 1e-9  # relative, by which two ways to one level may differ
-BESIDE = 1e-4  # relative distance from a resonance, which an undamped structure has no response at
 
 
 @dataclass(frozen=True)
@@ -86,7 +72,7 @@ def solutions(system: System, omega: float, reach: float | None = None) -> Found
     it does not come back. That of fewer tells: it comes back about as far. reach is what was found with them;
     otherwise a few are taken for that.
     """
-    most, linear = highest(system, omega), BEFORE * least(system, omega)
+    most, linear = highest(system, omega), LEVEL_CURVE.before * least(system, omega)
     if len(system.scene.contacts) >= LEVELS.contacts:
         most = min(most, LEVELS.most)
     if reach is None and len(system.harmonics) > few_of(system):
@@ -132,12 +118,12 @@ def _shared(system: System, omega: float, top: float) -> Found | None:
 
     That is followed to its end, which is dear where fewer harmonics tell that less is enough.
     """
-    if not system.unit or top >= GREATEST:
+    if not system.unit or top >= LINEAR_LIMITS.greatest:
         return None
     path = in_common(system, omega, _whole)
     if path is not None:  # whoever followed it
         system.work.take(seconds_of(system, path.evaluations, len(system.harmonics)))
-    if path is None or top > (1.0 + ROUNDED) * system.unit * path.parameter[-1]:
+    if path is None or top > (1.0 + LEVEL_CURVE.rounded) * system.unit * path.parameter[-1]:
         return None
     found = passings(system, path, omega)
     if found is None:
@@ -148,17 +134,17 @@ def _shared(system: System, omega: float, top: float) -> Found | None:
 
 
 def _whole(system: System, omega: float) -> Path:
-    return _hasty(system, omega, BEFORE * least(system, omega), highest(system, omega), ())
+    return _hasty(system, omega, LEVEL_CURVE.before * least(system, omega), highest(system, omega), ())
 
 
 def _hasty(system: System, omega: float, linear: float, top: float, stations: tuple[float, ...]) -> Path:
     """The curve of the level, by long steps if those come to its end, and to its stations; shorter ones may
     where they do not."""
-    for step, lightly in ((LONG, True), (STEP, False)):
+    for step, lightly in ((LEVEL_CURVE.long, True), (LEVEL_CURVE.step, False)):
         path = level_curve(system, omega, (0.0, top), step, stations, linear, True, lightly)
         if path.status is Status.COMPLETE and not _lost(path, stations):
             return path
-    for step in (STEP, SHORTER * STEP):
+    for step in (LEVEL_CURVE.step, LEVEL_CURVE.shorter * LEVEL_CURVE.step):
         path = level_curve(system, omega, (0.0, top), step, stations, linear)
         if path.status not in (Status.STALLED, Status.AROUND):
             break
@@ -175,23 +161,23 @@ def few_of(system: System) -> int:
     """How many harmonics tell how far the level of more is to be followed."""
     layout = system.layout
     means, each = layout.directions, layout.stride
-    return min(max((UNKNOWNS // max(layout.contacts, 1) - means) // each, 1), FEW)
+    return min(max((LEVEL_CURVE.unknowns // max(layout.contacts, 1) - means) // each, 1), LEVEL_CURVE.few)
 
 
 def _reach(system: System, status: Status, levels: FloatArray) -> float:
     """Up to which level the curve of more harmonics is to be followed, if those of a system tell it."""
     if status is not Status.COMPLETE or len(system.harmonics) < few_of(system):
         return np.inf
-    near = np.flatnonzero(levels < NEAR)
-    most = float(levels[: near[-1] + 1].max()) if near.size else NEAR
-    return FURTHER * max(most, NEAR)  # however far apart the points are
+    near = np.flatnonzero(levels < LEVEL_CURVE.near)
+    most = float(levels[: near[-1] + 1].max()) if near.size else LEVEL_CURVE.near
+    return LEVEL_CURVE.further * max(most, LEVEL_CURVE.near)  # however far apart the points are
 
 
 def level_curve(
     system: System,
     omega: float,
     span: tuple[float, float],
-    step: float = STEP,
+    step: float = LEVEL_CURVE.step,
     stations: tuple[float, ...] = (1.0,),
     linear: float = 0.0,
     hasty: bool = False,
@@ -199,14 +185,15 @@ def level_curve(
 ) -> Path:
     """Response at omega against the level of the forces, from rest, or from a level up to which it is
     linear; hasty if only its stations matter, as of `follow`, lightly if slight corners are stepped over."""
-    path, low = None, max(span[0], WEAK[-1])  # a stiffened resonance may take much less than leads to it
-    for weak in WEAK:
+    # a stiffened resonance may take much less than leads to it
+    path, low = None, max(span[0], LEVEL_CURVE.weak[-1])
+    for weak in LEVEL_CURVE.weak:
         level = max(span[0], weak, linear)
         for x in linear_responses(system, omega, level):
             start, whole = np.append(x, level), (low, span[1])
             path = _raised(system, start, omega, whole, step, stations, hasty, lightly)
             if _back(path, low):
-                path = _raised(system, start, omega, whole, FINER * step, stations)
+                path = _raised(system, start, omega, whole, LEVEL_CURVE.finer * step, stations)
                 path = replace(path, status=Status.STALLED) if _back(path, low) else path
             if path.z.shape[0]:
                 return path
@@ -273,7 +260,7 @@ def with_low_harmonics(system: System, found: Sequence[Found]) -> tuple[int, ...
     level of the forces may turn back just above 1, or go on, and with three turn just below 1: its curve then
     shows nothing of what is there, and its errors are those of another motion.
     """
-    few = tuple(sorted({*system.harmonics, *range(1, min(ENOUGH, few_of(system)) + 1)}))
+    few = tuple(sorted({*system.harmonics, *range(1, min(LEVEL_CURVE.enough, few_of(system)) + 1)}))
     if few == system.harmonics:
         return few
     finer = found_at(system.with_harmonics(few), [one.omega for one in found])
@@ -288,6 +275,8 @@ def resonances(system: System) -> list[float]:
     stuck, found = system.springs(stuck=True), set[float]()
     for closed in (np.ones(stuck.size, dtype=bool), closed_at_rest(system), np.zeros(stuck.size, dtype=bool)):
         for harmonic in system.linear.driven:
-            natural = system.linear.stiffened(stuck * closed, harmonic) * (1.0 + BESIDE) / harmonic
+            natural = (
+                system.linear.stiffened(stuck * closed, harmonic) * (1.0 + LEVEL_CURVE.beside) / harmonic
+            )
             found.update(float(w) for w in natural if low < w < high)
     return sorted(found)

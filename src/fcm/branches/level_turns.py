@@ -13,18 +13,13 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
+from fcm.branches.options import LEVEL_TURNS
 from fcm.continuation import Mark, Path
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
 
 if TYPE_CHECKING:
     from fcm.harmonic_balance.system import System
-
-SHORT = 4.0  # times 1, and that part of it: between these a turn may come to 1 within a range,
-STAGE = 1.25  # by stages, each of so many times the level,
-SHORTEST = 0.5  # and this part of that where Newton's method does not lead from one to the next
-ASIDE = (0.02, 0.1)  # of its size: from a solution beside a fold to those on either side of that
-FAR = 0.5  # of a solution's size: what Newton's method finds further away has little to do with the turn
 
 
 class Loaded(Protocol):
@@ -62,7 +57,7 @@ class Turn(NamedTuple):
     @property
     def may_come(self) -> bool:
         """Whether the level may be 1 at a turn like this one within a range."""
-        return self.short and 1.0 / SHORT < self.level < SHORT
+        return self.short and 1.0 / LEVEL_TURNS.reach < self.level < LEVEL_TURNS.reach
 
     def extended(self, system: System, harmonics: tuple[int, ...]) -> Turn:
         """That of a balance with some harmonics as one of a system with more."""
@@ -98,12 +93,12 @@ def came(problem: Loaded, newton: Newton, turn: Turn) -> bool:
     along = turn.direction / np.asarray(problem.scale)
     newton.row[:] = along / np.linalg.norm(along)
     left, known = math.log(turn.level), turn.z
-    stage = left / max(math.ceil(abs(left) / math.log(STAGE)), 1)
-    shortest = stage * SHORTEST
+    stage = left / max(math.ceil(abs(left) / math.log(LEVEL_TURNS.stage)), 1)
+    shortest = stage * LEVEL_TURNS.shortest
     while left != 0.0:
         then = left - stage if abs(left) > 1.5 * abs(stage) else 0.0
         problem.load = math.exp(then)
-        if newton.correct(1.0) and newton.moved < FAR:
+        if newton.correct(1.0) and newton.moved < LEVEL_TURNS.far:
             left, known, newton.row[:] = then, np.array(newton.z), newton.tangent
         elif abs(stage) > abs(shortest):
             stage, newton.z[:] = 0.5 * stage, known
@@ -116,7 +111,7 @@ def beside(newton: Newton) -> list[FloatArray]:
     """Solutions on both sides of the one that was found last, in its plane or a little along its curve."""
     middle, along = np.array(newton.z), np.array(newton.tangent)
     found = [middle]
-    for way in (sign * aside for aside in ASIDE for sign in (-1.0, 1.0)):
+    for way in (sign * aside for aside in LEVEL_TURNS.aside for sign in (-1.0, 1.0)):
         newton.z[:], newton.row[:] = middle + way * along * np.asarray(newton.scale), along
         if newton.correct(abs(way)):
             found.append(np.array(newton.z))

@@ -12,13 +12,10 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 import numpy as np
 import numpy.typing as npt
 
+from fcm.branches.options import LINEAR_LIMITS
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Contact, FloatArray
 from fcm.structure.linear import Linear
-
-BEYOND = 3.0  # times the level at which the last contact changes what it does
-GREATEST = 1e4  # level
-MOST = 8  # systems of which linear responses are kept, as contacts of a sweep are closed at rest, or open
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -56,7 +53,7 @@ def foresee(system: System, frequencies: Sequence[float]) -> None:
     key = (*system.linear.numbers, *frequencies, held.tobytes())
     known = _KNOWN.of
     if key not in known or system.scene.ring is not None:
-        if len(known) == MOST:
+        if len(known) == LINEAR_LIMITS.kept:
             known.clear()
         known[key] = _with_springs(system, frequencies, held)
     system.on_ports.update(zip(frequencies, known[key], strict=True))
@@ -106,7 +103,7 @@ def highest(system: System, omega: float) -> float:
         for load, (variation, slip, contact) in zip(loads, _motions(system, ports, max), strict=True):
             levels += [load / variation] if variation > 0.0 else []
             levels += [2.0 * contact.mu * load / sum(slip)] if sum(slip) > 0.0 else []
-    return min(BEYOND * max(levels), GREATEST)
+    return min(LINEAR_LIMITS.beyond * max(levels), LINEAR_LIMITS.greatest)
 
 
 def least(system: System, omega: float) -> float:
@@ -114,7 +111,7 @@ def least(system: System, omega: float) -> float:
     have a say in that."""
     if system.scene.loads or system.own_laws:
         return 0.0
-    levels = [GREATEST]
+    levels = [LINEAR_LIMITS.greatest]
     for variation, slip, contact in _motions(system, _on_ports(system, omega)[0], sum):
         levels += [abs(contact.n_0) / variation] if variation > 0.0 else []
         closed = contact.n_0 > 0.0 and contact.mu > 0.0 and max(slip) > 0.0

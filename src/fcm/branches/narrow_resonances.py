@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from fcm.branches.options import LINEAR_LIMITS
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.structure.linear import Linear
 from fcm.structure.ring import RingLinear
-
-MOST = 200  # places; of more the widest, and so those of the lowest harmonics, as each costs a point
 
 
 def narrow(system: System) -> list[tuple[float, float]]:
@@ -28,7 +27,7 @@ def narrow(system: System) -> list[tuple[float, float]]:
             for place, width in zip(natural / order, damping * natural / order, strict=True):
                 if low < place < high and width > 0.0:
                     found.setdefault(float(place), float(width))
-    return sorted(found.items(), key=lambda one: -one[1])[:MOST]
+    return sorted(found.items(), key=lambda one: -one[1])[: LINEAR_LIMITS.places]
 
 
 def _met(linear: Linear, order: int, springs: FloatArray) -> tuple[FloatArray, FloatArray]:

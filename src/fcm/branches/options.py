@@ -100,3 +100,131 @@ class BranchingOptions:
 
 
 BRANCHING = BranchingOptions()
+
+
+@dataclass(frozen=True)
+class LevelCurveOptions:
+    """How the level of the forces is followed at one frequency, from rest.
+
+    Levels are relative to that of the scene. Steps are lengths along the curve in its scaled unknowns, where
+    the level is measured by itself.
+
+    Attributes
+    ----------
+    weak : tuple of float
+        Levels at which contacts are nearly linear.
+    before : float
+        Times the least level at which a contact is nonlinear: up to there nothing is to be followed.
+    step : float
+        Longest step,
+    long : float
+        and where the passings of the level 1 alone matter.
+    shorter : float
+        Part of the longest step, where a curve has stalled,
+    finer : float
+        and where it has gone back on itself.
+    few : int
+        Harmonics whose curve tells those of more how far they are to be followed,
+    unknowns : int
+        or as many as make this many unknowns.
+    enough : int
+        Harmonics with which a peak that one harmonic has at twice its height is within some per cent.
+    near : float
+        Level that a curve has to stay above for that of more harmonics not to come back to 1.
+    further : float
+        Times its greatest level before, up to which that of more harmonics is followed.
+    rounded : float
+        Relative difference by which two ways to one level may differ.
+    beside : float
+        Relative distance from a resonance, which an undamped structure has no response at.
+    """
+
+    weak: tuple[float, ...] = (1e-3, 1e-6, 1e-9)
+    before: float = 0.9
+    step: float = 0.2
+    long: float = 1.0
+    shorter: float = 0.5
+    finer: float = 0.25
+    few: int = 5
+    unknowns: int = 64
+    enough: int = 3
+    near: float = 3.0
+    further: float = 2.0
+    rounded: float = 1e-9
+    beside: float = 1e-4
+
+
+LEVEL_CURVE = LevelCurveOptions()
+
+
+@dataclass(frozen=True)
+class LevelTurnOptions:
+    """How turns of the level of the forces are brought to the level 1.
+
+    Attributes
+    ----------
+    reach : float
+        Turns between this level and its reciprocal may come to 1 within a range,
+    stage : float
+        by stages, each of so many times the level,
+    shortest : float
+        and this part of that where Newton's method does not lead from one to the next.
+    aside : tuple of float
+        Part of a solution's size: from one beside a fold to those on either side of the fold.
+    far : float
+        Part of a solution's size: what Newton's method finds further away has little to do with the turn.
+    """
+
+    reach: float = 4.0
+    stage: float = 1.25
+    shortest: float = 0.5
+    aside: tuple[float, ...] = (0.02, 0.1)
+    far: float = 0.5
+
+
+LEVEL_TURNS = LevelTurnOptions()
+
+
+@dataclass(frozen=True)
+class LinearLimitOptions:
+    """Up to which level contacts change what they do; levels are relative to that of the scene.
+
+    Attributes
+    ----------
+    beyond : float
+        Times the level at which the last contact changes what it does, up to which the level is followed,
+    greatest : float
+        but no further than this level.
+    kept : int
+        Systems of which linear responses are kept, as contacts of a sweep are closed at rest, or open.
+    places : int
+        Narrow resonances that are looked at; of more the widest, and so those of the lowest harmonics, as
+        each costs a point.
+    """
+
+    beyond: float = 3.0
+    greatest: float = 1e4
+    kept: int = 8
+    places: int = 200
+
+
+LINEAR_LIMITS = LinearLimitOptions()
+
+
+@dataclass(frozen=True)
+class SharedLevelOptions:
+    """How curves of the level are shared by systems of other preloads.
+
+    Attributes
+    ----------
+    kept : int
+        Curves that are kept for each thread.
+    outside : float
+        Part of the way from a point to the next, by which a solution between them may lie beyond.
+    """
+
+    kept: int = 32
+    outside: float = 1e-3
+
+
+SHARED_LEVELS = SharedLevelOptions()

@@ -14,12 +14,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from fcm.branches.options import SHARED_LEVELS
 from fcm.continuation import Path, Status
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
-
-MOST = 32  # curves that are kept for each thread
-OUTSIDE = 1e-3  # of the way from a point to the next, by which a solution between them may lie beyond
 
 Followed = Callable[[System, float], Path]
 
@@ -51,7 +49,7 @@ def in_common(system: System, omega: float, followed: Followed) -> Path | None:
         return kept[key]
     path = followed(system.normal, omega)
     kept[key] = path if path.status is Status.COMPLETE else None
-    if len(kept) > MOST:
+    if len(kept) > SHARED_LEVELS.kept:
         kept.popitem(last=False)
     return kept[key]
 
@@ -95,4 +93,4 @@ def _between(system: System, omega: float, ends: FloatArray, part: float) -> Flo
         return None
     x = np.array(newton.z)[:-1]
     along = float(((x - ends[0]) / unit) @ way) / length**2
-    return x if -OUTSIDE <= along <= 1.0 + OUTSIDE else None
+    return x if -SHARED_LEVELS.outside <= along <= 1.0 + SHARED_LEVELS.outside else None

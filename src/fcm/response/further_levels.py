@@ -15,8 +15,8 @@ import numpy as np
 
 from fcm.accuracy.outline import Outline
 from fcm.accuracy.refinement import Accurate, judged
-from fcm.branches.force_level import NEAR, Found, resonances, solutions
-from fcm.branches.options import LEVELS, LevelOptions
+from fcm.branches.force_level import Found, resonances, solutions
+from fcm.branches.options import LEVEL_CURVE, LEVELS, LevelOptions
 from fcm.branches.prolongation import at_its_frequency
 from fcm.branches.trace import Traced, with_further
 from fcm.harmonic_balance.reported_quantities import reported, reported_at
@@ -96,7 +96,7 @@ def _looks(system: System, stretches: Iterable[Stretch], options: LevelOptions) 
             low, high = left.pop()
             middle = 0.5 * (low + high)
             try:
-                yield solutions(system, middle, NEAR)
+                yield solutions(system, middle, LEVEL_CURVE.near)
             except TooLongError:
                 return
             if high - low > options.wide * (last - first):

@@ -91,20 +91,20 @@ def _followed(
     problem: LevelProblem, one: System, known: Sequence[FloatArray], poll: Poll, found: list[FloatArray]
 ) -> bool:
     """Whether the level was followed to its end; what it leads to is added to what is found."""
-    from fcm.branches.force_level import BEFORE, WEAK
     from fcm.branches.level_turns import turns_of
     from fcm.branches.linear_limits import least
+    from fcm.branches.options import LEVEL_CURVE
 
     omega, options = problem.omega, problem.options
 
     def passes(path: Path) -> None:
         found.extend(np.append(z[:-1], omega) for z in path.z[path.parameter == 1.0])
 
-    linear, top = BEFORE * least(one, omega), _top(one, omega, options)
+    linear, top = LEVEL_CURVE.before * least(one, omega), _top(one, omega, options)
     if linear >= top:
         return True
     linear, along = min(linear, 1.0), _Along(poll, passes)
-    span = options.level.linear * max(linear, WEAK[0]), top
+    span = options.level.linear * max(linear, LEVEL_CURVE.weak[0]), top
     rest = _from_rest(problem, linear, span, along)
     if rest is None:
         return False
@@ -177,10 +177,10 @@ def _at_turns(
 
 def _begun(problem: LevelProblem, linear: float) -> Iterator[FloatArray]:
     """The motions (unknown + 1,) at levels at which contacts are linear, or nearly so."""
-    from fcm.branches.force_level import WEAK
+    from fcm.branches.options import LEVEL_CURVE
 
     newton = Newton(problem)
-    for level in dict.fromkeys(max(weak, linear) for weak in WEAK):
+    for level in dict.fromkeys(max(weak, linear) for weak in LEVEL_CURVE.weak):
         for state in about_rest(problem.scene, problem.omega, level):
             z = np.append(problem.shooting.unknowns(state), level)
             if correct_at_frequency(newton, z):
@@ -190,8 +190,9 @@ def _begun(problem: LevelProblem, linear: float) -> Iterator[FloatArray]:
 
 def _top(one: System, omega: float, options: ShootingOptions = SHOOTING) -> float:
     """Up to which level the curve is followed: as that of a few harmonics comes back."""
-    from fcm.branches.force_level import FURTHER, NEAR, solutions
+    from fcm.branches.force_level import solutions
     from fcm.branches.linear_limits import highest
+    from fcm.branches.options import LEVEL_CURVE
 
     reach = solutions(one.with_harmonics(options.balance.few), omega).reach
-    return min(highest(one, omega), reach if np.isfinite(reach) else FURTHER * NEAR)
+    return min(highest(one, omega), reach if np.isfinite(reach) else LEVEL_CURVE.further * LEVEL_CURVE.near)
