@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from fcm.accuracy.embedded_pair import errors_along
-from fcm.accuracy.options import PAIR
+from fcm.accuracy.options import PAIR, VALIDITY
 from fcm.accuracy.refinement import estimated
-from fcm.accuracy.stability_validity import BELIEVED, astray
+from fcm.accuracy.stability_validity import astray
 from fcm.continuation import Mark, Status
 from fcm.harmonic_balance.system import System
 from fcm.response import trace
@@ -186,13 +186,15 @@ def test_beside_what_is_astray_many_harmonics_have_no_motion(seed, harmonics):
     (path,), (errors,) = found.traced.branches.paths, found.errors
     far = np.flatnonzero(astray(errors.believed))
     assert len(far) > 64
-    assert np.mean(errors.truncation[far] <= BELIEVED) < 0.1  # from what else there is at that frequency
+    assert (
+        np.mean(errors.truncation[far] <= VALIDITY.believed) < 0.1
+    )  # from what else there is at that frequency
     truth = Truth(found.system)
     some = far[np.linspace(0, len(far) - 1, 12).astype(int)]
     lost = [truth.beside(path.z[i], path.direction[i]) is None for i in some]
     assert np.mean(lost) > 0.9
     (curve,) = trace(one, harmonics=harmonics).curves
-    beyond = np.isfinite(curve.frequency) & ~(curve.truncation_error <= BELIEVED)
+    beyond = np.isfinite(curve.frequency) & ~(curve.truncation_error <= VALIDITY.believed)
     assert beyond.sum() > 64
     assert not (curve.stable[beyond] == 1.0).any()
 

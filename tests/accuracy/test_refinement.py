@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fcm.accuracy import outline, refinement
+from fcm.accuracy.options import RefinementOptions
 from fcm.accuracy.outline import Outline, outlined
 from fcm.accuracy.refinement import accurate, enlarged, estimated, judged
 from fcm.branches import force_level, shared_levels, trace
@@ -286,11 +287,11 @@ def test_where_nothing_is_told_of_more_harmonics_they_take_no_longer_than_some_s
     """The lowest three are added all the same: one harmonic may have a branch of no motion at all."""
     own = refinement.required_harmonics
     monkeypatch.setattr(refinement, "required_harmonics", lambda *a: replace(own(*a), change=0.0, told=False))
-    monkeypatch.setattr(outline, "DOUBTFUL", 0.0)
+    monkeypatch.setattr(outline, "REFINEMENT", RefinementOptions(doubtful=0.0))
     found = accurate(System(scene("yang1998", 5)), 1e-4)
     assert found.system.harmonics == (1, 2, 3) and not found.reached
     assert set(found.further) > {1, 2, 3} and not found.begun
-    monkeypatch.setattr(outline, "DOUBTFUL", np.inf)
+    monkeypatch.setattr(outline, "REFINEMENT", RefinementOptions(doubtful=np.inf))
     assert set(accurate(System(scene("yang1998", 5)), 1e-4).system.harmonics) > {1, 2, 3}
 
 

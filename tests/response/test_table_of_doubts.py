@@ -7,9 +7,10 @@ import netCDF4
 import pytest
 
 from fcm.accuracy import outline, stability_validity
+from fcm.accuracy.options import RefinementOptions, ValidityOptions
 from fcm.branches import force_level, search
 from fcm.branches.isolas import Crossings
-from fcm.response import level, mode
+from fcm.response import level, mode, tracked_work
 
 from .test_doubts_of_analyses import CREEPING
 
@@ -142,8 +143,8 @@ def test_what_creeps_is_no_steady_state(fcm, tmp_path, analysis):
 
 @pytest.mark.parametrize("analysis", [*MISSED])
 def test_what_misses_the_accuracy_says_so(fcm, tmp_path, monkeypatch, analysis):
-    for name in ("PATIENCE", "DOUBTFUL"):
-        monkeypatch.setattr(outline, name, 0.0)
+    monkeypatch.setattr(outline, "PATIENCE", 0.0)
+    monkeypatch.setattr(outline, "REFINEMENT", RefinementOptions(doubtful=0.0))
     for module in (level, mode):
         monkeypatch.setattr(module, "with_twice_as_many", lambda *_: None)
     done, found = run(fcm, tmp_path, PAIR, analysis, "--accuracy", 1e-7)
@@ -157,8 +158,8 @@ def test_what_misses_the_accuracy_says_so(fcm, tmp_path, monkeypatch, analysis):
 @pytest.mark.slow
 @pytest.mark.parametrize("analysis", [one for one in MISSED if one != "mode"])
 def test_where_stability_is_not_told_no_peak_is_without_that_word(fcm, tmp_path, monkeypatch, analysis):
-    for module in (stability_validity, level):
-        monkeypatch.setattr(module, "BELIEVED", 0.0)
+    for module in (stability_validity, level, tracked_work):
+        monkeypatch.setattr(module, "VALIDITY", ValidityOptions(believed=0.0))
     extra, options = ANALYSES[analysis]
     (tmp_path / "s.toml").write_text(PAIR + extra)
     said = fcm("respond", "s.toml", *FEW, *options).out

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.contact_load_errors import relative
-from fcm.accuracy.options import PAIR, PairOptions
+from fcm.accuracy.options import PAIR, VALIDITY, PairOptions
 from fcm.accuracy.partner import partner_of
 from fcm.continuation import Path
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
@@ -19,8 +19,6 @@ from fcm.harmonic_balance.response_quantities import borne_along, recorded_at_le
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.floquet import multipliers_of
-
-FAR = 0.5  # a change of this part of the greatest displacement is not believed: another branch may be there
 
 
 def stable_at_levels(system: System, z: FloatArray, even: npt.NDArray[np.bool_]) -> FloatArray:
@@ -66,7 +64,7 @@ def errors_at_levels(
     there, theirs = _balanced(system, system.with_harmonics(more), z[bent], level[bent], even[bent])
     now, size = amplitude[bent], amplitude[bent].max(axis=1, keepdims=True)
     change = np.abs(there - now)
-    far = (change > FAR * size).any(axis=1)
+    far = (change > VALIDITY.changed * size).any(axis=1)
     change[far], theirs[far] = np.nan, np.nan
     error[bent] = change / np.where(now > 0.0, now, 1.0)
     of_borne[bent] = relative(theirs - borne[bent], borne[bent], borne.max(axis=0), options)

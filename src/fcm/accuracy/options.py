@@ -83,6 +83,14 @@ class PairOptions:
         the last that is looked at, and the multiplications of modes that this may take.
     samples : int
         Of the period of the highest harmonic.
+    enough : float
+        Part of a displacement: when a step of Newton's method was less than this, what is left is far less.
+    kept : int
+        Balances that are kept for the next curve.
+    at_once : int
+        Places that are compared with all points of a curve.
+    around : int
+        Points to either side of the highest that may be higher where they are only interpolated.
     rounding : float
         Part of the greatest of a force, slip or energy of a contact: differences of this are nothing.
     """
@@ -126,6 +134,10 @@ class PairOptions:
     farthest: int = 1024
     products: int = 10_000_000
     samples: int = 8
+    enough: float = 0.01
+    kept: int = 24
+    at_once: int = 256
+    around: int = 8
     rounding: float = 1e-9
 
 
@@ -158,6 +170,10 @@ class RefinementOptions:
         Points to either side of a top, where the partner may be found if it is not at the top.
     folds : int
         Folds of a branch that are looked at, at most.
+    low : int
+        Harmonic up to which no single one is left out: stability between folds may hang on it.
+    doubtful : float
+        [s] that rounds may take of which nothing tells that they bring the accuracy nearer.
     """
 
     rounds: int = 8
@@ -169,6 +185,67 @@ class RefinementOptions:
     nothing: float = 1e-6
     beside: tuple[int, ...] = (1, 2, 4, 8)
     folds: int = 24
+    low: int = 3
+    doubtful: float = 3.0
 
 
 REFINEMENT = RefinementOptions()
+
+
+@dataclass(frozen=True)
+class ValidityOptions:
+    """Up to which errors the stability of solutions is told.
+
+    Attributes
+    ----------
+    believed : float
+        Estimated relative error of the amplitudes, up to which a solution is called stable.
+    at_fold : float
+        Part of its frequency, by which a fold may be moved where nothing is said of the accuracy.
+    row : int
+        Points in a row without a partner, after which a branch is not one of more harmonics.
+    changed : float
+        Part of the greatest displacement: a change by more is not believed, as another branch may be there.
+    """
+
+    believed: float = 0.2
+    at_fold: float = 1e-2
+    row: int = 64
+    changed: float = 0.5
+
+
+VALIDITY = ValidityOptions()
+
+
+@dataclass(frozen=True)
+class StabilityLimitOptions:
+    """How the limits of stability of more harmonics are found beside those of fewer.
+
+    Attributes
+    ----------
+    far : float
+        Points to either side up to which the crossing of more harmonics is sought,
+    first : float
+        from these on.
+    fine : float
+        Part of the way between two points, to which it is found: an error is told to a few parts of itself,
+    part : float
+        or to this part of itself, and of what it may be,
+    looks : int
+        with so many looks at most.
+    least : float
+        Growth over a period, logarithmic, that is as good as any that is less.
+    same : float
+        Part of the way to any other crossing, within which that of more harmonics is that of fewer.
+    """
+
+    far: float = 32.0
+    first: float = 0.5
+    fine: float = 1e-5
+    part: float = 0.03
+    looks: int = 40
+    least: float = -0.3
+    same: float = 0.1
+
+
+STABILITY_LIMITS = StabilityLimitOptions()

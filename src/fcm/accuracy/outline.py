@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from fcm.accuracy.options import REFINEMENT
 from fcm.branches.force_level import Found
 from fcm.branches.prolongation import prolongated
 from fcm.branches.trace import Traced, traced, traced_from, with_levels
@@ -21,9 +22,6 @@ from fcm.harmonic_balance.reported_quantities import Reported, reported
 from fcm.harmonic_balance.system import System
 from fcm.harmonic_balance.work_budget import TooLongError
 from fcm.model.scene import FloatArray
-
-LOW = 3  # up to this no single harmonic is left out: stability between folds may hang on it
-DOUBTFUL = 3.0  # seconds that rounds may take of which nothing tells that they bring the accuracy nearer
 
 
 @dataclass(frozen=True)
@@ -60,7 +58,7 @@ class Outline:
 
         The lowest stay: a branch of one harmonic may be of no motion at all.
         """
-        least = {*self.system.harmonics, *range(1, LOW + 1)}
+        least = {*self.system.harmonics, *range(1, REFINEMENT.low + 1)}
         while self.seconds_with(more) > seconds and not least.issuperset(more):
             highest = max(set(more) - least)
             more = tuple(h for h in more if h != highest)
@@ -123,7 +121,7 @@ def with_more(
     been begun. told: whether something tells that they bring the accuracy nearer."""
     work, wanted = found.system.work, more
     if not told:
-        more = found.within(DOUBTFUL - work.seconds, more)
+        more = found.within(REFINEMENT.doubtful - work.seconds, more)
     if more == found.system.harmonics:
         return None, () if more == wanted else wanted, False
     if work.seconds + found.seconds_with(more) > PATIENCE:

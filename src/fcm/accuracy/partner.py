@@ -14,9 +14,6 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.scene.options import LIMITS
 
-ENOUGH = 0.01  # of a displacement: when a Newton step was less than this, what is left is far less
-MOST = 24  # balances that are kept for the next curve
-
 
 def partner_of(
     harmonics: Sequence[int], share: FloatArray, ports: int, options: PairOptions = PAIR
@@ -69,7 +66,7 @@ def lifted_of(system: System, more: tuple[int, ...]) -> Lifted:
     others. Nobody else has it until it is given back, see `give_back`."""
     made = _KEPT.of.pop(_key(system, more), None) if _plain(system) else None
     if made is None:
-        return Lifted(system.with_harmonics(more).balance(), list(system.harmonics), list(more), ENOUGH)
+        return Lifted(system.with_harmonics(more).balance(), list(system.harmonics), list(more), PAIR.enough)
     contacts = system.scene.contacts
     made.take(list(system.harmonics), [(c.mu, c.k_u, c.k_v, c.n_0) for c in contacts])
     return made
@@ -79,7 +76,7 @@ def give_back(lifted: Lifted, system: System, more: tuple[int, ...]) -> None:
     """Keep what `lifted_of` the same has made for the next curve."""
     if _plain(system):
         _KEPT.of[_key(system, more)] = lifted
-        if len(_KEPT.of) > MOST:
+        if len(_KEPT.of) > PAIR.kept:
             _KEPT.of.popitem(last=False)
 
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from fcm.accuracy.budget import Budget
 from fcm.accuracy.curve_distance import Displacement, Filled, places, shifted, steepness
-from fcm.accuracy.options import PairOptions
+from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.partner import give_back, lifted_of, partner_of
 from fcm.accuracy.partner_pieces import CurvePiece, distinct, piece_of, piece_through, rates
 from fcm.accuracy.partner_stretch import Piece, Stretches
@@ -27,7 +27,6 @@ from fcm.model.scene import FloatArray
 
 Indices = npt.NDArray[np.intp]
 Mask = npt.NDArray[np.bool_]
-AT_ONCE = 256  # places that are compared with all points of a curve
 
 
 @dataclass(frozen=True)
@@ -413,8 +412,8 @@ class PartnerCurve:
         has fewer."""
         own = self.path.parameter[max(rows[0] - 1, 0) : rows[-1] + 2]
         number, offset = np.full(len(rows), -1, dtype=np.intc), rows[0] - max(rows[0] - 1, 0)
-        for first in range(0, len(rows), AT_ONCE):
-            some = np.arange(first, min(first + AT_ONCE, len(rows)))
+        for first in range(0, len(rows), PAIR.at_once):
+            some = np.arange(first, min(first + PAIR.at_once, len(rows)))
             omega = self.path.parameter[rows[some]]
             mine = _passed(own, omega)
             count = np.zeros(len(some), dtype=np.intp)

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from fcm.accuracy.curve_distance import rises
+from fcm.accuracy.options import PAIR
 from fcm.accuracy.partner_curve import Followed, Indices, PartnerCurve
 from fcm.continuation import Mark
 from fcm.model.scene import FloatArray
-
-NEAR = 8  # points to either side of the highest that may be higher where they are only interpolated
 
 
 def heights(partner: PartnerCurve, change: FloatArray, followed: list[Followed], tops: Indices) -> FloatArray:
@@ -53,7 +52,7 @@ def _highest(partner: PartnerCurve, change: FloatArray) -> tuple[FloatArray, Ind
     """Changes (point, dof) and where (dof,) with them the partner is highest of the points where it is found:
     also at those near the highest that are expected to be higher, as an interpolated one may be, by more than
     nothing."""
-    change, count, near = change.copy(), len(change), np.arange(-NEAR, NEAR + 1)[:, None]
+    change, count, near = change.copy(), len(change), np.arange(-PAIR.around, PAIR.around + 1)[:, None]
     while True:
         expected = partner.amplitude + partner.unit * change
         value = np.where(partner.known[:, None] & np.isfinite(change), expected, 0.0)

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.options import PAIR, REFINEMENT, PairOptions, RefinementOptions
-from fcm.accuracy.outline import LOW, Outline
+from fcm.accuracy.outline import Outline
 from fcm.accuracy.partner import give_back, lifted_of, partner_of
 from fcm.continuation import Mark, Path
 from fcm.harmonic_balance.normal_plane_prolongation import Lifted
@@ -95,7 +95,7 @@ def needed(
     count = 1 + int(np.count_nonzero(gain * left > options.spare * accuracy))
     count = min(count, max(options.first, options.times * len(harmonics)), HIGHEST - len(harmonics))
     chosen = {int(k) + 1 for k in order[:count] if share[k] > 0.0}
-    low = range(1, LOW + 1) if chosen else ()
+    low = range(1, options.low + 1) if chosen else ()
     return tuple(sorted({*harmonics, *chosen, *low}))
 
 

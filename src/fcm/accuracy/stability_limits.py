@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fcm.accuracy.options import AT_POINTS
+from fcm.accuracy.options import AT_POINTS, STABILITY_LIMITS
 from fcm.accuracy.partner import give_back, lifted_of, partner_of
 from fcm.accuracy.required_harmonics import RequiredHarmonics, needed
 from fcm.continuation import Path, Segment
@@ -25,14 +25,6 @@ from fcm.harmonic_balance.system import System
 from fcm.stability.along_branch import EITHER
 from fcm.stability.floquet import multipliers_of
 from fcm.stability.inserted_points import Crossing
-
-FAR = 32.0  # points to either side up to which the crossing of more harmonics is sought, from these on:
-FIRST = 0.5
-FINE = 1e-5  # of the way between two points, to which it is found: an error is told to a few parts of itself,
-PART = 0.03  # or to this part of itself, and of what it may be
-LEAST = -0.3  # growth that is as good as any that is less
-LOOKS = 40
-SAME = 0.1  # of the way to any other crossing, within which that of more harmonics is that of fewer
 
 
 @dataclass(frozen=True)
@@ -58,14 +50,14 @@ def lost_along(
 
 def moved(lost: Sequence[Lost], fewer: Sequence[Lost]) -> list[Lost]:
     """Crossings of a response, and where more harmonics do not tell the error of one, how far it is from
-    where fewer have it: of one that is `SAME` in both."""
+    where fewer have it: of one that is the same in both."""
     return [_moved(one, lost, fewer) if math.isnan(one.error) else one for one in lost]
 
 
 def _moved(one: Lost, lost: Sequence[Lost], fewer: Sequence[Lost]) -> Lost:
     off, *others = sorted([math.inf, math.inf, *(abs(other.frequency - one.frequency) for other in fewer)])
     others += [abs(other.frequency - one.frequency) for other in lost if other is not one]
-    return replace(one, error=off / one.frequency) if off < SAME * min(others) else one
+    return replace(one, error=off / one.frequency) if off < STABILITY_LIMITS.same * min(others) else one
 
 
 def _lost(
@@ -80,7 +72,7 @@ def _lost(
         return Lost(one.frequency, 0.0, more)
     if more not in known:
         known[more] = _Beside(system.with_harmonics(more), path, lifted_of(system, more), system)
-    found = known[more].crossing(one, PART * accuracy)
+    found = known[more].crossing(one, STABILITY_LIMITS.part * accuracy)
     error = abs(found / one.frequency - 1.0)
     ahead = RequiredHarmonics(
         0.0 if math.isnan(error) else error, not math.isnan(error), share[:HIGHEST], more
@@ -114,36 +106,37 @@ class _Beside:
         self.frequency = float(self.lifted.newton.z[-1])
         z = np.array(self.lifted.newton.z)
         alone = self.multipliers.verdict(z, enough=EITHER).growth
-        return max(self.multipliers.verdict(z).growth if math.isnan(alone) else alone, LEAST)
+        growth = self.multipliers.verdict(z).growth if math.isnan(alone) else alone
+        return max(growth, STABILITY_LIMITS.least)
 
     def crossing(self, one: Crossing, fine: float) -> float:
         """The frequency at which growth changes its sign next to a crossing; NaN where that is not found.
 
-        To `FINE`, or until two looks are at frequencies that differ by less than fine, relative, or by less
-        than `PART` of how far they are from the crossing.
+        To within `StabilityLimitOptions.fine`, or until two looks are at frequencies that differ by less than
+        fine, relative, or by less than `StabilityLimitOptions.part` of how far they are from the crossing.
         """
         near = self._enclosed(one.place)
         if near is None:
             return math.nan
-        for _ in range(LOOKS):
+        for _ in range(STABILITY_LIMITS.looks):
             at, before = near.at, self.frequency
             value = self.growth(at)
-            if math.isnan(value) or near.width < FINE:
+            if math.isnan(value) or near.width < STABILITY_LIMITS.fine:
                 break
-            off = max(fine * one.frequency, PART * abs(self.frequency - one.frequency))
+            off = max(fine * one.frequency, STABILITY_LIMITS.part * abs(self.frequency - one.frequency))
             if abs(self.frequency - before) < off:
                 break
             near.saw(at, value)
-            if near.known(FINE):
+            if near.known(STABILITY_LIMITS.fine):
                 break
         return self.frequency if not math.isnan(value) else math.nan
 
     def _enclosed(self, place: float) -> Secants | None:
         """The change of sign nearest to a place, of which both sides are looked at further and further away;
         None if there is none up to where the growth is not known, or even that there is not."""
-        now, last, near = self.growth(place), float(len(self.path.z) - 1), FIRST
+        now, last, near = self.growth(place), float(len(self.path.z) - 1), STABILITY_LIMITS.first
         before = {} if math.isnan(now) else {1.0: (place, now), -1.0: (place, now)}
-        while before and near <= FAR:
+        while before and near <= STABILITY_LIMITS.far:
             for sign, (known, growth) in list(before.items()):
                 at = place + sign * near
                 value = self.growth(at) if 0.0 <= at <= last else math.nan

@@ -7,14 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from fcm.accuracy.options import VALIDITY
 from fcm.harmonic_balance.runs import runs
 from fcm.model.scene import FloatArray
 
 Mask = npt.NDArray[np.bool_]
-
-BELIEVED = 0.2  # estimated error of the amplitudes, up to which a solution is called stable
-AT_FOLD = 1e-2  # of its frequency: as far as a fold may be moved, where nothing is said of the accuracy
-LONG = 64  # points in a row without a partner, after which a branch is not one of more harmonics
 
 
 def disbelieved(
@@ -31,7 +28,7 @@ def disbelieved(
     """
     truncation = np.concatenate(truncations)
     lost = np.concatenate([astray(one) for one in truncations])
-    far: Mask = (truncation > BELIEVED) | lost | _untold(frequency, truncation, stable, fold)
+    far: Mask = (truncation > VALIDITY.believed) | lost | _untold(frequency, truncation, stable, fold)
     return far
 
 
@@ -39,7 +36,7 @@ def astray(truncation: FloatArray) -> Mask:
     """Where (point,) a branch has long lost that of more harmonics, and says nothing of the motion."""
     far = np.zeros(len(truncation), dtype=np.bool_)
     for first, end in runs(np.isnan(truncation)):
-        far[first:end] = end - first > LONG
+        far[first:end] = end - first > VALIDITY.row
     return far
 
 
@@ -50,9 +47,9 @@ def _untold(frequency: FloatArray, truncation: FloatArray, stable: FloatArray, f
     is said. A point alone with an error, as one of several at a corner may be, does not part a stretch.
     """
     found, untold = np.zeros(len(truncation), dtype=np.bool_), np.isnan(truncation)
-    untold[1:-1] |= untold[:-2] & untold[2:] & (truncation[1:-1] <= BELIEVED)
+    untold[1:-1] |= untold[:-2] & untold[2:] & (truncation[1:-1] <= VALIDITY.believed)
     for first, end in runs(untold):
         own = frequency[first:end][stable[first:end] == 1.0]
-        wide = own.size > 0 and np.ptp(own) > AT_FOLD * own.max()
+        wide = own.size > 0 and np.ptp(own) > VALIDITY.at_fold * own.max()
         found[first:end] = wide or not fold[max(first - 1, 0) : end + 1].any()
     return found

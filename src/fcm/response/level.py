@@ -16,8 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.level_errors import errors_at_levels, evenness, stable_at_levels
-from fcm.accuracy.options import REFINEMENT
-from fcm.accuracy.stability_validity import BELIEVED
+from fcm.accuracy.options import REFINEMENT, VALIDITY
 from fcm.branches.force_level import level_curve
 from fcm.branches.linear_limits import highest
 from fcm.continuation import Mark, Status
@@ -191,7 +190,7 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     error, of_borne = errors_at_levels(system, z, level, amplitude, borne, even)
     truncation = (error * amplitude).max(axis=1) / np.where(size := amplitude.max(axis=1), size, 1.0)
     stable = stable_at_levels(system, z, even)
-    known = truncation <= BELIEVED  # with more harmonics there may be no solution where it is not
+    known = truncation <= VALIDITY.believed  # with more harmonics there may be no solution where it is not
     stable[~known & (stable == 1.0)] = np.nan
     lost = no_steady_states(system, z, level)
     for which in lost.values():

@@ -16,7 +16,7 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from fcm.accuracy import stability_validity
+from fcm.accuracy.options import VALIDITY
 from fcm.harmonic_balance.response_quantities import cycles, loops
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
@@ -170,7 +170,7 @@ def _disbelieved(told: Sequence[TrackedError], count: int) -> npt.NDArray[np.boo
     far = np.zeros(count, dtype=np.bool_)
     places = sorted((one.point, one.relative) for one in told)
     for k, (_, error) in enumerate(places):
-        if error > stability_validity.BELIEVED:
+        if error > VALIDITY.believed:
             first = places[k - 1][0] if k else 0
             last = places[k + 1][0] if k + 1 < len(places) else count - 1
             far[first : last + 1] = True
