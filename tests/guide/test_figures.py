@@ -21,7 +21,7 @@ def lines(path):
         marks = [(float(use.get("x")), float(use.get("y"))) for use in group.iter(f"{SVG}use")]
         paths = [one.get("d") for one in group.findall(f"{SVG}path")]
         vertices = [[float(x) for x in pair] for d in paths for pair in re.findall(r"([-\d.]+) ([-\d.]+)", d)]
-        if not re.search(r"_\d+$", name) and (marks or vertices):
+        if name and not re.search(r"_\d+$", name) and (marks or vertices):
             found[name] = np.array(vertices or marks)
     return found
 

@@ -39,9 +39,10 @@ def test_where_nothing_damps_it_is_said_what_would_do():
     assert whole.complete
     resonance = curve.frequency[np.nanargmax(curve.amplitude[:, 0])]
     assert whole.peaks["d0"].frequency == pytest.approx(resonance, rel=1e-3)
-    exact = solution_at(damped, 1.3)
     at = np.abs(whole.frequency - 1.3).argmin()
-    assert exact.stable and whole.amplitude[at, 0] == pytest.approx(exact.measure.amplitude[0], rel=0.03)
+    exact = solution_at(damped, float(whole.frequency[at]))
+    off = abs(exact.measure.amplitude[0] / whole.amplitude[at, 0] - 1.0)
+    assert exact.stable and 0.5 * whole.error[at, 0] < off < 2.0 * whole.error[at, 0] < 0.2
 
 
 def test_a_curve_goes_on_where_another_extreme_of_a_limit_holds_a_slider():

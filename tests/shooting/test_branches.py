@@ -100,7 +100,7 @@ def test_no_branches_are_looked_for_without_end_where_those_that_are_followed_br
     def broken(problem, z, *_, **__):
         begun.append(z[-1])
         one, nothing = np.array(z)[None], np.zeros(1)
-        return Followed(one, 0.0 * one, nothing.astype(int), nothing, nothing, Status.STALLED, 0)
+        return Followed(one, 0.0 * one, nothing.astype(int), nothing, Status.STALLED, 0)
 
     scene, begun = fcm.load_scene(SCENES / "closed_inside.toml"), []
     problem = OrbitProblem(scene)
