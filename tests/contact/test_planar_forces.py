@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from fcm import periodic_forces, planar_forces
 
+from ..scale import SCALE
 from .motions import BOUNDARIES, random_cases
 from .planar_march import March
 from .planar_motions import Planar, kernel, random_planars
@@ -227,7 +228,7 @@ HUGE = st.sampled_from([0.0, 1e-12, 1e-6, 0.5, 1.0, 2.0, 1e6, 1e12])
 PART = st.sampled_from([0.0, 0.0, 1.0, -1.0, 0.5, 1e-12, 1e12])
 
 
-@settings(max_examples=300, deadline=None, derandomize=True)
+@settings(max_examples=max(int(300 * SCALE), 10), deadline=None, derandomize=True)
 @given(st.lists(PART, min_size=15, max_size=15), HUGE, HUGE, HUGE, PART)
 def test_extremes_and_equalities(parts, mu, k_u, k_v, n_0):
     """A cycle is found, its friction is within the load, and the load is that of a contact on a line."""
