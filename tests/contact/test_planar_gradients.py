@@ -5,12 +5,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
 
 from fcm import periodic_gradients, planar_gradients
 from fcm.contact.plane.forces import PlanarContact
 
+from ..scale import SCALE
 from .motions import random_cases
 from .planar_motions import Planar, kernel, random_planars
+from .test_planar_forces import EXTREMES, extreme
 
 
 def differences(contact, x, law, column, step):
@@ -147,3 +150,9 @@ def test_a_slider_at_rest_that_two_discs_hold_in_a_kernel_that_has_not_slipped(x
     u_x, u_y, v = (x[i + 3 + i] * np.cos(theta) - x[i + 4 + i] * np.sin(theta) for i in range(3))
     held = np.hypot(u_x + force[0], u_y + force[1]) - 0.4 * (2.0 + v)
     assert held.max() <= 1e-12
+
+
+@settings(max_examples=max(int(300 * SCALE), 10), deadline=None, derandomize=True)
+@given(*EXTREMES)
+def test_extremes_have_finite_derivatives(parts, mu, k_u, k_v, n_0):
+    assert all(np.all(np.isfinite(part)) for part in extreme(parts, mu, k_u, k_v, n_0).gradients())
