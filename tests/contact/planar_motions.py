@@ -48,14 +48,14 @@ class Planar:
         return "".join("EPS"[slider.state[i]] for i in range(slider.pieces))
 
 
-def kernel(case, outputs=None):
+def kernel(case, outputs=None, options=FINE):
     """A contact of the kernel for a motion, and its unknowns."""
     count = max(one.size for one in (case.u_x, case.u_y, case.v))
     x = np.zeros((count, 3), complex)
     for i, one in enumerate((case.u_x, case.u_y, case.v)):
         x[: one.size, i] = one
     harmonics = list(range(1, count))
-    contact = PlanarContact(harmonics, list(range(1, (outputs or count - 1) + 1)), options=FINE)
+    contact = PlanarContact(harmonics, list(range(1, (outputs or count - 1) + 1)), options=options)
     return contact, np.concatenate((x[0].real, x[1:].view(float).ravel()))
 
 

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fcm import periodic_forces, planar_forces
+from fcm.contact.plane.options import OPTIONS
 
 from ..scale import SCALE
 from .motions import BOUNDARIES, random_cases
@@ -44,6 +45,18 @@ def test_forces_and_work_of_random_motions(i):
         assert work == pytest.approx(point["work"], rel=1e-10)
     else:
         assert abs(point["work"]) < 1e-14
+
+
+@pytest.mark.parametrize("i", range(len(POINTS)))
+def test_forces_of_the_kernel_as_a_balance_uses_it(i):
+    """The same numbers, to the tolerance of its own options."""
+    case, count = planar(POINTS[i]), len(POINTS[i]["f_x"])
+    contact, x = kernel(case, count - 1, OPTIONS)
+    contact.at(x, case.mu, case.k_u, case.k_v, case.n_0, gradient=False)
+    forces = np.array(contact.forces)
+    found = np.vstack((forces[:3] + 0j, forces[3:].view(complex).reshape(-1, 3)))
+    expected = np.column_stack([coefficients(POINTS[i][name]) for name in ("f_x", "f_y", "n")])
+    assert np.abs(found - expected)[1:].max() <= 1e-9 * case.size
 
 
 # the march needs many periods where little slips: these motions come back within its sixty

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fcm.branches import force_level
-from fcm.branches.force_level import LEVELS, LevelOptions, level_curve, looked_at
+from fcm.branches.force_level import LEVEL_REACH, LevelReachOptions, level_curve, looked_at
 from fcm.branches.linear_limits import highest, least
 from fcm.branches.options import LEVEL_CURVE
 from fcm.harmonic_balance.system import System
@@ -41,9 +41,9 @@ def test_with_many_contacts_the_level_is_followed_no_further_than_allowed(monkey
     contacts = tuple(replace(c, n_0=c.n_0 * (1.0 + i) ** 2) for i, c in enumerate(one.contacts))
     system = System(replace(one, contacts=contacts))
     taken, found = [], []
-    assert all(highest(system, omega) > LEVELS.most for omega in looked_at(system))
-    for contacts in (LEVELS.contacts, 10**6):
-        monkeypatch.setattr(force_level, "LEVELS", LevelOptions(contacts))
+    assert all(highest(system, omega) > LEVEL_REACH.most for omega in looked_at(system))
+    for contacts in (LEVEL_REACH.contacts, 10**6):
+        monkeypatch.setattr(force_level, "LEVEL_REACH", LevelReachOptions(contacts))
         before = system.work.seconds
         found.append([force_level.solutions(system, omega) for omega in looked_at(system)])
         taken.append(system.work.seconds - before)

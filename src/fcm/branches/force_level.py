@@ -48,7 +48,7 @@ class Found:
 
 
 @dataclass(frozen=True)
-class LevelOptions:
+class LevelReachOptions:
     """How far the level of the forces is followed with many contacts, of which there always is one that slips
     or opens only far above 1: contacts, from so many on up to the level most, or only up to straight where
     the curve has not turned until then. turn, miss, close: of the steps of a curve of which the passings of
@@ -62,7 +62,7 @@ class LevelOptions:
     close: float = 1e-6
 
 
-LEVELS = LevelOptions()  # where nothing else is said
+LEVEL_REACH = LevelReachOptions()  # where nothing else is said
 
 
 def solutions(system: System, omega: float, reach: float | None = None) -> Found:
@@ -73,8 +73,8 @@ def solutions(system: System, omega: float, reach: float | None = None) -> Found
     otherwise a few are taken for that.
     """
     most, linear = highest(system, omega), LEVEL_CURVE.before * least(system, omega)
-    if len(system.scene.contacts) >= LEVELS.contacts:
-        most = min(most, LEVELS.most)
+    if len(system.scene.contacts) >= LEVEL_REACH.contacts:
+        most = min(most, LEVEL_REACH.most)
     if reach is None and len(system.harmonics) > few_of(system):
         few = system.with_harmonics(system.harmonics[: few_of(system)])
         reach = _followed(few, omega, linear, most, most).reach
@@ -101,8 +101,8 @@ def _followed(system: System, omega: float, linear: float, top: float, most: flo
 
 
 def _found(system: System, omega: float, linear: float, top: float) -> Found:
-    path, near = None, LEVELS.straight
-    if len(system.scene.contacts) >= LEVELS.contacts and linear < near < top:
+    path, near = None, LEVEL_REACH.straight
+    if len(system.scene.contacts) >= LEVEL_REACH.contacts and linear < near < top:
         path = _hasty(system, omega, linear, near, (1.0,))
         path = None if path.where(Mark.FOLD).size or path.status is not Status.COMPLETE else path
     path = path or _hasty(system, omega, linear, top, (1.0,))
@@ -214,9 +214,9 @@ def _raised(
     level, stepper = system.raised
     level.begin(omega, lightly)
     wanted, options = Events(stations), FollowOptions(step, hasty)
-    if lightly and len(system.scene.contacts) >= LEVELS.contacts:
-        steps = replace(options.step, turn=LEVELS.turn, miss=LEVELS.miss)
-        newton = replace(options.newton, preliminary=LEVELS.close)
+    if lightly and len(system.scene.contacts) >= LEVEL_REACH.contacts:
+        steps = replace(options.step, turn=LEVEL_REACH.turn, miss=LEVEL_REACH.miss)
+        newton = replace(options.newton, preliminary=LEVEL_REACH.close)
         options = replace(options, step=steps, newton=newton)
     along = partial(follow, level, start, span, wanted, options, stepper=stepper)
     return paid(system, stepper, None, lambda report: along(progress=report))

@@ -192,7 +192,11 @@ def residual_friction(summary: Mapping[str, Any]) -> str:
     changes = "no peak" if share == "0" else f"a peak by at most {share} of it, estimated"
     tells = f"; {how} tells how far the motions range" if (how := _how(summary)) else ""
     keeps = "a contact that never slips keeps a friction force that its past decides"
-    return f"{keeps}: it changes {changes}{tells}"
+    every = sum(bool(one.get("may_not_be_unique")) for one in summary["curves"])
+    where = (
+        f"on {len(curves)} of {every} curves " if len(curves) < every else ""
+    )  # of the others it is unknown
+    return f"{keeps}: {where}it changes {changes}{tells}"
 
 
 def _how(summary: Mapping[str, Any]) -> str:

@@ -10,7 +10,7 @@ from fcm.accuracy.options import REFINEMENT
 from fcm.accuracy.refinement import Accurate
 from fcm.accuracy.stability_limits import Lost
 from fcm.harmonic_balance.cost_model import PATIENCE
-from fcm.response.options import MESSAGES
+from fcm.response.options import SENTENCES
 from fcm.scene.errors import counted
 from fcm.units import in_unit
 
@@ -56,8 +56,8 @@ def _whose(found: Accurate, accuracy: float) -> str:
     if not 0 < off.size < len(dofs):
         return ""
     worst = off[np.argsort(-np.nan_to_num(found.peak[off], nan=np.inf), kind="stable")]
-    more = f" and {off.size - MESSAGES.dofs} more" if off.size > MESSAGES.dofs else ""
-    return f" (of {len(dofs)} peaks, those of {', '.join(dofs[i] for i in worst[: MESSAGES.dofs])}{more})"
+    more = f" and {off.size - SENTENCES.dofs} more" if off.size > SENTENCES.dofs else ""
+    return f" (of {len(dofs)} peaks, those of {', '.join(dofs[i] for i in worst[: SENTENCES.dofs])}{more})"
 
 
 def _of_stability(found: Accurate, off: Sequence[Lost]) -> str:

@@ -13,7 +13,7 @@ from fcm.harmonic_balance.stiff_contacts import too_stiff
 from fcm.harmonic_balance.system import System
 from fcm.harmonic_balance.well_posedness import REASONS, undetermined
 from fcm.model.scene import FloatArray
-from fcm.response.options import MESSAGES
+from fcm.response.options import SENTENCES
 from fcm.units import in_unit
 
 FLOATING = "; rigid-body modes are at rest only while closed contacts hold them"
@@ -78,9 +78,9 @@ def _resonant(system: System, omega: float) -> str:
         return ""
     met = linear.stiffened(system.springs(stuck=True))
     for h in system.harmonics:
-        near = met[np.abs(met - h * omega) < MESSAGES.resonant * met]
+        near = met[np.abs(met - h * omega) < SENTENCES.resonant * met]
         if near.size:
-            at, soft = (float(in_unit(x, unit)) for x in (near[0], near[0] / MESSAGES.soft))
+            at, soft = (float(in_unit(x, unit)) for x in (near[0], near[0] / SENTENCES.soft))
             hold = f"try a modal.frequency of {soft:.1g} for them, with a ratio of 0.01"
             if system.scene.of_matrices:
                 spring = f"the frequencies of their modes to some {soft:.1g} {unit}"

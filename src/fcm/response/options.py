@@ -37,7 +37,7 @@ INPUT_LIMITS = InputLimits()
 
 
 @dataclass(frozen=True)
-class MessageOptions:
+class SentenceOptions:
     """How many things one sentence names.
 
     Attributes
@@ -60,7 +60,7 @@ class MessageOptions:
     soft: float = 30.0
 
 
-MESSAGES = MessageOptions()
+SENTENCES = SentenceOptions()
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from fcm.response.coexisting_search import Search
 from fcm.response.coexisting_stuck import stuck_beside
 from fcm.response.friction_extent import NotUnique, not_unique
 from fcm.response.groups import lost_curve
-from fcm.response.options import MESSAGES
+from fcm.response.options import SENTENCES
 from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.stepped_sweep import Visitor
 from fcm.response.undetermined_traction import undetermined
@@ -212,7 +212,7 @@ def _regimes(points: Sequence[Sample | None], contacts: int) -> npt.NDArray[np.s
 
 
 def _short(states: str) -> str:
-    return states if len(states) <= MESSAGES.states else states[: MESSAGES.states - 3] + "..."
+    return states if len(states) <= SENTENCES.states else states[: SENTENCES.states - 3] + "..."
 
 
 def _residual(amplitude: FloatArray, others: NotUnique, untold: npt.NDArray[np.bool_]) -> FloatArray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fcm.harmonic_balance.residual_spectrum import HIGHEST
 from fcm.model.scene import Scene
-from fcm.response.options import MESSAGES
+from fcm.response.options import SENTENCES
 from fcm.response.request import Request, ResponseError
 from fcm.scene.cyclic import WHOLE_RING, lacks
 from fcm.scene.errors import quoted
@@ -82,8 +82,8 @@ def unknown(scene: Scene, wanted: Request) -> list[str]:
         assert curve.ring is not None
         lacking = curve.ring.lacking(range(1, HIGHEST + 1))
         if lacking:
-            named = ", ".join(map(str, list(lacking)[: MESSAGES.harmonics])) + (
-                ", ..." if len(lacking) > MESSAGES.harmonics else ""
+            named = ", ".join(map(str, list(lacking)[: SENTENCES.harmonics])) + (
+                ", ..." if len(lacking) > SENTENCES.harmonics else ""
             )
             diameters = ", ".join(map(str, sorted(set(lacking.values()))))
             found[

@@ -17,7 +17,7 @@ import numpy as np
 
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray, Scene
-from fcm.response.options import MESSAGES, STEPPED
+from fcm.response.options import SENTENCES, STEPPED
 from fcm.results.jumps import Jump
 from fcm.run import Report
 from fcm.shooting.fixed_frequency import correct_at_frequency
@@ -107,10 +107,10 @@ class Visitor:
         refused = next(iter(self.refused.values()), "")
         if not self.restless:
             return refused
-        first = list(self.restless)[: MESSAGES.frequencies]
+        first = list(self.restless)[: SENTENCES.frequencies]
         more = (
-            f" and {len(self.restless) - MESSAGES.frequencies} more"
-            if len(self.restless) > MESSAGES.frequencies
+            f" and {len(self.restless) - SENTENCES.frequencies} more"
+            if len(self.restless) > SENTENCES.frequencies
             else ""
         )
         cycles = sum(self.problem.options.steady.cycles)

@@ -12,7 +12,7 @@ class PlanarOptions:
     Of the panels by which slip is followed
     ---------------------------------------
     tolerance : what the last coefficient of a panel's polynomial may be, times its radius over the greatest.
-        Forces err by about 1e-3 of that, their derivatives by 0.05 of it.
+        Forces err by about 1e-3 of that, their derivatives by more, see below.
     resolved : how long a panel may be, times the highest harmonic that is integrated.
     before : of the last coefficient but one, what the last is taken for at least, as it may vanish by chance.
     converged : a change of t in Newton's method after which the next, of about its square, is none.
@@ -89,7 +89,7 @@ class PlanarOptions:
     faint: float = 1e-150
 
 
-OPTIONS = PlanarOptions()  # of a balance of harmonics, again and again: forces within 1e-10, derivatives 1e-6
+OPTIONS = PlanarOptions()  # of a balance: forces within 1e-10, derivatives 2e-8 mostly, 1e-4 at worst
 FINE = replace(
     OPTIONS, tolerance=1e-9, resolved=4.0, converged=1e-9, varied=1e-3
 )  # of `planar_forces`: forces within 1e-11, derivatives 1e-8
