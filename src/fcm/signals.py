@@ -32,6 +32,7 @@ class _Program:
     def __init__(self) -> None:
         self.works, self.last = False, -ONE
         self.shields, self.waits = 0, False  # what must not be disturbed, and whether an interruption waits
+        self.imports = 0  # that were under way when the work began
         self.before: dict[int, Any] = {}
 
     def interrupted(self, _number: int, _frame: FrameType | None) -> None:
@@ -48,16 +49,36 @@ class _Program:
         finally:  # be standard error closed
             os._exit(NOT_COMPLETED)
 
-    def again(self, _number: int, _frame: FrameType | None) -> None:
+    def again(self, _number: int, frame: FrameType | None) -> None:
+        """Interrupt, but not in the middle of an import: libraries make other errors of it, or swallow it."""
         if self.shields:
             self.waits = True
+        elif _imports(frame) > self.imports and time.monotonic() - self.last < ONE and _later():
+            return
         else:
             raise KeyboardInterrupt
 
     def lost(self, unraisable: Any) -> None:
         """An exception that nobody could catch: an interruption comes again, others concern nobody."""
-        if issubclass(unraisable.exc_type, KeyboardInterrupt) and hasattr(signal, "setitimer"):
-            signal.setitimer(signal.ITIMER_REAL, AGAIN)
+        if issubclass(unraisable.exc_type, KeyboardInterrupt):
+            _later()
+
+
+def _later() -> bool:
+    """Have an interruption come again, where the system has a timer."""
+    if not hasattr(signal, "setitimer"):
+        return False
+    signal.setitimer(signal.ITIMER_REAL, AGAIN)
+    return True
+
+
+def _imports(frame: FrameType | None) -> int:
+    """How many frames of the stack are Python's own, that import a module."""
+    count = 0
+    while frame is not None:
+        count += frame.f_code.co_filename == "<frozen importlib._bootstrap>"
+        frame = frame.f_back
+    return count
 
 
 _program: _Program | None = None
@@ -107,6 +128,7 @@ def interrupt() -> None:
 def works() -> None:
     """From now on there may be something to save."""
     if _program is not None:
+        _program.imports = _imports(sys._getframe())
         _program.works = True
 
 

@@ -273,6 +273,27 @@ def test_ctrl_c_while_it_begins_is_one_line(program, after):
         assert program.files == ["one.toml", "sweep.toml"]
 
 
+HANDLED = """
+class Library:
+    def find_spec(self, name, *_):
+        if name == "fcm.response":
+            try:
+                os.kill(os.getpid(), signal.SIGINT)
+            except BaseException as error:
+                {then}
+"""
+
+
+@pytest.mark.parametrize("then", ["pass", "raise RuntimeError('not found') from None"])
+def test_ctrl_c_in_an_import_comes_after_it(program, then):
+    """A library that is being imported could swallow the interruption, or make another error of it."""
+    begin = EARLY + HANDLED.format(then=then) + "from fcm import signals\nsignals.take()\n"
+    begin += "sys.meta_path.insert(0, Library())\n"
+    done = program("respond", "one.toml", "-o", "a.nc", before=begin, env={"AFTER": "0"})
+    assert done.returncode == 3 and "Traceback" not in done.err
+    assert done.err.endswith("interrupted: the calculation was not completed\n")
+
+
 def test_ctrl_c_before_there_is_anyone_to_say_so_ends_in_silence():
     """While the very module is loaded that takes signals: it is the first that the script loads."""
     early = """
