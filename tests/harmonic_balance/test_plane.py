@@ -27,7 +27,6 @@ from fcm.response.mode import trace_modes
 from fcm.response.track import track
 from fcm.scene import scene_from_dict
 from fcm.stability.floquet import multipliers
-from fcm.stability.planar_monodromy import PlanarMonodromy, PlanarSequence
 from fcm.tracking.onset_functions import onset
 
 from .plane_march import Oscillators
@@ -150,24 +149,6 @@ def test_multipliers_against_marches_from_disturbed_states(oscillators, omega):
     marched = np.linalg.eigvals(np.array(columns).T)
     marched = np.array(sorted(marched, key=abs, reverse=True))[: found.size]
     assert np.abs(found[:6]) == pytest.approx(np.abs(marched[:6]), abs=6e-3)
-
-
-def test_multipliers_do_not_depend_on_the_steps():
-    """Halving all steps changes them by less than a hundred thousandth."""
-    system, z, _ = amplitudes(OPENS.scene((0.5, 2.0)), 1.25, 5)
-    contact = np.array([[OPENS.mu, OPENS.k_u, OPENS.k_v, OPENS.n_0]])
-    found = []
-    for part in (1.0, 0.5):
-        sequence = PlanarSequence(contact, system.harmonics)
-        known = sequence.options
-        sequence.options = replace(known, step=part * known.step, turn=part * known.turn)
-        assert sequence.find_events(z)
-        linear = system.linear
-        near = np.zeros(3, dtype=bool)
-        monodromy = PlanarMonodromy(linear.ports, linear.natural, linear.damping, near, sequence)
-        monodromy.follow(1.25)
-        found.append(np.sort(np.abs(np.linalg.eigvals(monodromy.matrix()))))
-    assert found[0] == pytest.approx(found[1], abs=1e-5)
 
 
 @pytest.mark.slow

@@ -28,7 +28,8 @@ from fcm.stability.force_harmonics import PORTS, Finer, beyond
 from fcm.stability.many_monodromy import ManyMonodromy
 from fcm.stability.monodromy import Monodromy
 from fcm.stability.options import STABILITY, StabilityOptions
-from fcm.stability.planar_monodromy import PlanarMonodromy, PlanarSequence
+from fcm.stability.planar_monodromy import PlanarMonodromy
+from fcm.stability.planar_sequence import PlanarSequence
 from fcm.stability.rebalanced import Refined
 from fcm.stability.state_sequence import BalancedSequence
 from fcm.stability.verdict import PASSIVE, UNKNOWN, Spectrum, Verdict, doubtful, either, even, meeting

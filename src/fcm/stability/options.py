@@ -148,21 +148,29 @@ class HillOptions:
 class PlanarStabilityOptions:
     """How disturbances of contacts in a plane are followed.
 
-    step: longest, while a contact slips, times its highest harmonic [rad]. turn: of a direction, and of a
-    slider that follows (lambda / r), in a step, at most [rad]. graded: steps towards an angle at which the
-    radius vanishes, each shorter than the last. shrink: by this factor. most: disturbances that are followed;
-    with more, stability is not told. panels: of slip that are recorded for a contact at first. same: [rad]
-    between events that are one. inside: [rad] within a state, from an event at which it begins or ends.
+    stages: Radau's points of a step. tolerance: of the velocities' last coefficient in Legendre's polynomials
+    over a step, beside the size of a disturbance; multipliers err by about a thousandth of it. before: of the
+    last coefficient but one, what the last is taken for at least, as it may vanish by chance. ends: times the
+    tolerance, what steps may leave out that end where a slipping contact opens, or begin where it closes.
+    longest: step [rad]. shrink, grow, safety: limits of the ratio of two steps, and what it is multiplied by.
+
+    most: disturbances that are followed; with more, stability is not told. panels: of slip that are recorded
+    for a contact at first. same: [rad] between events that are one. apart: [rad] between events, from where
+    on a period may begin between them.
     """
 
-    step: float = 0.5
-    turn: float = 0.3
-    graded: int = 8
-    shrink: float = 0.35
+    stages: int = 5
+    tolerance: float = 1e-4
+    before: float = 0.1
+    ends: float = 0.01
+    longest: float = 1.0
+    shrink: float = 0.2
+    grow: float = 2.5
+    safety: float = 0.8
     most: int = 160
     panels: int = 200
     same: float = 1e-13
-    inside: float = 1e-10
+    apart: float = 1e-6
 
 
 @dataclass(frozen=True)

@@ -9,143 +9,42 @@ remembers. With r = mu n / k_u, dr = mu k_v dv / k_u and the direction of slip e
 
     stick        df = k_u (du - dw),                               dw constant
     slip         df = k_u (dr e + (e_perp . du - s) e_perp),       s = e_perp . dw,   e . dw = e . du - dr
-                 s' = (lambda / r) (e_perp . du - s) - alpha' (e . du - dr)
+                 r s' = lambda (e_perp . du - s) - (e_perp . u') (e . du - dr)
     separation   df = dn = 0
 
 The equation of s is that of the direction, r alpha' = e_perp . u', linearised. Forces are continuous, so
 events make nothing jump but what is remembered: as slip begins s = e_perp . dw, as it ends dw is put
-together again; at a closing w = u where the load vanishes, so dw = du - u' dv / v' if it sticks, and
-s = e_perp . du if it slips at once. A slider that never slips stays where it is.
+together again; at a closing w = u where the load vanishes, so dw = du - u' dv / v' if it sticks. If it slips
+at once nothing is remembered: of all solutions of the equation of s, whose factor r vanishes there, one is
+regular. A slider that never slips stays where it is.
 
-Between events the equations are carried by Magnus's series of the fourth order (Blanes, Casas, Oteo, Ros,
-Phys. Rep. 470, 2009): by the exponential of
-
-    h (A_1 + A_2) / 2 - sqrt(3) h^2 [A_1, A_2] / 12,    A_1, A_2 at Gauss's two points,
-
-which is exact where nothing slips. Where the radius vanishes the steps are shorter and shorter.
+Between events the equations are collocated at Radau's points, as that of the direction is (see `Panel`), in
+steps as long as polynomials resolve the velocities. The equation of s, with r before s', has no singular
+point where the load vanishes. What the modes answer to forces at the points is known beforehand, and so is
+what s answers to displacements: what is left are equations of the closed contacts' displacements at the
+points of a step, or of the modes' where these are fewer, solved for all disturbances at once.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
+import cython
 import numpy as np
 import numpy.typing as npt
+from cython.cimports.libc.math import fabs
 
-from fcm.contact.plane.forces import PlanarContact
-from fcm.contact.plane.loop import directions as slip_directions
-from fcm.contact.plane.loop import visible
-from fcm.model.scene import FloatArray
-from fcm.stability.options import STABILITY, PlanarStabilityOptions
+if cython.compiled:
+    from cython.cimports.fcm.contact.periodic.cycle import TWO_PI
+    from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK
+    from cython.cimports.fcm.stability.planar_sequence import PlanarSequence
+else:
+    from fcm.contact.periodic.cycle import TWO_PI
+    from fcm.contact.plane.slider import SEPARATION, SLIP, STICK
+    from fcm.stability.planar_sequence import PlanarSequence
 
-IntArray = npt.NDArray[np.intp]
-TWO_PI = 2.0 * np.pi
-GAUSS = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)  # points of a step
-
-
-@dataclass
-class Cycle:
-    """One contact over a period: where each of its states begins [rad], which (E, P, S), and the slip."""
-
-    begin: FloatArray  # (state,), rising from the first
-    state: list[str]
-    panels: FloatArray  # (panel, 5 + s): as `Slider.record`
-    place: FloatArray  # (state, 2) of the slider, where it rests
-    waves: npt.NDArray[np.complex128]  # (harmonic, 3) of u_x, u_y and r
-    numbers: FloatArray  # (harmonic,)
-    mean: FloatArray  # (3,)
-
-    @property
-    def moving(self) -> bool:
-        """Whether it changes its state or slips."""
-        return len(self.state) > 1 or self.state[0] == "P"
-
-    def at(self, theta: float) -> str:
-        """The state at an angle."""
-        return str(self.states(np.array([theta]))[0])
-
-    def states(self, theta: FloatArray) -> npt.NDArray[np.str_]:
-        """Those at angles (angle,)."""
-        since = np.mod(theta - self.begin[0], TWO_PI)
-        at = np.searchsorted(self.begin - self.begin[0], since, side="right") - 1
-        found: npt.NDArray[np.str_] = np.array(self.state)[at]
-        return found
-
-    def rates(self, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """r (angle,), and u_x', u_y', r' (angle, 3)."""
-        turned = np.exp(1j * np.outer(theta, self.numbers))
-        rate: FloatArray = (1j * self.numbers * turned @ self.waves).real
-        r: FloatArray = self.mean[2] + (turned @ self.waves[:, 2]).real
-        return r, rate
-
-    def directions(self, theta: FloatArray) -> FloatArray:
-        """Of the slip at angles (angle,), (angle, 2)."""
-        first = self.panels[0, 0]
-        t = first + np.mod(theta - first, TWO_PI)
-        panel = self.panels[np.searchsorted(self.panels[:, 0], t, side="right") - 1]
-        return slip_directions(panel, t)
+from fcm.contact.plane.radau import radau
 
 
-@dataclass
-class PlanarSequence:
-    """`poll` at a motion finds the cycles of its contacts; contact (contact, 4): mu, k_u, k_v, n_0."""
-
-    contact: FloatArray
-    harmonics: tuple[int, ...]
-    options: PlanarStabilityOptions = STABILITY.planar
-    cycles: list[Cycle] = field(default_factory=list)
-    moving: int = 0  # contacts that slip with friction, or open and close
-    held: int = 0  # none: a slider that never slips stays where it is
-    yielding: bool = True
-
-    def __post_init__(self) -> None:
-        self.kernel = PlanarContact(list(self.harmonics), [1], self.options.panels)
-        self.width = 3 + 6 * len(self.harmonics)
-
-    def find_events(self, x: FloatArray) -> bool:
-        """Find the states of the motion x; false where a number is not finite, or a cycle is not found."""
-        self.cycles = []
-        for c, numbers in enumerate(self.contact):
-            block = np.ascontiguousarray(np.asarray(x)[c * self.width : (c + 1) * self.width])
-            if not self._cycle(block, numbers):
-                return False
-        self.moving = sum(one.moving for one in self.cycles)
-        return True
-
-    def _cycle(self, x: FloatArray, numbers: FloatArray) -> bool:
-        mu, k_u, k_v, n_0 = numbers.tolist()
-        while True:
-            self.kernel.at(x, mu, k_u, k_v, n_0, 0.0, 0.0, False)
-            slider = self.kernel.cycle.slider
-            if np.isnan(self.kernel.forces[2]):
-                return False
-            if slider.panels <= len(slider.record):
-                break
-            self.kernel = PlanarContact(list(self.harmonics), [1], 2 * slider.panels)
-        regions = visible(self.kernel)
-        state = [letter for letter, _, _ in regions]
-        if mu * k_u == 0.0:
-            state = ["F" if letter != "S" else letter for letter in state]  # closed without friction
-        if len(set(state)) == 1 and state[0] != "P":
-            regions, state = regions[:1], state[:1]
-        pairs = x[3:].reshape(-1, 3, 2)
-        ratio = np.array([1.0, 1.0, mu * k_v / k_u if k_u > 0.0 else 0.0])
-        mean = np.array([0.0, 0.0, mu * (n_0 + k_v * x[2]) / k_u if k_u > 0.0 else 0.0])
-        unit = self.kernel.motion.scale / k_u if k_u > 0.0 else 0.0
-        self.cycles.append(
-            Cycle(
-                np.array([begin for _, begin, _ in regions]),
-                state,
-                np.array(slider.record)[: slider.panels],
-                x[:2] + unit * np.array([place for _, _, place in regions]),
-                (pairs[..., 0] + 1j * pairs[..., 1]) * ratio,
-                np.array(self.harmonics, dtype=np.float64),
-                mean,
-            )
-        )
-        return True
-
-
+@cython.cclass
 class PlanarMonodromy:
     """`follow` a sequence: `matrix` is then the derivative of (q, q', memory) after a period by that before.
 
@@ -157,235 +56,723 @@ class PlanarMonodromy:
         Of all modes, of mass 1; three ports for each contact; natural frequencies in rad/s.
     far : (mode,) bool
         Which follow without delay.
+
+    Attributes
+    ----------
+    steps
+        How many the last period took.
     """
 
     def __init__(
         self,
-        shapes: FloatArray,
-        natural: FloatArray,
-        damping: FloatArray,
+        shapes: npt.NDArray[np.float64],
+        natural: npt.NDArray[np.float64],
+        damping: npt.NDArray[np.float64],
         far: npt.NDArray[np.bool_],
         sequence: PlanarSequence,
     ) -> None:
+        options = sequence.options
         self.sequence = sequence
-        self.shapes, self.natural, self.damping = shapes[~far], natural[~far], damping[~far]
+        self.tolerance, self.before, self.longest = options.tolerance, options.before, options.longest
+        self.shrink, self.grow, self.safety = options.shrink, options.grow, options.safety
+        self.ends, self.same, self.apart, self.most = options.ends, options.same, options.apart, options.most
+        self.shapes = np.ascontiguousarray(shapes[~far])
+        self.natural, self.damping = natural[~far], damping[~far]
         self.soft = (shapes[far].T * natural[far] ** -2.0) @ shapes[far]
-        self.modes, self.contacts = len(self.natural), len(sequence.contact)
-        self._matrix = np.zeros((0, 0))
+        m, c, s = len(self.natural), sequence.contacts, options.stages
+        self.modes, self.contacts, self.stages = m, c, s
+        rule = radau(s)
+        self.node, self.slopes, self.inner = rule.nodes, np.ascontiguousarray(rule.slopes[1:]), rule.inner
+        self.butcher, self.tail = np.linalg.inv(rule.slopes[1:, 1:]), rule.tail
+        # at the nodes of a step, of what modes do by themselves, by q and q'; and by forces at the nodes
+        self.q_to, self.p_to = np.zeros((2, m, s, 2))
+        self.q_by, self.p_by = np.zeros((2, m, s, s))
+        self.rest_to, self.rest_by = np.zeros((2 * m, 2)), np.zeros((2 * m, s))
+        self.system = np.zeros((s, 2 * s))
+        # of the unknowns at the nodes, by the forces on closed contacts there; those of modes, and the rest
+        self.answer, self.seen = np.zeros((s, 3 * c, s, 3 * c)), np.zeros((m, 3 * c))
+        self.remote = bool(far.any())
+        # of s at the nodes: what it feels of displacements there, and what is kept of s at the start
+        self.inverse, self.feels = np.zeros((c, s, s)), np.zeros((c, s, 3))
+        self.kept, self.e_x, self.e_y = np.zeros((3, c, s))
+        self.fore, self.aft = np.zeros((2, s))
+        self.state, self.active, self.held, self.fresh = np.zeros((4, c), dtype=np.intc)
+        most = c * sequence.capacity
+        self.angle = np.zeros(most)
+        self.whose, self.which, self.order = np.zeros((3, most), dtype=np.intc)
+        self.events = self.actives = self.steps = self.first = self.unknowns = 0
+        self.modal = False
+        self.taken = self.period = self.next = 0.0
+        self.filled = np.zeros((0, 0))
+        self._room(2 * m)
 
-    def matrix(self) -> FloatArray:
+    def _room(self, columns: int) -> None:
+        """Arrays for so many disturbances."""
+        m, c, s = self.modes, self.contacts, self.stages
+        self.columns = columns
+        self.q, self.p, self.q_new, self.p_new = np.zeros((4, m, columns))
+        self.memory, self.after = np.zeros((2, 2 * c, columns))
+        self.force, self.du = np.zeros((3 * c, columns)), np.zeros((3, columns))
+        self.stress = np.zeros((3 * c * s, columns))
+        self.work = np.zeros((3 * c * s, 3 * c * s + columns))
+        self.push, self.scale = np.zeros((m * s, columns)), np.zeros(columns)
+
+    def matrix(self) -> npt.NDArray[np.float64]:
         """(2 modes + memories, the same); of more disturbances than the options allow, not a number."""
-        return self._matrix
+        found: npt.NDArray[np.float64] = self.filled
+        return found
 
-    def follow(self, omega: float) -> None:
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def follow(self, omega: cython.double) -> cython.int:
         """Fill the matrix for a frequency."""
-        moving = [c for c, one in enumerate(self.sequence.cycles) if one.moving]
-        start = self._start(moving)
-        states = [one.at(start) for one in self.sequence.cycles]
-        m, options = self.modes, self.sequence.options
-        memory = [2 * m + 2 * k + i for k, c in enumerate(moving) for i in range(_memories(states[c]))]
-        columns = [*range(2 * m), *memory]
-        if len(columns) > options.most:
-            self._matrix = np.full((1, 1), np.nan)
+        e: cython.int
+        i: cython.int
+        self.period, self.taken, self.next, self.steps = 1.0 / omega, -1.0, self.longest, 0
+        self.find()
+        start: cython.double = self.start()
+        now: cython.double = start
+        found: cython.bint = self.begin(start)
+        for i in range(self.events + 1):
+            e = self.order[(self.first + i) % self.events] if i < self.events else -1
+            at: cython.double = self.angle[e] if e >= 0 else start + TWO_PI
+            if at < start:
+                at += TWO_PI
+            if found and at - now > self.same:
+                opens: cython.bint = e >= 0 and self.state[self.whose[e]] == SLIP
+                opens = opens and self.sequence.state[self.whose[e], self.which[e]] == SEPARATION
+                found = self.propagate(now, at - now, opens)
+                now = at
+            if found and e >= 0:
+                self.happen(self.whose[e], self.which[e])
+        if not found:
+            self.filled = np.full((1, 1), np.nan)
+            return 0
+        rows = [2 * c + i for c in range(self.contacts) for i in range(self.held[c])]
+        self.filled = np.concatenate((self.q, self.p, np.asarray(self.memory)[rows]))
+        return 0
+
+    def find(self) -> None:
+        """The events of the period, `order` of their angles."""
+        c: cython.int
+        i: cython.int
+        j: cython.int
+        self.events = 0
+        for c in range(self.contacts):
+            for i in range(self.sequence.count[c]):
+                if self.sequence.count[c] == 1:
+                    continue
+                angle: float = self.sequence.begin[c, i]
+                while angle < 0.0:
+                    angle += TWO_PI
+                while angle >= TWO_PI:
+                    angle -= TWO_PI
+                self.angle[self.events], self.whose[self.events], self.which[self.events] = angle, c, i
+                j = self.events
+                while j > 0 and self.angle[self.order[j - 1]] > angle:
+                    self.order[j] = self.order[j - 1]
+                    j -= 1
+                self.order[j] = self.events
+                self.events += 1
+
+    def start(self) -> float:
+        """An angle at which little is remembered, in the middle between two events; `first` is the next."""
+        i: cython.int
+        c: cython.int
+        count: cython.int
+        fewest: cython.int = 3 * self.contacts
+        widest: float = 0.0
+        found: float = 0.0
+        for i in range(self.events):
+            begin: float = self.angle[self.order[i]]
+            last: cython.bint = i + 1 == self.events
+            end: float = self.angle[self.order[0 if last else i + 1]] + (TWO_PI if last else 0.0)
+            middle: float = 0.5 * (begin + end)
+            count = 0
+            for c in range(self.contacts):
+                count += self.remembers(c, middle)
+            if end - begin > self.apart and (count < fewest or (count == fewest and end - begin > widest)):
+                fewest, widest, found = count, end - begin, middle
+                self.first = 0 if last else i + 1
+        return found
+
+    def remembers(self, c: cython.int, theta: float) -> cython.int:
+        """How many numbers a contact remembers at an angle: the place of its slider, or its direction."""
+        state: cython.int = self.sequence.state_at(c, theta)
+        if self.sequence.count[c] == 1:
+            return 1 if state == SLIP else 0
+        return 2 if state == STICK else 1 if state == SLIP else 0
+
+    def begin(self, start: float) -> bool:
+        """The disturbances to be followed, and the states; false if there are too many."""
+        c: cython.int
+        i: cython.int
+        j: cython.int
+        columns: cython.int = 2 * self.modes
+        for c in range(self.contacts):
+            self.state[c], self.fresh[c] = self.sequence.state_at(c, start), 0
+            self.held[c] = self.remembers(c, start)
+            columns += self.held[c]
+        if columns > self.most:
+            return False
+        if columns != self.columns:
+            self._room(columns)
+        for i in range(self.modes):
+            for j in range(columns):
+                self.q[i, j], self.p[i, j] = float(i == j), float(self.modes + i == j)
+        columns = 2 * self.modes
+        for c in range(self.contacts):
+            for i in range(2):
+                for j in range(self.columns):
+                    self.memory[2 * c + i, j] = 0.0
+                if i < self.held[c]:
+                    self.memory[2 * c + i, columns] = 1.0
+                    columns += 1
+        self.activate()
+        return True
+
+    def activate(self) -> None:
+        """Which contacts are closed, and what forces on these do is to be found anew."""
+        c: cython.int
+        i: cython.int
+        m: cython.int
+        self.actives = 0
+        for c in range(self.contacts):
+            if self.state[c] == SEPARATION:
+                continue
+            for m in range(self.modes):
+                for i in range(3):
+                    self.seen[m, 3 * self.actives + i] = self.shapes[m, 3 * c + i]
+            self.active[self.actives] = c
+            self.actives += 1
+        # what modes far above add to displacements is of the contacts, not of the modes
+        self.modal = not self.remote and self.modes < 3 * self.actives
+        self.unknowns = self.modes if self.modal else 3 * self.actives
+        self.taken = -1.0
+
+    def propagate(self, theta: float, length: float, opens: bool) -> bool:
+        """Carry the disturbances from an angle on, in steps; false where no step is short enough.
+
+        Where a contact opens that slipped, s varies as a power of the angle that is left, and where it closes
+        and slips, s has one coefficient less: what polynomials leave out there disturbances err by.
+        """
+        left: float = length
+        closed: cython.bint = False
+        c: cython.int
+        for c in range(self.contacts):
+            closed = closed or self.fresh[c] != 0
+        while left > 0.0:
+            h: float = min(self.next, self.longest)
+            if h >= left:
+                h = left
+            elif h > 0.5 * left:
+                h = 0.5 * left
+            while True:
+                if h < self.same:
+                    return False
+                rest: float = 1e300
+                if self.step(theta + length - left, h):
+                    rest = self.rest() / (self.ends if closed or (opens and h == left) else 1.0)
+                by: float = (self.tolerance / max(rest, 1e-300)) ** (1.0 / self.stages)
+                if rest <= self.tolerance:
+                    break
+                h *= min(max(self.safety * by, self.shrink), 0.7)
+            self.next = h * min(max(self.safety * by, self.shrink), self.grow)
+            self.accept()
+            closed = False
+            left = left - h if h < left else 0.0
+            self.steps += 1
+        return True
+
+    def happen(self, c: cython.int, i: cython.int) -> None:
+        """State i of a contact begins: what it remembers of the disturbances."""
+        j: cython.int
+        x: cython.Py_ssize_t = 2 * c
+        before: cython.int = self.state[c]
+        now: cython.int = self.sequence.state[c, i]
+        angle: float = self.sequence.begin[c, i]
+        self.state[c], self.fresh[c] = now, now == SLIP and before == SEPARATION
+        if (now == SLIP and before == STICK) or (now == STICK and before == SLIP):
+            self.sequence.direction(self.sequence.panel(c, angle, now == STICK), angle)
+        if now == STICK:
+            self.displaced(c)
+            self.sequence.rates(c, angle)
+        e_x: float = self.sequence.e_x
+        e_y: float = self.sequence.e_y
+        ratio: float = self.contact_ratio(c)
+        for j in range(self.columns):
+            w_x: float = self.memory[x, j]
+            w_y: float = self.memory[x + 1, j]
+            v: float = self.du[2, j]
+            if now == SLIP and before == STICK:
+                w_x, w_y = e_x * w_y - e_y * w_x, 0.0
+            elif now == STICK and before == SLIP:
+                along: float = e_x * self.du[0, j] + e_y * self.du[1, j] - ratio * v
+                w_x, w_y = along * e_x - w_x * e_y, along * e_y + w_x * e_x
+            elif now == STICK:
+                later: float = ratio * v / self.sequence.r_1
+                w_x = self.du[0, j] - self.sequence.x_1 * later
+                w_y = self.du[1, j] - self.sequence.y_1 * later
+            else:
+                w_x = w_y = 0.0
+            self.memory[x, j], self.memory[x + 1, j] = w_x, w_y
+        self.activate()
+
+    def displaced(self, c: cython.int) -> None:
+        """`du`, the displacements of a contact, which far modes share in."""
+        d: cython.int
+        i: cython.int
+        j: cython.int
+        by: float
+        for d in range(3):
+            for j in range(self.columns):
+                self.du[d, j] = 0.0
+            for i in range(self.modes):
+                by = self.shapes[i, 3 * c + d]
+                for j in range(self.columns):
+                    self.du[d, j] += by * self.q[i, j]
+            for i in range(3 * self.contacts):
+                by = self.soft[3 * c + d, i]
+                if by != 0.0:
+                    for j in range(self.columns):
+                        self.du[d, j] -= by * self.force[i, j]
+
+    def contact_ratio(self, c: cython.int) -> float:
+        """mu k_v / k_u: of the radius, by the normal displacement."""
+        k_u: float = self.sequence.contact[c, 1]
+        ratio: float = self.sequence.contact[c, 0] * self.sequence.contact[c, 2] / k_u if k_u > 0.0 else 0.0
+        return ratio
+
+    def prepare(self, h: float) -> None:
+        """What modes, and displacements of closed contacts, answer to forces at the nodes of a step."""
+        m: cython.int
+        if h == self.taken:
             return
-        size = 2 * m + 2 * len(moving)
-        Y = np.zeros((size, len(columns)))
-        Y[columns, range(len(columns))] = 1.0
-        events = sorted(
-            ((begin - start) % TWO_PI, k, i)
-            for k, c in enumerate(moving)
-            for i, begin in enumerate(self.sequence.cycles[c].begin)
-            if len(self.sequence.cycles[c].state) > 1
-        )
-        steps = self._steps(moving, start, np.array([at for at, _, _ in events]))
-        carried, at = self._exponentials(omega, moving, start, steps), 0
-        for angle, k, i in events:
-            while at < len(carried) and steps[at] < angle - options.same:
-                Y = carried[at] @ Y
-                at += 1
-            Y = self._happened(moving, states, k, i, start + angle, Y)
-        for one in carried[at:]:
-            Y = one @ Y
-        self._matrix = Y[columns]
+        for m in range(self.modes):
+            self.respond(m, h)
+        self.couple()
+        self.taken = h
 
-    def _start(self, moving: list[int]) -> float:
-        """An angle at which little is remembered, in the middle between two events."""
-        cycles = self.sequence.cycles
-        at = np.sort(np.mod(np.concatenate([[0.0], *(cycles[c].begin for c in moving)]), TWO_PI))
-        gap = np.diff(at, append=at[0] + TWO_PI)
-        middle = at + 0.5 * gap
-        counts = [sum(_memories(cycles[c].at(theta)) for c in moving) for theta in middle]
-        longest = max(range(len(at)), key=lambda j: (-counts[j] if gap[j] > 1e-6 else -np.inf, gap[j]))
-        return float(middle[longest])
+    def respond(self, m: cython.int, h: float) -> None:
+        """q = q_to (q_0, p_0) + q_by f, and p likewise, of one mode, from q = q_0 + h A p, p = p_0 + h A p'.
 
-    def _steps(self, moving: list[int], start: float, events: FloatArray) -> FloatArray:
-        """Where steps begin, and the end of the last, from the start (step + 1,), events among them."""
-        cycles, options = self.sequence.cycles, self.sequence.options
-        edges = [np.array([0.0, TWO_PI]), events]
-        for one in (cycles[c] for c in moving):
-            if len(one.panels):
-                edges.append(np.mod(one.panels[:, 0] - start, TWO_PI))
-            edges += [self._graded(one, j, start) for j in range(len(one.begin))]
-        edge = np.unique(np.concatenate(edges))
-        edge = edge[np.concatenate(([True], np.diff(edge) > options.same))]
-        length = np.diff(edge)
-        parts = np.ones(length.size)
-        middle = start + edge[:-1] + 0.5 * length
-        for one in (cycles[c] for c in moving):
-            slips = one.states(middle) == "P"
-            if slips.any():
-                theta = middle[slips]
-                r, rate = one.rates(theta)
-                fastest = np.hypot(rate[:, 0], rate[:, 1]) / np.maximum(np.abs(r), 1e-12 * np.abs(r).max())
-                by = np.maximum(
-                    one.numbers[_last(one)] / options.step,
-                    np.minimum(fastest / options.turn, 8.0 / length[slips]),
+        With p' = -w^2 q - 2 zeta w p + f: (1 + 2 zeta w h A + w^2 h^2 A^2) p = p_0 - w^2 h A q_0 + h A f.
+        """
+        s: cython.int = self.stages
+        i: cython.int
+        j: cython.int
+        k: cython.int
+        part: float
+        square: float = self.natural[m] * self.period * h
+        damp: float = 2.0 * self.damping[m] * square
+        square *= square
+        for i in range(s):
+            for j in range(s):
+                part = 0.0
+                for k in range(s):
+                    part += self.butcher[i, k] * self.butcher[k, j]
+                self.system[i, j] = square * part + damp * self.butcher[i, j] + float(i == j)
+                self.system[i, s + j] = self.butcher[i, j]
+        # of a rule's matrix and positive numbers no pivot vanishes
+        for k in range(s):
+            for i in range(s):
+                if i == k:
+                    continue
+                part = self.system[i, k] / self.system[k, k]
+                for j in range(k + 1, 2 * s):
+                    self.system[i, j] -= part * self.system[k, j]
+        for k in range(s):
+            part = 1.0 / self.system[k, k]
+            for j in range(s):
+                self.p_by[m, k, j] = h * part * self.system[k, s + j]
+        square /= h * h
+        damp /= h
+        for i in range(s):
+            once: float = 0.0
+            twice: float = 0.0
+            for j in range(s):
+                part = 0.0
+                for k in range(s):
+                    part += self.butcher[i, k] * self.p_by[m, k, j]
+                self.q_by[m, i, j] = h * part
+                once += self.p_by[m, i, j]
+                twice += h * part
+            self.q_to[m, i, 0], self.q_to[m, i, 1] = 1.0 - square * twice, once
+            self.p_to[m, i, 0], self.p_to[m, i, 1] = -square * once, 1.0 - damp * once - square * twice
+        for i in range(2):
+            for j in range(2):
+                part = self.tail[i, 0] if j == 1 else 0.0
+                for k in range(s):
+                    part += self.tail[i, k + 1] * self.p_to[m, k, j]
+                self.rest_to[2 * m + i, j] = part
+            for j in range(s):
+                part = 0.0
+                for k in range(s):
+                    part += self.tail[i, k + 1] * self.p_by[m, k, j]
+                self.rest_by[2 * m + i, j] = part
+
+    def couple(self) -> None:
+        """What the unknowns answer to forces on closed contacts: of the modes, and of those far above."""
+        s: cython.int = self.stages
+        ports: cython.int = 3 * self.actives
+        i: cython.int
+        j: cython.int
+        a: cython.int
+        b: cython.int
+        m: cython.int
+        part: float
+        for i in range(s):
+            for a in range(self.unknowns):
+                for j in range(s):
+                    part = -self.period * self.period * self.q_by[a, i, j] if self.modal else 0.0
+                    for b in range(ports):
+                        self.answer[i, a, j, b] = part * self.seen[a, b] if self.modal else 0.0
+        if self.modal:
+            return
+        for a in range(ports):
+            for b in range(ports):
+                part = self.soft[3 * self.active[a // 3] + a % 3, 3 * self.active[b // 3] + b % 3]
+                for i in range(s):
+                    self.answer[i, a, i, b] = -part
+        for m in range(self.modes):
+            for i in range(s):
+                for a in range(ports):
+                    for j in range(s):
+                        part = -self.period * self.period * self.q_by[m, i, j] * self.seen[m, a]
+                        for b in range(ports):
+                            self.answer[i, a, j, b] += part * self.seen[m, b]
+
+    def slip(self, c: cython.int, theta: float, h: float) -> None:
+        """Of a contact that slips: s = inverse (feels . (du, dv)) + kept s_0 at the nodes of a step.
+
+        As it closes, no s_0: the polynomial has the nodes only.
+        """
+        s: cython.int = self.stages
+        i: cython.int
+        j: cython.int
+        k: cython.int
+        part: float
+        ratio: float = self.contact_ratio(c)
+        for i in range(s):
+            at: float = theta + h * self.node[i]
+            self.sequence.direction(self.sequence.panel(c, at, False), at)
+            self.sequence.rates(c, at)
+            e_x: float = self.sequence.e_x
+            e_y: float = self.sequence.e_y
+            r: float = max(self.sequence.r, 1e-12 * self.sequence.mean[c])
+            x_1: float = h * self.sequence.x_1
+            y_1: float = h * self.sequence.y_1
+            across: float = e_x * y_1 - e_y * x_1
+            push: float = max(e_x * x_1 + e_y * y_1 - h * self.sequence.r_1, 0.0)
+            self.e_x[c, i], self.e_y[c, i] = e_x, e_y
+            self.feels[c, i, 0] = -push * e_y - across * e_x
+            self.feels[c, i, 1] = push * e_x - across * e_y
+            self.feels[c, i, 2] = across * ratio
+            for j in range(s):
+                self.system[i, j] = r * (self.inner[i, j] if self.fresh[c] else self.slopes[i, j + 1])
+                self.system[i, s + j] = float(i == j)
+            self.system[i, i] += push
+            self.kept[c, i] = 0.0 if self.fresh[c] else -r * self.slopes[i, 0]
+        for k in range(s):
+            for i in range(s):
+                if i == k:
+                    continue
+                part = self.system[i, k] / self.system[k, k]
+                for j in range(k + 1, s + k + 1):
+                    self.system[i, j] -= part * self.system[k, j]
+        for i in range(s):
+            self.fore[i] = self.kept[c, i]
+        for i in range(s):
+            part = 1.0 / self.system[i, i]
+            self.kept[c, i] = 0.0
+            for j in range(s):
+                self.inverse[c, i, j] = part * self.system[i, s + j]
+                self.kept[c, i] += self.inverse[c, i, j] * self.fore[j]
+
+    def step(self, theta: float, h: float) -> bool:
+        """One step from an angle on, in `q_new`, `p_new` and `work`; false where it is singular."""
+        a: cython.int
+        self.prepare(h)
+        for a in range(self.actives):
+            if self.state[self.active[a]] == SLIP:
+                self.slip(self.active[a], theta, h)
+        self.unforced()
+        for a in range(self.actives):
+            self.assemble(a)
+        if not self.solve(self.unknowns * self.stages):
+            return False
+        self.move()
+        return True
+
+    def unforced(self) -> None:
+        """`work`: one, and the unknowns as the modes go on without forces."""
+        size: cython.int = self.unknowns * self.stages
+        i: cython.int
+        j: cython.int
+        a: cython.int
+        m: cython.int
+        row: cython.Py_ssize_t
+        by: float
+        on: float
+        for i in range(self.stages):
+            for a in range(self.unknowns):
+                row = i * self.unknowns + a
+                for j in range(size + self.columns):
+                    self.work[row, j] = 0.0
+                self.work[row, row] = 1.0
+                for m in range(self.modes):
+                    if self.modal and m != a:
+                        continue
+                    by = 1.0 if self.modal else self.seen[m, a]
+                    by, on = by * self.q_to[m, i, 0], by * self.q_to[m, i, 1]
+                    for j in range(self.columns):
+                        self.work[row, size + j] += by * self.q[m, j] + on * self.p[m, j]
+
+    def assemble(self, a: cython.int) -> None:
+        """Take from `work` what the forces of a closed contact do."""
+        s: cython.int = self.stages
+        c: cython.int = self.active[a]
+        state: cython.int = self.state[c]
+        x: cython.Py_ssize_t = 3 * a
+        i: cython.int
+        j: cython.int
+        k: cython.int
+        b: cython.int
+        row: cython.Py_ssize_t
+        size: cython.Py_ssize_t = self.unknowns * s
+        k_u: float = self.sequence.contact[c, 1]
+        k_v: float = self.sequence.contact[c, 2]
+        ratio: float = self.contact_ratio(c)
+        own: float
+        other: float
+        part: float
+        for i in range(s):
+            for b in range(self.unknowns):
+                row = i * self.unknowns + b
+                own = 0.0
+                other = 0.0
+                if state == SLIP:
+                    for j in range(s):
+                        self.aft[j] = k_u * (
+                            self.answer[i, b, j, x + 1] * self.e_x[c, j]
+                            - self.answer[i, b, j, x] * self.e_y[c, j]
+                        )
+                        own += self.aft[j] * self.kept[c, j]
+                for k in range(s):
+                    by_x: float = k_u * self.answer[i, b, k, x]
+                    by_y: float = k_u * self.answer[i, b, k, x + 1]
+                    by_v: float = k_v * self.answer[i, b, k, x + 2]
+                    if state == SLIP:
+                        part = 0.0
+                        for j in range(s):
+                            part += self.aft[j] * self.inverse[c, j, k]
+                        by_v += ratio * (by_x * self.e_x[c, k] + by_y * self.e_y[c, k])
+                        by_v -= part * self.feels[c, k, 2]
+                        by_x = -self.aft[k] * self.e_y[c, k] - part * self.feels[c, k, 0]
+                        by_y = self.aft[k] * self.e_x[c, k] - part * self.feels[c, k, 1]
+                    elif state == STICK:
+                        own += by_x
+                        other += by_y
+                    else:
+                        by_x = by_y = 0.0
+                    if self.modal:
+                        for j in range(self.unknowns):
+                            self.work[row, k * self.unknowns + j] -= (
+                                by_x * self.seen[j, x]
+                                + by_y * self.seen[j, x + 1]
+                                + by_v * self.seen[j, x + 2]
+                            )
+                    else:
+                        self.work[row, k * self.unknowns + x] -= by_x
+                        self.work[row, k * self.unknowns + x + 1] -= by_y
+                        self.work[row, k * self.unknowns + x + 2] -= by_v
+                for j in range(self.columns):
+                    self.work[row, size + j] -= (
+                        own * self.memory[2 * c, j] + other * self.memory[2 * c + 1, j]
+                    )
+
+    def solve(self, size: cython.int) -> bool:
+        """The right side of `work` becomes the solution: Gaussian elimination, pivots along columns."""
+        i: cython.int
+        j: cython.int
+        k: cython.int
+        p: cython.int
+        by: float
+        width: cython.int = size + self.columns
+        for k in range(size):
+            p = k
+            for i in range(k + 1, size):
+                if fabs(self.work[i, k]) > fabs(self.work[p, k]):
+                    p = i
+            if not 1e-300 < fabs(self.work[p, k]) < 1e300:
+                return False
+            if p != k:
+                for j in range(k, width):
+                    self.work[k, j], self.work[p, j] = self.work[p, j], self.work[k, j]
+            for i in range(k + 1, size):
+                by = self.work[i, k] / self.work[k, k]
+                if by != 0.0:
+                    for j in range(k + 1, width):
+                        self.work[i, j] -= by * self.work[k, j]
+        for k in range(size - 1, -1, -1):
+            by = 1.0 / self.work[k, k]
+            for j in range(size, width):
+                self.work[k, j] *= by
+            for i in range(k):
+                by = self.work[i, k]
+                for j in range(size, width):
+                    self.work[i, j] -= by * self.work[k, j]
+        return True
+
+    def move(self) -> None:
+        """`stress`, the forces, and `push`, these on the modes, at the nodes; `q_new`, `p_new` at the end."""
+        s: cython.int = self.stages
+        ports: cython.int = 3 * self.actives
+        a: cython.int
+        i: cython.int
+        j: cython.int
+        m: cython.int
+        by: float
+        on: float
+        self.displace()
+        for a in range(self.actives):
+            self.strain(a)
+        for i in range(s):
+            for m in range(self.modes):
+                for j in range(self.columns):
+                    self.push[i * self.modes + m, j] = 0.0
+                for a in range(ports):
+                    by = -self.period * self.period * self.seen[m, a]
+                    for j in range(self.columns):
+                        self.push[i * self.modes + m, j] += by * self.stress[i * ports + a, j]
+        for m in range(self.modes):
+            for j in range(self.columns):
+                self.q_new[m, j] = (
+                    self.q_to[m, s - 1, 0] * self.q[m, j] + self.q_to[m, s - 1, 1] * self.p[m, j]
                 )
-                parts[slips] = np.maximum(parts[slips], np.ceil(length[slips] * by))
-        inner = [a + (b - a) * np.arange(n) / n for a, b, n in zip(edge, edge[1:], parts, strict=False)]
-        return np.concatenate((*inner, [TWO_PI]))
+                self.p_new[m, j] = (
+                    self.p_to[m, s - 1, 0] * self.q[m, j] + self.p_to[m, s - 1, 1] * self.p[m, j]
+                )
+            for i in range(s):
+                by, on = self.q_by[m, s - 1, i], self.p_by[m, s - 1, i]
+                for j in range(self.columns):
+                    self.q_new[m, j] += by * self.push[i * self.modes + m, j]
+                    self.p_new[m, j] += on * self.push[i * self.modes + m, j]
 
-    def _graded(self, one: Cycle, j: int, start: float) -> FloatArray:
-        """Edges towards the beginning of a state at which the radius vanishes."""
-        before, now = one.state[j - 1], one.state[j]
-        if {before, now} != {"S", "P"}:
-            return np.zeros(0)
-        options, n = self.sequence.options, len(one.begin)
-        forward = now == "P"
-        other = (one.begin[(j + 1) % n] - one.begin[j]) if forward else (one.begin[j] - one.begin[j - 1])
-        room = 0.5 * (other % TWO_PI)
-        away = min(room, 0.5) * options.shrink ** np.arange(options.graded)
-        edges: FloatArray = np.mod(one.begin[j] - start + (away if forward else -away), TWO_PI)
-        return edges
+    def displace(self) -> None:
+        """`stress`: at first the displacements of closed contacts at the nodes."""
+        ports: cython.int = 3 * self.actives
+        size: cython.Py_ssize_t = self.unknowns * self.stages
+        a: cython.int
+        i: cython.int
+        j: cython.int
+        m: cython.int
+        row: cython.Py_ssize_t
+        by: float
+        for i in range(self.stages):
+            for a in range(ports):
+                row = i * ports + a
+                if not self.modal:
+                    for j in range(self.columns):
+                        self.stress[row, j] = self.work[row, size + j]
+                    continue
+                for j in range(self.columns):
+                    self.stress[row, j] = 0.0
+                for m in range(self.modes):
+                    by = self.seen[m, a]
+                    for j in range(self.columns):
+                        self.stress[row, j] += by * self.work[i * self.modes + m, size + j]
 
-    def _exponentials(
-        self, omega: float, moving: list[int], start: float, steps: FloatArray
-    ) -> npt.NDArray[np.float64]:
-        """Of each step, (step, size, size)."""
-        h = np.diff(steps)
-        theta = start + steps[:-1, None] + h[:, None] * GAUSS
-        A = self._system(omega, moving, theta.ravel()).reshape(
-            h.size, 2, -1, 2 * self.modes + 2 * len(moving)
-        )
-        one, other = A[:, 0], A[:, 1]
-        scale = h[:, None, None]
-        series = 0.5 * scale * (one + other) - np.sqrt(3.0) / 12.0 * scale**2 * (one @ other - other @ one)
-        from scipy.linalg import expm  # whose import takes longer than the curves of other contacts
+    def strain(self, a: cython.int) -> None:
+        """Forces of a closed contact in the place of its displacements; what it remembers at the end."""
+        s: cython.int = self.stages
+        c: cython.int = self.active[a]
+        state: cython.int = self.state[c]
+        ports: cython.int = 3 * self.actives
+        i: cython.int
+        j: cython.int
+        k: cython.int
+        x: cython.Py_ssize_t
+        k_u: float = self.sequence.contact[c, 1]
+        k_v: float = self.sequence.contact[c, 2]
+        ratio: float = self.contact_ratio(c)
+        for j in range(self.columns):
+            known: float = self.memory[2 * c, j]
+            other: float = self.memory[2 * c + 1, j]
+            if state == SLIP:
+                for i in range(s):
+                    x = i * ports + 3 * a
+                    self.fore[i] = self.feels[c, i, 0] * self.stress[x, j]
+                    self.fore[i] += self.feels[c, i, 1] * self.stress[x + 1, j]
+                    self.fore[i] += self.feels[c, i, 2] * self.stress[x + 2, j]
+                for i in range(s):
+                    self.aft[i] = self.kept[c, i] * known
+                    for k in range(s):
+                        self.aft[i] += self.inverse[c, i, k] * self.fore[k]
+                self.after[2 * c, j] = self.aft[s - 1]
+            for i in range(s):
+                x = i * ports + 3 * a
+                u_x: float = self.stress[x, j]
+                u_y: float = self.stress[x + 1, j]
+                v: float = self.stress[x + 2, j]
+                if state == SLIP:
+                    e_x: float = self.e_x[c, i]
+                    e_y: float = self.e_y[c, i]
+                    across: float = e_x * u_y - e_y * u_x - self.aft[i]
+                    u_x, u_y = ratio * v * e_x - across * e_y, ratio * v * e_y + across * e_x
+                elif state == STICK:
+                    u_x, u_y = u_x - known, u_y - other
+                else:
+                    u_x = u_y = 0.0
+                self.stress[x, j], self.stress[x + 1, j], self.stress[x + 2, j] = (
+                    k_u * u_x,
+                    k_u * u_y,
+                    k_v * v,
+                )
 
-        return np.asarray(expm(series))
+    def rest(self) -> float:
+        """The last coefficient of the velocities, beside the size of a disturbance; see `Panel.rest`."""
+        i: cython.int
+        j: cython.int
+        k: cython.int
+        m: cython.int
+        most: float = 0.0
+        value: float
+        for j in range(self.columns):
+            self.scale[j] = 1.0
+        for m in range(self.modes):
+            for j in range(self.columns):
+                self.scale[j] = max(self.scale[j], fabs(self.q[m, j]), fabs(self.p[m, j]))
+        for m in range(self.modes):
+            for i in range(2):
+                for j in range(self.columns):
+                    value = self.rest_to[2 * m + i, 0] * self.q[m, j]
+                    value += self.rest_to[2 * m + i, 1] * self.p[m, j]
+                    for k in range(self.stages):
+                        value += self.rest_by[2 * m + i, k] * self.push[k * self.modes + m, j]
+                    value = fabs(value) if i == 1 else self.before * fabs(value)
+                    most = max(most, value / self.scale[j])
+        return most
 
-    def _system(self, omega: float, moving: list[int], theta: FloatArray) -> FloatArray:
-        """A (angle, size, size) of (q, q', memory)' = A (q, q', memory)."""
-        m, size, cycles = self.modes, 2 * self.modes + 2 * len(moving), self.sequence.cycles
-        ports, still = 3 * self.contacts, set(range(self.contacts)) - set(moving)
-        K, L = np.zeros((theta.size, ports, ports)), np.zeros((theta.size, ports, 2 * len(moving)))
-        B, D = np.zeros((theta.size, 2 * len(moving), ports)), np.zeros((theta.size, 2 * len(moving)))
-        for c in still:
-            if cycles[c].state[0] != "S":
-                _, k_u, k_v, _ = self.sequence.contact[c]
-                rubs = k_u if cycles[c].state[0] == "E" else 0.0
-                K[:, range(3 * c, 3 * c + 3), range(3 * c, 3 * c + 3)] = rubs, rubs, k_v
-        for k, c in enumerate(moving):
-            self._contact(c, k, theta, (K, L, B, D))
-        shapes = np.broadcast_to(self.shapes.T, (theta.size, ports, m))
-        seen: FloatArray = shapes
-        through = np.zeros((theta.size, ports, 2 * len(moving)))
-        if self.soft.any():
-            inverse = np.linalg.inv(np.eye(ports) + self.soft @ K)
-            seen, through = inverse @ shapes, inverse @ (self.soft @ L)
-        A = np.zeros((theta.size, size, size))
-        A[:, range(m), range(m, 2 * m)] = 1.0
-        push = -self.shapes / omega**2
-        A[:, m : 2 * m, :m] = push @ (K @ seen)
-        A[:, range(m, 2 * m), range(m)] -= (self.natural / omega) ** 2
-        A[:, range(m, 2 * m), range(m, 2 * m)] = -2.0 * self.damping * self.natural / omega
-        A[:, m : 2 * m, 2 * m :] = push @ (K @ through - L)
-        A[:, 2 * m :, :m] = B @ seen
-        A[:, 2 * m :, 2 * m :] = B @ through
-        A[:, range(2 * m, size), range(2 * m, size)] -= D
-        return A
-
-    def _contact(self, c: int, k: int, theta: FloatArray, parts: tuple[FloatArray, ...]) -> None:
-        """Fill the parts K, L, B, D of one contact, number k of those that move."""
-        K, L, B, D = parts
-        one, (mu, k_u, k_v, _) = self.sequence.cycles[c], self.sequence.contact[c]
-        x, y, v = range(3 * c, 3 * c + 3)
-        state = one.states(theta)
-        closed, stick, slip = state != "S", state == "E", state == "P"
-        K[closed, v, v] = k_v
-        K[stick, x, x] = K[stick, y, y] = k_u
-        L[stick, x, 2 * k] = L[stick, y, 2 * k + 1] = k_u
-        if not slip.any():
-            return
-        e = one.directions(theta[slip])
-        across = np.stack((-e[:, 1], e[:, 0]), axis=-1)
-        r, rate = one.rates(theta[slip])
-        turning = (across * rate[:, :2]).sum(axis=1) / r
-        follows = np.maximum((e * rate[:, :2]).sum(axis=1) - rate[:, 2], 0.0) / r
-        ratio = mu * k_v / k_u
-        for i, row in enumerate((x, y)):
-            for j, column in enumerate((x, y)):
-                K[slip, row, column] = k_u * across[:, i] * across[:, j]
-            K[slip, row, v] = mu * k_v * e[:, i]
-            L[slip, row, 2 * k] = k_u * across[:, i]
-            B[slip, 2 * k, row] = follows * across[:, i] - turning * e[:, i]
-        B[slip, 2 * k, v] = turning * ratio
-        D[slip, 2 * k] = follows
-
-    def _happened(
-        self, moving: list[int], states: list[str], k: int, i: int, theta: float, Y: FloatArray
-    ) -> FloatArray:
-        """Y after an event: state i of a contact begins."""
-        c = moving[k]
-        one, now = self.sequence.cycles[c], self.sequence.cycles[c].state[i]
-        before, states[c] = states[c], now
-        row = 2 * self.modes + 2 * k
-        kept, made = Y[row : row + 2].copy(), np.zeros((2, Y.shape[1]))
-        if now in ("E", "P"):
-            du = self._displaced(moving, theta, Y)[3 * c : 3 * c + 3]
-            _, rate = one.rates(np.array([theta]))
-            mu, k_u, k_v, _ = self.sequence.contact[c]
-        if now == "P":
-            e = one.directions(np.array([theta + self.sequence.options.inside]))[0]
-            across = np.array([-e[1], e[0]])
-            made[0] = across @ (du[:2] if before == "S" else kept)
-        elif now == "E" and before == "S":
-            load = rate[0, 2] * k_u / (mu * k_v)  # v'
-            made[:] = du[:2] - np.outer(rate[0, :2] / load, du[2])
-        elif now == "E":
-            e = one.directions(np.array([theta - self.sequence.options.inside]))[0]
-            across = np.array([-e[1], e[0]])
-            made[:] = np.outer(e, e @ du[:2] - mu * k_v / k_u * du[2]) + np.outer(across, kept[0])
-        Y = Y.copy()
-        Y[row : row + 2] = made
-        return Y
-
-    def _displaced(self, moving: list[int], theta: float, Y: FloatArray) -> FloatArray:
-        """Displacements of the ports (port, disturbance) just before an event."""
-        own: FloatArray = self.shapes.T @ Y[: self.modes]
-        if not self.soft.any():
-            return own
-        ports, memories = 3 * self.contacts, 2 * len(moving)
-        K, L = np.zeros((1, ports, ports)), np.zeros((1, ports, memories))
-        B, D = np.zeros((1, memories, ports)), np.zeros((1, memories))
-        at = np.array([theta - self.sequence.options.inside])
-        for k, c in enumerate(moving):
-            self._contact(c, k, at, (K, L, B, D))
-        for c in set(range(self.contacts)) - set(moving):
-            if self.sequence.cycles[c].state[0] != "S":
-                _, k_u, k_v, _ = self.sequence.contact[c]
-                rubs = k_u if self.sequence.cycles[c].state[0] == "E" else 0.0
-                K[0, range(3 * c, 3 * c + 3), range(3 * c, 3 * c + 3)] = rubs, rubs, k_v
-        own = own + self.soft @ (L[0] @ Y[2 * self.modes :])
-        return np.linalg.solve(np.eye(ports) + self.soft @ K[0], own)
-
-
-def _memories(state: str) -> int:
-    """Numbers that a contact remembers in a state: the place of its slider, or its direction."""
-    return {"E": 2, "P": 1}.get(state, 0)
-
-
-def _last(one: Cycle) -> int:
-    """The highest harmonic that the motion has."""
-    size = np.abs(one.waves).max(axis=1)
-    return int(np.flatnonzero(size > 0.0)[-1]) if size.any() else 0
+    def accept(self) -> None:
+        """The end of the step is where the disturbances are."""
+        a: cython.int
+        c: cython.int
+        i: cython.int
+        j: cython.int
+        ports: cython.int = 3 * self.actives
+        last: cython.Py_ssize_t = ports * (self.stages - 1)
+        self.q, self.q_new = self.q_new, self.q
+        self.p, self.p_new = self.p_new, self.p
+        for i in range(3 * self.contacts):
+            for j in range(self.columns):
+                self.force[i, j] = 0.0
+        for a in range(self.actives):
+            c = self.active[a]
+            for i in range(3):
+                for j in range(self.columns):
+                    self.force[3 * c + i, j] = self.stress[last + 3 * a + i, j]
+            if self.state[c] == SLIP:
+                self.fresh[c] = 0
+                for j in range(self.columns):
+                    self.memory[2 * c, j] = self.after[2 * c, j]

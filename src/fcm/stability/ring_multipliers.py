@@ -22,7 +22,8 @@ from fcm.stability.force_harmonics import Finer, beyond
 from fcm.stability.monodromy import RingMonodromy
 from fcm.stability.multipliers import Followed, Multipliers, far_above
 from fcm.stability.options import STABILITY, StabilityOptions
-from fcm.stability.planar_monodromy import PlanarMonodromy, PlanarSequence
+from fcm.stability.planar_monodromy import PlanarMonodromy
+from fcm.stability.planar_sequence import PlanarSequence
 from fcm.stability.state_sequence import BalancedSequence
 from fcm.stability.verdict import Verdict
 from fcm.structure.ring import RingLinear

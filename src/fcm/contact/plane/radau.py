@@ -22,6 +22,8 @@ class Radau(NamedTuple):
         The rule is exact for polynomials of degree 2 s - 2.
     slopes : ndarray, shape (s + 1, s + 1)
         Derivatives at 0 and at the nodes, from the values there.
+    inner : ndarray, shape (s, s)
+        Derivatives at the nodes of a polynomial of degree s - 1, from the values there alone.
     tail : ndarray, shape (2, s + 1)
         The coefficients of Legendre's polynomials of degree s - 1 and s.
     bary : ndarray, shape (s + 1,)
@@ -31,6 +33,7 @@ class Radau(NamedTuple):
     nodes: FloatArray
     weights: FloatArray
     slopes: FloatArray
+    inner: FloatArray
     tail: FloatArray
     bary: FloatArray
 
@@ -54,13 +57,19 @@ def radau(stages: int) -> Radau:
     nodes = 0.5 * (1.0 + points)
     nodes[-1] = 1.0
     x = np.concatenate(([0.0], nodes))
-    apart = x[:, None] - x + np.eye(stages + 1)
+    bary, slopes = _derivatives(x)
+    tail = np.linalg.inv(_legendre(x, stages)).astype(np.float64)[-2:]
+    return Radau(nodes, vectors[0] ** 2, slopes, _derivatives(nodes)[1], tail, bary)
+
+
+def _derivatives(x: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Weights of the barycentric formula of points (point,), and derivatives there from the values there."""
+    apart = x[:, None] - x + np.eye(x.size)
     bary = 1.0 / apart.prod(axis=1)
     slopes = bary / bary[:, None] / apart
     np.fill_diagonal(slopes, 0.0)
     np.fill_diagonal(slopes, -slopes.sum(axis=1))
-    tail = np.linalg.inv(_legendre(x, stages)).astype(np.float64)[-2:]
-    return Radau(nodes, vectors[0] ** 2, slopes, tail, bary)
+    return bary, slopes
 
 
 def _legendre(x: FloatArray, degree: int) -> FloatArray:
