@@ -12,6 +12,7 @@ from fcm.cli.balance import harmonics
 from fcm.cli.columns import ranges
 from fcm.cli.curves import as_table, cost_and_error
 from fcm.cli.doubts import residual_friction
+from fcm.model.in_time import InTime
 from fcm.plot.peak import draw_peak, read_peaks
 from fcm.plot.read import read_response
 from fcm.plot.response import draw_response
@@ -72,7 +73,8 @@ def test_a_range_with_residual_friction_that_is_not_known_is_a_dash_and_says_so(
 def test_residual_friction_is_told_of_those_curves_alone_of_which_it_is_known():
     known, unknown = (curve({"u": 1.0}) | {"may_not_be_unique": 3} for _ in range(2))
     known["peak"]["u"]["residual_change"], unknown["peak"]["u"]["residual_change"] = 0.0, None
-    told = [residual_friction({"curves": ones, "method": "exact"}) for ones in ([known], [known, unknown])]
+    run = {"method": "exact", "exact_motion": InTime.COMPUTED.value}
+    told = [residual_friction({"curves": ones} | run) for ones in ([known], [known, unknown])]
     assert "decides: it changes no peak" in told[0]
     assert "decides: on 1 of 2 curves it changes no peak" in told[1]
 

@@ -7,12 +7,18 @@ import netCDF4
 import numpy as np
 import pytest
 
+import fcm
 from fcm.branches import search
 from fcm.branches.isolas import Crossings
 from fcm.cli.doubts import maybe_not_unique, nothing_stable, peaks_not_followed, short_of_accuracy
+from fcm.model.in_time import InTime
 from fcm.response.exact import trace_exact
+from fcm.response.request import ResponseError
+from fcm.results.output import summary
+from fcm.results.result import Response
 from fcm.scene import load_scene
 
+COMPUTED = {"exact_motion": InTime.COMPUTED.value}
 SCENE = Path(__file__).parents[1] / "shooting/scenes/two_periods.toml"
 
 
@@ -33,14 +39,37 @@ def test_where_nothing_that_was_found_is_stable_the_run_says_so(fcm, tmp_path):
         assert json.loads(data.summary)["curves"][0]["no_stable_motion"] == [[low, high]]
 
 
-def test_the_exact_motion_is_not_offered_for_contacts_in_a_plane():
-    curves = [{"parameters": {}, "may_not_be_unique": 3}]
-    on_line = {"curves": curves, "method": "table", "notes": []}
-    assert maybe_not_unique(on_line).endswith("--method exact --at F tells how far the motions range")
-    driven = on_line | {"notes": ["force: at harmonics 1, 2 of the frequency, which are balanced"]}
-    assert maybe_not_unique(driven).endswith("--method exact --at F tells how far the motions range")
-    in_plane = on_line | {"directions": {"joint": {"x": "1x", "y": "1y", "normal": "1z"}}}
-    assert maybe_not_unique(in_plane).endswith("keeps a friction force that its past decides")
+class Spring(fcm.ContactLaw):
+    def forces(self, x, dx):
+        return 2.0 * x, 2.0 * dx
+
+
+def with_a_law():
+    return load_scene("yang1998-n5").with_laws({"shroud": Spring()})
+
+
+SCENES = {
+    InTime.COMPUTED: lambda: load_scene("yang1998-n5"),
+    InTime.RING: lambda: load_scene("bladed-disk"),
+    InTime.PLANE: lambda: load_scene("platform-damper"),
+    InTime.OWN_LAW: with_a_law,
+}
+
+
+@pytest.mark.parametrize("kind", InTime)
+def test_the_exact_motion_is_offered_where_it_is_not_refused(kind):
+    scene = SCENES[kind]().in_use()
+    said = summary(Response.of(scene, [], "table"))
+    said["curves"] = [{"parameters": {}, "may_not_be_unique": 3}]
+    offered = maybe_not_unique(said).endswith("--method exact --at F tells how far the motions range")
+    try:
+        trace_exact(scene, [scene.frequency_range[0]])
+    except ResponseError:
+        assert kind is not InTime.COMPUTED and not offered
+    else:
+        assert kind is InTime.COMPUTED and offered
+    said["curves"] = [{"parameters": {}, "may_not_be_unique": 3, "mode": 1}]
+    assert "--method exact" not in maybe_not_unique(said)  # a nonlinear mode has no forces
 
 
 def test_of_many_stretches_without_a_stable_motion_the_widest_are_named():
@@ -49,30 +78,30 @@ def test_of_many_stretches_without_a_stable_motion_the_widest_are_named():
         {"parameters": {"contact.a.n_0": 7.0}},
         {"parameters": {"contact.a.n_0": 0.5}, "no_stable_motion": ways},
     ]
-    said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table"})
+    said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table", **COMPUTED})
     assert "between 1 and 1.5, 3 and 3.2, 4 and 4.3 Hz and in 2 narrower ranges" in said
     assert "(contact.a.n_0 = 0.5; on 1 of 2 curves)" in said and said.endswith(
         "--method exact --at F shows it"
     )
     curves[1]["may_not_be_unique"] = 3  # another member of the family of motions may be stable
-    said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table"})
+    said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table", **COMPUTED})
     assert "not found, or has another residual friction; " in said
     curves[1]["no_stable_motion_not_looked_at"] = ways[3:]
-    said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table"})
+    said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table", **COMPUTED})
     assert "not found (in 2 of these ranges, the widest between 4 and 4.3, none was looked for), or" in said
     curves[1]["no_stable_motion_not_looked_at"] = ways[4:]
-    said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table"})
+    said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table", **COMPUTED})
     assert "not found (between 5 and 5.05 none was looked for), or" in said
     del curves[1]["may_not_be_unique"], curves[1]["no_stable_motion_not_looked_at"]
     ring = nothing_stable(
-        {"curves": curves[1:], "frequency_unit": "Hz", "method": "table", "notes": ["cyclic: so"]}
+        {"curves": curves[1:], "frequency_unit": "Hz", "method": "table", "exact_motion": InTime.RING.value}
     )
     assert ring.endswith("not found")  # the exact motion of a ring is not visited
 
 
 @pytest.mark.parametrize("curves", [[], [{"parameters": {}}]])
 def test_nothing_is_said_where_something_is_stable_throughout(curves):
-    assert nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table"}) == ""
+    assert nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table", **COMPUTED}) == ""
 
 
 @pytest.mark.parametrize(("short", "said"), [(1, "1 of 3 curves misses"), (2, "2 of 3 curves miss")])

@@ -201,10 +201,11 @@ def residual_friction(summary: Mapping[str, Any]) -> str:
 
 def _how(summary: Mapping[str, Any]) -> str:
     """By which option the exact motion is visited at a frequency F; empty where it is not computed, as of a
-    ring, a mode or contacts in a plane."""
-    if summary.get("directions"):
-        return ""
-    no_forces = any("mode" in curve for curve in summary["curves"])
-    if no_forces or any(note.startswith("cyclic:") for note in summary.get("notes", ())):
+    nonlinear mode, which has no forces."""
+    from fcm.model.in_time import InTime
+
+    if any("mode" in curve for curve in summary["curves"]) or (
+        InTime(summary["exact_motion"]) is not InTime.COMPUTED
+    ):
         return ""
     return "--at F" if summary["method"] == "exact" else "--method exact --at F"

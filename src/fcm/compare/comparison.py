@@ -12,7 +12,7 @@ from fcm.compare.methods import CLOSED_FORM, EXACT, Method, Run, run, solve, wit
 from fcm.compare.startup import Startup, startup
 from fcm.model.scene import Scene
 from fcm.reduction.options import REDUCTION
-from fcm.response.ring_limits import refuse_own_laws, refuse_plane, refuse_ring
+from fcm.response.ring_limits import refuse_in_time
 from fcm.response.sweep import trace
 from fcm.scene.errors import counted
 from fcm.table import open_table
@@ -157,9 +157,7 @@ def compare(
     >>> str(comparison.shown("exact", comparison.find("default table"), "peak"))  # doctest: +SKIP
     '6.6e-02'
     """
-    refuse_ring(scene, "a comparison with the exact motion")
-    refuse_plane(scene, "a comparison with the exact motion")
-    refuse_own_laws(scene, "a comparison with the exact motion")
+    refuse_in_time(scene, "a comparison with the exact motion")
     begin = time.perf_counter()
     out = Comparison(scene)
     show = progress or (lambda _share, _text: None)

@@ -23,7 +23,7 @@ from fcm.response.exact_curve import ExactWork
 from fcm.response.options import EXACT_CURVES, INPUT_LIMITS
 from fcm.response.request import ResponseError
 from fcm.response.resumable_branches import LEGS
-from fcm.response.ring_limits import refuse_own_laws, refuse_plane, refuse_ring
+from fcm.response.ring_limits import refuse_in_time
 from fcm.response.stepped_sweep import STATES
 from fcm.results.at_rest import without_rounding
 from fcm.results.result import Response
@@ -93,9 +93,7 @@ def trace_exact(
     >>> [round(fold, 6) for fold in response.curves[0].folds]
     [1.239829, 1.193559]
     """
-    refuse_ring(scene, "the exact motion")
-    refuse_plane(scene, "the exact motion")
-    refuse_own_laws(scene, "the exact motion")
+    refuse_in_time(scene, "the exact motion")
     begin, frequencies = time.perf_counter(), _checked(scene, at)
     with checkpoint_of(keep, resume) as checkpoint:
         work = ExactWork(frequencies, limit, only is not None, tolerance is None, periods, shooting)

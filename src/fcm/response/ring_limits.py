@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fcm.harmonic_balance.residual_spectrum import HIGHEST
+from fcm.model.in_time import InTime, in_time
 from fcm.model.scene import Scene
 from fcm.response.options import SENTENCES
 from fcm.response.request import Request, ResponseError
@@ -16,10 +17,16 @@ PLANE = (
 )
 
 
-def refuse_ring(scene: Scene, what: str) -> None:
-    """Raise ResponseError where something is asked of a sector that needs the whole ring."""
-    if scene.ring is not None:
-        raise ResponseError(f"{scene.name}: {what} {WHOLE_RING}")
+def refuse_in_time(scene: Scene, what: str) -> None:
+    """Raise ResponseError where the motion in time is asked for of a scene of which it is not computed."""
+    match in_time(scene):
+        case InTime.RING:
+            raise ResponseError(f"{scene.name}: {what} {WHOLE_RING}")
+        case InTime.PLANE:
+            names = [quoted(one.name) for one in scene.contacts if one.second is not None]
+            raise ResponseError(f"{scene.name}: contact {names[0]}: {what} {PLANE}")
+        case InTime.OWN_LAW:
+            refuse_own_laws(scene, what)
 
 
 def refuse_other_harmonics(scene: Scene, what: str) -> None:
@@ -37,13 +44,6 @@ def check_no_ring(scene: Scene, what: str) -> None:
     """Raise ResponseError for a sector of a ring, of which this is not computed."""
     if scene.ring is not None:
         raise ResponseError(f"{scene.name}: cyclic: {what} of a ring of sectors are not computed")
-
-
-def refuse_plane(scene: Scene, what: str) -> None:
-    """Raise ResponseError where the motion in time is asked for of contacts that slide in a plane."""
-    if scene.planar:
-        names = [quoted(one.name) for one in scene.contacts if one.second is not None]
-        raise ResponseError(f"{scene.name}: contact {names[0]}: {what} {PLANE}")
 
 
 def refuse_own_laws(scene: Scene, what: str) -> None:

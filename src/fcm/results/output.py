@@ -33,6 +33,7 @@ def summary(response: Response) -> dict[str, Any]:
     data = {
         "curves": [curve.summary(response.frequency_unit, response.contacts) for curve in response.curves],
         "method": response.method,
+        "exact_motion": response.in_time.value,
         "frequency_unit": response.frequency_unit,
         "left_out": response.left_out,
         "notes": response.notes,

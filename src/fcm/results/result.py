@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.model.in_time import InTime, in_time
 from fcm.model.ring import of_sector
 from fcm.model.scene import Scene
 from fcm.results.cause import Cause
@@ -178,6 +179,7 @@ class Response:
     positions: dict[str, FloatArray] = field(default_factory=dict)  # (3,) of contacts of which that is known
     motions: Motions | None = None  # at peaks or chosen frequencies, with contact forces and modes
     blades: Blades | None = None  # of a mistuned ring
+    in_time: InTime = InTime.COMPUTED  # whether the exact motion of the scene is
 
     @staticmethod
     def of(scene: Scene, curves: list[Curve], method: str) -> Response:
@@ -186,6 +188,7 @@ class Response:
         response = Response(scene.title, scene.modal.dofs, contacts, curves, method, scene.frequency_unit)
         response.notes, response.units, response.drawn = list(scene.notes), scene.units, scene.drawn
         response.directions, response.positions = directions_of(scene), positions_of(scene)
+        response.in_time = in_time(scene)
         return response
 
     @staticmethod
