@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import time
 import warnings
 
@@ -10,9 +11,11 @@ import pytest
 from click.testing import CliRunner
 
 from fcm.cli import COMMANDS, main
+from fcm.cli.commands import INSTEAD
 from fcm.cli.guard import guarded
 from fcm.cli.messages import Messages
 from fcm.continuation import dense_solver
+from fcm.scene.keys import TABLES
 
 from ..program import AS_A_MODULE, python, shell
 
@@ -81,6 +84,17 @@ def test_every_command_exists_and_has_help(fcm, name):
     done = fcm(name, "--help")
     assert done.code == 0 and f"Usage: fcm {name}" in done.out
     assert "--quiet" in done.out and "--verbose" in done.out
+
+
+@pytest.mark.parametrize("name", INSTEAD)
+def test_a_command_that_there_is_not_is_told_by_another_name(fcm, name):
+    """Each of a command, and of options, keys or pictures, that there are."""
+    done = fcm(name, "scene.toml")
+    assert done.code == 2 and f"No such command '{name}': it is fcm" in done.err
+    command, *options = re.findall(r"fcm (\w+(?: modes)?)|(--\w+)|\[+(\w+)\]+", INSTEAD[name])
+    helped = fcm(*command[0].split(), "--help").out
+    for _, option, table in options:
+        assert option in helped if option else table in TABLES
 
 
 def test_help_lists_the_commands(fcm):

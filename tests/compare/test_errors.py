@@ -74,7 +74,10 @@ def test_a_table_as_it_is_that_ends_a_curve_says_how_far_it_jumps():
     stopped = Run("fast table", False, False, 0.05, [line(complete=False)], 1.0, 1.0, 10)
     made = Comparison(scene, references=known, runs=[stopped], seams={"fast table": 1.3e-3})
     (said,) = made.notes
-    assert "fast table, as it is" in said and "1 of 1 curves not complete" in said
+    assert "fast table, as it is" in said and "curves stopped early with the longest step 0.05" in said
     assert "jump by up to 1.3e-03 at n0_bar = b_bar" in said
     (said,) = replace(made, runs=[replace(stopped, corrected=True)]).notes
-    assert said.endswith("not complete")
+    assert said.endswith("step 0.05")
+    coarse = replace(stopped, max_step=0.2)
+    (said,) = replace(made, runs=[stopped, coarse, replace(coarse, lines=[line()])]).notes  # said once
+    assert "step 0.05, 0.2;" in said

@@ -1,6 +1,7 @@
 """Pictures of the contacts of a response, and what is read for them."""
 
 import re
+from dataclasses import replace
 
 import netCDF4
 import numpy as np
@@ -155,9 +156,15 @@ def test_curves_of_a_sweep_are_columns_each_at_its_own_peak(tmp_path, fcm):
     figure = draw_interface(read, points)
     heads = [axes.get_title() for axes in figure.axes[:2]]
     assert "0.01" in heads[0] and "20" in heads[1]
+    unknown = replace(points[0], stable=np.nan)
+    said = [
+        draw_interface(read, [one]).axes[0].get_title() for one in (unknown, replace(unknown, forced=False))
+    ]
+    assert ["stability unknown" in one for one in said] == [True, False]  # a nonlinear mode has none
     done = fcm("plot", "contacts", output, "--curve", "0", "--curve", "2", "-o", tmp_path / "a.svg")
     swept = [re.search(rf"curve {k} \(.*= ([0-9.]+)\); 2", done.err) for k in (0, 2)]
     assert done.code == 0 and [one and one[1] for one in swept] == ["0.01", "20"]
+    assert "(amplitude = 0.01); 2 contacts: none takes energy" in done.err and "$" not in done.err
     few = [word for k in (0, 1, 2) for word in ("--curve", k)]
     many = [word for at in ("1.2", "1.3", "1.4") for word in ("--at", at)]
     assert "ask for 9 points" in fcm("plot", "contacts", output, *few, *many).err

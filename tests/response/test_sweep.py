@@ -172,7 +172,7 @@ def test_ctrl_c_and_resume_give_the_same_file(program, tmp_path):
     os.kill(run.pid, signal.SIGINT)
     _, said = run.communicate(timeout=50)
     assert run.returncode == 3 and "Traceback" not in said
-    assert "a.nc.unfinished: continue with --resume" in said and "curves not complete" in said
+    assert "a.nc.unfinished: continue with --resume" in said and "curves stopped early" in said
     with netCDF4.Dataset(tmp_path / "a.nc") as part:
         assert 0 < part["complete"][:].sum() < part.dimensions["curve"].size
     assert program(*command, "a.nc", "--resume", before=GROUPS).returncode == 0

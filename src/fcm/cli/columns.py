@@ -51,6 +51,17 @@ def ranges(harmonics: Sequence[int]) -> str:
     return ",".join([first, *(str(h) for h in harmonics[last:])])
 
 
+def stopped_early(stopped: int, count: int, what: str = "curve") -> str:
+    """How many of a run stopped early; empty if none.
+
+    >>> stopped_early(1, 1), stopped_early(1, 20), stopped_early(2, 20, "schedule"), stopped_early(0, 3)
+    ('the curve stopped early', '1 of 20 curves stopped early', '2 of 20 schedules stopped early', '')
+    """
+    if not stopped:
+        return ""
+    return f"the {what} stopped early" if count == 1 else f"{stopped} of {count} {what}s stopped early"
+
+
 def number(value: float | None) -> str:
     """Six digits, or a dash for a number that does not exist."""
     return "-" if value is None else f"{value:#.6g}"

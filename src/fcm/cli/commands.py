@@ -19,10 +19,24 @@ COMMANDS = {
     "plot": ("fcm.cli.plot:plot", "Draw a result, or the coefficients of one contact."),
 }
 
+INSTEAD = {  # of commands that there are not: what does that
+    "fit": "fcm respond SCENE, with a table [fit] in the scene",
+    "optimum": "fcm respond SCENE, with a table [optimum] in the scene",
+    "sweep": "fcm respond SCENE, with a table [sweep] in the scene",
+    "schedule": "fcm respond SCENE, with tables [[schedule]] in the scene",
+    "mode": "fcm respond SCENE --mode N --level FROM:TO",
+    "level": "fcm respond SCENE --level FROM:TO --at F",
+    "track": "fcm respond SCENE --track WHAT --over KEY --from X --to X",
+    "export": "fcm respond SCENE --export FILE",
+    "compare": "fcm respond SCENE --compare",
+    "modes": "fcm plot modes SCENE",
+}
+
 
 @click.group(
     cls=LazyGroup,
     lazy=COMMANDS,
+    instead=INSTEAD,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     epilog="Exit codes: 0 done; 2 the input is wrong; 3 the calculation could not be completed; "
     "1 a defect of fcm.",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from fcm.cli.columns import UNKNOWN, UNSTABLE, aligned, number, ranges, share_of, short, swept
+from fcm.cli.columns import UNKNOWN, UNSTABLE, aligned, number, ranges, share_of, short, stopped_early, swept
 from fcm.cli.jump_table import jump_table, untold_table
 from fcm.cli.limits import SENTENCES
 from fcm.rotation import MOST_DOFS, greatest_first, is_rotation, unit_of
@@ -240,8 +240,7 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
 def incomplete(summary: Mapping[str, Any]) -> str:
     """How many curves stopped early; empty if none."""
     curves = summary["curves"]
-    stopped = sum(not curve["complete"] for curve in curves)
-    return f"{stopped} of {len(curves)} curves not complete" if stopped else ""
+    return stopped_early(sum(not curve["complete"] for curve in curves), len(curves))
 
 
 def all_lost_to_defects(summary: Mapping[str, Any]) -> bool:

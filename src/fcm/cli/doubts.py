@@ -190,7 +190,8 @@ def residual_friction(summary: Mapping[str, Any]) -> str:
     worst = max(one["residual_change"] for curve in curves for one in curve["peak"].values() if one)
     share = share_of(worst)
     changes = "no peak" if share == "0" else f"a peak by at most {share} of it, estimated"
-    tells = f"; {how} tells how far the motions range" if (how := _how(summary)) else ""
+    how = _how(summary) if share != "0" else ""
+    tells = f"; {how} tells how far the motions range" if how else ""
     keeps = "a contact that never slips keeps a friction force that its past decides"
     every = sum(bool(one.get("may_not_be_unique")) for one in summary["curves"])
     where = (

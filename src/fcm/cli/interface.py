@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from fcm.cli.columns import aligned
 from fcm.cli.drawing import drawing, draws_file, is_page, picture_of, save_picture_of
 from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages, pass_messages
@@ -45,6 +46,7 @@ def contacts(
     """
     from fcm.plot.interface import draw_interface, greatest_takers, points_of, read_interface, read_places
     from fcm.plot.style import LAYOUT
+    from fcm.scene.errors import counted
 
     output = picture_of(file, output, "-contacts.png", places, page=True)
     count = max(len(at), 1) * len(curves)
@@ -56,13 +58,15 @@ def contacts(
     where = read.places if places is None else read_places(places, read.contacts)
     each = [curve for curve in curves for _ in at or (0.0,)]
     for point, curve in zip(points, each, strict=True):
-        rows = [HEAD, *greatest_takers(read, point, SENTENCES.rows)]
-        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-        for row in rows:
-            messages.info("  ".join(word.rjust(width) for word, width in zip(row, widths, strict=True)))
-        swept = f" ({' '.join(point.curve.split())})" if point.curve else ""
-        of = f", curve {curve}{swept}" if len(read.frequency) > 1 else ""
-        messages.info(f"at {point.frequency:.6g} {read.unit}{of}; {len(read.contacts)} contacts")
+        takers = greatest_takers(read, point, SENTENCES.rows)
+        if takers:
+            messages.info(aligned([HEAD, *takers], left=0))
+        swept = ", ".join(f"{key} = {value:.6g}" for key, value in point.swept.items())
+        of = f", curve {curve}{f' ({swept})' if swept else ''}" if len(read.frequency) > 1 else ""
+        nothing = "" if takers else ": none takes energy"
+        messages.info(
+            f"at {point.frequency:.6g} {read.unit}{of}; {counted(len(read.contacts), 'contact')}{nothing}"
+        )
     if is_page(output):
         from fcm.plot.interactive import contacts_page
 

@@ -13,12 +13,26 @@ from fcm.cli.options import add_verbosity
 
 
 class LazyGroup(click.Group):
-    """``lazy`` maps the name of a command to (``"module:attribute"``, its line of help)."""
+    """``lazy`` maps the name of a command to (``"module:attribute"``, its line of help); ``instead`` names
+    that there are not to what does it."""
 
-    def __init__(self, *args: Any, lazy: Mapping[str, tuple[str, str]], **kwargs: Any) -> None:
+    def __init__(
+        self,
+        *args: Any,
+        lazy: Mapping[str, tuple[str, str]],
+        instead: Mapping[str, str] | None = None,
+        **kwargs: Any,
+    ) -> None:
         super().__init__(*args, **kwargs)
-        self._lazy = lazy
+        self._lazy, self._instead = lazy, instead or {}
         add_verbosity(self)
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        if not ctx.resilient_parsing and args[0] in self._instead:
+            ctx.fail(f"No such command {args[0]!r}: it is {self._instead[args[0]]}.")
+        return super().resolve_command(ctx, args)
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(self._lazy)

@@ -14,6 +14,7 @@ class SentenceOptions:
     stretches: int = 3  # of frequencies in a sentence
     named: int = 3  # motions, and degrees of freedom, in a sentence
     rows: int = 10  # of the table of an interface: contacts that take most
+    flexible: int = 5  # modes that stand for flexibility, in a list of modes
     directions: int = 6  # whose participation fits beside each other on a line
     forces: int = 2  # of these directions, where contacts need the others
     contacts: int = 3  # that fit beside the degrees of freedom on a line

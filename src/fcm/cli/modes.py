@@ -41,6 +41,8 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
         count, shown = len(found["modes"][0]["participation"]), len(_shown(found))
         if shown < count:
             messages.info(f"{shown} of {count} directions of contacts and forces: --json has all")
+        if missing := len(found["modes"]) - len(_listed(found["modes"])):
+            messages.info(f"{missing} more modes stand for flexibility: --json has all")
         messages.info(f"shapes: {found['normalisation']}")
         for text in found["read"]:
             messages.info(f"read: {text}")
@@ -64,7 +66,7 @@ def as_table(found: dict[str, Any]) -> str:
         "",
     ]
     rows = [header]
-    for mode in found["modes"]:
+    for mode in _listed(found["modes"]):
         shares = (mode["participation"][name] for name in directions)
         rows.append(
             [
@@ -78,6 +80,15 @@ def as_table(found: dict[str, Any]) -> str:
             ]
         )
     return aligned(rows, left=1)
+
+
+def _listed(modes: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The modes that have a line: of those that stand for flexibility, which no one looks up, the first."""
+    from fcm.scene.listing import FLEXIBILITY
+
+    flexible = [i for i, mode in enumerate(modes) if mode["kind"] == FLEXIBILITY]
+    beyond = set(flexible[SENTENCES.flexible :])
+    return [mode for i, mode in enumerate(modes) if i not in beyond]
 
 
 def _shown(found: dict[str, Any]) -> list[str]:

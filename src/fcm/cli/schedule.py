@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from fcm.cli.columns import aligned, number, swept
+from fcm.cli.columns import aligned, number, stopped_early, swept
 from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages
 from fcm.rotation import MOST_DOFS
@@ -134,5 +134,4 @@ def cost_and_error(histories: Sequence[Summary]) -> str:
 
 def incomplete(histories: Sequence[Summary]) -> str:
     """How many schedules stopped early; empty if none."""
-    stopped = sum(not one["complete"] for one in histories)
-    return f"{stopped} of {len(histories)} schedules not complete" if stopped else ""
+    return stopped_early(sum(not one["complete"] for one in histories), len(histories), "schedule")

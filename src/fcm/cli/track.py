@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.columns import UNKNOWN, UNSTABLE, aligned, share_of, short, swept
+from fcm.cli.columns import UNKNOWN, UNSTABLE, aligned, share_of, short, stopped_early, swept
 from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages
 from fcm.cli.terminal import plain
@@ -259,7 +259,7 @@ def incomplete(result: Mapping[str, Any]) -> str:
     if tracked is None or tracked["complete"]:
         return ""
     stopped = sum(not curve["complete"] for curve in tracked["curves"])
-    said = [f"{stopped} of {len(tracked['curves'])} tracked curves not complete"] if stopped else []
+    said = [stopped_early(stopped, len(tracked["curves"]), "tracked curve")] if stopped else []
     problems = tracked["problems"]
     more = [f"and so {len(problems) - SENTENCES.problems} more"] if len(problems) > SENTENCES.problems else []
     return "; ".join([*said, *problems[: SENTENCES.problems], *more])

@@ -77,7 +77,15 @@ class Comparison:
             if harmonic.complete and exact.complete and len(harmonic.folds) != len(exact.folds):
                 count = f"{counted(len(harmonic.folds), 'fold')}, the exact curve {len(exact.folds)}"
                 found.append(f"{name}: harmonic balance has {count}; they are not compared")
-        return found + [text for one in self.runs if (text := _incomplete(one, self.seams))]
+        return found + self._stopped()
+
+    def _stopped(self) -> list[str]:
+        """By which methods curves stopped early; of a table as it is, why that may be."""
+        found: dict[tuple[str, bool], list[float]] = {}
+        for one in self.runs:  # of exact curves it is said which
+            if one.method != EXACT and not all(line.complete for line in one.lines):
+                found.setdefault((one.method, one.corrected), []).append(one.max_step)
+        return [_stopped_early(*kind, steps, self.seams) for kind, steps in found.items()]
 
     def add(self, one: Run) -> None:
         """A run and its errors."""
@@ -102,16 +110,14 @@ class Comparison:
         return None
 
 
-def _incomplete(one: Run, seams: Mapping[str, float]) -> str:
-    """What is missing in a run, else ''; of a table as it is, why that may be."""
-    stopped = sum(not line.complete for line in one.lines)
-    if one.method == EXACT or not stopped:  # of exact curves it is said which
-        return ""
-    name = one.method if one.corrected else f"{one.method}, as it is"
-    said = f"{name}, longest step {one.max_step:g}: {stopped} of {len(one.lines)} curves not complete"
-    if one.corrected or one.method not in seams:
+def _stopped_early(method: str, corrected: bool, steps: list[float], seams: Mapping[str, float]) -> str:
+    """That curves of a method stopped early with some longest steps."""
+    name = method if corrected else f"{method}, as it is"
+    longest = ", ".join(f"{step:g}" for step in dict.fromkeys(steps))
+    said = f"{name}: curves stopped early with the longest step {longest}"
+    if corrected or method not in seams:
         return said
-    jump = f"uncorrected coefficients jump by up to {seams[one.method]:.1e} at n0_bar = b_bar"
+    jump = f"uncorrected coefficients jump by up to {seams[method]:.1e} at n0_bar = b_bar"
     return f"{said}; its {jump}, where a curve may end"
 
 

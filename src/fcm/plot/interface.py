@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.plot.errors import PlotError
-from fcm.plot.labels import curve_label
+from fcm.plot.labels import curve_label, short_names
 from fcm.plot.pairs import plane_view
 from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
@@ -51,6 +51,8 @@ class InterfaceFile:
     units: tuple[str, str, str]  # of these, where the file says them
     places: FloatArray | None = None  # (contact, 2) in the plane of the contacts, where the file says them
     names: tuple[str, ...] = ()  # of the curves of a sweep: the values of each
+    swept: tuple[Mapping[str, float], ...] = ()  # these values, by their short names
+    forced: bool = True  # whether its curves are no nonlinear modes
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,8 @@ class InterfacePoint:
     state: npt.NDArray[np.intp]
     borne: FloatArray  # (3, contact)
     curve: str = ""  # its name, where there are several
+    swept: Mapping[str, float] = field(default_factory=dict)  # of a sweep, by short names
+    forced: bool = True  # and no nonlinear mode, which is neither stable nor unstable
 
 
 @apart
@@ -83,7 +87,7 @@ def read_interface(path: Path) -> InterfaceFile:
         unit = str(getattr(data, "frequency_unit", "rad/s"))
         places = _places(variables)
         energy, slip, normal = (str(getattr(variables[name], "units", "")) for name in names)
-        swept = swept_values(variables)
+        swept, forced = swept_values(variables), "modal_amplitude" not in variables
         units_of = swept_units(variables, swept)
     if not contacts:
         raise PlotError(f"{path}: its scene has no contacts")
@@ -91,7 +95,9 @@ def read_interface(path: Path) -> InterfaceFile:
     values = [{key: float(one[k]) for key, one in swept.items()} for k in range(len(frequency))]
     curves = tuple(curve_label(one, units=units_of) for one in values) if swept else ()
     of_contacts = contacts, dofs, frequency, amplitude, stable, states, borne, units, places, curves
-    return InterfaceFile(path, unit, *of_contacts)
+    short = short_names(swept)
+    named = tuple({short[key]: value for key, value in one.items()} for one in values) if swept else ()
+    return InterfaceFile(path, unit, *of_contacts, named, forced)
 
 
 def _places(variables: Any) -> FloatArray | None:
@@ -147,8 +153,9 @@ def _point(file: InterfaceFile, curve: int, k: int) -> InterfacePoint:
     always = words == "S"
     state = np.where(always, 3, np.where(opens, 2, np.where(slips, 1, 0)))
     omega, stable = float(file.frequency[curve, k]), float(file.stable[curve, k])
-    name = file.names[curve] if len(file.names) > 1 else ""
-    return InterfacePoint(omega, stable, state.astype(np.intp), file.borne[:, curve, k], name)
+    several = len(file.names) > 1
+    named = (file.names[curve], file.swept[curve]) if several else ("", {})
+    return InterfacePoint(omega, stable, state.astype(np.intp), file.borne[:, curve, k], *named, file.forced)
 
 
 def greatest_takers(file: InterfaceFile, point: InterfacePoint, most: int) -> list[tuple[str, ...]]:
@@ -229,9 +236,8 @@ def draw_interface(
         size = float(np.clip(1500.0 / (len(file.contacts) * count), *_SIZE))
         for column, point in enumerate(points):
             _states(grid[0, column], point, places, size)
-            stays = {0.0: ", unstable"}.get(
-                point.stable, "" if point.stable == 1.0 else ", stability unknown"
-            )
+            unknown = ", stability unknown" if point.forced else ""
+            stays = {0.0: ", unstable", 1.0: ""}.get(point.stable, unknown)
             head = f"{point.curve}\n" if point.curve else ""
             grid[0, column].set_title(f"{head}{point.frequency:.6g} {file.unit}{stays}", fontsize=8)
         for row, (title, unit) in enumerate(zip(titles, file.units, strict=True)):

@@ -117,7 +117,10 @@ def opened(path: Path, kind: str, needed: Sequence[str], also: Sequence[str] = (
 
     if what := no_file(path):
         raise PlotError(f"{path}: {what}")
-    with read(path, "not a netCDF file that can be read", (Exception,)):  # whatever the library comes to
+    scene = f": fcm respond {path.name} -o {path.stem}.nc writes one" if path.suffix == ".toml" else ""
+    with read(
+        path, f"not a netCDF file that can be read{scene}", (Exception,)
+    ):  # whatever the library comes to
         dataset = Dataset(str(path))
     with dataset:
         missing = [name for name in needed if name not in dataset.variables]

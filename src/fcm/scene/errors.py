@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 
 from fcm.scene.options import MESSAGES
 
@@ -100,6 +100,18 @@ def quoted(text: object, longest: int = MESSAGES.longest_value) -> str:
     if len(line) > longest:
         line = line[:longest] + "..."
     return json.dumps(line, ensure_ascii=not line.isprintable())
+
+
+def several(names: Sequence[str], most: int = MESSAGES.groups) -> str:
+    """Names in a sentence, quoted: the first of very many, and how many others there are.
+
+    >>> several(["a"]), several(["a", "b"]), several(["a", "b", "c", "d", "e"])
+    ('"a"', '"a" and "b"', '"a", "b", "c" and 2 others')
+    """
+    shown = [quoted(name) for name in names[:most]]
+    others = len(names) - len(shown)
+    last = counted(others, "other") if others else shown.pop()
+    return " and ".join(filter(None, (", ".join(shown), last)))
 
 
 def bare(key: object) -> str:

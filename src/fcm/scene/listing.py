@@ -13,6 +13,8 @@ from fcm.scene.options import MESSAGES, TOLERANCES
 METRE_AND_MILLIMETRE = float(np.sqrt(1000.0))  # of frequencies, where stiffness and mass mix the two systems
 UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}
 
+FLEXIBILITY = "flexibility"  # the kind of a mode that stands for those left out
+
 
 def listing(scene: Scene) -> dict[str, Any]:
     """Modes with frequency, damping, mass and participation; how they are normalised; notes and warnings.
@@ -30,7 +32,7 @@ def listing(scene: Scene) -> dict[str, Any]:
     modes = [
         {
             "mode": i + 1,
-            "kind": "flexibility" if i >= own else "mode" if modal.frequency[i] else "rigid body",
+            "kind": FLEXIBILITY if i >= own else "mode" if modal.frequency[i] else "rigid body",
             "frequency": float(modal.frequency[i] / UNIT[scene.frequency_unit]),
             "damping": float(modal.damping[i]),
             "mass": float(modal.mass[i]),
@@ -95,7 +97,7 @@ def _of_ring(scene: Scene, ring: Ring) -> dict[str, Any]:
         {
             "mode": number + 1,
             "nodal_diameter": int(ring.diameter[i]),
-            "kind": "flexibility" if ring.added[i] else "mode" if ring.frequency[i] else "rigid body",
+            "kind": FLEXIBILITY if ring.added[i] else "mode" if ring.frequency[i] else "rigid body",
             "frequency": float(ring.frequency[i] / UNIT[scene.frequency_unit]),
             "damping": float(ring.damping[i]),
             "mass": 1.0,

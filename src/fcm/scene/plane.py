@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from fcm.model.scene import Contact, FloatArray, Scene
-from fcm.scene.errors import Mistakes, quoted
+from fcm.scene.errors import Mistakes, quoted, several
 from fcm.scene.options import TOLERANCES
 from fcm.scene.section import Section
 
@@ -75,10 +75,11 @@ def notes_of_planes(scene: Scene) -> list[str]:
     oblique = [one.name for one in scene.contacts if _oblique(one)]
     if not oblique:
         return []
-    names = " and ".join(quoted(name) for name in oblique[:3]) + (" and others" if oblique[3:] else "")
+    names = several(oblique)
+    contacts = "contact" if len(oblique) == 1 else "contacts"
     return [
-        f"the two tangential directions of contact {names} share degrees of freedom without being at right "
-        "angles, if those are of right-angled axes; k_u and mu n are meant for two at right angles"
+        f"the two tangential directions of {contacts} {names} share degrees of freedom without being at "
+        "right angles, if those are of right-angled axes; k_u and mu n are meant for two at right angles"
     ]
 
 

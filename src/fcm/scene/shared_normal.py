@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fcm.model.scene import Contact, FloatArray, Scene
-from fcm.scene.errors import bare, counted, quoted, shown
+from fcm.scene.errors import bare, counted, quoted, several, shown
 from fcm.scene.options import MESSAGES, TOLERANCES
 
 
@@ -26,9 +26,7 @@ def note_of_shared_normals(scene: Scene) -> list[str]:
     if not doubled:
         return []
     one, other = _two_directions(scene, doubled[0])
-    names = "; ".join(
-        " and ".join(quoted(one.name) for one in group[:3]) for group in doubled[: MESSAGES.groups]
-    )
+    names = "; ".join(several([one.name for one in group]) for group in doubled[: MESSAGES.groups])
     more = f"; {counted(len(doubled), 'such place')} in all" if len(doubled) > MESSAGES.groups else ""
     return [
         f"contacts {names} have the same normal displacement and different tangential ones{more}: their "
@@ -70,9 +68,7 @@ def note_of_own_normal(scene: Scene) -> list[str]:
     found = [one.name for one in rubbing if _presses_as_it_slides(one)]
     if not found:
         return []
-    names = " and ".join(map(quoted, found[: MESSAGES.groups])) + (
-        " and others" if found[MESSAGES.groups :] else ""
-    )
+    names = several(found)
     slides = "contact {} slides along its" if len(found) == 1 else "contacts {} slide along their"
     return [
         f"{slides.format(names)} normal displacement: slip changes the normal load, as on the slope of a "

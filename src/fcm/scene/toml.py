@@ -17,6 +17,8 @@ from fcm.scene.toml_slips import slips
 
 _PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
 
+NETCDF_BEGINS = b"\x89HDF", b"CDF"  # the first bytes of netCDF files
+
 
 def read_toml(path: Path, source: str, options: TomlOptions = TOML) -> dict[str, Any]:
     """The tables of a TOML file, which messages call `source`."""
@@ -64,7 +66,9 @@ def _text(path: Path, source: str, options: TomlOptions) -> str:
         return (path.read_bytes() if pipe is None else pipe).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         what = "is not UTF-8 text, so it is not a TOML file: save it as UTF-8"
-        if error.object[:2] not in (b"\xff\xfe", b"\xfe\xff") and b"\0" not in error.object:
+        if error.object.startswith(NETCDF_BEGINS):
+            what = "is a file of results; name the scene, a TOML file, that it is of"
+        elif error.object[:2] not in (b"\xff\xfe", b"\xfe\xff") and b"\0" not in error.object:
             what += f"; the first letter that is none is in line {error.object.count(10, 0, error.start) + 1}"
         raise SceneError(source, [what]) from None
     except OSError as error:
