@@ -15,13 +15,13 @@ import numpy as np
 import fcm
 from fcm.contact.plane.forces import PlanarContact
 from fcm.contact.plane.options import PlanarOptions
+from fcm.plot.loop import STATES
 from fcm.plot.style import house_style, new_figure
 
 from .pages import GUIDE
 
 FOLDER = GUIDE / "figures"
-STATES = {"E": "#1b6ca8", "P": "#d1495b", "N": "#edae49", "S": "#66a182"}
-NAMES = {"E": "stick", "P": "slip forward", "N": "slip back", "S": "open"}
+BLUE, ORANGE = "#0072b2", "#d55e00"  # apart for all eyes
 TURN = np.linspace(0.0, 2.0 * np.pi, 721)
 
 
@@ -39,10 +39,10 @@ def contact_on_a_line(figure):
     u, force, load = np.sin(TURN), loop.force(TURN), loop.normal_load(TURN)
     states = np.array(list(loop.states(TURN)))
     drawn(left, "harmonic", u, f_b + f_s * np.sin(TURN) + f_c * np.cos(TURN), "k--", lw=0.8)
-    for state, colour in STATES.items():
+    for state, (name, look) in STATES.items():
         if np.any(states == state):
-            left.plot(u, np.where(states == state, force, np.nan), color=colour, label=NAMES[state])
-            right.plot(TURN, np.where(states == state, force, np.nan), color=colour)
+            left.plot(u, np.where(states == state, force, np.nan), label=name, **look)
+            right.plot(TURN, np.where(states == state, force, np.nan), **look)
     drawn(right, "upper", TURN, load, "k:", lw=0.8)
     drawn(right, "lower", TURN, -load, "k:", lw=0.8)
     left.set(xlabel="displacement  $u/a$", ylabel="friction  $f / (k_u a)$")
@@ -59,13 +59,13 @@ def contact_in_a_plane(figure):
     w = w if w.shape[0] == 2 else w.T
     axes = figure.subplots()
     drawn(axes, "displacement", *u, "k-", lw=0.9, label="displacement  $u$")
-    drawn(axes, "slider", *w, color=STATES["P"], label="slider  $w$")
+    drawn(axes, "slider", *w, color=ORANGE, label="slider  $w$")
     for i in (20, 110, 200, 290):
         radius = 0.5 * load[i]
-        axes.plot(u[0, i] + radius * np.cos(TURN), u[1, i] + radius * np.sin(TURN), color=STATES["E"], lw=0.5)
-        axes.plot([w[0, i], u[0, i]], [w[1, i], u[1, i]], color=STATES["E"], lw=0.9, marker=".", ms=4)
+        axes.plot(u[0, i] + radius * np.cos(TURN), u[1, i] + radius * np.sin(TURN), color=BLUE, lw=0.5)
+        axes.plot([w[0, i], u[0, i]], [w[1, i], u[1, i]], color=BLUE, lw=0.9, marker=".", ms=4)
     axes.set(xlabel="$x$", ylabel="$y$", aspect="equal")
-    axes.legend(fontsize=7, loc="center")
+    axes.legend(fontsize=7, loc="lower left")
 
 
 def harmonic_balance(figure):
@@ -74,7 +74,7 @@ def harmonic_balance(figure):
     for harmonics, style in ((1, ":"), (3, "--")):
         curve = fcm.respond(scene, harmonics=harmonics).isel(curve=0).sel(dof="u")
         drawn(
-            axes, f"harmonics-{harmonics}", curve.frequency, curve.amplitude, style, color=STATES["P"],
+            axes, f"harmonics-{harmonics}", curve.frequency, curve.amplitude, style, color=ORANGE,
             label=f"{harmonics} harmonic{'s' * (harmonics > 1)}",
         )  # fmt: skip
     exact = fcm.respond(scene, method="exact").isel(curve=0).sel(dof="u")
@@ -105,9 +105,9 @@ def continuation(figure):
         off -= (at[0] - np.cos(at[1])) / (normal[0] + np.sin(at[1]) * normal[1])
     found = predicted[:, -1] + off * normal
     right.plot(*z, "k.", ms=6)
-    drawn(right, "predictor", *predicted, color=STATES["E"], label="predictor")
+    drawn(right, "predictor", *predicted, color=BLUE, label="predictor")
     drawn(
-        right, "corrector", [predicted[0, -1], found[0]], [predicted[1, -1], found[1]], color=STATES["P"],
+        right, "corrector", [predicted[0, -1], found[0]], [predicted[1, -1], found[1]], color=ORANGE,
         marker=".", label="corrector",
     )  # fmt: skip
     right.set(xlabel=r"parameter  $\lambda$", ylabel="unknown  $x$", aspect="equal")
@@ -118,7 +118,7 @@ def errors(figure):
     """The errors told of peaks beside the true ones, of the ten preloads of the paper's oscillator."""
     axes, scene = figure.subplots(), fcm.load_scene("yang1998")
     best = fcm.respond(scene, harmonics=21).peak_amplitude.sel(dof="u").values
-    for harmonics, marker, colour in ((1, "o", STATES["P"]), (3, "s", STATES["E"])):
+    for harmonics, marker, colour in ((1, "o", ORANGE), (3, "s", BLUE)):
         found = fcm.respond(scene, harmonics=harmonics).sel(dof="u")
         true = abs(found.peak_amplitude.values / best - 1.0)[1:]  # but for that which is stuck, and linear
         drawn(
@@ -180,9 +180,7 @@ def many_contacts(figure):
     order = np.argsort(curve.frequency.values)
     upper, lower = figure.subplots(2, 1, sharex=True)
     drawn(upper, "amplitude", curve.frequency.values[order], curve.amplitude.values[order], "k-", lw=0.9)
-    drawn(
-        lower, "slipping", curve.frequency.values[order], slipping.sum(axis=-1)[order], "-", color=STATES["P"]
-    )
+    drawn(lower, "slipping", curve.frequency.values[order], slipping.sum(axis=-1)[order], "-", color=ORANGE)
     upper.set(ylabel="amplitude of the end")
     lower.set(xlabel="frequency [rad/s]", ylabel="contacts that slip")
 
@@ -194,8 +192,8 @@ def rubber(figure):
     mode = the_mode()
     left, right = figure.subplots(1, 2)
     drawn(left, "frequency", mode.amplitude, mode.omega / (2.0 * np.pi), "k-", lw=0.9)
-    left.axhline(STUCK, color=STATES["E"], lw=0.7, ls="--")
-    drawn(right, "damping", mode.amplitude, 100.0 * mode.damping, "-", color=STATES["P"], lw=0.9)
+    left.axhline(STUCK, color=BLUE, lw=0.7, ls="--")
+    drawn(right, "damping", mode.amplitude, 100.0 * mode.damping, "-", color=ORANGE, lw=0.9)
     left.set(xscale="log", xlabel="modal amplitude [m √kg]", ylabel="frequency [Hz]")
     right.set(xscale="log", xlabel="modal amplitude [m √kg]", ylabel="damping ratio [%]")
 
@@ -207,10 +205,10 @@ def den_hartog(figure):
     axes, high, low = figure.subplots(), np.linspace(0.54, 0.85, 60), np.linspace(0.47, 0.52, 12)
     drawn(axes, "without-stops", high, [without_stops(r) for r in high], "k-", lw=0.9, label="without stops")
     stops = [with_stops(r)[0] for r in low]
-    drawn(axes, "with-stops", low, stops, "--", color=STATES["E"], lw=0.9, label="with stops")
+    drawn(axes, "with-stops", low, stops, "--", color=BLUE, lw=0.9, label="with stops")
     at = np.array([0.48, 0.5, 0.56, 0.6, 0.65, 0.7, 0.75, 0.8, 0.84])
     found = [exact(1e4, r) for r in at]
-    drawn(axes, "exact", at, found, "+", color=STATES["P"], label="exact motion")
+    drawn(axes, "exact", at, found, "+", color=ORANGE, label="exact motion")
     axes.set(xlabel="frequency over the natural one", ylabel="amplitude over the static one")
     axes.legend()
 
@@ -223,7 +221,7 @@ def two_masses(figure):
     amplitudes = np.array([marched(omega, STEPS // 2)[0] for omega in at])
     wide = replace(scene(0.8), frequency_range=(0.35, 1.3))
     curve = fcm.respond(wide, harmonics=[1, 3, 5, 7, 9]).isel(curve=0)
-    for i, (name, colour) in enumerate((("first", STATES["P"]), ("last", STATES["E"]))):
+    for i, (name, colour) in enumerate((("first", ORANGE), ("last", BLUE))):
         drawn(
             axes, name, curve.frequency, curve.amplitude.isel(dof=i), "-", color=colour, lw=0.9,
             label=f"{name} mass, nine harmonics",
@@ -263,8 +261,8 @@ def sampled_slip(figure):
         contact.at(np.array([0, 0, 0, 1.0, 0, 0, -0.7, 1.0, 0]), *LAW.values(), gradient=False)
         errors.append(abs(np.array(contact.forces)[3:7].view(complex) - best).max())
     for name, x, y, colour in (
-        ("radial return", counts, sampled, STATES["P"]),
-        ("panels, as here", 8 * panels, np.array(errors), STATES["E"]),
+        ("radial return", counts, sampled, ORANGE),
+        ("panels, as here", 8 * panels, np.array(errors), BLUE),
     ):
         order = -np.polyfit(np.log(x), np.log(y), 1)[0]
         drawn(

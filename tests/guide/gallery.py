@@ -1,20 +1,19 @@
-"""The pictures of the gallery, drawn by the commands that stand there, and made small.
+"""The pictures of the gallery and of tutorials, drawn by the commands that stand there, and made small.
 
 usage: python -m tests.guide.gallery
 """
 
 from __future__ import annotations
 
-import re
 import tempfile
 from pathlib import Path
 
 from PIL import Image
 
 from ..program import shell
-from .pages import GUIDE, commands
+from .pages import GUIDE, commands, files, links
 
-PAGE, FOLDER = GUIDE / "gallery.md", GUIDE / "figures/gallery"
+PAGES = GUIDE / "gallery.md", GUIDE / "tutorials/bolted-joint.md"
 WIDTH, COLOURS = 560, 64  # pixels
 
 
@@ -27,14 +26,17 @@ def small(picture: Path, out: Path) -> None:
 
 
 def main() -> None:
-    FOLDER.mkdir(exist_ok=True)
-    with tempfile.TemporaryDirectory() as folder:
-        for command, _ in commands(PAGE):
-            done = shell(command, folder)
-            assert done.code == 0, done.err
-            for name in re.findall(r"-o (\S+\.png)", command):
-                small(Path(folder, name), FOLDER / name)
-                print(FOLDER / name)
+    for page in PAGES:
+        shown = {(page.parent / file).resolve() for file, _ in links(page) if file.endswith(".png")}
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in files(page).items():
+                Path(folder, name).write_text(text, encoding="utf-8")
+            for command, _ in commands(page):
+                done = shell(command, folder)
+                assert done.code == 0, done.err
+            for picture in shown:
+                small(Path(folder, picture.name), picture)
+                print(picture)
 
 
 if __name__ == "__main__":

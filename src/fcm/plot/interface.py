@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.plot.errors import PlotError
-from fcm.plot.labels import curve_label, short_names
+from fcm.plot.labels import curve_label, short_names, with_unit
 from fcm.plot.pairs import plane_view
 from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
@@ -31,6 +31,7 @@ STATES_OF_CONTACTS = (  # word, colour and mark: told apart without colours, too
     ("open", "#FFFFFF", "o"),
 )
 _SIZE = (4.0, 60.0)  # [point^2] of a mark, for many contacts and for few
+_SHARE = 0.7  # of the distance of two marks is filled by them
 _BAR, _ABOVE = 1.2, 0.35  # [inch] beside the panels for a bar of colours, and above each
 _HEIGHTS = (3.5, 11.0)  # [inch] of a figure
 
@@ -233,7 +234,7 @@ def draw_interface(
         grid = figure.subplots(
             1 + len(BORNE), count, sharex=True, sharey="row" if places is None else True, squeeze=False
         )
-        size = float(np.clip(1500.0 / (len(file.contacts) * count), *_SIZE))
+        size = _size(len(file.contacts), places, width, count)
         for column, point in enumerate(points):
             _states(grid[0, column], point, places, size)
             unknown = ", stability unknown" if point.forced else ""
@@ -261,6 +262,11 @@ def draw_interface(
                 figure.colorbar(bar, ax=grid[1 + row].tolist(), pad=0.02)
                 grid[1 + row, 0].set_title(label, loc="left", fontsize=8, parse_math=False)
         _finish(figure, grid, points, places)
+        if places is not None:  # the states stand above what has a bar of colours beside it
+            figure.colorbar(ScalarMappable(), ax=grid[0].tolist(), pad=0.02).ax.set_visible(False)
+        if places is not None and places is file.places:
+            where = with_unit("Distance from the middle of the contacts, in their plane", file.units[1])
+            figure.supxlabel(where, fontsize=8)
     return figure
 
 
@@ -269,6 +275,19 @@ def _limits(places: FloatArray) -> tuple[FloatArray, FloatArray]:
     low, high = places.min(axis=0), places.max(axis=0)
     room = LAYOUT.interface_room * float((high - low).max()) or 1.0
     return low - room, high + room
+
+
+def _size(contacts: int, places: FloatArray | None, width: float, count: int) -> float:
+    """Of a mark [point^2]: so that those in a row, or next to one another in the plane, do not touch."""
+    panel = 72.0 * (width - _BAR) / count  # its width [point]
+    if places is None or len(places) < 2:
+        apart = panel / contacts
+    else:
+        low, high = _limits(places)
+        between = np.linalg.norm(places[:, None] - places, axis=-1)
+        np.fill_diagonal(between, np.inf)
+        apart = panel * float(np.median(between.min(axis=1)) / (high - low)[0])
+    return float(np.clip((_SHARE * apart) ** 2, *_SIZE))
 
 
 def _height(places: FloatArray, width: float, count: int) -> float:
