@@ -1,14 +1,20 @@
-"""Stability along a curve of many contacts, of which few points are looked at."""
+"""Stability along a curve of many contacts: of which few points are looked at, and of few harmonics."""
 
 import numpy as np
 import pytest
 
 from fcm.branches.trace import traced
 from fcm.harmonic_balance.system import System
+from fcm.response import trace
+from fcm.shooting import periodic
 from fcm.stability.bifurcations import stability
+from fcm.stability.confirmation import confirmed_stable
 from fcm.stability.floquet import multipliers_of
+from fcm.stability.force_harmonics import beyond
+from fcm.stability.rebalanced import Refined
 
-from ..harmonic_balance.strips import strip
+from ..harmonic_balance.strips import elastic_strip, strip
+from ..harmonic_balance.truth import state
 
 
 @pytest.mark.slow
@@ -26,3 +32,49 @@ def test_few_points_tell_the_stability_of_all(harmonics, looks):
     told = ~np.isnan(each) & ~np.isnan(found.stable[even])
     assert told.mean() > 0.9
     assert (each[told] == found.stable[even][told]).all()
+
+
+def exact(system, z):
+    """The exact motion beside a solution, from that with further harmonics at its frequency."""
+    refined = Refined(system, beyond(list(system.harmonics)))
+    there = refined.rebalance(z, refined.system.extended(z, system.harmonics)[:-1])
+    return periodic(system.scene, float(z[-1]), state(refined.system, there))
+
+
+def test_one_harmonic_tells_where_the_exact_motion_of_many_contacts_flips():
+    """Its own multipliers have a real one of 1.5 there, which the determinant of its balance denies."""
+    system = System(elastic_strip((12.4, 20.0)), (1,))
+    path = traced(system).branches.paths[-1]  # lifted off at one end
+    found = stability(system, path)
+    assert np.isnan(found.stable).mean() < 0.02
+    first, last = (one.frequency for one in found.crossings)
+    for omega in (0.98 * first, 1.01 * first, 0.99 * last, 1.02 * last):
+        z = path.z[np.abs(path.parameter - omega).argmin()]
+        assert exact(system, z).stable == (not first < z[-1] < last)
+    told = np.where((path.parameter > first) & (path.parameter < last), 0.0, 1.0)
+    assert np.nanmax(np.abs(told - found.stable)) == 0.0
+
+
+def test_what_errs_by_a_fifth_is_told_where_further_harmonics_confirm_it():
+    """Of one harmonic; the exact motion says the same."""
+    scene = elastic_strip((11.04, 11.2))
+    curve = trace(scene, harmonics=1).curves[0]
+    assert curve.truncation_error.min() > 0.2
+    assert (curve.stable == 1.0).all()
+    system = System(scene, (1,))
+    path = traced(system).branches.paths[0]
+    for z in path.z[:: len(path.z) - 1]:
+        assert exact(system, z).stable
+
+
+def test_points_between_two_that_are_confirmed_are_confirmed():
+    """Against looks at single points; the upper branch of more harmonics ends at 11.64 rad/s."""
+    system = System(elastic_strip((11.3, 20.0)), (1,))
+    path = traced(system).branches.paths[-1]
+    doubted = (path.parameter > 11.35) & (path.parameter < 13.0)
+    found = confirmed_stable(system, path.z, doubted)
+    of = multipliers_of(system, float(path.parameter.max()))
+    some = np.flatnonzero(doubted)[::4]
+    assert not found[~doubted].any()
+    assert found[some].tolist() == [of.confirms(z, 1.0) for z in path.z[some]]
+    assert 0.2 < found[doubted].mean() < 0.9

@@ -29,9 +29,11 @@ cdef class Lifted:
     cpdef int lead(self, double[::1] z, double[::1] there) except -1
     cpdef bint beside(self, double[::1] z, double[::1] direction, bint briefly=*) except -1
     cpdef bint normal_point(self, double[::1] z, bint gradually) except -1
+    cpdef bint rebalance(self, double[::1] z, double[::1] lack) except -1
+    cdef int hold(self, double[::1] z) except -1
     cdef bint report(self) except -1
     cdef bint corrected(self) except -1
-    cdef bint at_once(self, double[::1] guess) except -1
+    cdef bint at_once(self, double[::1] guess, double taken=*) except -1
     cdef bint by_parts(self, double[::1] guess) except -1
     cdef bint onward(self) except -1
     cdef bint nearly(self) except -1

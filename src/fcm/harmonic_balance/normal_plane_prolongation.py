@@ -148,14 +148,31 @@ class Lifted:
     @cython.exceptval(-1, check=False)
     def normal_point(self, z: cython.double[::1], gradually: cython.bint) -> cython.bint:
         """Whether there is a point near z (unknown + 1,) at the same frequency; by parts if not at once."""
+        self.ahead[:] = 0.0
+        self.hold(z)
+        return (self.at_once(z) or (gradually and self.by_parts(z))) and self.report()
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def rebalance(self, z: cython.double[::1], lack: cython.double[::1]) -> cython.bint:
+        """Whether there is a point near z (unknown + 1,) at the same frequency at which so much (unknown,) is
+        lacking in the equations; it is left in newton.z."""
+        self.ahead[:] = 0.0
+        self.hold(z)
+        self.homotopy.removed[:] = lack
+        return self.at_once(z, 1.0)
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def hold(self, z: cython.double[::1]) -> cython.int:
+        """Seek points at the frequency of z (unknown + 1,)."""
         i: cython.Py_ssize_t
         self.brief = self.dear
-        self.ahead[:] = 0.0
         self.balance.measure(z)
         for i in range(z.shape[0]):
             self.newton.scale[i], self.newton.row[i] = self.balance.scale[i], 0.0
         self.newton.row[self.balance.unknowns] = 1.0
-        return (self.at_once(z) or (gradually and self.by_parts(z))) and self.report()
+        return 0
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -178,11 +195,12 @@ class Lifted:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def at_once(self, guess: cython.double[::1]) -> cython.bint:
-        """Whether Newton's method leads from a guess to a point near it."""
+    def at_once(self, guess: cython.double[::1], taken: cython.double = 0.0) -> cython.bint:
+        """Whether Newton's method leads from a guess to a point near it; of what was removed from the
+        equations a part may be taken."""
         i: cython.Py_ssize_t
         leads: cython.bint = False
-        self.homotopy.taken = 0.0
+        self.homotopy.taken = taken
         self.newton.guess[:] = guess
         if self.damps:
             for i in range(guess.shape[0]):

@@ -35,6 +35,7 @@ from fcm.results.contact_maxima import greatest_of
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve
 from fcm.run import Interrupted
+from fcm.stability.confirmation import confirmed_stable
 
 METHODS = ("table", "closed-form")
 QUICK = replace(PAIR, seconds=0.0, points=0.05, dearest=0)  # where nobody waits any more
@@ -130,7 +131,11 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
     truncations = [one.truncation for one in found.errors]
     believed = [one.believed for one in found.errors]
     far = disbelieved(points.z[:, -1], believed, stable, (points.mark & Mark.FOLD) > 0)
-    stable[far & (stable == 1.0)] = np.nan
+    doubted = far & (stable == 1.0)
+    for k in np.unique(points.path[doubted]).tolist() if not quick else ():
+        rows_of = points.path == k
+        doubted[rows_of] &= ~confirmed_stable(system, points.z[rows_of], doubted[rows_of])
+    stable[doubted] = np.nan
     peak = np.full_like(found.peak, np.nan) if response.exceeded else found.peak
     error = np.maximum(np.concatenate([one.amplitude for one in found.errors]), rounding)
     open_to_past = undetermined(scene, words)

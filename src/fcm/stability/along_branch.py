@@ -71,10 +71,7 @@ class Verdicts:
     def confirmed(self, i: int, stable: float) -> bool:
         """Whether a point is as stable as told (1 or 0) with the further harmonics balanced, too."""
         self.evaluations += 1
-        of, z = self.multipliers, self.path.z[i]
-        of.finer.at(z)
-        found = of.refined(z, persistent=True) if of.finer.shift > 0.0 else None
-        return of.finer.shift == 0.0 or (found is not None and found.stable == stable)
+        return self.multipliers.confirms(self.path.z[i], stable)
 
     def unconfirmed(self, stable: FloatArray, first: int, last: int) -> list[int]:
         """The points from first to last that alone are told, between two that are not, and not confirmed."""

@@ -118,6 +118,6 @@ class HillMultipliers:
         spectrum = Spectrum(values, self.options)
         return spectrum.verdict(spectrum.odd or turning)
 
-    def refined(self, z: FloatArray, persistent: bool) -> Verdict | None:
-        """None: no further harmonics are balanced."""
-        return None
+    def confirms(self, z: FloatArray, stable: float, most: float = 0.0) -> bool:
+        """Whether further harmonics say the same of a solution: none are balanced."""
+        return True

@@ -208,6 +208,18 @@ class Multipliers:
         there = refined.rebalance(z, self.finer.x, persistent)
         return None if there is None else judge.verdict(there)
 
+    def confirms(self, z: FloatArray, stable: float, most: float = math.inf) -> bool:
+        """Whether a solution is as stable as told (1 or 0) with the further harmonics balanced, too; to these
+        those beyond them add no more than the most, as `Finer.shift` says it."""
+        self.finer.at(z)
+        if self.finer.shift == 0.0:  # it has none
+            return True
+        found = self.refined(z, persistent=True)
+        if found is None or found.stable != stable:
+            return False
+        assert self.further is not None
+        return bool(self.further[1].finer.shift <= most)
+
     def _values(self, followed: Followed, omega: float) -> list[complex] | None:
         """Of the motion that was looked at."""
         followed.monodromy.follow(omega)

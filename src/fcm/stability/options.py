@@ -61,9 +61,11 @@ class ConfirmationOptions:
     change of the frequency until it meets there. looks: until then. met: square of the angle [rad] that is
     then left. meeting: logarithm of the decay there.
 
+    enough: part of the way to a solution of many contacts with more harmonics, to which that is known.
     distance: of a solution's size; one with more harmonics that is further away is another. parts: of the
     further harmonics' equations, where all at once are too much. unknowns: from so many on these are not
-    tried.
+    tried. span: points from one that is confirmed to the next, between which all are. settled: part of the
+    displacements that the harmonics beyond the further ones may add to a motion that confirms.
     """
 
     decay: float = 0.05
@@ -75,9 +77,12 @@ class ConfirmationOptions:
     looks: int = 8
     met: float = 1e-3
     meeting: float = 1e-3
+    enough: float = 1e-6
     distance: float = 0.5
     parts: tuple[float, ...] = (0.1, 0.25, 0.45, 0.7, 1.0)
     unknowns: int = 240
+    span: int = 8
+    settled: float = 0.05
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import numpy as np
 
 from fcm.continuation.corrector import Newton, settle
 from fcm.harmonic_balance.homotopy import Homotopy
+from fcm.harmonic_balance.normal_plane_prolongation import DAMPED, Lifted
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.options import STABILITY, StabilityOptions
@@ -21,6 +22,9 @@ class Refined:
         self.harmonics, self.more, self.fewer = system.harmonics, tuple(more), system
         self.system = system.with_harmonics(self.more)
         self.balance = self.system.balance()
+        self.damped = None
+        if self.balance.contacts >= DAMPED.contacts:
+            self.damped = Lifted(self.balance, list(self.harmonics), list(more), self.options.enough)
         self.homotopy = Homotopy(self.balance)
         self.homotopy.taken = 1.0
         self.newton = Newton(self.homotopy)
@@ -38,12 +42,16 @@ class Refined:
         """The solution (unknown of more + 1,) for z (unknown + 1,), sought from the finer motion x.
 
         The forces are those of z, whatever their level: what the harmonics balanced there lack is kept. None
-        where Newton's method finds nothing near; nor, if it is persistent, by parts from z itself.
+        where Newton's method finds nothing near; nor, if it is persistent, by parts from z itself. Of many
+        contacts damped steps lead from z itself, see `normal_plane_prolongation`.
         """
         here = self.system.extended(z, self.harmonics)
         self.balance.measure(here)
         self.balance.probe(here)
         newton, lack = self.newton, np.array(self.balance.residual)
+        if self.damped is not None:
+            kept = np.where(self.balanced, lack, 0.0)
+            return np.array(self.damped.newton.z) if self.damped.rebalance(here, kept) else None
         newton.z[:-1], newton.z[-1] = x, z[-1]
         newton.scale[:] = self.balance.scale
         by_parts = persistent and len(lack) < self.options.unknowns
