@@ -79,7 +79,7 @@ def test_of_many_stretches_without_a_stable_motion_the_widest_are_named():
         {"parameters": {"contact.a.n_0": 0.5}, "no_stable_motion": ways},
     ]
     said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table", **COMPUTED})
-    assert "between 1 and 1.5, 3 and 3.2, 4 and 4.3 Hz and in 2 narrower ranges" in said
+    assert "between 1 and 1.5, between 3 and 3.2, between 4 and 4.3 Hz and in 2 narrower ranges" in said
     assert "(contact.a.n_0 = 0.5; on 1 of 2 curves)" in said and said.endswith(
         "--method exact --at F shows it"
     )
@@ -97,6 +97,16 @@ def test_of_many_stretches_without_a_stable_motion_the_widest_are_named():
         {"curves": curves[1:], "frequency_unit": "Hz", "method": "table", "exact_motion": InTime.RING.value}
     )
     assert ring.endswith("not found")  # the exact motion of a ring is not visited
+
+
+@pytest.mark.parametrize(
+    ("loads", "which"), [([1000.0], "within the range"), ([2e3, 1e3], "on any curve"), ([1e3, 1.0], "")]
+)
+def test_curves_on_which_no_contact_slips_are_said_to_be_linear(fcm, scene, loads, which):
+    scene.write_text(scene.read_text() + f'[sweep]\n"contact.0.n_0" = {loads}\n')
+    run = fcm("respond", scene)
+    said = f"no contact slips or opens {which}: the response is linear; less preload or more force"
+    assert run.code == 0 and (said in run.err if which else "no contact slips" not in run.err)
 
 
 @pytest.mark.parametrize("curves", [[], [{"parameters": {}}]])

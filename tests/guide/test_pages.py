@@ -7,6 +7,7 @@ import pytest
 from .pages import GUIDE, PAGES, README, ROOT, anchors, links, name_of, read, sentences, too_long, words
 
 OTHERS = [ROOT / ".github/CHANGELOG.md", ROOT / ".github/CONTRIBUTING.md"]
+SOURCES = {str(path.relative_to(ROOT / "src/fcm")) for path in (ROOT / "src/fcm").rglob("*.py")}
 KINDS = ("tutorials", "howto", "theory", "reference", "validation")
 
 
@@ -36,6 +37,17 @@ def test_sentences_and_paragraphs_are_short(page):
 def test_words_and_sentences_are_counted():
     text = "A load of 3.5 N, say. It is *small* (see X). 9 of 10 are."
     assert [words(one) for one in sentences(text)] == [6, 5, 4]
+
+
+@pytest.mark.parametrize("page", sorted((GUIDE / "theory").glob("*.md")), ids=name_of)
+def test_a_page_of_theory_has_equations_a_figure_its_modules_and_its_sources(page):
+    text = read(page)
+    assert re.search(r"^\$\$.+?\$\$$", text, re.M | re.S)
+    assert any(file.startswith("../figures/") for file, _ in links(page))
+    (code,) = re.findall(r"^In the code: (.*?)\n\n", text, re.M | re.S)
+    assert {f"{name}.py" for name in re.findall(r"`([\w/]+)`", code)} <= SOURCES
+    sources = re.split(r"^- ", text.partition("\n## Sources\n")[2], flags=re.M)[1:]
+    assert sources and all(re.search(r"\b(?:18|19|20)\d\d\b", one) for one in sources)
 
 
 def test_every_picture_is_shown():

@@ -24,6 +24,16 @@ def short_of_accuracy(summary: Mapping[str, Any]) -> str:
     return f"{which} {verb} the accuracy that was asked for: {short[0]}"
 
 
+def linear(summary: Mapping[str, Any]) -> str:
+    """That no contact slips or opens in any curve, which may not be meant; empty if one does."""
+    if not summary["curves"] or not all(curve.get("all_stick") for curve in summary["curves"]):
+        return ""
+    which = "on any curve" if len(summary["curves"]) > 1 else "within the range"
+    return (
+        f"no contact slips or opens {which}: the response is linear; less preload or more force changes that"
+    )
+
+
 def branches_unsure(summary: Mapping[str, Any]) -> str:
     """Where solutions were not looked for to the end, so that branches may be missing; empty if nowhere."""
     why = "the level of the forces was not followed to its end at"
@@ -130,16 +140,26 @@ def nothing_stable(summary: Mapping[str, Any]) -> str:
         return ""
     every = found[0]["no_stable_motion"]
     widest = sorted(_widest_first(every)[: SENTENCES.stretches])
-    ways = ", ".join(f"{low:.6g} and {high:.6g}" for low, high in widest)
+    ways = ", ".join(_between(*ends) for ends in widest)
     more = f" and in {len(every) - len(widest)} narrower ranges" if len(every) > len(widest) else ""
     which = f" ({_given(found[0])}; on {len(found)} of {len(curves)} curves)" if len(curves) > 1 else ""
     shows = f"; {how} shows it" if (how := _how(summary)) else ""
     other = _not_looked_at(found[0])
     other += ", or has another residual friction" if found[0].get("may_not_be_unique") else ""
     return (
-        f"no stable motion was found between {ways} {unit}{more}{which}: the motion there may have "
+        f"no stable motion was found {ways} {unit}{more}{which}: the motion there may have "
         f"several periods or none, or be on a branch that was not found{other}{shows}"
     )
+
+
+def _between(low: float, high: float) -> str:
+    """Where, between two frequencies or at one.
+
+    >>> _between(1.0, 1.5), _between(1.5, 1.5 + 1e-9)
+    ('between 1 and 1.5', 'at 1.5')
+    """
+    ends = f"{low:.6g}", f"{high:.6g}"
+    return f"at {low:.6g}" if ends[0] == ends[1] else f"between {' and '.join(ends)}"
 
 
 def _widest_first(stretches: list[list[float]]) -> list[list[float]]:
@@ -151,7 +171,7 @@ def _not_looked_at(curve: Mapping[str, Any]) -> str:
     missing = _widest_first(curve.get("no_stable_motion_not_looked_at", []))
     if not missing:
         return ""
-    widest = f"between {missing[0][0]:.6g} and {missing[0][1]:.6g}"
+    widest = _between(*missing[0])
     count = len(missing)
     where = widest if count == 1 else f"in {count} of these ranges, the widest {widest},"
     return f" ({where} none was looked for)"

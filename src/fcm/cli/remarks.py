@@ -11,6 +11,7 @@ from fcm.cli.curves import all_lost_to_defects, cost_and_error, incomplete
 from fcm.cli.doubts import (
     branches_unsure,
     folds_unsure,
+    linear,
     looked_at,
     maybe_not_unique,
     mirrored,
@@ -58,6 +59,8 @@ def close(messages: Messages, result: dict[str, Any], defects: list[str], writte
         messages.info(track.cost(result))
     if levels := looked_at(result):
         messages.detail(levels)
+    if stuck := linear(result):
+        messages.info(stuck)
     if images := mirrored(result):
         messages.info(images)
     if ranging := residual_friction(result):

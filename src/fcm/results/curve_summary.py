@@ -47,6 +47,8 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
         out["levels_looked_at"] = list(curve.folds_between)
     if curve.mirrored:
         out["mirrored_branches"] = curve.mirrored
+    if curve.gist is None and _all_stick(curve):
+        out["all_stick"] = True
     if curve.undetermined:
         out["may_not_be_unique"] = curve.undetermined
     out["peak"] = {dof: _peak(curve, peak, gist, unit) for dof, peak in curve.peaks.items()}
@@ -102,6 +104,12 @@ def _peak(curve: Curve, peak: Peak, gist: Gist, unit: str) -> dict[str, Any]:
         "at_edge": bool(at_edge),
         "residual_change": peak.residual,
     }
+
+
+def _all_stick(curve: Curve) -> bool:
+    """Whether no contact slips or opens at any point, so that the response is that of a linear structure."""
+    states = curve.regime[np.isfinite(curve.frequency)]
+    return bool(states.size) and bool((states == "E").all())
 
 
 def _contacts(found: Greatest, contacts: Sequence[str], unit: str) -> dict[str, Any]:
