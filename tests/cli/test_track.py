@@ -99,6 +99,20 @@ def test_peaks_of_very_different_heights_are_all_to_be_seen_and_no_name_lies_on_
     assert [text.get_text() for text in legend.get_texts()] == ["peak of u", "peak of v"]
 
 
+def test_peaks_of_one_name_have_one_colour_in_both_panels_each_its_own():
+    """So that it is seen which height and which frequency belong together."""
+    number, none = np.linspace(1.0, 2.0, 5), np.zeros(5)
+    heights, frequencies = (1.0 + number, 3.0 - number), (7.0 + none, 5.0 + none)
+    tracks = [
+        DrawnTrack("peak of u", number, f, h[:, None], none, none, none + 1.0)
+        for f, h in zip(frequencies, heights, strict=True)
+    ]
+    figure = draw_tracked(DrawnTracking("contact.c.n_0", ("u",), "Hz", tuple(tracks)))
+    upper, lower = ([line for line in axes.lines if len(line.get_xdata()) == 5] for axes in figure.axes[:2])
+    colours = [[line.get_color() for line in lines] for lines in (upper, lower)]
+    assert colours[0] == colours[1] and len(set(colours[0])) == 2 and not figure.legends
+
+
 def test_a_peak_that_falls_by_decades_is_to_be_seen_at_its_least_and_named():
     number, none = np.linspace(1.0, 2.0, 5), np.zeros(5)
     heights = np.array([[1.0], [0.1], [0.01], [0.001], [0.002]])

@@ -133,7 +133,7 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
         figure = new_figure(LAYOUT.width, 1.3 * LAYOUT.height)
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
         names = list(dict.fromkeys(track.what for track in wanted))
-        colours = dict(zip(names, sequence_colours(len(names)), strict=True))
+        colours = _colours(wanted, names)
         heights: list[float] = []
         for track in wanted:
             name = dof or track.what.removeprefix("peak of ")
@@ -145,7 +145,7 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
             label = track.what if track.what in names else None  # once for all its curves
             names = [one for one in names if one != label]
             for axes, values, text in ((upper, height, label), (lower, frequency, None)):
-                _line(axes, track, values, colours[track.what], text)
+                _line(axes, track, values, colours[id(track)], text)
         of_one = {dof or track.what.removeprefix("peak of ") for track in wanted} & set(drawn.dofs)
         one = of_one.pop() if len(of_one) == 1 else ""
         unit = unit_of(one, drawn.length) if one else drawn.length
@@ -154,12 +154,22 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
         lower.set_ylabel(frequency_label(drawn.frequency_unit).replace("Frequency", "Peak frequency"))
         if heights and has_decades(heights):
             logarithmic_axis(upper)
-        if len(colours) > 1:
+        if len({track.what for track in wanted}) > 1:
             figure.legend(*upper.get_legend_handles_labels(), loc="outside right upper")
         _say_unstable(lower, wanted)
         _name_number(lower, drawn)
         _mark_optimum(upper, lower, drawn)
     return figure
+
+
+def _colours(tracks: Sequence[DrawnTrack], names: Sequence[str]) -> dict[int, str]:
+    """Of each track, by its id: that of its name, or where all have one a colour of its own, which shows
+    which height and which frequency belong together."""
+    if len(names) > 1:
+        of_name = dict(zip(names, sequence_colours(len(names)), strict=True))
+        return {id(track): of_name[track.what] for track in tracks}
+    rising = sorted(tracks, key=lambda track: float(np.nanmin(track.frequency, initial=np.inf)))
+    return {id(track): colour for track, colour in zip(rising, sequence_colours(len(rising)), strict=True)}
 
 
 def _line(axes: Axes, track: DrawnTrack, y: FloatArray, colour: str, label: str | None = None) -> None:
