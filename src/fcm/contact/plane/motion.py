@@ -15,6 +15,7 @@ from cython.cimports.libc.math import cos, fabs, isfinite, sin
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.motion import UNKNOWN, Motion
+    from cython.cimports.fcm.contact.plane.motion import place_eight
 else:
     from fcm.contact.periodic.motion import UNKNOWN, Motion
 
@@ -188,6 +189,18 @@ class PlaneMotion:
         self.value[slot, 0], self.value[slot, 1], self.value[slot, 2] = x, y, r
         self.value[slot, 3], self.value[slot, 4], self.value[slot, 5] = x_1, y_1, r_1
         self.value[slot, 9], self.value[slot, 10] = c_1, s_1
+
+    def place_nodes(self, theta: cython.p_double) -> None:
+        """Slots 1 to 8, at eight angles."""
+        i: cython.int
+        if cython.compiled and place_eight(
+            theta, cython.address(self.re[0, 0]), cython.address(self.im[0, 0]),
+            cython.address(self.number[0]), self.moving, self.re.shape[1], self.mean[REACH],
+            cython.address(self.value[1, 0]), cython.address(self.cos[1, 0]), cython.address(self.sin[1, 0]),
+        ):  # fmt: skip
+            return
+        for i in range(self.stages):
+            self.place(i + 1, theta[i])
 
     def bend(self, slot: cython.int) -> None:
         """The second derivatives at an angle that has its place."""

@@ -15,7 +15,8 @@ class PlanarOptions:
         Forces err by about 1e-3 of that, their derivatives by more, see below.
     resolved : how long a panel may be, times the highest harmonic that is integrated.
     before : of the last coefficient but one, what the last is taken for at least, as it may vanish by chance.
-    converged : a change of t in Newton's method after which the next, of about its square, is none.
+    converged : a change of t in Newton's method after which one more step, of about its square, is the last.
+    settled : a change after which there is none.
     newton : steps of it; where it takes more, the panel is too long.
     steepest : t at the end of a panel, at most, to begin with.
     widest : of t; directions are then within 100 degrees of that at the start.
@@ -25,7 +26,8 @@ class PlanarOptions:
     light : times the length of a panel, where the load is small: tolerance of derivatives there.
     shrink, grow, safety : limits of the ratio of two lengths, and what it is multiplied by.
     near : before it opens, times the highest harmonic, panels are graded towards that.
-    ends : times the tolerance, what a last panel may leave out, up to where it opens.
+    ends : times the tolerance, the force that a last panel is left, up to where it opens.
+    unturned : the derivative of the impulse by the direction that is left then, where derivatives are wanted.
     deepest : of what is left until it opens, a graded panel takes at most.
     nothing : of its bound, a radius that is none.
     negligible : before it opens, where the force adds nothing any more.
@@ -58,19 +60,21 @@ class PlanarOptions:
     tolerance: float = 5e-8
     resolved: float = 6.0
     before: float = 0.1
-    converged: float = 1e-7
+    converged: float = 3e-5
+    settled: float = 1e-10
     newton: int = 12
     steepest: float = 0.6
     widest: float = 1.2
     growth: float = 2.0
-    light: float = 10.0
+    light: float = 1.0
     varied: float = 3e-5
     shrink: float = 0.2
     grow: float = 2.5
     safety: float = 0.7
     near: float = 1.0
-    ends: float = 0.3
-    deepest: float = 0.6
+    ends: float = 1e-3
+    unturned: float = 1e-8
+    deepest: float = 0.75
     nothing: float = 1e-12
     negligible: float = 1e-10
     shortest: float = 1e-13
@@ -91,6 +95,6 @@ class PlanarOptions:
 
 OPTIONS = PlanarOptions()  # of a balance: forces within 1e-10, derivatives 2e-8 mostly, 1e-4 at worst
 FINE = replace(
-    OPTIONS, tolerance=1e-9, resolved=4.0, converged=1e-9, varied=1e-3
+    OPTIONS, tolerance=1e-9, resolved=4.0, converged=1e-6, varied=1e-3, unturned=1e-11, deepest=0.6
 )  # of `planar_forces`: forces within 1e-11, derivatives 1e-8
 FINEST = replace(FINE, tolerance=1e-11)  # of a loop, whose polynomials are read between the ends of panels

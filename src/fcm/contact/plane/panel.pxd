@@ -14,15 +14,28 @@ cdef extern from *:
     #define FCM_WIDEST __attribute__((unused))
     #endif
 
-    /* Gaussian elimination of a matrix (8, 8), which becomes its factors, the diagonal inverted, and of x.
-       Without pivots: a rule's derivatives, and positive numbers along the diagonal, have none that vanish. */
-    FCM_WIDEST static int fcm_eliminate_eight(double *matrix, double *x)
+    /* The equation r D t = b - 2 a t - b t^2 at eight nodes: its derivatives by t, a matrix (8, 8), become
+       their factors, the diagonal inverted, and x the step of Newton's method. The derivatives D of a
+       polynomial are by rows and by columns. Without pivots: of a rule's derivatives, and positive numbers
+       along the diagonal, none vanishes. */
+    FCM_WIDEST static int fcm_newton_eight(
+        const double *rows, const double *columns, const double *r, const double *a, const double *b,
+        const double *t, double *matrix, double *x)
     {
-        fcm_eight row[8];
-        double lower[64], y[8];
+        fcm_eight row[8], slope = *(const fcm_eight *)columns * t[0];
+        const fcm_eight R = *(const fcm_eight *)r, A = *(const fcm_eight *)a, B = *(const fcm_eight *)b;
+        const fcm_eight T = *(const fcm_eight *)t, across = A + B * T;
+        double lower[64], y[8], own[8];
     #pragma GCC unroll 8
-        for (int i = 0; i < 8; i++)
-            row[i] = *(const fcm_eight *)(matrix + 8 * i), y[i] = x[i];
+        for (int j = 1; j < 8; j++)
+            slope += *(const fcm_eight *)(columns + 8 * j) * t[j];
+        *(fcm_eight *)y = B - T * (A + across) - R * slope;
+        *(fcm_eight *)own = 2.0 * across;
+    #pragma GCC unroll 8
+        for (int i = 0; i < 8; i++) {
+            row[i] = r[i] * *(const fcm_eight *)(rows + 8 * i);
+            row[i][i] += own[i];
+        }
     #pragma GCC unroll 8
         for (int k = 0; k < 8; k++) {
             const double pivot = row[k][k];
@@ -55,16 +68,18 @@ cdef extern from *:
         return 1;
     }
     #else
-    #define fcm_eliminate_eight(matrix, x) (-1)
+    #define fcm_newton_eight(rows, columns, r, a, b, t, matrix, x) (-1)
     #endif
     """
-    int eliminate_eight "fcm_eliminate_eight"(double *, double *) noexcept nogil
+    int newton_eight "fcm_newton_eight"(
+        const double *, const double *, const double *, const double *, const double *, const double *, double *,
+        double *) noexcept nogil
 
 cdef enum:
     STAGES = 8  # as radau.py says in Python
 
 cdef class Panel:
-    cdef double converged, steepest, widest, before, growth
+    cdef double converged, settled, steepest, widest, before, growth
     cdef int most_steps
     cdef readonly PlaneMotion motion
     cdef readonly double theta, length, left, fade, start_x, start_y, noise
@@ -72,6 +87,8 @@ cdef class Panel:
     cdef readonly double[:, ::1] slopes, tail
     cdef double matrix[64]
     cdef double inner[64]
+    cdef double rows[64]
+    cdef double at[8]
     cdef double right[8]
     cdef double a[8]
     cdef double b[8]
@@ -79,7 +96,7 @@ cdef class Panel:
     cdef (double, double) gone(self, double part) noexcept nogil
     cdef bint solve(self, double theta, double length, double left, double e_x, double e_y, double rate, double bend) noexcept nogil
     cdef bint newton(self, double slope, double bend) noexcept nogil
-    cdef bint refresh(self) noexcept nogil
+    cdef bint improve(self) noexcept nogil
     cdef void residual(self) noexcept nogil
     cdef bint eliminate(self) noexcept nogil
     cdef bint finish(self) noexcept nogil

@@ -26,7 +26,7 @@ from cython.cimports.libc.math import exp, fabs, log
 
 if cython.compiled:
     from cython.cimports.fcm.contact.plane.motion import SCAN, PlaneMotion
-    from cython.cimports.fcm.contact.plane.panel import eliminate_eight
+    from cython.cimports.fcm.contact.plane.panel import newton_eight
 else:
     from fcm.contact.plane.motion import SCAN, PlaneMotion
     from fcm.contact.plane.radau import STAGES
@@ -59,8 +59,9 @@ class Panel:
 
     def __init__(self, motion: PlaneMotion) -> None:
         given = motion.options
-        self.converged, self.most_steps, self.steepest, self.widest = (
+        self.converged, self.settled, self.most_steps, self.steepest, self.widest = (
             given.converged,
+            given.settled,
             given.newton,
             given.steepest,
             given.widest,
@@ -77,13 +78,13 @@ class Panel:
         self.theta = self.length = self.start_x = self.start_y = self.noise = self.left = self.fade = 0.0
         self.speed = np.zeros(STAGES)
         if not cython.compiled:
-            self.matrix, self.inner = np.zeros((2, STAGES * STAGES))
-            self.right, self.a, self.b, self.r = np.zeros((4, STAGES))
+            self.matrix, self.inner, self.rows = np.zeros((3, STAGES * STAGES))
+            self.right, self.a, self.b, self.r, self.at = np.zeros((5, STAGES))
         i: cython.int
         j: cython.int
         for i in range(STAGES):
             for j in range(STAGES):
-                self.inner[STAGES * j + i] = self.slopes[i + 1, j + 1]
+                self.inner[STAGES * j + i] = self.rows[STAGES * i + j] = self.slopes[i + 1, j + 1]
 
     def solve(
         self,
@@ -104,7 +105,9 @@ class Panel:
         self.noise = 4.0 * EPSILON * (self.motion.motion_bound[1] + self.motion.reach_bound[1])
         for i in range(STAGES):
             gone, self.speed[i] = self.gone(self.node[i + 1])
-            self.motion.place(i + 1, theta + gone)
+            self.at[i] = theta + gone
+        self.motion.place_nodes(self.at)
+        for i in range(STAGES):
             x_1: float = self.motion.value[i + 1, 3]
             y_1: float = self.motion.value[i + 1, 4]
             self.a[i] = e_x * x_1 + e_y * y_1
@@ -128,15 +131,18 @@ class Panel:
         return self.length * part, self.length
 
     def newton(self, slope: float, bend: float) -> bool:
-        """The collocated Riccati equation by Newton's method, from a parabola on."""
+        """The collocated Riccati equation by Newton's method, from a parabola on.
+
+        The last step is one more than t needs: with its matrix the derivatives are known as well.
+        """
         i: cython.int
         step: cython.int
         most: float
+        last: cython.bint = False
         for i in range(STAGES + 1):
             self.tangent[i] = self.node[i] * (slope + self.node[i] * bend)
         for step in range(self.most_steps):  # noqa: B007
-            self.residual()
-            if not self.eliminate():
+            if not self.improve():
                 return False
             most = 0.0
             for i in range(STAGES):
@@ -144,12 +150,22 @@ class Panel:
                 most = max(most, fabs(self.right[i]))
                 if not fabs(self.tangent[i + 1]) < self.widest:
                     return False
-            if most < self.converged:
+            if last or most < self.settled:
                 return True
+            last = most < self.converged
         return False
 
-    def refresh(self) -> bool:
-        """`matrix` once more, of t as it has become: derivatives need it to the square of its last change."""
+    def improve(self) -> bool:
+        """`right`, a step of Newton's method from t on, with the factors of its derivatives, `matrix`."""
+        found: cython.int = -1
+        if cython.compiled:
+            found = newton_eight(
+                self.rows, self.inner, self.r, self.a, self.b, cython.address(self.tangent[1]), self.matrix,
+                self.right,
+            )  # fmt: skip
+        if found >= 0:
+            regular: bool = found > 0
+            return regular
         self.residual()
         done: bool = self.eliminate()
         return done
@@ -183,11 +199,6 @@ class Panel:
         j: cython.int
         k: cython.int
         part: float
-        if cython.compiled:
-            i = eliminate_eight(cython.address(self.matrix[0]), cython.address(self.right[0]))
-            if i >= 0:
-                regular: bool = i > 0
-                return regular
         for k in range(STAGES):
             if not fabs(self.matrix[STAGES * k + k]) > 1e-300:
                 return False
@@ -267,6 +278,12 @@ class Panel:
     def end_of_slip(self) -> float:
         """The part of the panel after which lambda is no more than rounding; 2 if it does not fall so far."""
         j: cython.int
+        least: float = self.push[0]
+        most: float = self.push[0]
+        for j in range(STAGES):
+            least, most = min(least, self.push[j + 1]), max(most, self.push[j + 1])
+        if least > 0.5 * most:  # between nodes a polynomial that resolves it does not fall to nothing
+            return 2.0
         f_0: float = self.push[0] - self.noise
         if f_0 <= 0.0 and self.push[1] <= self.noise:
             return 0.0

@@ -156,7 +156,9 @@ class Resting:
         most: float = -FAR
         self.x, self.y = w_x, w_y
         for j in range(self.nodes):
-            self.gap[j] = hypot(self.at[0, j] - w_x, self.at[1, j] - w_y) - self.at[2, j]
+            d_x: float = self.at[0, j] - w_x
+            d_y: float = self.at[1, j] - w_y
+            self.gap[j] = sqrt(d_x * d_x + d_y * d_y) - self.at[2, j]
             most = max(most, self.gap[j])
         # where the gap is greatest its second derivative is bounded by that of U and R
         rise: float = (

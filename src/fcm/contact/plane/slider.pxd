@@ -6,7 +6,7 @@ from fcm.contact.plane.derivatives cimport Derivatives
 cdef int STICK, SLIP, SEPARATION
 
 cdef class Slider:
-    cdef double shortest, least_step, on_edge, negligible, near, ends, deepest, nothing, light, shrink, grow, safety, varied
+    cdef double shortest, least_step, on_edge, negligible, near, ends, deepest, nothing, light, shrink, grow, safety, varied, unturned
     cdef readonly PlaneMotion motion
     cdef readonly Panel panel
     cdef readonly Sums sums

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import exp, fabs, hypot
+from cython.cimports.libc.math import exp, fabs, hypot, sqrt
 
 if cython.compiled:
     from cython.cimports.fcm.contact.plane.derivatives import Derivatives
@@ -74,7 +74,7 @@ class Slider:
             given.nothing,
         )
         self.light, self.shrink, self.grow, self.safety = given.light, given.shrink, given.grow, given.safety
-        self.varied = given.varied
+        self.varied, self.unturned = given.varied, given.unturned
         self.motion = motion
         self.panel = Panel(motion)
         self.sums = Sums(motion, max(outputs, default=0))
@@ -161,7 +161,7 @@ class Slider:
         x_1: float = self.motion.value[SCAN, 3]
         y_1: float = self.motion.value[SCAN, 4]
         across: float = fabs(self.e_x * y_1 - self.e_y * x_1)
-        turning: float = max(across, 0.1 * hypot(x_1, y_1))
+        turning: float = max(across, 0.6 * hypot(x_1, y_1))
         length: float = 1.5 / max(self.motion.highest, 1)
         r: float = max(self.motion.value[SCAN, 2], 1e-12 * self.motion.reach)
         return min(length, 1.5 * r / turning) if turning > 0.0 else length
@@ -206,19 +206,21 @@ class Slider:
                 self.theta = end
                 return
             graded: cython.bint = opens and r > nothing and left < near
-            with_turns: cython.bint = self.gathering and self.gradient
+            last: cython.bint = False  # a panel up to where it opens, whatever it leaves out
+            # as it closes nothing is remembered, and no direction at the start but that is a solution
+            with_turns: cython.bint = self.gathering and self.gradient and r > nothing
             turned: float = self.derivatives.greatest() if with_turns else 0.0
             if (
                 graded
                 and self.stray(end) * r * left < self.ends * self.tolerance * self.motion.reach
-                and self.varied * turned * r * left <= self.ends * self.tolerance
+                and turned * r * left <= self.unturned
             ):
-                graded = False
+                graded, last = False, True
                 self.next_length = left
             length = min(self.next_length, left, self.longest)
             if graded:
                 length = min(length, self.deepest * left)
-            elif length > 0.6 * left and (length < left or (with_turns and opens and r <= nothing)):
+            elif length > 0.6 * left and (length < left or (opens and r <= nothing)):
                 length = 0.6 * left  # nor from closing to opening at once: turns matter between alone
             for tries in range(200):  # noqa: B007
                 rest = 1e300
@@ -233,7 +235,7 @@ class Slider:
                     if with_turns:
                         part = turned * max(r, self.motion.value[STAGES, 2])
                         rest = max(rest, self.varied * part * self.panel.rest_of_variation())
-                    if rest <= self.tolerance:
+                    if rest <= self.tolerance or (last and length == left):
                         break
                 part = (self.tolerance / rest) ** (1.0 / STAGES) if rest < 1e300 else 0.0
                 if length == left and opens:
@@ -316,7 +318,7 @@ class Slider:
         i: cython.int
         self.theta, self.first_step = self.panel.theta + self.panel.length, self.least_step
         self.e_x, self.e_y = self.panel.e_x[STAGES - 1], self.panel.e_y[STAGES - 1]
-        size: float = 1.0 / hypot(self.e_x, self.e_y)
+        size: float = 1.0 / sqrt(self.e_x * self.e_x + self.e_y * self.e_y)
         self.e_x, self.e_y = self.e_x * size, self.e_y * size
         for i in range(STAGES):
             way: float = self.panel.weight[i] * self.panel.speed[i] * self.panel.push[i + 1]
@@ -335,7 +337,6 @@ class Slider:
                     self.record[self.panels, 5 + i] = self.panel.tangent[i + 1]
             self.panels += 1
         if self.varying:
-            self.panel.refresh()
             self.derivatives.carry(self.gathering and self.gradient)
 
     def halt(self) -> None:
@@ -471,7 +472,9 @@ class Slider:
         x: float = 0.5 * (low + high)
         for i in range(80):  # noqa: B007
             self.measure(x)
-            d: float = hypot(self.motion.value[SCAN, 0] - self.w_x, self.motion.value[SCAN, 1] - self.w_y)
+            d_x: float = self.motion.value[SCAN, 0] - self.w_x
+            d_y: float = self.motion.value[SCAN, 1] - self.w_y
+            d: float = sqrt(d_x * d_x + d_y * d_y)
             r: float = max(self.motion.value[SCAN, 2], 0.0)
             if self.gap > 0.0:
                 high = x
