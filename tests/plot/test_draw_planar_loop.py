@@ -49,6 +49,15 @@ def test_the_discs_are_where_the_contact_is_and_hold_the_slider(figure):
         assert np.hypot(*(LOOP.slider(angle) - disc.center)) <= disc.radius + 1e-9
 
 
+def test_no_angle_is_written_on_the_paths(figure):
+    figure.draw_without_rendering()
+    plane, path = figure.axes[0], path_of(LOOP)
+    for text in plane.texts:
+        box = text.get_window_extent()
+        for at in plane.transData.transform(np.concatenate((path.u, path.w))):
+            assert not (box.x0 < at[0] < box.x1 and box.y0 < at[1] < box.y1), text.get_text()
+
+
 def test_the_slider_is_not_drawn_while_the_contact_is_open(figure):
     (line,) = lines(figure.axes[0], SLIDER)
     path = path_of(LOOP)

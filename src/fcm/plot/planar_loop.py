@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from fcm.contact.plane.loop import PlanarLoop
 from fcm.plot.loop import STATES
+from fcm.plot.loop_marks import name_marks
 from fcm.plot.read import FloatArray
 from fcm.plot.style import LAYOUT, TWO_COLUMNS, house_style, new_figure
 
@@ -76,6 +77,11 @@ def draw_planar_loop(drawn: DrawnPlanarLoop) -> Figure:
         handles, labels = plane.get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), fontsize=7)
         figure.suptitle(drawn.title, fontsize=8)
+        figure.draw_without_rendering()  # so that the plane has its final size
+        instants = _instants(path, drawn.instants)
+        points = [(float(x), float(y)) for x, y in path.u[instants]]
+        angles = [f"{np.degrees(path.theta[at]):.0f}°" for at in instants]
+        name_marks(plane, points, angles, np.concatenate((path.u, path.w)), 6.5)
     return figure
 
 
@@ -85,7 +91,6 @@ def _draw_plane(axes: Axes, drawn: DrawnPlanarLoop, path: Path) -> None:
 
     axes.set_aspect("equal", adjustable="box")
     radius = path.limit / drawn.loop.k_u
-    middle = 0.5 * (path.u.max(axis=0) + path.u.min(axis=0))
     for k, at in enumerate(_instants(path, drawn.instants)):
         centre = float(path.u[at, 0]), float(path.u[at, 1])
         disc = Circle(centre, float(radius[at]), facecolor="none", edgecolor=DISC, linewidth=0.8, zorder=1)
@@ -97,12 +102,6 @@ def _draw_plane(axes: Axes, drawn: DrawnPlanarLoop, path: Path) -> None:
         )  # fmt: skip
         axes.plot(*centre, marker="o", markersize=2.6, color="black", zorder=4)
         axes.plot(*path.w[at], marker="s", markersize=2.6, color=SLIDER, zorder=4)
-        out = path.u[at] - middle
-        away = 9.0 * out / max(float(np.hypot(*out)), 1e-300)
-        axes.annotate(
-            f"{np.degrees(path.theta[at]):.0f}°", centre, xytext=(float(away[0]), float(away[1])),
-            textcoords="offset points", fontsize=6.5, ha="center", va="center", zorder=5,
-        )  # fmt: skip
     shown = np.where((path.states == "S")[:, None], np.nan, path.w)
     axes.plot(shown[:, 0], shown[:, 1], color=SLIDER, linewidth=1.1, zorder=2, label="slider $w$")
     for state in dict.fromkeys("EPS"):
