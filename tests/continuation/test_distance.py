@@ -3,8 +3,7 @@
 import numpy as np
 
 from fcm.continuation import Problem, follow
-from fcm.continuation.corrector import Newton
-from fcm.continuation.distance import distances
+from fcm.continuation.corrector import Newton, distances
 
 
 class Circle(Problem):

@@ -13,6 +13,7 @@ from fcm.continuation.corrector import Newton
 from fcm.harmonic_balance import rounding
 from fcm.harmonic_balance.dense_jacobian import jacobian_of
 from fcm.harmonic_balance.modal_condensation import CondensedOptions
+from fcm.harmonic_balance.options import BALANCE
 from fcm.harmonic_balance.response_quantities import recorded
 from fcm.harmonic_balance.rounding import _moved
 from fcm.harmonic_balance.system import System
@@ -251,7 +252,7 @@ def test_rounding_of_many_contacts_is_that_of_random_errors():
     (i,) = np.flatnonzero(path.parameter == 1.15)
     balance.evaluate(path.z[i])
     errors = np.random.default_rng(4).uniform(0.5, 1.0, balance.unknowns)
-    found = _moved(balance, path.z[i], path.direction[i], errors)
+    found = _moved(balance, path.z[i], path.direction[i], errors, BALANCE.digits)
     scale = np.array(balance.scale)
     row = path.direction[i] / scale
     matrix = np.vstack((jacobian_of(balance) * scale, row / np.linalg.norm(row)))

@@ -8,7 +8,8 @@ import scipy.sparse
 
 from fcm.continuation import Status
 from fcm.harmonic_balance.system import System
-from fcm.nonlinear_modes.backbone import TruncationOptions, nonlinear_mode, truncation
+from fcm.nonlinear_modes.backbone import nonlinear_mode, truncation
+from fcm.nonlinear_modes.options import NonlinearModeOptions, TruncationOptions
 from fcm.scene.load import load_scene
 
 from .joint import Beams, matrices, mesh, preloads, totals, write
@@ -107,7 +108,9 @@ def test_the_error_of_many_unknowns_is_told_at_a_few_points_as_more_harmonics_ch
     mode, finer = (
         nonlinear_mode(System(scene, harmonics), 7, (3e-6, 2e-5), 0.1) for harmonics in ((1,), (1, 2, 3))
     )
-    error, borne = truncation(mode, TruncationOptions(dear=1, least=3, share=0.0))
+    error, borne = truncation(
+        mode, NonlinearModeOptions(truncation=TruncationOptions(dear=1, least=3, share=0.0))
+    )
     told = np.flatnonzero(np.isfinite(error))
     assert told.size == 3 < mode.omega.size and told[-1] == mode.omega.size - 1
     assert np.array_equal(np.isfinite(borne).all(axis=(1, 2)), np.isfinite(error))

@@ -27,10 +27,11 @@ from fcm.accuracy.partner_pieces import CurvePiece, distinct, lengths, nearest, 
 from fcm.accuracy.peaks import heights, rise_beside
 from fcm.continuation import Mark, Path
 from fcm.harmonic_balance.reported_quantities import Reported, reported
-from fcm.harmonic_balance.residual_spectrum import HIGHEST, FurtherHarmonics
+from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.harmonic_balance.response_quantities import borne_along
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
+from fcm.scene.options import LIMITS
 
 Mask = npt.NDArray[np.bool_]
 
@@ -46,8 +47,9 @@ class Errors:
     peak (dof,): of the height of the greatest amplitude.
     height (dof,): the greatest amplitude of the partner, as an amplitude.
     fold (fold,): of the frequencies of the folds, in their order.
-    share (harmonic 1 to HIGHEST,): what each harmonic left out would have without feedback, at peaks and
-    folds, of the greatest amplitude of the degree of freedom to which it matters most.
+    share (harmonic,), from the first to the greatest that can be asked for: what each harmonic left out would
+    have without feedback, at peaks and folds, of the greatest amplitude of the degree of freedom to which it
+    matters most.
     partner: its harmonics.
     borne (point, contact, 4): of what the contacts bear, see `response_quantities.cycles`, each relative
     to itself; infinite where it is nothing, and something in the partner. greatest (contact, 4): of the
@@ -89,7 +91,7 @@ def errors_along(
     special = np.unique(np.concatenate((folds, path.where(Mark.PEAK), tops)))
     share, met = _spectrum(system, path, shown, special, size, options)
     more = partner_of(system.harmonics, share, system.layout.ports, options)
-    nothing = not share.any() and max(system.harmonics) < HIGHEST  # beyond that it is not looked at
+    nothing = not share.any() and max(system.harmonics) < LIMITS.harmonics  # beyond that it is not looked at
     if shown.linear.all() or nothing or more == system.harmonics:
         none = np.full_like(shown.amplitude, 0.0 if shown.linear.all() or nothing else np.nan)
         of_folds = np.full(len(folds), none[0, 0])
@@ -214,7 +216,7 @@ def _spectrum(
         local = further.shares(path.z[met], shown.amplitude[met])
         leads = local > options.leads * local.max(axis=1, keepdims=True)
         share = np.maximum(share, np.where(leads & (local > options.matters), local, 0.0).max(axis=0))
-    return share[:HIGHEST], met
+    return share[: LIMITS.harmonics], met
 
 
 def _of_points(partner: PartnerCurve, shift: FloatArray, change: FloatArray) -> FloatArray:

@@ -19,7 +19,7 @@ from fcm.accuracy.residual import left_out
 from fcm.continuation import Mark, Path
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.reported_quantities import Reported
-from fcm.harmonic_balance.residual_spectrum import LEAST_AMPLITUDE, FurtherHarmonics
+from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.harmonic_balance.response_quantities import borne_along
 from fcm.harmonic_balance.runs import runs
 from fcm.harmonic_balance.system import System
@@ -98,7 +98,8 @@ class PartnerCurve:
         self.path, self.shown, self.options, self.fewer = path, shown, options, system.harmonics
         self.borne = borne_along(system, path.z).reshape(len(path.z), -1)
         self.amplitude, self.linear = shown.amplitude, _with_ends(path, shown.linear)
-        self.unit = np.maximum(self.amplitude, LEAST_AMPLITUDE * self.amplitude.max(axis=1, keepdims=True))
+        least = system.options.spectrum.least_amplitude * self.amplitude.max(axis=1, keepdims=True)
+        self.unit = np.maximum(self.amplitude, least)
         self.unit[self.unit == 0.0] = 1.0
         lifted, finer = lifted_of(system, more), system.with_harmonics(more)
         self.system, self.more = system, more

@@ -20,8 +20,9 @@ from fcm.accuracy.outline import Outline
 from fcm.accuracy.partner import give_back, lifted_of, partner_of
 from fcm.continuation import Mark, Path
 from fcm.harmonic_balance.normal_plane_prolongation import Lifted
-from fcm.harmonic_balance.residual_spectrum import HIGHEST, FurtherHarmonics
+from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.model.scene import FloatArray
+from fcm.scene.options import LIMITS
 
 
 @dataclass(frozen=True)
@@ -89,11 +90,11 @@ def needed(
     share[np.array(harmonics) - 1] = 0.0
     order = np.argsort(-share, kind="stable")
     left = share.sum() - np.cumsum(share[order])
-    new = [h - 1 for h in ahead.partner if h not in harmonics and h <= HIGHEST]
+    new = [h - 1 for h in ahead.partner if h not in harmonics and h <= LIMITS.harmonics]
     known = ahead.told and ahead.change > accuracy and share[new].any()
     gain = max(ahead.change / share[new].sum(), 1.0) if known else options.unknown
     count = 1 + int(np.count_nonzero(gain * left > options.spare * accuracy))
-    count = min(count, max(options.first, options.times * len(harmonics)), HIGHEST - len(harmonics))
+    count = min(count, max(options.first, options.times * len(harmonics)), LIMITS.harmonics - len(harmonics))
     chosen = {int(k) + 1 for k in order[:count] if share[k] > 0.0}
     low = range(1, options.low + 1) if chosen else ()
     return tuple(sorted({*harmonics, *chosen, *low}))
@@ -134,4 +135,4 @@ def _most(
 ) -> FloatArray:
     """What each harmonic (harmonic,) but the known ones has at most at motions z (place, unknown + 1)."""
     share: FloatArray = further.shares(z, np.tile(size, (len(z), 1)), known).max(axis=0, initial=0.0)
-    return share[:HIGHEST]
+    return share[: LIMITS.harmonics]

@@ -20,8 +20,9 @@ from fcm.continuation import Path, Segment
 from fcm.continuation.events import Secants
 from fcm.harmonic_balance.normal_plane_prolongation import Lifted
 from fcm.harmonic_balance.reported_quantities import reported_at
-from fcm.harmonic_balance.residual_spectrum import HIGHEST, FurtherHarmonics
+from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.harmonic_balance.system import System
+from fcm.scene.options import LIMITS
 from fcm.stability.along_branch import EITHER
 from fcm.stability.floquet import multipliers_of
 from fcm.stability.inserted_points import Crossing
@@ -75,7 +76,7 @@ def _lost(
     found = known[more].crossing(one, STABILITY_LIMITS.part * accuracy)
     error = abs(found / one.frequency - 1.0)
     ahead = RequiredHarmonics(
-        0.0 if math.isnan(error) else error, not math.isnan(error), share[:HIGHEST], more
+        0.0 if math.isnan(error) else error, not math.isnan(error), share[: LIMITS.harmonics], more
     )
     return Lost(one.frequency, error, needed(ahead, system.harmonics, accuracy))
 

@@ -1,16 +1,19 @@
 """Newton's method for a point of a curve: the corrector.
 
 The point is sought in the plane through the guess whose normal is the row that closes the equations, see
-`bordered`. A row along the curve gives the next point; a row along the parameter holds that.
+`bordered_system`. A row along the curve gives the next point; a row along the parameter holds that. One
+step across a path tells how far it is from the curve of a problem nearby: `distances`.
 """
 
 from __future__ import annotations
 
 import cython
+import numpy as np
 from cython.cimports.libc.math import sqrt
 
 from fcm.continuation.bordered_system import BorderedSystem
 from fcm.continuation.options import NEWTON, NewtonOptions
+from fcm.continuation.path import FloatArray
 from fcm.continuation.problem import Problem
 
 if cython.compiled:
@@ -240,3 +243,32 @@ def _move(newton: Newton) -> cython.void:
     i: cython.Py_ssize_t
     for i in range(newton.problem.unknowns + 1):
         newton.z[i] += newton.scale[i] * newton.delta[i]
+
+
+def distances(newton: Newton, z: FloatArray, direction: FloatArray) -> FloatArray:
+    """Lengths (point,) of the steps from points z across directions there, both (point, n + 1), to the curve
+    of newton's problem, in its scale; NaN where there is none."""
+    found = np.full(len(z), np.nan)
+    _fill(newton, z, direction, found)
+    return found
+
+
+def _fill(
+    newton: Newton, z: cython.double[:, ::1], direction: cython.double[:, ::1], found: cython.double[::1]
+) -> None:
+    i: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    for i in range(z.shape[0]):
+        newton.problem.measure(z[i])
+        total: cython.double = 0.0
+        for k in range(z.shape[1]):
+            newton.scale[k], newton.z[k] = newton.problem.scale[k], z[i, k]
+            newton.row[k] = direction[i, k] / newton.scale[k]
+            total += newton.row[k] * newton.row[k]
+        for k in range(z.shape[1]):
+            newton.row[k] /= sqrt(total)
+        if newton.once():
+            total = 0.0
+            for k in range(z.shape[1]):
+                total += ((newton.z[k] - z[i, k]) / newton.scale[k]) ** 2
+            found[i] = sqrt(total)

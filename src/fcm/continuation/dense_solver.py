@@ -2,6 +2,11 @@
 
 Small systems are eliminated without leaving compiled code; large ones by LAPACK, whose import takes as
 long as thousands of these.
+
+The elimination is that of Gauss with pivots along rows, which suits stiff contacts. A matrix (n, n) becomes
+its lower and its unit upper triangle, in place. From a row those above it are taken four at a time: a number
+is then loaded and stored once for all. Of many rows four are treated together, by what C compiles for
+registers of any width, see the .pxd; every number is the same either way.
 """
 
 from __future__ import annotations
@@ -9,13 +14,10 @@ from __future__ import annotations
 import cython
 import numpy as np
 import numpy.typing as npt
-
-if cython.compiled:
-    from cython.cimports.fcm.continuation.elimination import eliminate, substitute
-else:
-    from fcm.continuation.elimination import eliminate, substitute
+from cython.cimports.libc.math import fabs
 
 LARGE = cython.declare(cython.int, 400 if cython.compiled else 40)  # from here on LAPACK
+WIDE = cython.declare(cython.int, 40)  # rows from which on four of them are taken together
 
 
 @cython.cclass
@@ -36,7 +38,7 @@ class Solver:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def factor(self) -> cython.bint:
-        """Factor the matrix, in point; false if it is singular or not finite."""
+        """Factor the matrix, in place; false if it is singular or not finite."""
         if self.size < LARGE:
             self.orientation = eliminate(self.matrix, self.swapped)
             return self.orientation != 0.0
@@ -83,3 +85,175 @@ class Solver:
             for j in range(self.size):
                 columns[j, i] = self.right[j]
         return made
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def eliminate(a: cython.double[:, ::1], swapped: cython.int[::1]) -> cython.double:
+    """The sign of the determinant, 0 if the matrix is singular or not finite; swapped (n,): the columns."""
+    n: cython.Py_ssize_t = a.shape[0]
+    i: cython.Py_ssize_t
+    j: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    p: cython.double
+    q: cython.double
+    r: cython.double
+    s: cython.double
+    sign: cython.double = 1.0
+    for i in range(n):
+        k = 0
+        if cython.compiled and n >= WIDE:
+            k = i - i % 4 if i - i % 4 + 4 <= n else 0
+            if 0 < k == i:
+                _four_rows(a, i)
+        while k + 4 <= i:
+            p = a[i, k]
+            q = a[i, k + 1] - p * a[k, k + 1]
+            r = a[i, k + 2] - p * a[k, k + 2] - q * a[k + 1, k + 2]
+            s = a[i, k + 3] - p * a[k, k + 3] - q * a[k + 1, k + 3] - r * a[k + 2, k + 3]
+            a[i, k + 1], a[i, k + 2], a[i, k + 3] = q, r, s
+            for j in range(k + 4, n):
+                a[i, j] = a[i, j] - p * a[k, j] - q * a[k + 1, j] - r * a[k + 2, j] - s * a[k + 3, j]
+            k += 4
+        while k < i:
+            p = a[i, k]
+            for j in range(k + 1, n):
+                a[i, j] -= p * a[k, j]
+            k += 1
+        most: cython.double = _greatest(a, i)
+        if not (0.0 < most <= 1e300):
+            return 0.0
+        j = i
+        while fabs(a[i, j]) != most:
+            j += 1
+        swapped[i] = cython.cast(cython.int, j)
+        if j != i:
+            sign = -sign
+            _swap(a, i, j)
+        if a[i, i] < 0.0:
+            sign = -sign
+        for j in range(i + 1, n):
+            a[i, j] /= a[i, i]
+    return sign
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def substitute(a: cython.double[:, ::1], swapped: cython.int[::1], x: cython.double[::1]) -> cython.void:
+    """Replace x (n,), a right side, by the solution."""
+    n: cython.Py_ssize_t = a.shape[0]
+    i: cython.Py_ssize_t = 0
+    j: cython.Py_ssize_t
+    held: cython.double
+    while i < n and x[i] == 0.0:
+        i += 1
+    _triangle(a, x, i, 1)
+    _triangle(a, x, n - 1, -1)
+    for i in range(n - 1, -1, -1):
+        j = swapped[i]
+        held = x[j]
+        x[j] = x[i]
+        x[i] = held
+
+
+@cython.cfunc
+@cython.inline
+@cython.exceptval(check=False)
+def _triangle(
+    a: cython.double[:, ::1], x: cython.double[::1], first: cython.Py_ssize_t, way: cython.Py_ssize_t
+) -> cython.void:
+    """Solve from a row on, down (way 1) by the lower triangle or up (-1) by the upper."""
+    count: cython.Py_ssize_t = a.shape[0] - first if way > 0 else first + 1
+    m: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    for m in range(count):
+        k = m - m % 4
+        if k + 4 > count:
+            k = 0
+        elif k == m:
+            _four(a, x, first, way, m)
+        i: cython.Py_ssize_t = first + way * m
+        held: cython.double = x[i]
+        while k < m:
+            held -= a[i, first + way * k] * x[first + way * k]
+            k += 1
+        x[i] = held / a[i, i] if way > 0 else held
+
+
+@cython.cfunc
+@cython.inline
+@cython.exceptval(check=False)
+def _four(
+    a: cython.double[:, ::1],
+    x: cython.double[::1],
+    first: cython.Py_ssize_t,
+    way: cython.Py_ssize_t,
+    known: cython.Py_ssize_t,
+) -> cython.void:
+    """Take what is known of x, so many numbers from the first on, from the next four, whose sums then do not
+    wait for one another."""
+    i: cython.Py_ssize_t = first + way * known
+    j: cython.Py_ssize_t = first
+    p: cython.double = x[i]
+    q: cython.double = x[i + way]
+    r: cython.double = x[i + 2 * way]
+    s: cython.double = x[i + 3 * way]
+    while j != i:
+        held: cython.double = x[j]
+        p -= a[i, j] * held
+        q -= a[i + way, j] * held
+        r -= a[i + 2 * way, j] * held
+        s -= a[i + 3 * way, j] * held
+        j += way
+    x[i], x[i + way], x[i + 2 * way], x[i + 3 * way] = p, q, r, s
+
+
+@cython.cfunc
+@cython.inline
+@cython.exceptval(check=False)
+def _four_rows(a: cython.double[:, ::1], i: cython.Py_ssize_t) -> cython.void:
+    """Row i and the next three less the i above, which are a multiple of four; where it is compiled."""
+    n: cython.Py_ssize_t = a.shape[0]
+    k: cython.Py_ssize_t
+    for k in range(0, i, 4):
+        row, above = cython.address(a[i, k]), cython.address(a[k, k])
+        four_less_four(row, above, n, n - k)  # type: ignore[name-defined]  # noqa: F821
+
+
+@cython.cfunc
+@cython.inline
+@cython.exceptval(check=False)
+def _greatest(a: cython.double[:, ::1], i: cython.Py_ssize_t) -> cython.double:
+    """Of a row, from the diagonal on, the greatest size: four at a time, that do not wait for one another.
+
+    What is no number is passed over here, and makes its column none in all rows below: the last has 0.
+    """
+    n: cython.Py_ssize_t = a.shape[0]
+    j: cython.Py_ssize_t = i
+    p: cython.double = 0.0
+    q: cython.double = 0.0
+    r: cython.double = 0.0
+    s: cython.double = 0.0
+    while n >= WIDE and j + 4 <= n:
+        p = max(p, fabs(a[i, j]))
+        q = max(q, fabs(a[i, j + 1]))
+        r = max(r, fabs(a[i, j + 2]))
+        s = max(s, fabs(a[i, j + 3]))
+        j += 4
+    while j < n:
+        p = max(p, fabs(a[i, j]))
+        j += 1
+    return max(max(p, q), max(r, s))
+
+
+@cython.cfunc
+@cython.inline
+@cython.exceptval(check=False)
+def _swap(a: cython.double[:, ::1], i: cython.Py_ssize_t, j: cython.Py_ssize_t) -> cython.void:
+    """Swap two columns."""
+    k: cython.Py_ssize_t
+    held: cython.double
+    for k in range(a.shape[0]):
+        held = a[k, i]
+        a[k, i] = a[k, j]
+        a[k, j] = held

@@ -25,8 +25,7 @@ from fcm.continuation.labelled_switching import LabelledSwitching
 from fcm.continuation.nonsmooth_points import NonsmoothPoints
 from fcm.continuation.options import FOLLOW, FollowOptions, StepOptions, SwitchingOptions
 from fcm.continuation.path import FloatArray, Mark, Path, Status
-from fcm.continuation.point import Point
-from fcm.continuation.point_store import PointStore
+from fcm.continuation.point import Point, PointStore
 from fcm.continuation.problem import Problem
 from fcm.continuation.recorder import Recorder, earlier
 from fcm.continuation.stepper import Stepper

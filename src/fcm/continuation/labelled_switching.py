@@ -16,8 +16,7 @@ import numpy as np
 
 from fcm.continuation.options import LabelOptions
 from fcm.continuation.path import FloatArray, Mark, Status
-from fcm.continuation.point import Point
-from fcm.continuation.point_store import PointStore
+from fcm.continuation.point import Point, PointStore
 from fcm.continuation.stepper import Stepper
 from fcm.continuation.switching_functions import ahead
 

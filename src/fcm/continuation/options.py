@@ -5,7 +5,9 @@ Lengths are those of the scaled unknowns, in which a curve is about 1 long; a pa
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import field
+from typing import Any
 
 import cython
 
@@ -16,8 +18,30 @@ else:
 
 
 @cython.cclass
-@dataclass(frozen=True)
-class NewtonOptions:
+class Options:
+    """What the options have in common, written once: they are compared, shown and sent by their fields."""
+
+    def _values(self) -> tuple[Any, ...]:
+        return tuple(getattr(self, one.name) for one in dataclasses.fields(self))  # type: ignore[arg-type]
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and self._values() == other._values()
+
+    def __hash__(self) -> int:
+        return hash(self._values())
+
+    def __repr__(self) -> str:
+        names = (one.name for one in dataclasses.fields(self))  # type: ignore[arg-type]
+        shown = (f"{name}={value!r}" for name, value in zip(names, self._values(), strict=True))
+        return f"{type(self).__name__}({', '.join(shown)})"
+
+    def __reduce__(self) -> tuple[type, tuple[Any, ...]]:
+        return type(self), self._values()
+
+
+@cython.cclass
+@dataclass(frozen=True, eq=False, repr=False)
+class NewtonOptions(Options):
     """When Newton's method has come to the curve, and when it is given up; see `corrector`.
 
     Attributes
@@ -76,8 +100,8 @@ class NewtonOptions:
 
 
 @cython.cclass
-@dataclass(frozen=True)
-class StepOptions:
+@dataclass(frozen=True, eq=False, repr=False)
+class StepOptions(Options):
     """Which step is accepted, and how long the next one is; see `step_control`.
 
     Attributes
@@ -134,8 +158,8 @@ class StepOptions:
 
 
 @cython.cclass
-@dataclass(frozen=True)
-class EventOptions:
+@dataclass(frozen=True, eq=False, repr=False)
+class EventOptions(Options):
     """How events are found within a step; see `events` and `extremum_search`.
 
     Attributes
@@ -186,8 +210,8 @@ class EventOptions:
 
 
 @cython.cclass
-@dataclass(frozen=True)
-class SwitchingOptions:
+@dataclass(frozen=True, eq=False, repr=False)
+class SwitchingOptions(Options):
     """How corners are come to and left where a switching function changes its sign; see `nonsmooth_points`.
 
     Attributes
@@ -240,7 +264,7 @@ class SwitchingOptions:
     many: cython.int = 64
 
 
-@dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True)  # of no kernel
 class LabelOptions:
     """Steps where switching functions are labels, which tell no distance; see `labelled_switching`.
 
@@ -310,8 +334,8 @@ class LabelOptions:
 
 
 @cython.cclass
-@dataclass(frozen=True)
-class FollowOptions:
+@dataclass(frozen=True, eq=False, repr=False)
+class FollowOptions(Options):
     """How a curve is followed.
 
     Attributes

@@ -1,6 +1,6 @@
 from fcm.continuation.stepper cimport Stepper
 from fcm.continuation.point cimport Point
-from fcm.continuation.point_store cimport PointStore
+from fcm.continuation.point cimport PointStore
 
 cdef class Recorder:
     cdef readonly Stepper stepper

@@ -12,8 +12,7 @@ from fcm.continuation import events
 from fcm.continuation.checkpoint import Checkpoint
 from fcm.continuation.events import Events
 from fcm.continuation.path import Mark, Path, Status
-from fcm.continuation.point import Point
-from fcm.continuation.point_store import PointStore
+from fcm.continuation.point import Point, PointStore
 from fcm.continuation.stepper import Stepper
 
 if cython.compiled:

@@ -176,5 +176,5 @@ def _moved(scene: Scene, number: Number, harmonics: tuple[int, ...], problem: Au
     for k, weight in STENCIL:
         for sign in (1.0, -1.0):
             system = System(number.put(scene, value + sign * k * step), harmonics)
-            terms.append((sign * weight / step, Autonomous(system, problem.guess)))
+            terms.append((sign * weight / step, Autonomous(system, problem.guess, problem.options)))
     return Moved(terms)

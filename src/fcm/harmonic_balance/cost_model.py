@@ -13,6 +13,7 @@ from fcm.continuation import Path
 from fcm.continuation.follow import Progress
 from fcm.continuation.stepper import Stepper
 from fcm.harmonic_balance.modal_condensation import OPTIONS, condensed_size
+from fcm.harmonic_balance.options import BALANCE, EvaluationCost
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Scene
 from fcm.scene.options import LIMITS
@@ -21,9 +22,6 @@ from fcm.structure.layout import Layout, layout_of
 
 PATIENCE = 30.0  # seconds that all rounds of more and more harmonics may take: levels, branches, errors
 AGAIN = 3.0  # where they are followed a dozen times, as in a search, or with one harmonic more each time
-CYCLE = 1.4e-6  # seconds of an evaluation for the mean and each harmonic of a contact, which slips
-ENTRY = 3e-9  # for each number of the contacts' tangents and of the matrix: filled, copied, solved with
-SYSTEM = 1.8e-11  # and for each third power of the unknowns that are solved for: 1/3 multiplication
 
 
 def seconds_of(system: System, evaluations: int, harmonics: int) -> float:
@@ -33,24 +31,25 @@ def seconds_of(system: System, evaluations: int, harmonics: int) -> float:
     """
     layout = layout_of(len(system.scene.contacts), system.scene.directions_of_contact, harmonics)
     rank = condensed_size(system.yields, layout.ports, harmonics, system.condensing)
-    return evaluations * _evaluation(layout, rank)
+    return evaluations * _evaluation(layout, rank, system.options.cost)
 
 
-def _evaluation(layout: Layout, rank: int) -> float:
+def _evaluation(layout: Layout, rank: int, cost: EvaluationCost) -> float:
     """Seconds of one, solved by a condensed system of a rank, or as it is where that is 0."""
     contacts, width, unknowns, harmonics = layout.contacts, layout.width, layout.unknowns, layout.harmonics
     solved = rank or unknowns
     cubes = float(solved) ** 3 + 6.0 * rank / (1 + 2 * harmonics) * unknowns * rank
-    return CYCLE * contacts * (1 + harmonics) + ENTRY * unknowns * (solved + width) + SYSTEM * cubes
+    of_contacts, of_entries = contacts * (1 + harmonics), unknowns * (solved + width)
+    return cost.cycle * of_contacts + cost.entry * of_entries + cost.system * cubes
 
 
 @dataclass(frozen=True)
 class CurveCost:
     """What the curves of a scene take that were measured, of 50 to 200 contacts with one harmonic.
 
-    evaluations: of a curve. of_point: of each point that it has by its longest step, where these are more.
-    beside: seconds for each of them, contact and coefficient of its motion, of all that comes beside the
-    solution: levels, stability, errors. far: times the highest frequency of the harmonics, from where on few
+    evaluations: of a curve, see `each`. of_point: of each point that it has by its longest step, where these
+    are more. beside: seconds for each of them, contact and coefficient of its motion, of all that comes
+    beside the solution: levels, stability, errors. far: times the highest frequency of the harmonics, from where on few
     modes can do for all that are above.
     """
 
@@ -58,6 +57,7 @@ class CurveCost:
     of_point: float = 7.0
     beside: float = 2.5e-5
     far: float = 2.0
+    each: EvaluationCost = BALANCE.cost
 
 
 def seconds_of_curve(scene: Scene, harmonics: int, cost: CurveCost | None = None) -> float:
@@ -75,7 +75,7 @@ def seconds_of_curve(scene: Scene, harmonics: int, cost: CurveCost | None = None
     highest = cost.far * harmonics * scene.frequency_range[1]
     modes, many = int((scene.modal.frequency <= highest).sum()), layout.unknowns >= OPTIONS.fewest
     few = many and scene.ring is None and modes < OPTIONS.share * layout.ports
-    each = _evaluation(layout, modes * (1 + 2 * harmonics) if few else 0)
+    each = _evaluation(layout, modes * (1 + 2 * harmonics) if few else 0, cost.each)
     beside = cost.beside * layout.contacts * (1 + harmonics)
     return max(cost.evaluations, cost.of_point / scene.max_step) * (each + beside)
 

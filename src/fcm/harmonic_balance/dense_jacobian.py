@@ -5,13 +5,11 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from fcm.harmonic_balance.options import BALANCE, ExtremeOptions
 from fcm.harmonic_balance.residual import Balance
 from fcm.model.scene import FloatArray
 
 ComplexArray = npt.NDArray[np.complex128]
-
-REFINED = 8  # Newton steps to an extreme from where it was
-SETTLED = 1e-9  # [rad] the last of them, at which the value errs by its square
 
 
 def jacobian_of(balance: Balance) -> FloatArray:
@@ -59,8 +57,8 @@ class Amplitude:
     greatest displacement, minus that at the least, halved.
     """
 
-    def __init__(self, balance: Balance, dof: int) -> None:
-        self.balance, self.dof = balance, dof
+    def __init__(self, balance: Balance, dof: int, options: ExtremeOptions = BALANCE.extremes) -> None:
+        self.balance, self.dof, self.options = balance, dof, options
         self.value, self.slopes = 0.0, np.zeros(balance.unknowns + 1)
         self.weights = np.zeros(balance.seen.count, dtype=np.complex128)
         self.angles = np.zeros(2)  # of the extremes, if there are several harmonics
@@ -81,7 +79,7 @@ class Amplitude:
         X = np.asarray(shown.re)[:, d] + 1j * np.asarray(shown.im)[:, d]
         h, self.angles = np.asarray(seen.harmonics), np.array(shown.angles)[:, d]
         if near is not None and h.size > 1:
-            self.angles = _extremes(X, h, near)
+            self.angles = _extremes(X, h, near, self.options)
             if np.isnan(self.angles).any():
                 self.value = np.nan
                 return
@@ -111,11 +109,13 @@ def _weights(X: ComplexArray, harmonics: FloatArray, angles: FloatArray) -> Comp
     return 0.5 * (ends[:, 0] - ends[:, 1])  # type: ignore[no-any-return]
 
 
-def _extremes(X: ComplexArray, harmonics: FloatArray, near: FloatArray) -> FloatArray:
+def _extremes(
+    X: ComplexArray, harmonics: FloatArray, near: FloatArray, options: ExtremeOptions
+) -> FloatArray:
     """Angles (2,) of the maximum and minimum of Re sum X_h exp(i h theta) next to two angles, else NaN."""
     theta: FloatArray = near
     h = np.asarray(harmonics, dtype=np.float64)
-    for _ in range(REFINED):
+    for _ in range(options.iterations):
         turned = np.exp(1j * np.outer(theta, h)) * X
         slope, bend = -(turned.imag @ h), -(turned.real @ (h * h))
         if not (bend[0] < 0.0 < bend[1]):
@@ -124,6 +124,6 @@ def _extremes(X: ComplexArray, harmonics: FloatArray, near: FloatArray) -> Float
         theta = theta - step
         if np.abs(theta - near).max() * h[-1] > np.pi:  # more than half the shortest wave
             break
-        if np.abs(step).max() < SETTLED:
+        if np.abs(step).max() < options.settled:
             return np.asarray(theta, dtype=np.float64)
     return np.full(2, np.nan)

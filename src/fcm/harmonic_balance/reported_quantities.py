@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Path
-from fcm.harmonic_balance.points import Points
+from fcm.harmonic_balance.residual import Points
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 

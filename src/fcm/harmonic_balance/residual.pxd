@@ -38,3 +38,13 @@ cdef class Balance(Problem):
     cdef int pushed(self, double[::1] z, bint tangents) except -1
     cdef int slopes(self) except -1
     cdef int contact_forces(self, double[::1] z, bint tangents) except -1
+
+cdef class Points:
+    cdef readonly Balance balance
+    cdef readonly double[:, :, ::1] re
+    cdef readonly double[:, :, ::1] im
+    cdef readonly double[:, ::1] mean
+    cdef readonly double[:, ::1] amplitude
+    cdef readonly double[:, ::1] growth
+    cdef readonly double[:, ::1] force
+    cdef readonly int[::1] linear

@@ -8,7 +8,7 @@ cdef class FurtherHarmonics:
     cdef ForcedModes modes
     cdef Py_ssize_t[::1] others
     cdef double[::1] natural
-    cdef double least
+    cdef double least, leading
     cdef double[:, :, ::1] force
     cdef double[::1] size
     cpdef int at(self, double[::1] z, double[::1] amplitude) except -1

@@ -20,19 +20,13 @@ from cython.cimports.libc.math import fabs, floor, isfinite
 from fcm.harmonic_balance.contact_law import Law
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
+from fcm.scene.options import LIMITS
 from fcm.structure.receptance import ForcedModes
-
-HIGHEST = 50  # harmonic that is looked at, and that a balance may have
-AHEAD = 1.5  # times the highest of a balance that is looked at in any case: to have all is not to be exact
-FEW = 1000  # modes times ports, up to which a sum over them is faster without BLAS
-LEADS = cython.declare(cython.double, 0.5)  # of the greatest share, from which on one that meets a mode leads
-EVERY = 16  # points of a curve from one to the next whose forces are those of all, where there are many
-LEAST_AMPLITUDE = 1e-9  # of the greatest of all degrees of freedom, to which a share is referred
 
 
 def highest(system: System) -> int:
     """Harmonic up to which the forces of a system's motions are looked at."""
-    return max(HIGHEST, int(AHEAD * max(system.harmonics)))
+    return max(LIMITS.harmonics, int(system.options.spectrum.ahead * max(system.harmonics)))
 
 
 @cython.cclass
@@ -43,11 +37,12 @@ class FurtherHarmonics:
         linear, self.highest = system.linear, highest(system)
         self.contacts, self.width = len(system.scene.contacts), system.layout.width
         self.directions = system.layout.directions
-        few = system.scene.ring is None and linear.ports.size <= FEW
+        few = system.scene.ring is None and linear.ports.size <= system.options.spectrum.few
         own = linear.natural, linear.damping, linear.ports, linear.dofs
         self.modes = ForcedModes(*own) if few else None
         self.natural = np.array(linear.natural)
-        self.others, self.least = self._without(system.harmonics), LEAST_AMPLITUDE
+        self.others, self.least = self._without(system.harmonics), system.options.spectrum.least_amplitude
+        self.leading = system.options.spectrum.leads
         self.force = np.zeros((self.highest, system.layout.ports, 2))
         self.share, self.size = np.zeros(self.highest), np.zeros(linear.dofs.shape[1])
         self.take(system)
@@ -110,14 +105,14 @@ class FurtherHarmonics:
         The forces, which change slowly, are those of every so many points, and a harmonic that meets a mode
         is compared with the greatest share there.
         """
-        omega, linear = z[:, -1], self.system.linear
-        every = np.arange(min(EVERY // 2, len(z) - 1), len(z), EVERY)
+        omega, linear, count = z[:, -1], self.system.linear, self.system.options.spectrum.every
+        every = np.arange(min(count // 2, len(z) - 1), len(z), count)
         most, force = np.zeros(len(every)), np.empty((len(every), *np.asarray(self.force).shape))
         for k, i in enumerate(every.tolist()):
             self.at(z[i], amplitude[i])
             most[k], force[k] = np.max(self.share), self.force
-        near = np.minimum(np.arange(len(z)) // EVERY, len(every) - 1)
-        least = LEAST_AMPLITUDE * amplitude.max(axis=1, keepdims=True)
+        near = np.minimum(np.arange(len(z)) // count, len(every) - 1)
+        least = self.least * amplitude.max(axis=1, keepdims=True)
         size = np.maximum(amplitude, least)
         size[size == 0.0] = np.inf
         ratio = self.natural / omega[1:-1, None]
@@ -132,7 +127,7 @@ class FurtherHarmonics:
             at = np.unique(1 + step + later)
             ports = force[near[at], int(h) - 1].view(np.complex128)[..., 0][:, None]
             displaced = np.abs(linear.displacements(np.array([h]), omega[at], ports))[:, 0]
-            leading = at[(displaced / size[at]).max(axis=1) > LEADS * most[near[at]]]
+            leading = at[(displaced / size[at]).max(axis=1) > self.leading * most[near[at]]]
             for beside in (-1, 0, 1):
                 met[leading + beside] = True
         return np.flatnonzero(met)
@@ -148,7 +143,7 @@ class FurtherHarmonics:
         self.at(z, amplitude)
         for k in range(self.highest):
             most = max(most, self.share[k])
-        return self.share[h] > LEADS * most
+        return self.share[h] > self.leading * most
 
     def linear(self, z: FloatArray) -> npt.NDArray[np.bool_]:
         """Whether no contact slips or separates, so that the forces have no further harmonic, (point,)."""

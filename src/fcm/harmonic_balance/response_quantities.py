@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from fcm.contact.loop import sequences
 from fcm.continuation import Path
-from fcm.continuation.distance import distances
-from fcm.harmonic_balance.points import Points, cycles_of
+from fcm.continuation.corrector import distances
 from fcm.harmonic_balance.reported_quantities import Reported, reported
+from fcm.harmonic_balance.residual import Points, cycles_of
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Contact, FloatArray
 

@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.harmonic_balance.dense_jacobian import jacobian_of
+from fcm.harmonic_balance.options import DigitOptions
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.response_quantities import Record
 from fcm.harmonic_balance.system import System
@@ -27,13 +28,6 @@ from fcm.model.scene import FloatArray, Force
 from fcm.structure.linear import Linear, amplitudes, linear_of
 from fcm.structure.receptance import Receptance, TravellingReceptance
 from fcm.structure.ring import RingLinear, Wave
-
-STIFF = 1e4  # k |G| of a contact from which digits are counted
-EPS = 2.2e-16  # of float64
-ROUNDINGS = 4.0  # that come together in a sum
-POINTS = 16  # of a curve of many contacts that are looked at
-SIGNS = 8  # of errors that are looked at together, where contacts are many
-DEPENDENT = 1e10  # condition number of G from which its inverse is no good
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -56,9 +50,9 @@ def with_digits(system: System, points: Record) -> tuple[Record, FloatArray]:
     Of a sector of a ring it is told what digits are lost. Many contacts are looked at in some points; those
     between two of these have the greater rounding of both.
     """
-    rounding = np.zeros_like(points.amplitude)
+    options, rounding = system.options.digits, np.zeros_like(points.amplitude)
     springs = system.springs(stuck=True)
-    stiff = np.flatnonzero(_stiffness(system, points.z[:, -1], springs) > STIFF)
+    stiff = np.flatnonzero(_stiffness(system, points.z[:, -1], springs) > options.stiff)
     if not stiff.size:
         return points, rounding
     balance = system.balance()
@@ -69,10 +63,10 @@ def with_digits(system: System, points: Record) -> tuple[Record, FloatArray]:
     shown, forces = balance.shown, _Forces(system)
     apart = np.asarray(shown.apart) != 0
     looked = stiff
-    if balance.rank and stiff.size > POINTS:
-        looked = stiff[np.linspace(0, stiff.size - 1, POINTS).round().astype(np.intp)]
+    if balance.rank and stiff.size > options.points:
+        looked = stiff[np.linspace(0, stiff.size - 1, options.points).round().astype(np.intp)]
     for i in looked:
-        found = _point(balance, made.z[i].copy(), points.tangent[i], springs, forces)
+        found = _point(balance, made.z[i].copy(), points.tangent[i], springs, forces, options)
         made.z[i] = found.z
         balance.evaluate(found.z)
         balance.report(found.z, np.zeros(found.z.size))
@@ -90,7 +84,7 @@ def with_digits(system: System, points: Record) -> tuple[Record, FloatArray]:
 
 
 def _stiffness(system: System, omega: FloatArray, springs: FloatArray) -> FloatArray:
-    """The greatest k |G| of the contacts at frequencies (point,); 0 where all are less than STIFF."""
+    """The greatest k |G| of the contacts at frequencies (point,); 0 where digits are counted of none."""
     linear = system.linear
     if not springs.size:
         return np.zeros(omega.size)
@@ -99,7 +93,7 @@ def _stiffness(system: System, omega: FloatArray, springs: FloatArray) -> FloatA
         return np.array([_stiffest(balance, w, springs) for w in omega])
     # a mode is nowhere softer than at its resonance: most structures need not be looked at point by point
     least = np.minimum(np.sqrt(2.0) * linear.damping, 1.0) * linear.natural**2
-    if least.all() and (springs * ((1.0 / least) @ linear.ports**2)).max() < STIFF:
+    if least.all() and (springs * ((1.0 / least) @ linear.ports**2)).max() < system.options.digits.stiff:
         return np.zeros(omega.size)
     force = np.ones((omega.size, 1, linear.natural.size), dtype=np.complex128)
     compliance = amplitudes(linear.natural, linear.damping, omega, np.ones(1), force)[:, 0]
@@ -158,15 +152,20 @@ def _share(direction: FloatArray, port: FloatArray) -> float:
 
 
 def _point(
-    balance: Balance, z: FloatArray, tangent: FloatArray, springs: FloatArray, forces: _Forces
+    balance: Balance,
+    z: FloatArray,
+    tangent: FloatArray,
+    springs: FloatArray,
+    forces: _Forces,
+    options: DigitOptions,
 ) -> Digits:
     """A point with the digits that can be kept."""
     balance.evaluate(z)
     G, held = _receptance(balance), _held(balance, springs)
     seen, linear, at, omega = balance.seen, forces.linear, _places(balance), float(z[-1])
     other = len(linear.driven) > 1  # whose answer is no fundamental
-    if held is None or other or isinstance(linear, RingLinear) or not np.linalg.cond(G) < DEPENDENT:
-        return _as_balanced(balance, linear, G, springs, tangent)
+    if held is None or other or isinstance(linear, RingLinear) or not np.linalg.cond(G) < options.dependent:
+        return _as_balanced(balance, linear, G, springs, tangent, options)
     compliance = np.asarray(seen.c_re)[seen.first] + 1j * np.asarray(seen.c_im)[seen.first]
     H, others = np.linalg.inv(G), forces.on_modes(omega)
     computed = H @ (linear.ports.T @ (compliance * others))
@@ -175,16 +174,22 @@ def _point(
     # the contacts take f - H x: what is left on the modes is P H x, and the others' forces without their f
     left = linear.ports @ (H @ x - computed) + others
     size = np.abs(H) @ np.abs(x) + np.abs(computed).max(initial=0.0)
-    wrong = EPS * np.linalg.cond(G) * size
-    ports = np.abs(np.linalg.inv(H + np.diag(held))) @ wrong + ROUNDINGS * EPS * np.abs(x)
-    on_modes = np.abs(linear.ports) @ wrong + EPS * np.abs(others)
+    last_digit = options.last_digit
+    wrong = last_digit * np.linalg.cond(G) * size
+    ports = np.abs(np.linalg.inv(H + np.diag(held))) @ wrong + options.together * last_digit * np.abs(x)
+    on_modes = np.abs(linear.ports) @ wrong + last_digit * np.abs(others)
     return Digits(
         z, (compliance * left) @ linear.dofs, ports, (np.abs(compliance) * on_modes) @ np.abs(linear.dofs)
     )
 
 
 def _as_balanced(
-    balance: Balance, linear: Linear, G: ComplexArray, springs: FloatArray, tangent: FloatArray
+    balance: Balance,
+    linear: Linear,
+    G: ComplexArray,
+    springs: FloatArray,
+    tangent: FloatArray,
+    options: DigitOptions,
 ) -> Digits:
     """The point evaluated last as it is; its rounding from what its equations are summed of."""
     seen, n, at = balance.seen, balance.unknowns, _places(balance)
@@ -193,7 +198,8 @@ def _as_balanced(
     terms = np.zeros(n)
     terms[at] = np.abs(G) @ on_ports + np.hypot(seen.X_re[0], seen.X_im[0]) + size
     terms[at + 1] = terms[at]
-    off = _moved(balance, x, tangent, ROUNDINGS * EPS * terms)
+    rounding = options.together * options.last_digit
+    off = _moved(balance, x, tangent, rounding * terms, options)
     ports = np.hypot(off[at], off[at + 1])
     modes: Receptance = seen
     met: Linear | Wave = linear
@@ -202,29 +208,31 @@ def _as_balanced(
         modes, j, met = seen.waves[j], 0, linear.wave(1)
     compliance = np.hypot(np.asarray(modes.c_re)[j], np.asarray(modes.c_im)[j])
     shapes, external = np.abs(met.ports), np.hypot(modes.force_re[0], modes.force_im[0])
-    on_modes = ROUNDINGS * EPS * (external + shapes @ on_ports) + shapes @ (springs * ports)
+    on_modes = rounding * (external + shapes @ on_ports) + shapes @ (springs * ports)
     return Digits(x.copy(), None, ports, (compliance * on_modes) @ np.abs(met.dofs))
 
 
-def _moved(balance: Balance, z: FloatArray, tangent: FloatArray, wrong: FloatArray) -> FloatArray:
+def _moved(
+    balance: Balance, z: FloatArray, tangent: FloatArray, wrong: FloatArray, options: DigitOptions
+) -> FloatArray:
     """By how much errors of the equations (unknown,) move a point across the curve.
 
     nan in a corner that the curve does not leave in the direction given. Of many contacts it is no bound but
-    three times the root of the mean square, over errors of random signs: no inverse is made of so many.
+    some times the root of the mean square, over errors of random signs: no inverse is made of so many.
     """
     balance.measure(z)
     scale = np.array(balance.scale)
     row = tangent / scale
     row /= np.linalg.norm(row)
     if balance.condensed is not None:
-        signs = np.random.default_rng(0).choice((-1.0, 1.0), (SIGNS, wrong.size))
+        signs = np.random.default_rng(0).choice((-1.0, 1.0), (options.signs, wrong.size))
         if not balance.factor(row, scale):
             return np.full(wrong.size, np.nan)
-        ways = np.hstack((signs * wrong / scale[:-1], np.zeros((SIGNS, 1))))
+        ways = np.hstack((signs * wrong / scale[:-1], np.zeros((options.signs, 1))))
         for way in ways:
             balance.solve(way)
         typical: FloatArray = scale[:-1] * np.sqrt(np.square(ways[:, :-1]).mean(axis=0))
-        return 3.0 * typical
+        return options.mean_squares * typical
     matrix = np.vstack((jacobian_of(balance) * scale, row))
     try:
         inverse = np.linalg.inv(matrix)[:-1, :-1]

@@ -14,10 +14,9 @@ import numpy as np
 
 from fcm.contact.contact_law import ContactLawError
 from fcm.harmonic_balance.contact_law import Law
+from fcm.harmonic_balance.options import BALANCE
 from fcm.model.scene import Contact, FloatArray, Scene
 from fcm.structure.layout import Layout
-
-PER_CYCLE = 8  # samples at least of the highest harmonic
 
 
 class SampledLaw(Law):
@@ -34,13 +33,14 @@ class SampledLaw(Law):
         outputs: Sequence[int],
         directions: int,
         margins: int,
+        samples: int = BALANCE.samples,
     ) -> None:
         assert contact.law is not None
         motion, answer = (Layout(1, directions, len(one)) for one in (harmonics, outputs))
         super().__init__(motion.width, directions, margins, contact.mu, contact.k_u, contact.k_v, contact.n_0)
         self.own, self.name = contact.law, contact.name
         self.without_margins()
-        count = max(int(contact.law.samples), PER_CYCLE * max((*harmonics, *outputs)))
+        count = max(int(contact.law.samples), samples * max((*harmonics, *outputs)))
         angle: FloatArray = 2.0 * np.pi / count * np.arange(count, dtype=np.float64)
         self.variation = _waves(motion, harmonics, angle)
         self.rate = np.zeros_like(self.variation)  # by the angle

@@ -14,15 +14,13 @@ import numpy as np
 from fcm.continuation import FollowOptions, Status, follow
 from fcm.continuation.corrector import Newton
 from fcm.continuation.problem import Problem
+from fcm.harmonic_balance.options import BALANCE
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.structure.linear import Linear
 from fcm.structure.options import RIGID_BODY
 
-LEAST = 1e-3  # share of the loads to begin with
-BY_SHARE = FollowOptions(0.2)  # along the curve of the share
-SMALL = 0.1  # shares are measured by themselves, and below this by this
 ADRIFT = (
     "the static loads push the structure along a rigid-body mode that no contact holds along its normal, so "
     "it does not come to rest; hold it by a contact along its normal, or by a small frequency of that mode"
@@ -35,11 +33,14 @@ class RestError(ValueError):
 
 
 class Share(Problem):
-    """The balance without harmonic forces, followed in the share of the static loads."""
+    """The balance without harmonic forces, followed in the share of the static loads.
 
-    def __init__(self, balance: Balance, omega: float) -> None:
+    Shares are measured by themselves, and below a unit by that.
+    """
+
+    def __init__(self, balance: Balance, omega: float, unit: float = BALANCE.rest.unit) -> None:
         Problem.__init__(self, balance.unknowns, balance.margins, 0, balance.rank)
-        self.rooted = balance.rooted
+        self.rooted, self.unit = balance.rooted, unit
         self.balance, self.at_omega = balance, np.full(balance.unknowns + 1, omega)
         self.by_share = np.zeros(balance.unknowns)
         self.by_share[balance.layout.mean_at] = -np.asarray(balance.rest)
@@ -58,7 +59,7 @@ class Share(Problem):
         """Scale."""
         self.balance.measure(self._placed(z))
         self.scale[:] = self.balance.scale
-        self.scale[self.unknowns] = max(abs(z[-1]), SMALL)
+        self.scale[self.unknowns] = max(abs(z[-1]), self.unit)
         return 0
 
     def bound(self, z: FloatArray) -> int:
@@ -96,15 +97,17 @@ def at_rest(system: System) -> FloatArray:
         raise RestError(ADRIFT)
     if not linear.load.any() or not ports:
         return np.zeros(ports)
-    single = System(system.scene)
+    options = system.options.rest
+    single = System(system.scene, options=system.options)
     omega = max(float(linear.natural.max(initial=0.0)), 1.0)  # any: nothing moves
-    for guess in _linear(single, LEAST):
-        problem = Share(single.balance(), omega)
-        path = follow(problem, np.append(guess, LEAST), (LEAST, 1.0), options=BY_SHARE)
+    for guess in _linear(single, options.first):
+        problem = Share(single.balance(), omega, options.unit)
+        start, span = np.append(guess, options.first), (options.first, 1.0)
+        path = follow(problem, start, span, options=FollowOptions(options.max_step))
         if path.status is Status.COMPLETE and path.z.shape[0] and path.parameter[-1] == 1.0:
             return path.z[-1][single.layout.mean_at]  # type: ignore[no-any-return]
     for guess in _linear(single, 1.0):
-        newton = Newton(Share(single.balance(), omega))
+        newton = Newton(Share(single.balance(), omega, options.unit))
         z = np.append(guess, 1.0)
         newton.problem.measure(z)
         newton.scale[:], newton.z[:] = newton.problem.scale, z

@@ -14,10 +14,6 @@ import numpy as np
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
-TOO_STIFF = 1e7  # k |G|, from which on curves were seen to stop
-ENOUGH = 1e6  # k |G|, at which a contact is nearly rigid: the root of its inverse is a thousandth
-TOO_QUICK, SLOW = 1e6, 1e5  # and both of the motion in time, of which a curve then takes long, and seconds
-
 
 def too_stiff(system: System, moves: bool = False) -> str:
     """Which contact's stiffness leaves no digits, and what to take instead; empty if none does.
@@ -31,7 +27,10 @@ def too_stiff(system: System, moves: bool = False) -> str:
     receptance = _least_receptance(system)
     worst = int((springs * receptance).argmax())
     ratio = springs[worst] * receptance[worst]
-    most, enough = (TOO_QUICK, SLOW) if moves else (TOO_STIFF, ENOUGH)
+    options = system.options.stiff
+    most, enough = options.most, options.enough
+    if moves:
+        most, enough = options.most_in_time, options.enough_in_time
     if not ratio > most:
         return ""
     at, along = divmod(worst, system.layout.directions)

@@ -26,6 +26,7 @@ from fcm.harmonic_balance.modal_condensation import (
     condensed_size,
     yielding,
 )
+from fcm.harmonic_balance.options import BALANCE, BalanceOptions
 from fcm.harmonic_balance.planar_contact import Planar
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.sampled import SampledLaw
@@ -38,9 +39,6 @@ from fcm.structure.receptance import Receptance, TravellingReceptance
 from fcm.structure.ring import RingLinear
 from fcm.table.lookup import Table
 
-SMALL = 20  # contacts times harmonics, up to which workspaces are kept for the next system
-MOST = 4  # of them
-
 
 @dataclass(frozen=True)
 class System:
@@ -49,7 +47,8 @@ class System:
     The harmonics of its forces are balanced whatever harmonics are asked for.
 
     With one harmonic the coefficients of a table may be the contacts' law, see `tabled`: that of this balance
-    if it is not corrected. condensing says when the linear systems of many contacts are condensed.
+    if it is not corrected. condensing says when the linear systems of many contacts are condensed, options
+    has all other tolerances and limits.
     """
 
     scene: Scene
@@ -57,6 +56,7 @@ class System:
     table: Table | None = None
     corrected: bool = True
     condensing: CondensedOptions = OPTIONS
+    options: BalanceOptions = BALANCE
     linear: Linear = field(init=False)
     coefficients: CoefficientLaw = field(init=False)  # the table's, or the closed form's
     on_ports: dict[float, ComplexArray] = field(init=False, default_factory=dict)  # see `linear_contacts`
@@ -229,7 +229,9 @@ class System:
         directions = self.scene.directions_of_contact
         for i, c in enumerate(self.scene.contacts):
             if c.law is not None:
-                found[i] = SampledLaw(c, harmonics, outputs, directions, found[i].margins)
+                found[i] = SampledLaw(
+                    c, harmonics, outputs, directions, found[i].margins, self.options.samples
+                )
         return found
 
     def springs(self, stuck: bool) -> FloatArray:
@@ -278,14 +280,14 @@ _KEPT = _Kept()
 def _workspace_of(system: System) -> _Workspace:
     """For a system: if it is small, that of one before it, as in a sweep."""
     scene, kept = system.scene, _KEPT.of
-    large = len(scene.contacts) * len(system.harmonics) > SMALL
+    large = len(scene.contacts) * len(system.harmonics) > system.options.workspace.small
     if scene.ring is not None or scene.loads or system.own_laws or large:
         return _Workspace(system)
     approximate = system.table is not None, system.corrected
     key = (*system.linear.numbers, scene.frequency_range, system.harmonics, *approximate)
     if key not in kept:
         kept[key] = _Workspace(system, key)
-        if len(kept) > MOST:
+        if len(kept) > system.options.workspace.most:
             kept.popitem(last=False)
     kept.move_to_end(key)
     return kept[key]

@@ -5,42 +5,48 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from fcm.harmonic_balance.options import BALANCE, ExtremeOptions
 from fcm.model.scene import FloatArray
 from fcm.structure.linear import ComplexArray
 
-SAMPLES = 12  # for each period of the highest harmonic, among which extremes are sought
-REFINED = 4  # Newton steps from the greatest sample to the extreme
 
-
-def half_peak_to_peak(X: ComplexArray, harmonics: tuple[int, ...]) -> FloatArray:
+def half_peak_to_peak(
+    X: ComplexArray, harmonics: tuple[int, ...], options: ExtremeOptions = BALANCE.extremes
+) -> FloatArray:
     """Of x = Re sum X_h exp(i h theta), X (point, harmonic, dof): (point, dof)."""
     if harmonics == (1,):
         return np.abs(X[:, 0])
     h = np.array(harmonics)
-    return 0.5 * (greatest(X, h) + greatest(-X, h))
+    return 0.5 * (greatest(X, h, options) + greatest(-X, h, options))
 
 
-def greatest(X: ComplexArray, h: npt.NDArray[np.intp]) -> FloatArray:
+def greatest(
+    X: ComplexArray, h: npt.NDArray[np.intp], options: ExtremeOptions = BALANCE.extremes
+) -> FloatArray:
     """The greatest of x = Re sum X_h exp(i h theta), X (point, harmonic, dof): (point, dof).
 
     Sought at all extremes next to samples that may be as high. Between samples x rises by the curvature times
     the square of half their distance over 2, at most.
     """
-    step = 2.0 * np.pi / (SAMPLES * h[-1])
-    waves = np.exp(1j * np.outer(h, step * np.arange(SAMPLES * h[-1])))
+    samples = options.samples * h[-1]
+    step = 2.0 * np.pi / samples
+    waves = np.exp(1j * np.outer(h, step * np.arange(samples)))
     x = np.einsum("ht,phd->tpd", waves, X).real
     between = np.einsum("h,phd->pd", 0.125 * (h * step) ** 2, np.abs(X))
     beside = np.maximum(np.roll(x, 1, axis=0), np.roll(x, -1, axis=0))
     k, p, d = np.nonzero((x >= beside) & (x + between >= x.max(axis=0)))
     found: FloatArray = x.max(axis=0)
-    np.maximum.at(found, (p, d), _extreme(X[p, :, d], h, step * k, step))
+    np.maximum.at(found, (p, d), _extreme(X[p, :, d], h, step * k, step, options.steps))
     return found
 
 
-def _extreme(X: ComplexArray, h: npt.NDArray[np.intp], start: FloatArray, step: float) -> FloatArray:
-    """The displacements (n,) of motions X (n, harmonic) at extremes next to angles, by Newton's method."""
+def _extreme(
+    X: ComplexArray, h: npt.NDArray[np.intp], start: FloatArray, step: float, steps: int
+) -> FloatArray:
+    """The displacements (n,) of motions X (n, harmonic) at extremes next to angles, by steps of Newton's
+    method."""
     theta = start
-    for _ in range(REFINED):
+    for _ in range(steps):
         turns = X * np.exp(1j * h * theta[:, None])
         slope, bend = (np.sum((1j * h) ** k * turns, axis=1).real for k in (1, 2))
         theta = theta - slope / np.where(bend != 0.0, bend, 1.0)

@@ -14,8 +14,6 @@ from fcm.model.scene import FloatArray
 from fcm.structure.options import RIGID_BODY
 
 BoolArray = npt.NDArray[np.bool_]
-BALANCED = 1e-9  # mean friction on a mode, relative to the amplitude of the contact forces on it
-CARRYING = 1e-8  # mean normal force of a contact, relative to what it would be if the contact were glued
 REASONS = {
     "pushed": "friction pushes the structure one way on average along a rigid-body mode that nothing holds, "
     "so there is no steady state; hold it by a contact along its normal, or by {}",
@@ -43,7 +41,9 @@ def _pushed(system: System, force: FloatArray) -> BoolArray:
         ports, at = system.linear.ports[:, along::d], first + 2 * along
         mean += force[:, :, along] @ ports.T
         size += np.hypot(force[:, :, at], force[:, :, at + 1]) @ np.abs(ports).T
-    pushed: BoolArray = np.any(system.linear.adrift & (np.abs(mean) > BALANCED * size), axis=1)
+    pushed: BoolArray = np.any(
+        system.linear.adrift & (np.abs(mean) > system.options.rigid.balanced * size), axis=1
+    )
     return pushed
 
 
@@ -58,7 +58,7 @@ def _floating(system: System, x: FloatArray, force: FloatArray) -> BoolArray:
     first = layout.directions + layout.stride * j + 2 * mean
     glued = np.abs(n_0) + k_v * (np.hypot(x[:, :, first], x[:, :, first + 1]) + np.abs(x[:, :, mean]))
     normal = force[:, :, mean] + linear.counted * x[:, :, mean] + np.maximum(n_0, 0.0)
-    carrying = normal > CARRYING * glued
+    carrying = normal > system.options.rigid.carrying * glued
     size = np.linalg.svd(ports[None] * carrying[:, None, :], compute_uv=False)
     largest = size.max(axis=1, initial=0.0, keepdims=True)
     floating: BoolArray = (size > RIGID_BODY.held * largest).sum(axis=1) < held.sum()

@@ -14,40 +14,13 @@ from fcm.harmonic_balance.response_quantities import borne_along
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.nonlinear_modes.extended_periodic_motion import Autonomous, ComplexArray, Guess
+from fcm.nonlinear_modes.options import NONLINEAR_MODE, NonlinearModeOptions, TruncationOptions
 from fcm.nonlinear_modes.restart import follow_past_corners
 from fcm.scene.options import LIMITS
-
-RIGID = 1e-12  # of the greatest square of a frequency: rigid-body modes are below
-HALVES = (0.5, 0.0, 1.0)  # shares of its springs that a contact has in the mean which just touches
-NEAR = 1.25  # modes this near, by the ratio of the frequencies, to what the motion may come to are unknowns
-
-SMALL = 1e-6  # damping ratio: errors of a smaller one are relative to this
 
 
 class ModeError(ValueError):
     """There is no such mode; the message says which there are."""
-
-
-@dataclass(frozen=True)
-class RoundingOptions:
-    """last_digits : units of the last digit of float64 that a sum of forces may be off."""
-
-    last_digits: float = 100.0
-
-
-@dataclass(frozen=True)
-class TruncationOptions:
-    """At which points of a mode the error by the harmonics left out is told.
-
-    dear : unknowns with twice as many harmonics, from which on it is not told at all of them but at some,
-        evenly spread, of which the last is one:
-    least : at so many of them or more,
-    share : as many as take this part of the time of the mode, which grows as the cube of the unknowns.
-    """
-
-    dear: int = 500
-    least: int = 2
-    share: float = 0.5
 
 
 @dataclass(frozen=True)
@@ -75,7 +48,13 @@ class Mode:
         return a[:, None, None] * (self.Q @ shapes), a[:, None] * (self.mean @ shapes)
 
 
-def nonlinear_mode(system: System, number: int, span: tuple[float, float], max_step: float) -> Mode:
+def nonlinear_mode(
+    system: System,
+    number: int,
+    span: tuple[float, float],
+    max_step: float,
+    options: NonlinearModeOptions = NONLINEAR_MODE,
+) -> Mode:
     """The mode with a number, from the linear one at the least amplitude of the span.
 
     Modes are counted from 1, the lowest, as those of the structure with its contacts as they are at rest:
@@ -86,13 +65,14 @@ def nonlinear_mode(system: System, number: int, span: tuple[float, float], max_s
     ModeError
         If there are fewer modes.
     """
-    guesses, followed = linear_modes(system, number), without_even(system)
+    guesses, followed = linear_modes(system, number, options), without_even(system)
     low, high = (float(np.log(a)) for a in span)
     for guess in guesses:
-        problem, new_problem = Autonomous(system, guess), partial(Autonomous, followed, guess)
+        problem = Autonomous(system, guess, options)
+        new_problem = partial(Autonomous, followed, guess, options)
         first = new_problem()
-        options = FollowOptions(max_step, newton=first.precision)
-        path = follow_past_corners(new_problem, first.start(low), (low, high), options)
+        following = FollowOptions(max_step, newton=first.precision)
+        path = follow_past_corners(new_problem, first.start(low), (low, high), following, options.restart)
         if path.z.shape[0]:
             break
     if followed is not system:
@@ -128,14 +108,14 @@ def mode_at(system: System, problem: Autonomous, path: Path) -> Mode:
         path,
         np.array([one.amplitude for one in found]),
         omega,
-        np.where(np.abs(damping) <= damping_rounding(system, omega, Q), 0.0, damping),
+        np.where(np.abs(damping) <= damping_rounding(system, omega, Q, problem.options), 0.0, damping),
         np.array([one.mean for one in found]).reshape(-1, modes),
         Q,
     )
 
 
 def damping_rounding(
-    system: System, omega: FloatArray, Q: ComplexArray, options: RoundingOptions | None = None
+    system: System, omega: FloatArray, Q: ComplexArray, options: NonlinearModeOptions = NONLINEAR_MODE
 ) -> FloatArray:
     """Up to which damping ratio there is none, beside rounding, (point,).
 
@@ -144,24 +124,26 @@ def damping_rounding(
     """
     springs = system.springs(stuck=True)
     stretched = (np.abs(Q @ system.linear.ports) ** 2 @ springs).sum(axis=1)
-    units = (options or RoundingOptions()).last_digits * np.finfo(np.float64).eps
+    units = options.rounding.last_digits * np.finfo(np.float64).eps
     found: FloatArray = units * (omega**2 + stretched) / (2.0 * omega**2)
     return found
 
 
-def linear_modes(system: System, number: int) -> list[Guess]:
+def linear_modes(system: System, number: int, options: NonlinearModeOptions = NONLINEAR_MODE) -> list[Guess]:
     """The mode at very small amplitude; where a contact just touches, and may open, three guesses."""
     linear, contacts = system.linear, system.scene.contacts
     touching = any(contact.n_0 == 0.0 for contact in contacts)
     d = system.layout.directions
-    shares = [np.repeat([_closed(c.n_0, half) for c in contacts], d) for half in HALVES[: 1 + 2 * touching]]
+    halves = options.linear.halves[: None if touching else 1]
+    shares = [np.repeat([_closed(c.n_0, half) for c in contacts], d) for half in halves]
     squares, _ = _squares(system, shares[0])
-    elastic = np.flatnonzero(squares > RIGID * squares.max(initial=0.0))
+    elastic = np.flatnonzero(squares > options.linear.rigid * squares.max(initial=0.0))
     if not 1 <= number <= elastic.size:
         raise ModeError(f"there is no mode {number}; the structure has the modes 1 to {elastic.size}")
     i = elastic[number - 1]
     low, high = (np.sqrt(max(_squares(system, share)[0][i], 0.0)) for share in (False, True))
-    kept = np.flatnonzero((linear.natural >= low / NEAR) & (linear.natural <= NEAR * high))
+    near = options.linear.near
+    kept = np.flatnonzero((linear.natural >= low / near) & (linear.natural <= near * high))
     guesses = []
     for share in shares:
         squares, shapes = _squares(system, share)
@@ -185,28 +167,29 @@ def _squares(system: System, share: FloatArray | bool) -> tuple[FloatArray, Floa
     return squares, shapes
 
 
-def truncation(mode: Mode, options: TruncationOptions | None = None) -> tuple[FloatArray, FloatArray]:
+def truncation(mode: Mode, options: NonlinearModeOptions | None = None) -> tuple[FloatArray, FloatArray]:
     """Error by the harmonics left out, (point,): the change of frequency or damping by twice as many; and
     what the contacts bear with these, (point, contact, 4).
 
     Relative, of the damping to the greatest of the mode; NaN where there is no such motion, and of many
-    unknowns at the points where it is not told.
+    unknowns at the points where it is not told. By the options of the mode, if no others are given.
     """
     system, old = mode.system, mode.problem
+    options = options or old.options
     highest = min(2 * system.harmonics[-1] + 1, LIMITS.harmonics)
     larger = without_even(system.with_harmonics(tuple(range(1, highest + 1))))
-    finer = Autonomous(larger, old.guess)
+    finer = Autonomous(larger, old.guess, options)
     newton = Newton(finer, finer.precision)
     newton.row[-1] = 1.0
     error = np.full(mode.omega.size, np.nan)
     contacts = np.zeros((mode.omega.size, finer.contact_unknowns + 1))
-    for i in _told(mode, finer.n, options or TruncationOptions()):
+    for i in _told(mode, finer.n, options.truncation):
         start = finer.carried(mode.path.z[i], old)
         finer.measure(start)
         newton.scale[:], newton.z[:] = finer.scale, start
         if newton.correct(1.0):
             omega, damping = np.asarray(newton.z)[-3:-1]
-            of_damping = abs(damping - mode.damping[i]) / max(mode.damping.max(), SMALL)
+            of_damping = abs(damping - mode.damping[i]) / max(mode.damping.max(), options.truncation.small)
             error[i] = max(abs(omega - mode.omega[i]) / mode.omega[i], of_damping)
             contacts[i] = *(mode.amplitude[i] * np.asarray(newton.z)[: finer.contact_unknowns]), omega
     borne = borne_along(larger, contacts)

@@ -30,15 +30,12 @@ from fcm.continuation.options import NewtonOptions
 from fcm.harmonic_balance.contact_law import kind_of
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
+from fcm.nonlinear_modes.options import NONLINEAR_MODE, NonlinearModeOptions
 from fcm.nonlinear_modes.scaled_contacts import ScaledContacts
 
 ComplexArray = npt.NDArray[np.complex128]
 
-OWN_FLOOR, OTHER_FLOOR = 0.1, 1e-3  # a unit is at least this much of its own, and of the greatest, maximum
-DAMPING = 0.1  # unit of the damping ratio
 DECADE = float(np.log(10.0))  # unit of the parameter
-FAR = 300.0  # ln a, beyond which nothing is calculated
-LITTLE = 0.05  # added to the damping ratio where its change is judged: that of nearly nothing is rounding
 
 
 @dataclass(frozen=True)
@@ -49,21 +46,6 @@ class Guess:
     omega: float
     damping: float
     kept: npt.NDArray[np.intp]
-
-
-@dataclass(frozen=True)
-class ManyOptions:
-    """How a mode of many contacts is followed: by steps of nearly ln a, past the corners of single contacts.
-
-    Each contact that begins to slip turns its mean displacement like a root. Most of them turn frequency and
-    damping by nothing that matters.
-
-    many : contacts from which on no corner is looked for
-    coarse : and the units of all unknowns but ln a are so many times as large.
-    """
-
-    many: int = 16
-    coarse: float = 100.0
 
 
 @dataclass(frozen=True)
@@ -83,11 +65,11 @@ class Autonomous(Problem):
     precision: of Newton's method, in the units of `measure`.
     """
 
-    def __init__(self, system: System, guess: Guess, options: ManyOptions | None = None) -> None:
+    def __init__(self, system: System, guess: Guess, options: NonlinearModeOptions = NONLINEAR_MODE) -> None:
         self.contacts, self.linear, self.guess = ScaledContacts(system), system.linear, guess
-        options = options or ManyOptions()
-        many = len(self.contacts.laws) >= options.many
-        self.coarse = options.coarse if many else 1.0
+        self.options, self.units = options, options.units
+        many = len(self.contacts.laws) >= options.many.many
+        self.coarse = options.many.coarse if many else 1.0
         self.precision = _finer_by(self.coarse)
         self.h = np.array(system.harmonics, dtype=np.float64)
         self.driven = system.harmonics.index(1)
@@ -122,7 +104,7 @@ class Autonomous(Problem):
 
     def modal_amplitude(self, z: FloatArray) -> float:
         """a; where a step leads astray, what can still be calculated with."""
-        return exp(min(max(z[self.n], -FAR), FAR))
+        return exp(min(max(z[self.n], -self.units.far), self.units.far))
 
     def evaluate(self, z: Any) -> int:
         z = np.asarray(z)
@@ -197,8 +179,8 @@ class Autonomous(Problem):
         derivative[kept, at], derivative[kept, at + 1] = 1.0, 1j
         residual[n - 2] = 0.5 * self.guess.omega * (np.sum(np.abs(Q) ** 2) - 1.0)
         J[n - 2] = self.guess.omega * (Q.conj() @ derivative).real
-        residual[n - 1] = DAMPING * (self.guess.Q @ Q).imag
-        J[n - 1] = DAMPING * (self.guess.Q @ derivative).imag
+        residual[n - 1] = self.units.damping * (self.guess.Q @ Q).imag
+        J[n - 1] = self.units.damping * (self.guess.Q @ derivative).imag
 
     def add(self, rows: npt.NDArray[np.intp], value: ComplexArray, derivative: ComplexArray) -> None:
         """Complex equations as their real and imaginary parts."""
@@ -211,12 +193,12 @@ class Autonomous(Problem):
         z, scale = np.asarray(z), self.views["scale"]
         size = np.sqrt(z[self.mean_rows] ** 2 + (z[self.rows] ** 2 + z[self.rows + 1] ** 2).sum(axis=0))
         self.largest = np.maximum(self.largest, size)
-        floor = np.maximum(OWN_FLOOR * self.largest, OTHER_FLOOR * self.largest.max(initial=0.0))
+        floor = np.maximum(self.units.own * self.largest, self.units.greatest * self.largest.max(initial=0.0))
         unit = np.maximum(size, floor)
         unit = np.where(unit > 0.0, unit, 1.0) * np.sqrt(max(self.ports, 1)) * self.coarse
         scale[:] = self.coarse
         scale[self.mean_rows] = scale[self.rows] = scale[self.rows + 1] = unit
-        scale[self.n - 2 :] = self.coarse * self.guess.omega, self.coarse * DAMPING, DECADE
+        scale[self.n - 2 :] = self.coarse * self.guess.omega, self.coarse * self.units.damping, DECADE
         return 0
 
     def bound(self, z: Any) -> int:
@@ -236,7 +218,7 @@ class Autonomous(Problem):
     def report(self, z: Any, direction: Any) -> int:
         """Damping and frequency."""
         omega = self.guess.omega
-        self.output[0], self.growth[0] = LITTLE + abs(z[self.n - 1]), direction[self.n - 1]
+        self.output[0], self.growth[0] = self.units.little + abs(z[self.n - 1]), direction[self.n - 1]
         self.output[1], self.growth[1] = z[self.n - 2] / omega, direction[self.n - 2] / omega
         return 0
 

@@ -17,8 +17,6 @@ from fcm.continuation import Path, Segment
 from fcm.model.scene import FloatArray
 from fcm.nonlinear_modes.backbone import Mode, mode_at
 
-NEARLY = 1e-9  # of a step along the mode, to which a resonance is found
-
 
 def modal_force(mode: Mode) -> FloatArray:
     """What the scene's forces do on the mode, p at level 1, (point,); with the mode's own omega."""
@@ -75,7 +73,7 @@ def _between(mode: Mode, i: int, level: float) -> FloatArray | None:
         return float(resonant_level(_points(mode, curve.z[None]))[0] - level)
 
     try:
-        curve.put(float(brentq(off, 0.0, 1.0, xtol=NEARLY)))
+        curve.put(float(brentq(off, 0.0, 1.0, xtol=mode.problem.options.resonance)))
     except ArithmeticError:  # no such point of the curve
         return None
     return curve.z

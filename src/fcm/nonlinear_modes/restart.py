@@ -13,12 +13,7 @@ import numpy as np
 from fcm.continuation import FollowOptions, Path, Problem, Status, follow
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
-
-RESTARTS = 12  # of a curve, on its way past corners
-ON = (1e-6, 1e-5, 1e-4, 1e-3, 3e-3)  # of the parameter's unit, by which the curve is taken up further on
-NEAR = 30.0  # times as far the solution may be: further away it is another
-PATIENCE = 12  # calls of the progress, of 16 steps each, within which the parameter has to move
-MOVED = 1e-9  # of the span
+from fcm.nonlinear_modes.options import NONLINEAR_MODE, RestartOptions
 
 
 class _StuckError(Exception):
@@ -26,12 +21,16 @@ class _StuckError(Exception):
 
 
 def follow_past_corners(
-    new_problem: Callable[[], Problem], start: FloatArray, span: tuple[float, float], options: FollowOptions
+    new_problem: Callable[[], Problem],
+    start: FloatArray,
+    span: tuple[float, float],
+    options: FollowOptions,
+    restart: RestartOptions = NONLINEAR_MODE.restart,
 ) -> Path:
     """The curve through start, upwards from the lower end of the span, as of `follow`."""
     whole, low = None, span[0]
-    for _ in range(RESTARTS):
-        path, ended = _part(new_problem, start, (low, span[1]), options)
+    for _ in range(restart.most):
+        path, ended = _part(new_problem, start, (low, span[1]), options, restart)
         if not path.z.shape[0]:
             return path if whole is None else whole
         if low > span[0] and path.status is Status.RETURNED:  # to where it was taken up
@@ -39,7 +38,7 @@ def follow_past_corners(
         whole = path if whole is None else whole.then(path)
         if ended:
             return whole
-        beyond = _beyond(new_problem(), path.z[-1], options)
+        beyond = _beyond(new_problem(), path.z[-1], options, restart)
         if beyond is None or beyond[-1] >= span[1]:
             return whole
         start, low = beyond, float(beyond[-1])
@@ -48,38 +47,44 @@ def follow_past_corners(
 
 
 def _part(
-    new_problem: Callable[[], Problem], start: FloatArray, span: tuple[float, float], options: FollowOptions
+    new_problem: Callable[[], Problem],
+    start: FloatArray,
+    span: tuple[float, float],
+    options: FollowOptions,
+    restart: RestartOptions,
 ) -> tuple[Path, bool]:
     """The curve as far as its steps lead, and whether that is its end."""
     last, same = -1.0, 0
 
     def watch(share: float) -> None:
         nonlocal last, same
-        same = same + 1 if abs(share - last) < MOVED else 0
+        same = same + 1 if abs(share - last) < restart.moved else 0
         last = share
-        if same > PATIENCE:
+        if same > restart.calls:
             raise _StuckError
 
     try:
         path = follow(new_problem(), start, span, options=options, progress=watch)
         return path, path.status is not Status.STALLED
     except _StuckError:
-        reach = span[0] + last * (span[1] - span[0]) * (1.0 - 1e-6)
+        reach = span[0] + last * (span[1] - span[0]) * (1.0 - restart.short)
         if not reach > span[0]:
             return follow(new_problem(), start, span, options=options), True
         path = follow(new_problem(), start, (span[0], reach), options=options)
         return replace(path, status=Status.STALLED), path.status is not Status.COMPLETE
 
 
-def _beyond(problem: Problem, z: FloatArray, options: FollowOptions) -> FloatArray | None:
+def _beyond(
+    problem: Problem, z: FloatArray, options: FollowOptions, restart: RestartOptions
+) -> FloatArray | None:
     """The solution a little further on that is nearest; None if there is none near."""
     newton = Newton(problem, options.newton)
     newton.row[-1] = 1.0
     problem.measure(np.ascontiguousarray(z))
-    for step in ON:
+    for step in restart.further:
         guess = np.array(z)
         guess[-1] += step * problem.scale[z.size - 1]
         newton.scale[:], newton.z[:] = problem.scale, guess
-        if newton.correct(step) and newton.moved < NEAR * step:
+        if newton.correct(step) and newton.moved < restart.near * step:
             return np.array(newton.z)
     return None

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from fcm.accuracy.refinement import Accurate
 from fcm.continuation import Status
-from fcm.harmonic_balance.points import Points
+from fcm.harmonic_balance.residual import Points
 from fcm.harmonic_balance.response_quantities import Record
 from fcm.harmonic_balance.stiff_contacts import too_stiff
 from fcm.harmonic_balance.system import System

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from fcm.harmonic_balance.residual_spectrum import HIGHEST
 from fcm.model.in_time import InTime, in_time
 from fcm.model.scene import Scene
 from fcm.response.options import SENTENCES
 from fcm.response.request import Request, ResponseError
 from fcm.scene.cyclic import WHOLE_RING, lacks
 from fcm.scene.errors import quoted
+from fcm.scene.options import LIMITS
 from fcm.structure.loads import driven_harmonics
 
 PLANE = (
@@ -62,7 +62,9 @@ def check_modes(scene: Scene, wanted: Request) -> None:
         if curve.ring is None:
             return
         driven = driven_harmonics(curve)
-        harmonics = range(HIGHEST + 1) if wanted.harmonics is None else (0, *wanted.harmonics, *driven)
+        harmonics = (
+            range(LIMITS.harmonics + 1) if wanted.harmonics is None else (0, *wanted.harmonics, *driven)
+        )
         for harmonic, diameter in curve.ring.lacking(harmonics).items():
             what = f"{scene.name}: {lacks(curve.ring, harmonic, diameter)}"
             hint = "; give its modes, or the harmonics (--harmonics 1)" if wanted.harmonics is None else ""
@@ -80,7 +82,7 @@ def unknown(scene: Scene, wanted: Request) -> list[str]:
 
     for curve in orders.values():
         assert curve.ring is not None
-        lacking = curve.ring.lacking(range(1, HIGHEST + 1))
+        lacking = curve.ring.lacking(range(1, LIMITS.harmonics + 1))
         if lacking:
             named = ", ".join(map(str, list(lacking)[: SENTENCES.harmonics])) + (
                 ", ..." if len(lacking) > SENTENCES.harmonics else ""

@@ -25,9 +25,9 @@ from fcm.harmonic_balance.contact_law import Law
 from fcm.structure.receptance import Receptance
 
 if cython.compiled:
-    from cython.cimports.fcm.continuation.elimination import eliminate, substitute
+    from cython.cimports.fcm.continuation.dense_solver import eliminate, substitute
 else:
-    from fcm.continuation.elimination import eliminate, substitute
+    from fcm.continuation.dense_solver import eliminate, substitute
 
 FEWEST, MOST = 6, 15  # harmonics beyond the highest that was balanced
 PORTS = 20  # up to which their equations are solved without leaving compiled code

@@ -1,0 +1,203 @@
+"""Tolerances and limits of harmonic balance.
+
+`BalanceOptions` has them all, but for those of the condensation of many contacts, see `modal_condensation`.
+They are an argument of `System`, and what is computed of a system takes its options.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class ExtremeOptions:
+    """How the greatest and the least value of a motion over the cycle are found.
+
+    Attributes
+    ----------
+    samples : int
+        Angles for each period of the highest harmonic, among which extremes are sought.
+    steps : int
+        Of Newton's method from a sample to the extreme.
+    iterations, settled : int, float
+        The same from where an extreme was for a motion nearby, at most; and the angle [rad] of the last, at
+        which the value errs by its square.
+    """
+
+    samples: int = 12
+    steps: int = 4
+    iterations: int = 8
+    settled: float = 1e-9
+
+
+@dataclass(frozen=True)
+class SpectrumOptions:
+    """Which harmonics of the exact forces are looked at, and at which points.
+
+    Attributes
+    ----------
+    ahead : float
+        Times the highest of a balance that is looked at in any case: to have all is not to be exact.
+    few : int
+        Modes times ports, up to which a sum over them is faster without BLAS.
+    leads : float
+        Part of the greatest share, from which on one that meets a mode leads.
+    every : int
+        Points of a curve from one to the next whose forces are those of all, where there are many.
+    least_amplitude : float
+        Part of the greatest amplitude of all degrees of freedom, to which a share is referred at least.
+    """
+
+    ahead: float = 1.5
+    few: int = 1000
+    leads: float = 0.5
+    every: int = 16
+    least_amplitude: float = 1e-9
+
+
+@dataclass(frozen=True)
+class DigitOptions:
+    """Where digits are counted, and how many are lost.
+
+    Attributes
+    ----------
+    stiff : float
+        k |G| of a contact from which digits are counted.
+    last_digit : float
+        Relative rounding of a number: that of float64.
+    together : float
+        Roundings that come together in a sum.
+    points : int
+        Of a curve of many contacts that are looked at.
+    signs : int
+        Of errors that are looked at together, where contacts are many.
+    mean_squares : float
+        Times the root of their mean square, that an error is then taken to be at most.
+    dependent : float
+        Condition number of G from which its inverse is no good.
+    """
+
+    stiff: float = 1e4
+    last_digit: float = 2.2e-16
+    together: float = 4.0
+    points: int = 16
+    signs: int = 8
+    mean_squares: float = 3.0
+    dependent: float = 1e10
+
+
+@dataclass(frozen=True)
+class StiffContactOptions:
+    """Contacts so stiff that another stiffness is advised, by k |G| of the structure there.
+
+    Attributes
+    ----------
+    most : float
+        From here on curves were seen to stop.
+    enough : float
+        Here a contact is nearly rigid: the root of its inverse is a thousandth.
+    most_in_time, enough_in_time : float
+        Both of the motion in time, of which a curve then takes long, and seconds.
+    """
+
+    most: float = 1e7
+    enough: float = 1e6
+    most_in_time: float = 1e6
+    enough_in_time: float = 1e5
+
+
+@dataclass(frozen=True)
+class RestOptions:
+    """How the equilibrium under static loads is found, as their share grows from nearly nothing to 1.
+
+    Attributes
+    ----------
+    first : float
+        Share to begin with.
+    unit : float
+        Shares are measured by themselves, and below this by this.
+    max_step : float
+        Along the curve of the share.
+    """
+
+    first: float = 1e-3
+    unit: float = 0.1
+    max_step: float = 0.2
+
+
+@dataclass(frozen=True)
+class RigidMotionOptions:
+    """When a motion is no steady state, or not determined, because of a rigid-body mode.
+
+    Attributes
+    ----------
+    balanced : float
+        Mean friction on a mode, relative to the amplitude of the contact forces on it: less is none.
+    carrying : float
+        Mean normal force of a contact, relative to what it would be if the contact were glued: less is none.
+    """
+
+    balanced: float = 1e-9
+    carrying: float = 1e-8
+
+
+@dataclass(frozen=True)
+class EvaluationCost:
+    """Seconds of an evaluation of the balance, of a core on which numpy's sine takes 10 ns a number.
+
+    Attributes
+    ----------
+    cycle : float
+        For the mean and each harmonic of a contact, which slips.
+    entry : float
+        For each number of the contacts' tangents and of the matrix: filled, copied, solved with.
+    system : float
+        For each third power of the unknowns that are solved for: 1/3 multiplication.
+    """
+
+    cycle: float = 1.4e-6
+    entry: float = 3e-9
+    system: float = 1.8e-11
+
+
+@dataclass(frozen=True)
+class WorkspaceOptions:
+    """Which workspaces are kept for the next system, as in a sweep.
+
+    Attributes
+    ----------
+    small : int
+        Contacts times harmonics, up to which they are.
+    most : int
+        Workspaces of a thread.
+    """
+
+    small: int = 20
+    most: int = 4
+
+
+@dataclass(frozen=True)
+class BalanceOptions:
+    """What a `System` is computed with.
+
+    Attributes
+    ----------
+    extremes, spectrum, digits, stiff, rest, rigid, cost, workspace : ExtremeOptions, SpectrumOptions,\
+ DigitOptions, StiffContactOptions, RestOptions, RigidMotionOptions, EvaluationCost, WorkspaceOptions
+        Of the parts.
+    samples : int
+        Of a cycle for each period of the highest harmonic, at least, where a contact's own law is sampled.
+    """
+
+    extremes: ExtremeOptions = field(default_factory=ExtremeOptions)
+    spectrum: SpectrumOptions = field(default_factory=SpectrumOptions)
+    digits: DigitOptions = field(default_factory=DigitOptions)
+    stiff: StiffContactOptions = field(default_factory=StiffContactOptions)
+    rest: RestOptions = field(default_factory=RestOptions)
+    rigid: RigidMotionOptions = field(default_factory=RigidMotionOptions)
+    cost: EvaluationCost = field(default_factory=EvaluationCost)
+    workspace: WorkspaceOptions = field(default_factory=WorkspaceOptions)
+    samples: int = 8
+
+
+BALANCE = BalanceOptions()  # where nothing else is said
