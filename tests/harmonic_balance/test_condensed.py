@@ -10,12 +10,11 @@ import pytest
 from fcm.branches.linear_limits import foresee
 from fcm.continuation import Events, Mark, follow
 from fcm.continuation.corrector import Newton
-from fcm.harmonic_balance import rounding
 from fcm.harmonic_balance.dense_jacobian import jacobian_of
 from fcm.harmonic_balance.modal_condensation import CondensedOptions
-from fcm.harmonic_balance.options import BALANCE
+from fcm.harmonic_balance.options import BALANCE, BalanceOptions, DigitOptions
 from fcm.harmonic_balance.response_quantities import recorded
-from fcm.harmonic_balance.rounding import _moved
+from fcm.harmonic_balance.rounding import _moved, with_digits
 from fcm.harmonic_balance.system import System
 from fcm.scene import scene_from_dict
 
@@ -262,17 +261,17 @@ def test_rounding_of_many_contacts_is_that_of_random_errors():
     assert 0.8 < np.sqrt(np.mean(np.square(found / typical))) < 1.25
 
 
-def test_rounding_between_points_that_are_looked_at_is_the_greater_of_theirs(monkeypatch):
+def test_rounding_between_points_that_are_looked_at_is_the_greater_of_theirs():
     scene = mostly_stuck()
     hard = tuple(replace(one, k_u=1e3, k_v=1e3, n_0=10.0) for one in scene.contacts)
     system = System(replace(scene, contacts=hard), (1,), condensing=EVERY_MODE)
     balance = system.balance()
     path = follow(balance, np.append(np.zeros(balance.unknowns), 0.9), (0.9, 1.5))
-    monkeypatch.setattr(rounding, "STIFF", 0.0)
     roundings = []
     for points in (10**6, 3):
-        monkeypatch.setattr(rounding, "POINTS", points)
-        roundings.append(rounding.with_digits(system, recorded(system, [path]))[1])
+        options = BalanceOptions(digits=DigitOptions(stiff=0.0, points=points))
+        looking = replace(system, options=options)
+        roundings.append(with_digits(looking, recorded(looking, [path]))[1])
     every, some = roundings
     last = len(path.z) - 1
     looked = [0, round(0.5 * last), last]

@@ -49,8 +49,8 @@ class CurveCost:
 
     evaluations: of a curve, see `each`. of_point: of each point that it has by its longest step, where these
     are more. beside: seconds for each of them, contact and coefficient of its motion, of all that comes
-    beside the solution: levels, stability, errors. far: times the highest frequency of the harmonics, from where on few
-    modes can do for all that are above.
+    beside the solution: levels, stability, errors. far: times the highest frequency of the harmonics, from
+    where on few modes can do for all that are above.
     """
 
     evaluations: float = 1500.0
