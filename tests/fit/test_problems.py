@@ -1,5 +1,7 @@
 """What is said of a fit that is not to be relied on."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -42,3 +44,26 @@ def test_numbers_that_are_no_end_are_said():
     found = fitted(0.0)
     found.final = False
     assert "best so far" in found.problems()[0]
+
+
+def test_numbers_that_are_hardly_told_are_said_once_and_their_product():
+    """By percents as far as these say something."""
+    two = np.array([1.0, 2.0])
+    hardly = replace(
+        fitted(0.0),
+        keys=("contact.c.mu", "contact.c.n_0"),
+        begin=two,
+        values=two,
+        error=np.array([1.5, 3e4]),
+        without_effect=0.0 * two,
+        untold=1.0 + 0.0 * two,
+        at_bound=0.0 * two,
+        alike=((0, 1, 1.0),),
+    )
+    assert hardly.problems() == [
+        "contact.c.mu and contact.c.n_0 are hardly told by these data: their standard errors are 150 % and "
+        "many times as large",
+        "contact.c.mu and contact.c.n_0 are not told apart: the data tell contact.c.mu * contact.c.n_0 alone",
+    ]
+    (said,) = replace(hardly, untold=np.array([1.0, 0.0]), alike=()).problems()
+    assert said == "contact.c.mu is hardly told by these data: its standard error is 150 %"

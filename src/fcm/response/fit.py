@@ -239,6 +239,8 @@ def _advice(parameters: Parameters, found: Solved, told: Estimate, harmonics: tu
         f"it to {100.0 * one.error:.2g} %"
         for one in every
     ]
-    without = [k for k in sorted(doubtful) if parameters.keys[k] not in {one.key for one in every}]
-    said += [f"{parameters.keys[k]}: no response at the levels looked at tells it" for k in without]
+    helped = {one.key for one in every}
+    if without := [key for k in sorted(doubtful) if (key := parameters.keys[k]) not in helped]:
+        them = "it" if len(without) == 1 else "them"
+        said.append(f"{' and '.join(without)}: no response at the levels looked at tells {them}")
     return said

@@ -10,6 +10,18 @@ import numpy as np
 from fcm.model.scene import FloatArray, Measured
 from fcm.units import in_unit
 
+_EACH = "are", "their standard errors are"
+
+
+def _told(one: str, other: str, power: float) -> str:
+    """The combination of two numbers that data tell.
+
+    >>> _told("mu", "n_0", 1.0), _told("mu", "n_0", -1.0), _told("mu", "n_0", 0.52)
+    ('mu * n_0', 'mu / n_0', 'mu * n_0^0.52')
+    """
+    written = f"{abs(power):.2g}"
+    return f"{one} {'*' if power > 0.0 else '/'} {other}{'' if written == '1' else f'^{written}'}"
+
 
 @dataclass(frozen=True)
 class FittedData:
@@ -86,6 +98,7 @@ class Fitted:
     starts: list[FittedStart]
     harmonics: tuple[int, ...]
     advice: list[str] = field(default_factory=list)  # measurements that would tell more
+    many: float = 10.0  # times a number: a standard error beyond is not told in percent
     final: bool = True  # whether the search for the numbers is at its end
     interrupted: bool = False
 
@@ -97,16 +110,19 @@ class Fitted:
         for k, key in enumerate(self.keys):
             if self.without_effect[k]:
                 said.append(f"{key} has no effect on these data: its value means nothing")
-            elif self.untold[k]:
-                said.append(
-                    f"{key} is hardly told by these data: its standard error is {self._relative(k)} of it"
-                )
             if self.at_bound[k] and not self.without_effect[k]:
                 said.append(f"{key} lies at its bound: the data would have it beyond")
+        if hardly := [k for k in range(len(self.keys)) if self.untold[k] and not self.without_effect[k]]:
+            each, error = ("is", "its standard error is") if len(hardly) == 1 else _EACH
+            errors = " and ".join(self._relative(k) for k in hardly)
+            said.append(
+                f"{' and '.join(self.keys[k] for k in hardly)} {each} hardly told by these data: {error} "
+                f"{errors}"
+            )
         for i, j, power in self.alike:
             one, other = self.keys[i], self.keys[j]
             said.append(
-                f"{one} and {other} are not told apart: the data tell {one} * {other}^{power:.2g} alone"
+                f"{one} and {other} are not told apart: the data tell {_told(one, other, power)} alone"
             )
         for part in self.data:
             if part.unreached:
@@ -121,8 +137,9 @@ class Fitted:
         return said
 
     def _relative(self, k: int) -> str:
+        """How large the standard error of a number is, beside the number."""
         size = self.error[k] / abs(self.values[k]) if self.values[k] else np.inf
-        return f"{100.0 * size:.0f} %" if np.isfinite(size) else "many times"
+        return f"{100.0 * size:.0f} %" if size < self.many else "many times as large"
 
     def summary(self) -> dict[str, Any]:
         """For JSON."""
