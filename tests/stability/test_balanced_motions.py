@@ -65,6 +65,20 @@ def error(found, true):
     return greatest
 
 
+@pytest.mark.parametrize(("preload", "looks"), [(5.0, 0.6), (0.0, 0.8), (-5.0, 0.6)])
+def test_few_points_tell_the_stability_of_three_harmonics(preload, looks):
+    """Beside the multipliers of every point: without preload a pair leaves, and comes back."""
+    of, found = path(yang(preload), 3, (0.7, 1.7))
+    judged = stability(of, found)
+    assert judged.evaluations < looks * len(found.z)
+    even = found.orientation * np.sign(found.direction[:, -1]) > 0.0
+    workspace = Multipliers(of, 1.7)
+    each = np.array([workspace.verdict(z).stable for z in found.z[even]])
+    told = ~np.isnan(each) & ~np.isnan(judged.stable[even])
+    assert told.mean() > 0.9
+    assert (each[told] == judged.stable[even][told]).all()
+
+
 @pytest.mark.parametrize(
     ("scene", "omega"),
     [

@@ -2,8 +2,8 @@
 
 Between two folds the number of real multipliers above +1 is even or odd throughout, as the sign of the
 balance's determinant says. Where it is odd nothing needs to be calculated. Where it is even the others
-decide at each point (of one harmonic, at enough to see that the growth keeps its sign), for they jump where
-a contact's states change; and where that may hide between neighbours, between these (`windows`).
+decide, at enough points to see that the growth keeps its sign; and where a change of it may hide between
+neighbours, between these (`windows`).
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class _Along:
     def __init__(self, system: System, path: Path, options: StabilityOptions) -> None:
         self.path, self.verdicts, self.options = path, Verdicts(system, path, options), options
         self.many = len(system.scene.contacts) >= self.options.structure.contacts
-        self.span = options.along.many_contacts if self.many else 1
+        self.span = options.along.many_contacts if self.many else options.along.several_harmonics
         if len(system.harmonics) == 1:
             self.span = options.along.one_harmonic
 

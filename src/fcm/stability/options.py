@@ -114,11 +114,11 @@ class WindowOptions:
 class AlongOptions:
     """Which points of a path are looked at, and where stability changes between them.
 
-    one_harmonic: points of one harmonic, between two that are always looked at. many_contacts: the same of
-    many contacts with more harmonics, of which each changes the growth by little. deviation: of the growth
-    from a straight line, over its own size, that is followed up. safe: growth; less is not followed up.
-    enough: growth that counts as any that is less. phase: [rad] by which multipliers that are not small turn
-    between points that are looked at, at most.
+    one_harmonic: points of one harmonic, from one that is always looked at to the next. several_harmonics: of
+    more, as the growth jumps where a contact's states change. many_contacts: of many contacts with more, of
+    which each changes the growth by little. deviation: of the growth from a straight line, over its own size,
+    that is followed up. safe: growth; less is not followed up. enough: growth that counts as any that is
+    less. phase: [rad] by which multipliers that are not small turn at most, from one point to the next.
 
     fine: part of a step, to which a crossing is known where the growth jumps. confirmed: the same where
     verdicts are confirmed, as the jump may be from one motion to a finer one. zero: growth at a crossing.
@@ -126,6 +126,7 @@ class AlongOptions:
     """
 
     one_harmonic: int = 16
+    several_harmonics: int = 4
     many_contacts: int = 8
     deviation: float = 1.0
     safe: float = -0.05
