@@ -12,7 +12,7 @@ from fcm.continuation import Events, Mark, follow
 from fcm.continuation.corrector import Newton
 from fcm.harmonic_balance.dense_jacobian import jacobian_of
 from fcm.harmonic_balance.modal_condensation import CondensedOptions
-from fcm.harmonic_balance.options import BALANCE, BalanceOptions, DigitOptions
+from fcm.harmonic_balance.options import HARMONIC_BALANCE, DigitOptions, HarmonicBalanceOptions
 from fcm.harmonic_balance.response_quantities import recorded
 from fcm.harmonic_balance.rounding import _moved, with_digits
 from fcm.harmonic_balance.system import System
@@ -251,7 +251,7 @@ def test_rounding_of_many_contacts_is_that_of_random_errors():
     (i,) = np.flatnonzero(path.parameter == 1.15)
     balance.evaluate(path.z[i])
     errors = np.random.default_rng(4).uniform(0.5, 1.0, balance.unknowns)
-    found = _moved(balance, path.z[i], path.direction[i], errors, BALANCE.digits)
+    found = _moved(balance, path.z[i], path.direction[i], errors, HARMONIC_BALANCE.digits)
     scale = np.array(balance.scale)
     row = path.direction[i] / scale
     matrix = np.vstack((jacobian_of(balance) * scale, row / np.linalg.norm(row)))
@@ -269,7 +269,7 @@ def test_rounding_between_points_that_are_looked_at_is_the_greater_of_theirs():
     path = follow(balance, np.append(np.zeros(balance.unknowns), 0.9), (0.9, 1.5))
     roundings = []
     for points in (10**6, 3):
-        options = BalanceOptions(digits=DigitOptions(stiff=0.0, points=points))
+        options = HarmonicBalanceOptions(digits=DigitOptions(stiff=0.0, points=points))
         looking = replace(system, options=options)
         roundings.append(with_digits(looking, recorded(looking, [path]))[1])
     every, some = roundings

@@ -10,6 +10,7 @@ import numpy as np
 
 from fcm.compare.distance import Shape, of_curve, of_points, resolution, size_of
 from fcm.compare.lines import FloatArray, Line
+from fcm.compare.options import COMPARE
 
 MEASURES = ("peak", "peak_frequency", "fold", "points", "curve")
 MEANINGS = {
@@ -19,7 +20,6 @@ MEANINGS = {
     "points": "distance of the points from the reference curve",
     "curve": "distance of the curve, its points joined by straight lines, from the reference curve",
 }
-MARGIN = 10.0  # a shown error is at least this many times the reference's own
 Errors = dict[str, FloatArray]  # of each measure: (curve,)
 
 
@@ -103,12 +103,12 @@ class Shown:
         return "-" if self.below is None else f"< {self.below:.0e}"
 
 
-def worst(errors: FloatArray, own: FloatArray) -> Shown:
-    """The greatest error of the curves; a limit where it is less than MARGIN times the reference's own."""
+def worst(errors: FloatArray, own: FloatArray, margin: float = COMPARE.margin) -> Shown:
+    """The greatest error of the curves; a limit where it is less than so many times the reference's own."""
     known = np.isfinite(errors) & np.isfinite(own)
     if not known.any():
         return Shown()
-    limit = MARGIN * own[known]
+    limit = margin * own[known]
     clear = errors[known] >= limit
     value = float(errors[known][clear].max(initial=0.0))
     below = float(limit[~clear].max(initial=0.0))

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from fcm.compare.lines import Line, amplitude, line_of
+from fcm.compare.options import COMPARE, ExactLineOptions
 from fcm.model.scene import Scene
 from fcm.response.exact import trace_exact
 from fcm.results.result import Curve
@@ -16,30 +17,26 @@ from fcm.run.progress import part
 from fcm.shooting import harmonic_state, periodic
 from fcm.time_domain import SimulationError, State
 
-LIMIT = 60.0  # [s] of processor time for a curve
-CLOSE = 1e-8  # to which the frequency of a peak is located, relative
-JUMP = 0.2  # relative change of amplitude from which a solution near a peak is one of another branch
 
-
-def exact_lines(scene: Scene, progress: Progress | None = None) -> list[Line]:
+def exact_lines(
+    scene: Scene, progress: Progress | None = None, options: ExactLineOptions = COMPARE.exact
+) -> list[Line]:
     """The exact curves of a scene; those that cannot be followed to their end, in time, are not complete."""
     scenes, lines = scene.each_curve(), []
     for number, one in enumerate(scenes):
         shown = part(progress, number / len(scenes), (number + 1) / len(scenes))
-        response = trace_exact(replace(one, curves=()), None, shown, limit=LIMIT, tolerance=None)
+        response = trace_exact(replace(one, curves=()), None, shown, limit=options.limit, tolerance=None)
         if response.interrupted:
             raise KeyboardInterrupt
-        lines.append(_line(one, response.curves[0]))
+        lines.append(_line(one, response.curves[0], options))
     return lines
 
 
-def _line(scene: Scene, curve: Curve) -> Line:
+def _line(scene: Scene, curve: Curve, options: ExactLineOptions) -> Line:
     if curve.orbits is None or curve.points == 0:
         return line_of(curve, scene)
     peaks = {
-        dof: _peak(scene, curve, curve.amplitude[:, j], j)
-        for j, dof in enumerate(scene.modal.dofs)
-        if scene.reports(dof)
+        dof: _peak(scene, curve, j, options) for j, dof in enumerate(scene.modal.dofs) if scene.reports(dof)
     }
     return Line(
         curve.frequency, amplitude(curve, scene), peaks, curve.folds, curve.complete, curve.reason, {},
@@ -47,8 +44,9 @@ def _line(scene: Scene, curve: Curve) -> Line:
     )  # fmt: skip
 
 
-def _peak(scene: Scene, curve: Curve, amplitude: np.ndarray, dof: int) -> tuple[float, float]:
+def _peak(scene: Scene, curve: Curve, dof: int, options: ExactLineOptions) -> tuple[float, float]:
     """Greatest amplitude of a degree of freedom, located between the points by solutions of its own."""
+    amplitude = curve.amplitude[:, dof]
     k = int(np.nanargmax(amplitude))
     at_point = float(amplitude[k]), float(curve.frequency[k])
     around = curve.frequency[max(k - 1, 0) : k + 2]
@@ -61,10 +59,10 @@ def _peak(scene: Scene, curve: Curve, amplitude: np.ndarray, dof: int) -> tuple[
             found = float(periodic(scene, omega, guess).measure.amplitude[dof])
         except SimulationError:
             return 0.0
-        return -found if abs(found - at_point[0]) < JUMP * at_point[0] else 0.0
+        return -found if abs(found - at_point[0]) < options.jump * at_point[0] else 0.0
 
-    options = {"xatol": CLOSE * around[1]}
-    best = minimize_scalar(below, bounds=(around.min(), around.max()), method="bounded", options=options)
+    within, closely = (around.min(), around.max()), {"xatol": options.peak * around[1]}
+    best = minimize_scalar(below, bounds=within, method="bounded", options=closely)
     return (-float(best.fun), float(best.x)) if -best.fun > at_point[0] else at_point
 
 

@@ -8,8 +8,8 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-REPEATS = 2  # of which the faster counts
-TIMEOUT = 60.0  # [s]
+from fcm.compare.options import COMPARE, StartupOptions
+
 _IMPORTS = {"exact": "import fcm.scene, fcm.response.exact"}
 _PROGRAM = """
 import time
@@ -27,20 +27,20 @@ class Startup(NamedTuple):
     table: float  # of these, to open the table
 
 
-def startup(method: str, table: Path | None) -> Startup:
+def startup(method: str, table: Path | None, options: StartupOptions = COMPARE.startup) -> Startup:
     """Least times of some programs that begin as one with this method does, and then end."""
     imports = _IMPORTS.get(method, "import fcm.scene, fcm.response")
     opening = f"import fcm; fcm.open_table({str(table)!r})" if table else "pass"
     program = _PROGRAM.format(imports=imports, opening=opening)
-    tries = [_one(program) for _ in range(REPEATS)]
+    tries = [_one(program, options.timeout) for _ in range(options.repeats)]
     return min(tries)
 
 
-def _one(program: str) -> Startup:
+def _one(program: str, timeout: float) -> Startup:
     begin = time.perf_counter()
     try:
         done = subprocess.run(
-            [sys.executable, "-c", program], capture_output=True, text=True, timeout=TIMEOUT, check=True
+            [sys.executable, "-c", program], capture_output=True, text=True, timeout=timeout, check=True
         )
         return Startup(time.perf_counter() - begin, float(done.stdout))
     except (subprocess.SubprocessError, OSError, ValueError):

@@ -10,14 +10,11 @@ import numpy as np
 from fcm.continuation.corrector import Newton
 from fcm.continuation.events import Events
 from fcm.continuation.follow import Progress, follow
-from fcm.continuation.options import FOLLOW, FollowOptions
+from fcm.continuation.options import FOLLOW, PATH, FollowOptions, PathOptions
 from fcm.continuation.path import FloatArray, Path, Status
 from fcm.continuation.problem import Problem
 
 Follow = Callable[..., Path]  # as `follow`
-SAME = 1e-5  # solutions closer than this, in the problem's scale, are one
-BESIDE = 0.5  # of a chord: what is further from it is not on its part of a path
-CHORDS = 4  # nearest ones that are looked at
 
 
 @dataclass(frozen=True)
@@ -76,14 +73,14 @@ def all_branches(
 def _known(path: Path, paths: Sequence[Path], problem: Problem) -> bool:
     """Whether a path has the ends of one followed before: rounding may hide that its start is on that.
 
-    So it does where a preload is so large that displacements are not known to `SAME`.
+    So it does where a preload is so large that displacements are not known to `PathOptions.same`.
     """
     return path.status is Status.COMPLETE and any(
         contains(other, path.z[0], problem) and contains(other, path.z[-1], problem) for other in paths
     )
 
 
-def contains(path: Path, z: FloatArray, problem: Problem) -> bool:
+def contains(path: Path, z: FloatArray, problem: Problem, options: PathOptions = PATH) -> bool:
     """Whether a solution z (n + 1,) lies on a path.
 
     It does where it is a point of that. Segment its points no distance tells, as branches come close to each
@@ -93,29 +90,29 @@ def contains(path: Path, z: FloatArray, problem: Problem) -> bool:
     problem.measure(z)
     scale = np.array(problem.scale)
     points = (path.z - z) / scale
-    if float((points * points).sum(axis=1).min()) < SAME * SAME:
+    if float((points * points).sum(axis=1).min()) < options.same**2:
         return True
     newton = Newton(problem)
-    for i, part in _beside(points):
+    for i, part in _beside(points, options):
         row = points[i + 1] - points[i]
         newton.scale[:], newton.row[:] = scale, row / np.linalg.norm(row)
         newton.z[:] = path.z[i] + part * (path.z[i + 1] - path.z[i])
-        if newton.correct(1.0) and np.linalg.norm((np.asarray(newton.z) - z) / scale) < SAME:
+        if newton.correct(1.0) and np.linalg.norm((np.asarray(newton.z) - z) / scale) < options.same:
             return True
     return False
 
 
-def _beside(points: FloatArray) -> list[tuple[int, float]]:
+def _beside(points: FloatArray, options: PathOptions) -> list[tuple[int, float]]:
     """The chords between points next to which the origin lies, the nearest first, and where on them."""
     chord = np.diff(points, axis=0)
     square = np.maximum((chord * chord).sum(axis=1), np.finfo(float).tiny)  # of two points that are one
     part = np.clip(-(points[:-1] * chord).sum(axis=1) / square, 0.0, 1.0)
     off = np.linalg.norm(points[:-1] + part[:, None] * chord, axis=1)
-    near = np.argsort(off)[:CHORDS].tolist()
+    near = np.argsort(off)[: options.chords].tolist()
     return [
         (i, float(part[i]))
         for i in near
-        if SAME < np.sqrt(square[i]) and off[i] < BESIDE * np.sqrt(square[i])
+        if options.same < np.sqrt(square[i]) and off[i] < options.beside * np.sqrt(square[i])
     ]
 
 

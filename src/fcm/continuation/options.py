@@ -365,5 +365,28 @@ class FollowOptions(Options):
     labels: LabelOptions = field(default_factory=LabelOptions)
 
 
+@dataclasses.dataclass(frozen=True)  # of no kernel
+class PathOptions:
+    """When a solution lies on a path that was followed; see `all_branches` and `segment`.
+
+    Attributes
+    ----------
+    same : float
+        In the problem's scale: solutions closer than this are one.
+    beside : float
+        Part of a chord: what is further from it is not on its part of a path.
+    chords : int
+        Nearest ones that are looked at.
+    flat : float
+        Cosine of a turn, below which a length across the chord is no measure of the way.
+    """
+
+    same: float = 1e-5
+    beside: float = 0.5
+    chords: int = 4
+    flat: float = 0.1
+
+
 NEWTON = NewtonOptions()
 FOLLOW = FollowOptions()
+PATH = PathOptions()

@@ -7,10 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.continuation.corrector import Newton
+from fcm.continuation.options import PATH, PathOptions
 from fcm.continuation.path import FloatArray, Path
 from fcm.continuation.problem import Problem
-
-FLAT = 0.1  # cosine of a turn, below which a length across the chord is no measure of the way
 
 
 class _Known(NamedTuple):
@@ -28,8 +27,8 @@ class Segment:
     directions, another as far along the chord on that through the nearest points that have been found.
     """
 
-    def __init__(self, problem: Problem, path: Path, first: int) -> None:
-        self.newton = Newton(problem)
+    def __init__(self, problem: Problem, path: Path, first: int, options: PathOptions = PATH) -> None:
+        self.newton, self._flat = Newton(problem), options.flat
         problem.measure(np.ascontiguousarray(path.z[first]))
         self._scale = np.array(problem.scale)
         self._ends = path.z[first : first + 2] / self._scale
@@ -74,7 +73,7 @@ class Segment:
     def _place(self, z: FloatArray, tangent: FloatArray) -> _Known:
         """A point with its tangent, a unit vector to either side."""
         cosine = float(tangent @ self._chord) / self.length
-        return _Known(self._along(z), z, tangent / np.copysign(max(abs(cosine), FLAT), cosine))
+        return _Known(self._along(z), z, tangent / np.copysign(max(abs(cosine), self._flat), cosine))
 
     @property
     def z(self) -> FloatArray:

@@ -10,8 +10,8 @@ import numpy as np
 from fcm.fit.forced import NoMotionError, errors_of, forced_rows, sampled
 from fcm.fit.options import ADVICE, FIT, FitOptions
 from fcm.fit.parameters import Parameters
-from fcm.fit.rows import Rows
-from fcm.model.scene import FloatArray, Measured
+from fcm.fit.solve import Solved
+from fcm.model.scene import FloatArray
 
 
 @dataclass(frozen=True)
@@ -29,19 +29,17 @@ class Advice:
 
 def advice(
     parameters: Parameters,
-    values: FloatArray,
-    rows: Rows,
-    data: Sequence[Measured],
+    fitted: Solved,
     doubtful: Sequence[int],
     harmonics: tuple[int, ...],
     options: FitOptions = FIT,
 ) -> list[Advice]:
     """For each number that is not told the response that would tell it best; none where none would."""
-    responses = [one for one in data if one.damping is None]
+    responses = [one for one in fitted.data if one.damping is None]
     if not responses or not doubtful:
         return []
-    scene, rates = parameters.at(values), parameters.rates(values)
-    known = _information(rows.rates * rates)
+    scene, rates = parameters.at(fitted.values), parameters.rates(fitted.values)
+    known = _information(fitted.rows.rates * rates)
     before = _errors(known)
     best: dict[int, Advice] = {}
     model = responses[0]

@@ -15,6 +15,7 @@ class FitOptions:
     damping_error : of a measured damping ratio, relative to the greatest of its data.
     blurred : errors of both while a start is sought, relative to the extent of the data.
     starts : how many are tried, the numbers of the scene first.
+    seeking : share of the work that is done when the starts are.
     agreeing : starts that lead to the same numbers, after which no further one is tried.
     same : relative difference of numbers that are the same.
     equal : relative difference of costs that are the same.
@@ -43,6 +44,7 @@ class FitOptions:
     damping_error: float = 0.05
     blurred: float = 0.02
     starts: int = 8
+    seeking: float = 0.7
     agreeing: int = 2
     same: float = 1e-2
     equal: float = 1e-6

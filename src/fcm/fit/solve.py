@@ -24,7 +24,6 @@ from fcm.fit.weights import reweighted
 from fcm.model.scene import FloatArray, Measured
 
 Tell = Callable[[float, str], None]
-STARTS = 0.7  # share of the bar that is over when the starts are
 
 
 @dataclass(frozen=True)
@@ -159,7 +158,7 @@ class Problem:
 class Searches:
     """The searches of a fit in their order, told and kept."""
 
-    def __init__(self, kept: Kept | None, tell: Tell | None) -> None:
+    def __init__(self, kept: Kept | None = None, tell: Tell | None = None) -> None:
         self.kept, self.tell, self.number = kept, tell, 0
 
     def least(
@@ -201,13 +200,12 @@ def solved(
     data: Sequence[Measured],
     harmonics: tuple[int, ...],
     options: FitOptions = FIT,
-    tell: Tell | None = None,
+    searches: Searches | None = None,
     begin: FloatArray | None = None,
-    kept: Kept | None = None,
 ) -> Solved:
     """The numbers with which the residuals are least; begin: numbers of which it is known that they are near.
 
-    kept : what an earlier run with the same arguments has come to, and where more goes.
+    searches : those of an earlier run with the same arguments, and where more goes.
 
     Raises
     ------
@@ -219,7 +217,7 @@ def solved(
     few = [_thinned(one, options.few_points) for one in data]
     rough = Problem(parameters, few, harmonics, True, options)
     fine = Problem(parameters, data, harmonics, False, options)
-    searches, starts = Searches(kept, tell), list[Start]()
+    searches, starts = searches or Searches(), list[Start]()
     best: Reached | None = None
     try:
         if begin is None:
@@ -229,7 +227,8 @@ def solved(
             finalists = [Start(begin, begin, np.inf, np.ones(len(begin), dtype=bool))]
             starts.extend(finalists)
         for k, one in enumerate(finalists):
-            share = tuple(STARTS + (1.0 - STARTS) * (k + i) / (len(finalists) + 1) for i in (0, 1))
+            begun = options.seeking
+            share = tuple(begun + (1.0 - begun) * (k + i) / (len(finalists) + 1) for i in (0, 1))
             what = f"all points, from the best starts ({k + 1} of {len(finalists)})"
             found = searches.least(
                 fine, parameters.unknowns(one.end), options.finishing, (share[0], share[1]), what
@@ -289,7 +288,7 @@ def _tried(
 ) -> None:
     """Starts, until some have led to the same numbers, and these are the best."""
     for k, x in enumerate(parameters.starts(options.starts)):
-        share = STARTS * k / options.starts, STARTS * (k + 1) / options.starts
+        share = options.seeking * k / options.starts, options.seeking * (k + 1) / options.starts
         what = f"start {k + 1} of at most {options.starts}"
         found = searches.least(rough, x, options.starting, share, what)
         if found.x is None:

@@ -6,13 +6,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from fcm.harmonic_balance.options import BALANCE
+from fcm.harmonic_balance.options import HARMONIC_BALANCE
 from fcm.model.scene import FloatArray
 
 
 @lru_cache(64)  # many balances have the same harmonics
 def waves(
-    harmonics: tuple[float, ...], samples_of_period: int = BALANCE.extremes.samples
+    harmonics: tuple[float, ...], samples_of_period: int = HARMONIC_BALANCE.extremes.samples
 ) -> tuple[FloatArray, FloatArray]:
     """Of each harmonic at the samples, so many for each period of the highest, (harmonic, sample); one
     harmonic alone needs no samples."""

@@ -13,7 +13,7 @@ from fcm.continuation import Path
 from fcm.continuation.follow import Progress
 from fcm.continuation.stepper import Stepper
 from fcm.harmonic_balance.modal_condensation import OPTIONS, condensed_size
-from fcm.harmonic_balance.options import BALANCE, EvaluationCost
+from fcm.harmonic_balance.options import HARMONIC_BALANCE, EvaluationCost
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Scene
 from fcm.scene.options import LIMITS
@@ -57,7 +57,7 @@ class CurveCost:
     of_point: float = 7.0
     beside: float = 2.5e-5
     far: float = 2.0
-    each: EvaluationCost = BALANCE.cost
+    each: EvaluationCost = HARMONIC_BALANCE.cost
 
 
 def seconds_of_curve(scene: Scene, harmonics: int, cost: CurveCost | None = None) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic_balance.options import BALANCE, ExtremeOptions
+from fcm.harmonic_balance.options import HARMONIC_BALANCE, ExtremeOptions
 from fcm.harmonic_balance.residual import Balance
 from fcm.model.scene import FloatArray
 
@@ -57,7 +57,9 @@ class Amplitude:
     greatest displacement, minus that at the least, halved.
     """
 
-    def __init__(self, balance: Balance, dof: int, options: ExtremeOptions = BALANCE.extremes) -> None:
+    def __init__(
+        self, balance: Balance, dof: int, options: ExtremeOptions = HARMONIC_BALANCE.extremes
+    ) -> None:
         self.balance, self.dof, self.options = balance, dof, options
         self.value, self.slopes = 0.0, np.zeros(balance.unknowns + 1)
         self.weights = np.zeros(balance.seen.count, dtype=np.complex128)

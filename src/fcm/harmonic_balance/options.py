@@ -1,6 +1,7 @@
 """Tolerances and limits of harmonic balance.
 
-`BalanceOptions` has them all, but for those of the condensation of many contacts, see `modal_condensation`.
+`HarmonicBalanceOptions` has them all, but for those of the condensation of many contacts, which are in
+`modal_condensation`.
 They are an argument of `System`, and what is computed of a system takes its options.
 """
 
@@ -107,7 +108,7 @@ class StiffContactOptions:
 
 
 @dataclass(frozen=True)
-class RestOptions:
+class StaticLoadOptions:
     """How the equilibrium under static loads is found, as their share grows from nearly nothing to 1.
 
     Attributes
@@ -177,13 +178,13 @@ class WorkspaceOptions:
 
 
 @dataclass(frozen=True)
-class BalanceOptions:
+class HarmonicBalanceOptions:
     """What a `System` is computed with.
 
     Attributes
     ----------
     extremes, spectrum, digits, stiff, rest, rigid, cost, workspace : ExtremeOptions, SpectrumOptions,\
- DigitOptions, StiffContactOptions, RestOptions, RigidMotionOptions, EvaluationCost, WorkspaceOptions
+ DigitOptions, StiffContactOptions, StaticLoadOptions, RigidMotionOptions, EvaluationCost, WorkspaceOptions
         Of the parts.
     samples : int
         Of a cycle for each period of the highest harmonic, at least, where a contact's own law is sampled.
@@ -193,11 +194,11 @@ class BalanceOptions:
     spectrum: SpectrumOptions = field(default_factory=SpectrumOptions)
     digits: DigitOptions = field(default_factory=DigitOptions)
     stiff: StiffContactOptions = field(default_factory=StiffContactOptions)
-    rest: RestOptions = field(default_factory=RestOptions)
+    rest: StaticLoadOptions = field(default_factory=StaticLoadOptions)
     rigid: RigidMotionOptions = field(default_factory=RigidMotionOptions)
     cost: EvaluationCost = field(default_factory=EvaluationCost)
     workspace: WorkspaceOptions = field(default_factory=WorkspaceOptions)
     samples: int = 8
 
 
-BALANCE = BalanceOptions()  # where nothing else is said
+HARMONIC_BALANCE = HarmonicBalanceOptions()  # where nothing else is said

@@ -14,7 +14,7 @@ import numpy as np
 
 from fcm.contact.contact_law import ContactLawError
 from fcm.harmonic_balance.contact_law import Law
-from fcm.harmonic_balance.options import BALANCE
+from fcm.harmonic_balance.options import HARMONIC_BALANCE
 from fcm.model.scene import Contact, FloatArray, Scene
 from fcm.structure.layout import Layout
 
@@ -33,7 +33,7 @@ class SampledLaw(Law):
         outputs: Sequence[int],
         directions: int,
         margins: int,
-        samples: int = BALANCE.samples,
+        samples: int = HARMONIC_BALANCE.samples,
     ) -> None:
         assert contact.law is not None
         motion, answer = (Layout(1, directions, len(one)) for one in (harmonics, outputs))

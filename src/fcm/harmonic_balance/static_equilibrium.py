@@ -14,7 +14,7 @@ import numpy as np
 from fcm.continuation import FollowOptions, Status, follow
 from fcm.continuation.corrector import Newton
 from fcm.continuation.problem import Problem
-from fcm.harmonic_balance.options import BALANCE
+from fcm.harmonic_balance.options import HARMONIC_BALANCE
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
@@ -38,7 +38,7 @@ class Share(Problem):
     Shares are measured by themselves, and below a unit by that.
     """
 
-    def __init__(self, balance: Balance, omega: float, unit: float = BALANCE.rest.unit) -> None:
+    def __init__(self, balance: Balance, omega: float, unit: float = HARMONIC_BALANCE.rest.unit) -> None:
         Problem.__init__(self, balance.unknowns, balance.margins, 0, balance.rank)
         self.rooted, self.unit = balance.rooted, unit
         self.balance, self.at_omega = balance, np.full(balance.unknowns + 1, omega)

@@ -26,7 +26,7 @@ from fcm.harmonic_balance.modal_condensation import (
     condensed_size,
     yielding,
 )
-from fcm.harmonic_balance.options import BALANCE, BalanceOptions
+from fcm.harmonic_balance.options import HARMONIC_BALANCE, HarmonicBalanceOptions
 from fcm.harmonic_balance.planar_contact import Planar
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.sampled import SampledLaw
@@ -56,7 +56,7 @@ class System:
     table: Table | None = None
     corrected: bool = True
     condensing: CondensedOptions = OPTIONS
-    options: BalanceOptions = BALANCE
+    options: HarmonicBalanceOptions = HARMONIC_BALANCE
     linear: Linear = field(init=False)
     coefficients: CoefficientLaw = field(init=False)  # the table's, or the closed form's
     on_ports: dict[float, ComplexArray] = field(init=False, default_factory=dict)  # see `linear_contacts`

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic_balance.options import BALANCE, ExtremeOptions
+from fcm.harmonic_balance.options import HARMONIC_BALANCE, ExtremeOptions
 from fcm.model.scene import FloatArray
 from fcm.structure.linear import ComplexArray
 
 
 def half_peak_to_peak(
-    X: ComplexArray, harmonics: tuple[int, ...], options: ExtremeOptions = BALANCE.extremes
+    X: ComplexArray, harmonics: tuple[int, ...], options: ExtremeOptions = HARMONIC_BALANCE.extremes
 ) -> FloatArray:
     """Of x = Re sum X_h exp(i h theta), X (point, harmonic, dof): (point, dof)."""
     if harmonics == (1,):
@@ -21,7 +21,7 @@ def half_peak_to_peak(
 
 
 def greatest(
-    X: ComplexArray, h: npt.NDArray[np.intp], options: ExtremeOptions = BALANCE.extremes
+    X: ComplexArray, h: npt.NDArray[np.intp], options: ExtremeOptions = HARMONIC_BALANCE.extremes
 ) -> FloatArray:
     """The greatest of x = Re sum X_h exp(i h theta), X (point, harmonic, dof): (point, dof).
 

@@ -16,7 +16,7 @@ from fcm.fit.estimate import Estimate, estimated
 from fcm.fit.forced import errors_of
 from fcm.fit.options import FIT
 from fcm.fit.parameters import FitError, Parameters, parameters_of
-from fcm.fit.solve import Reached, Solved, solved
+from fcm.fit.solve import Reached, Searches, Solved, solved
 from fcm.model.scene import FloatArray, Measured, Scene
 from fcm.nonlinear_modes.backbone import ModeError
 from fcm.response.curve_sweep import checkpoint_of
@@ -143,7 +143,8 @@ def _found(
         kept = None if checkpoint is None else _kept(scene, harmonics, near, checkpoint)
         options = replace(FIT, starts=scene.fit.starts or FIT.starts)
         data = scene.fit.data
-        return parameters, solved(parameters, data, harmonics, options, tell=progress, begin=near, kept=kept)
+        searches = Searches(kept, progress)
+        return parameters, solved(parameters, data, harmonics, options, searches, begin=near)
     except FitError as error:
         raise ResponseError(f"{scene.name}: {error}") from None
     except ModeError as error:
@@ -233,7 +234,7 @@ def _advice(parameters: Parameters, found: Solved, told: Estimate, harmonics: tu
     """Sentences on what to measure."""
     doubtful = set(np.flatnonzero(told.without_effect + told.untold).tolist())
     doubtful |= {k for i, j, _ in told.alike for k in (i, j)}
-    every = advice(parameters, found.values, found.rows, found.data, sorted(doubtful), harmonics)
+    every = advice(parameters, found, sorted(doubtful), harmonics)
     said = [
         f"{one.key}: a response at {quoted(one.dof)} with forces at a level of {one.level:.2g} would tell "
         f"it to {100.0 * one.error:.2g} %"

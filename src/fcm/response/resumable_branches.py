@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from fcm.continuation import Checkpoint, Events, FollowOptions, Path, Status, follow
-from fcm.continuation.all_branches import SAME
+from fcm.continuation.options import PATH
 from fcm.continuation.point import Points, Stored
 from fcm.model.scene import FloatArray
 from fcm.response.options import RESUMABLE
@@ -229,7 +229,7 @@ def _begins_at(leg: Leg, problem: OrbitProblem, start: FloatArray, forward: bool
         first, rise = leg.checkpoint.start, float(leg.checkpoint.heading[-1])
     problem.measure(first)
     off = np.linalg.norm((first - start) / np.asarray(problem.scale))
-    return bool(off < SAME) and (rise > 0.0) == forward
+    return bool(off < PATH.same) and (rise > 0.0) == forward
 
 
 def _key(leg: Leg) -> tuple[int, tuple[int, ...], int]:

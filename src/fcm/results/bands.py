@@ -10,8 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.model.scene import FloatArray
-
-PLACES = 600  # frequencies at which percentiles are taken
+from fcm.results.options import RESULTS
 
 
 class ReadCurve(Protocol):
@@ -47,6 +46,7 @@ def bands_of(
     column: int,
     span: tuple[float, float],
     wide: bool = False,
+    count: int = RESULTS.draws.places,
 ) -> list[Band]:
     """A band for each combination of the swept values that are not drawn.
 
@@ -62,10 +62,12 @@ def bands_of(
         The percentages of the band.
     wide : bool
         Whether the frequencies of the band are in geometric progression.
+    count : int
+        How many these are.
     """
     frequencies = np.concatenate([curve.frequency for curve in curves])
     ends = float(np.nanmin(frequencies)), float(np.nanmax(frequencies))
-    places = (np.geomspace if wide else np.linspace)(*ends, PLACES)
+    places = (np.geomspace if wide else np.linspace)(*ends, count)
     groups: dict[tuple[tuple[str, float], ...], list[FloatArray]] = {}
     for curve in curves:
         key = tuple((k, v) for k, v in curve.parameters.items() if k not in drawn)

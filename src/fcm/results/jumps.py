@@ -8,12 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.model.scene import FloatArray
+from fcm.results.options import RESULTS, JumpOptions
 from fcm.untold import untold
 
 BoolArray = npt.NDArray[np.bool_]
-SAME = 1e-6  # relative difference of amplitudes at one frequency that are one point
-FLIP = 0.01  # relative change of an amplitude, from the last point before a flip to the first after it
-ROUNDING = 1e-13  # relative difference of frequencies that are one
 UNKNOWN = 0.5  # between unstable, 0, and stable, 1
 
 
@@ -44,10 +42,11 @@ class Swept:
     jumps: list[Jump]
     untold: list[Untold]
 
-    def without_flips(self) -> Swept:
+    def without_flips(self, options: JumpOptions = RESULTS.jumps) -> Swept:
         """Without those at which the period doubles: the motion goes on with hardly another amplitude."""
         change = [
-            np.abs(one.after - one.before) > FLIP * np.maximum(one.before, one.after) for one in self.jumps
+            np.abs(one.after - one.before) > options.flip * np.maximum(one.before, one.after)
+            for one in self.jumps
         ]
         kept = [
             one for one, by in zip(self.jumps, change, strict=True) if by.any() or np.isnan(one.after).any()
@@ -60,7 +59,12 @@ class Swept:
         return Swept(jumps, [replace(one, before=one.before[shown]) for one in self.untold])
 
 
-def swept(frequency: FloatArray, amplitude: FloatArray, stable: FloatArray) -> Swept:
+def swept(
+    frequency: FloatArray,
+    amplitude: FloatArray,
+    stable: FloatArray,
+    options: JumpOptions = RESULTS.jumps,
+) -> Swept:
     """What slow sweeps meet along a curve; amplitude (point, dof), stable 1, 0, or NaN where it is not known.
 
     A sweep begins at the first frequency with a motion that is not known to be unstable, stays on such
@@ -77,22 +81,22 @@ def swept(frequency: FloatArray, amplitude: FloatArray, stable: FloatArray) -> S
     >>> [(one.sweep, one.start, one.end) for one in found.untold]
     [('up', 1.0, 3.0), ('down', 3.0, 1.0)]
     """
-    frequency, amplitude, stable = _once(frequency, amplitude, stable)
+    frequency, amplitude, stable = _once(frequency, amplitude, stable, options)
     found = Swept([], [])
     for sweep in ("up", "down"):
-        _sweep(frequency, amplitude, stable, sweep, found)
+        _sweep(frequency, amplitude, stable, sweep, found, options.same)
     return found
 
 
 def _once(
-    frequency: FloatArray, amplitude: FloatArray, stable: FloatArray
+    frequency: FloatArray, amplitude: FloatArray, stable: FloatArray, options: JumpOptions
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """The points without those that are there twice, as a peak at a corner is.
 
     Where stability changes there, one is stable and the other not: a way along the stable side leads to it.
     """
-    again = np.abs(np.diff(frequency)) <= ROUNDING * frequency[1:]
-    again &= np.isclose(amplitude[1:], amplitude[:-1], rtol=SAME, atol=0.0).all(axis=1)
+    again = np.abs(np.diff(frequency)) <= options.frequency * frequency[1:]
+    again &= np.isclose(amplitude[1:], amplitude[:-1], rtol=options.same, atol=0.0).all(axis=1)
     if not again.any():
         return frequency, amplitude, stable
     kept = np.concatenate(([0], np.flatnonzero(~again) + 1))
@@ -101,9 +105,12 @@ def _once(
 
 
 def _sweep(
-    frequency: FloatArray, amplitude: FloatArray, stable: FloatArray, sweep: str, found: Swept
+    frequency: FloatArray, amplitude: FloatArray, stable: FloatArray, sweep: str, found: Swept, same: float
 ) -> None:
-    """Walk along stable segments in the direction of the sweep, and jump where they end."""
+    """Walk along stable segments in the direction of the sweep, and jump where they end.
+
+    same: relative difference of amplitudes that are one.
+    """
     sign = 1.0 if sweep == "up" else -1.0
     rises = np.diff(sign * frequency)
     bears = stable != 0.0
@@ -133,10 +140,10 @@ def _sweep(
             return
         share = (here - frequency[there]) / (frequency[there + 1] - frequency[there])
         landed = amplitude[there] + share[:, None] * (amplitude[there + 1] - amplitude[there])
-        same = np.isclose(landed, before, rtol=SAME, atol=SAME * float(before.max())).all(axis=1)
-        which = int(same.argmax())  # where the beginning of a closed curve is its end, it goes on
+        meets = np.isclose(landed, before, rtol=same, atol=same * float(before.max())).all(axis=1)
+        which = int(meets.argmax())  # where the beginning of a closed curve is its end, it goes on
         onto, after = int(there[which]), landed[which]
-        if not same[which]:
+        if not meets[which]:
             found.jumps.append(Jump(sweep, here, before, after))
         start, told = (here, after), not unknown[onto : onto + 2].any()
         at = onto + 1 if rises[onto] > 0.0 else onto

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.contact.limits import FloatArray
-from fcm.results.jumps import SAME
+from fcm.results.options import RESULTS
 
 
 class Peak(NamedTuple):
@@ -22,16 +22,18 @@ class Peak(NamedTuple):
     )  # greatest change, relative, by the residual friction of contacts that always stick; NaN: not known
 
 
-def stability_at_top(amplitude: FloatArray, stable: FloatArray) -> FloatArray:
+def stability_at_top(
+    amplitude: FloatArray, stable: FloatArray, same: float = RESULTS.jumps.same
+) -> FloatArray:
     """Whether the motion is stable at the greatest amplitude of each degree of freedom, (dof,).
 
-    Of several points that are as high, as where two branches meet, a stable one counts.
+    Of several points that are the same height, relative, as where two branches meet, a stable one counts.
 
     >>> stability_at_top(np.array([[1.0, 1.0], [2.0, 0.5], [2.0, 2.0]]), np.array([np.nan, 1.0, 0.0]))
     array([1., 0.])
     """
     top = np.fmax.reduce(amplitude, axis=0, initial=np.nan)  # NaN where there is no amplitude
-    there = amplitude >= (1.0 - SAME) * top
+    there = amplitude >= (1.0 - same) * top
     told = (there & (stable == 1.0)[:, None]).any(axis=0)
     if told.all():
         return np.ones(told.size)

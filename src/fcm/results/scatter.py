@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from fcm.model.scene import FloatArray
 from fcm.results.condensed_curves import gist_of
+from fcm.results.options import RESULTS
 from fcm.results.peak import Peak
 from fcm.results.result import Curve, Response
 from fcm.units import in_unit
@@ -18,7 +19,6 @@ from fcm.units import in_unit
 PERCENTS = (5.0, 25.0, 50.0, 75.0, 95.0)
 SWEEPS = ("up", "down")  # directions of a slow sweep of the frequency
 NONE = np.inf  # the frequency of a jump that does not occur
-NEAR = 1e-2  # relative: the default accuracy, to which a jump is known that is one or may be so much earlier
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ def _stays(peak: Peak) -> float:
     return 1.0 if peak.amplitude == 0.0 else peak.stable
 
 
-def _first(curve: Curve, sweep: str) -> float:
+def _first(curve: Curve, sweep: str, near: float = RESULTS.draws.near) -> float:
     """Frequency of the first jump in a direction; NONE if there is none, NaN where it may be an earlier one.
 
     That no motion is stable where the sweep begins is no jump.
@@ -92,7 +92,7 @@ def _first(curve: Curve, sweep: str) -> float:
     first = min(jumps, default=NONE)
     if first == NONE:
         return np.nan if untold else NONE
-    known = first - min(untold, default=first) <= NEAR * abs(first)
+    known = first - min(untold, default=first) <= near * abs(first)
     return ahead * first if known else np.nan
 
 

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Path
-from fcm.continuation.all_branches import SAME
 from fcm.continuation.corrector import Newton
+from fcm.continuation.options import PATH
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.harmonic_balance_state import computed_state
@@ -40,13 +40,13 @@ def passes(path: Path, z: FloatArray, problem: OrbitProblem) -> bool:
     guesses = before[across] + share * (after[across] - before[across])
     width = np.linalg.norm((after[across] - before[across]) / scale, axis=1)
     off = np.linalg.norm((guesses - z) / scale, axis=1)
-    return any(_leads_to(newton, guess, z, scale) for guess in guesses[off <= width + SAME])
+    return any(_leads_to(newton, guess, z, scale) for guess in guesses[off <= width + PATH.same])
 
 
 def _leads_to(newton: Newton, guess: FloatArray, z: FloatArray, scale: FloatArray) -> bool:
     """Whether Newton's method leads from a guess to the motion z, at its frequency."""
     there = correct_at_frequency(newton, np.append(guess[:-1], z[-1]))
-    return there and bool(np.linalg.norm((np.asarray(newton.z) - z) / scale) < SAME)
+    return there and bool(np.linalg.norm((np.asarray(newton.z) - z) / scale) < PATH.same)
 
 
 def is_stable(found: Outline, z: FloatArray) -> bool:

@@ -209,6 +209,18 @@ class PeakOptions:
 
 
 @dataclass(frozen=True)
+class TractionOptions:
+    """The friction force of a contact that always sticks.
+
+    margin: distance from its limit, relative to the forces. rounding: part of that; a contact this near to
+    what is wanted has it, whatever its limits.
+    """
+
+    margin: float = 1e-9
+    rounding: float = 1e-3
+
+
+@dataclass(frozen=True)
 class FamilyOptions:
     """Families of motions over the residual friction of contacts that always stick.
 
@@ -300,6 +312,7 @@ class ShootingOptions:
     linear: LinearOrbitOptions = LinearOrbitOptions()
     partly: PartlyStickingOptions = PartlyStickingOptions()
     peaks: PeakOptions = PeakOptions()
+    traction: TractionOptions = TractionOptions()
     family: FamilyOptions = FamilyOptions()
     stability: StabilityChangeOptions = StabilityChangeOptions()
     search: BranchSearchOptions = BranchSearchOptions()

@@ -13,15 +13,14 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.model.scene import Contact, FloatArray, Scene
+from fcm.shooting.options import SHOOTING, TractionOptions
 from fcm.shooting.period_derivative import derivative_at
 from fcm.time_domain.cycle_measures import Extreme, extremes_by
 from fcm.time_domain.segments import NEGATIVE_SLIP, POSITIVE_SLIP, SEPARATED, STICKING, Segments
 from fcm.time_domain.state import State
 from fcm.time_domain.system import System
 
-MARGIN = 1e-9  # distance from the slip limit, relative to the forces
 BOTH = 1 << POSITIVE_SLIP | 1 << NEGATIVE_SLIP  # of what has been seen of a contact: slip in both directions
-ROUNDING = 1e-3  # of that: a contact this near to what is wanted has it, whatever its limits
 
 
 class Choice(NamedTuple):
@@ -64,35 +63,41 @@ def stuck_of(system: System, seen: list[int]) -> list[int]:
     return [j for j, states in enumerate(seen) if states == 1 << STICKING and system.rough[j]]
 
 
-def choices(system: System, segments: Segments, wanted: FloatArray, stuck: list[int]) -> list[Choice]:
+def choices(
+    system: System,
+    segments: Segments,
+    wanted: FloatArray,
+    stuck: list[int],
+    options: TractionOptions = SHOOTING.traction,
+) -> list[Choice]:
     """The choices for the contacts that stick all through the segments; wanted: the w of all, (contact,)."""
     if not stuck:
         return []
     y = np.asarray(segments.y)[0]
     gaps = (system.sticking @ y[: system.unknowns] - system.k_u * wanted).tolist()
-    far = [j for j in stuck if abs(gaps[j]) > _known_room(system, segments, y, j)]
+    margin = {j: _margin(system, y, j, options) for j in stuck}
+    # a gap needs no search that is within a bound of the limits, or of no size
+    known = {j: max(options.rounding * margin[j], segments.held(j) - margin[j]) for j in stuck}
+    far = [j for j in stuck if abs(gaps[j]) > known[j]]
     room = rooms(system, segments, far) if far else {}
     return [
-        _choice(system, segments, j, gaps[j], *room[j])
+        _choice(system, segments, (j, gaps[j], margin[j]), *room[j])
         if j in room
         else Choice(j, gaps[j], system.sticking[j], 0.0, False)
         for j in stuck
     ]
 
 
-def _known_room(system: System, segments: Segments, y: FloatArray, j: int) -> float:
-    """Gaps up to this need no search: within a bound of the limits, or of no size."""
-    margin = _margin(system, y, j)
-    return max(ROUNDING * margin, segments.held(j) - margin)
-
-
-def _choice(system: System, segments: Segments, j: int, gap: float, above: Extreme, below: Extreme) -> Choice:
+def _choice(
+    system: System, segments: Segments, of: tuple[int, float, float], above: Extreme, below: Extreme
+) -> Choice:
     """The force for the w that is wanted, or the nearest to it that keeps |f| <= mu n for all of the period.
 
-    It keeps a little away from the limit, so that rounding does not decide between stick and slip. Above and
-    below are the least of mu n - f and of mu n + f.
+    Of a contact, with the gap to what is wanted; it keeps a margin away from the limit, so that rounding does
+    not decide between stick and slip. Above and below are the least of mu n - f and of mu n + f.
     """
-    margin, sign = _margin(system, np.asarray(segments.y)[0], j), 1.0 if gap > 0.0 else -1.0
+    j, gap, margin = of
+    sign = 1.0 if gap > 0.0 else -1.0
     ahead, behind = (above, below) if gap > 0.0 else (below, above)
     room, other = ahead.value, behind.value
     if abs(gap) <= room - margin:
@@ -107,13 +112,15 @@ def _choice(system: System, segments: Segments, j: int, gap: float, above: Extre
     )  # fmt: skip
 
 
-def _margin(system: System, y: FloatArray, j: int) -> float:
+def _margin(system: System, y: FloatArray, j: int, options: TractionOptions) -> float:
     contact = system.contacts[j]
     limit = contact.mu * (abs(contact.n_0) + abs(y[system.n.start + j]))
-    return MARGIN * float(abs(y[system.f.start + j]) + limit)
+    return options.margin * float(abs(y[system.f.start + j]) + limit)
 
 
-def overshoots(system: System, segments: Segments, seen: list[int]) -> list[tuple[int, float]]:
+def overshoots(
+    system: System, segments: Segments, seen: list[int], options: TractionOptions = SHOOTING.traction
+) -> list[tuple[int, float]]:
     """Contacts that slip in one direction only, with what their gap lacks to continue that of a `Choice`.
 
     None of these is periodic: the slip takes the force to its limit, where the contact sticks.
@@ -123,7 +130,7 @@ def overshoots(system: System, segments: Segments, seen: list[int]) -> list[tupl
         ways = states & BOTH
         if ways not in (0, BOTH) and not states & 1 << SEPARATED and system.rough[j]:
             sign = 1.0 if ways == 1 << POSITIVE_SLIP else -1.0
-            found.append((j, sign * _margin(system, np.asarray(segments.y)[0], j)))
+            found.append((j, sign * _margin(system, np.asarray(segments.y)[0], j, options)))
     return found
 
 

@@ -1,0 +1,81 @@
+"""Tolerances and limits of comparisons of methods."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class ChainOptions:
+    """How finely a line is drawn for its distance from another.
+
+    Attributes
+    ----------
+    points : int
+        Of the fine chain, about.
+    finest, coarsest : int
+        Points on a piece between two neighbours, at most and at least.
+    same : float
+        Distance below which two neighbours are one point.
+    """
+
+    points: int = 4000
+    finest: int = 16
+    coarsest: int = 3
+    same: float = 1e-13
+
+
+@dataclass(frozen=True)
+class ExactLineOptions:
+    """Curves of the exact motion.
+
+    Attributes
+    ----------
+    limit : float
+        [s] of processor time for a curve.
+    peak : float
+        Relative, to which the frequency of a peak is located.
+    jump : float
+        Relative change of amplitude from which on a solution near a peak is one of another branch.
+    """
+
+    limit: float = 60.0
+    peak: float = 1e-8
+    jump: float = 0.2
+
+
+@dataclass(frozen=True)
+class StartupOptions:
+    """How the start of a program is timed.
+
+    Attributes
+    ----------
+    repeats : int
+        Of which the faster counts.
+    timeout : float
+        [s] after which the time is not known.
+    """
+
+    repeats: int = 2
+    timeout: float = 60.0
+
+
+@dataclass(frozen=True)
+class CompareOptions:
+    """How methods are compared.
+
+    Attributes
+    ----------
+    chain, exact, startup : ChainOptions, ExactLineOptions, StartupOptions
+        Of the parts.
+    margin : float
+        A shown error is at least this many times the reference's own.
+    """
+
+    chain: ChainOptions = field(default_factory=ChainOptions)
+    exact: ExactLineOptions = field(default_factory=ExactLineOptions)
+    startup: StartupOptions = field(default_factory=StartupOptions)
+    margin: float = 10.0
+
+
+COMPARE = CompareOptions()  # where nothing else is said

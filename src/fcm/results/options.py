@@ -1,0 +1,59 @@
+"""Tolerances and limits of what is told of curves: jumps of slow sweeps, percentiles of random draws."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class JumpOptions:
+    """When points of a curve are one, and what is no jump.
+
+    Attributes
+    ----------
+    same : float
+        Relative difference of amplitudes at one frequency that are one point.
+    frequency : float
+        Relative difference of frequencies that are one.
+    flip : float
+        Relative change of an amplitude, from the last point before the period doubles to the first after it:
+        less is no jump.
+    """
+
+    same: float = 1e-6
+    frequency: float = 1e-13
+    flip: float = 0.01
+
+
+@dataclass(frozen=True)
+class DrawOptions:
+    """What is told of random draws.
+
+    Attributes
+    ----------
+    places : int
+        Frequencies at which the percentiles of a band are taken.
+    near : float
+        Relative: to this the frequency of a jump is known that may be so much earlier. It is the default
+        accuracy.
+    """
+
+    places: int = 600
+    near: float = 1e-2
+
+
+@dataclass(frozen=True)
+class ResultOptions:
+    """What is told of curves.
+
+    Attributes
+    ----------
+    jumps, draws : JumpOptions, DrawOptions
+        Of the parts.
+    """
+
+    jumps: JumpOptions = field(default_factory=JumpOptions)
+    draws: DrawOptions = field(default_factory=DrawOptions)
+
+
+RESULTS = ResultOptions()  # where nothing else is said
