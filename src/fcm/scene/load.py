@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -145,7 +145,7 @@ def scene_from_dict(
         mistakes.raise_if_any()
     top.only(*names(""))
     beside = Files(Path(folder), largest_file)
-    fields = _read(top, beside, every_row, solved)
+    fields = _read(top, beside, _Reading(every_row, solved))
     mistakes.raise_if_any()
     try:
         scene = _made(name, fields, told)
@@ -157,15 +157,22 @@ def scene_from_dict(
     return scene
 
 
-def _read(top: Section, files: Files, every_row: bool, solved: bool) -> dict[str, Any]:
+class _Reading(NamedTuple):
+    """How a scene is read, see `load_scene`."""
+
+    every_row: bool
+    solved: bool
+
+
+def _read(top: Section, files: Files, reading: _Reading) -> dict[str, Any]:
     """The fields of a scene that are read from its keys, the draft of the others among them."""
     unit = _unit(top)
-    response = response_table(top, solved)
+    response = response_table(top, reading.solved)
     ends, step = read_response(top, response, unit)
     harmonics, accuracy = read_harmonics(response)
     schedule = read_schedule(top, unit)
     ends_of_forces = with_schedule(ends, schedule)
-    parts, reported, notes = _parts(top, files, unit, response, ends_of_forces, every_row, solved)
+    parts, reported, notes = _parts(top, files, unit, response, ends_of_forces, reading)
     if schedule and any("second" in one for one in parts["contact"]):
         top.wrong("schedule", NOT_IN_PLANE)
     start = read_start(top, parts)
@@ -241,8 +248,7 @@ def _parts(
     unit: str,
     response: Section | None,
     ends: tuple[float, float],
-    every_row: bool,
-    solved: bool,
+    reading: _Reading,
 ) -> tuple[Parts, tuple[str, ...], list[str]]:
     """The drafts of modes, contacts and forces; the degrees of freedom in results; and what is to be said."""
     cyclic = read_cyclic(top)
@@ -250,7 +256,7 @@ def _parts(
     read_blade(top, files, cyclic, modal["dofs"], matrices)
     parts: Parts = {"modal": modal, "cyclic": cyclic}
     parts["contact"] = read_contacts(top, modal["dofs"], files)
-    parts["force"] = read_forces(top, modal["dofs"], solved)
+    parts["force"] = read_forces(top, modal["dofs"], reading.solved)
     ends = (ends[0], ends[1] * max((one["harmonic"] for one in parts["force"]), default=1))
     parts["load"] = read_loads(top, files, modal["dofs"], "structure" in top.data)
     parts["base"] = read_base(top, own_names(modal["dofs"]), "structure" in top.data)
@@ -272,7 +278,7 @@ def _parts(
     asked = response is not None and "output" in response.data
     reported = reported_of(parts, output, asked)
     mistuned = bool(cyclic) and "mistuning" in cyclic[0]
-    if matrices is not None and (mistuned or not every_row):
+    if matrices is not None and (mistuned or not reading.every_row):
         parts = without_others(top, parts, reported)
     if not mistuned:
         return parts, reported, notes
