@@ -78,3 +78,16 @@ def test_points_between_two_that_are_confirmed_are_confirmed():
     assert not found[~doubted].any()
     assert found[some].tolist() == [of.confirms(z, 1.0) for z in path.z[some]]
     assert 0.2 < found[doubted].mean() < 0.9
+
+
+def test_three_harmonics_tell_the_stability_beside_the_fold_at_which_the_upper_branch_ends():
+    """One of both motions, balanced and finer, has a real multiplier above 1; the exact motion is stable."""
+    system = System(elastic_strip((11.3, 20.0)), (1, 2, 3))
+    path = traced(system).branches.paths[-1]
+    of = multipliers_of(system, float(path.parameter.max()))
+    even = path.orientation * np.sign(path.direction[:, -1]) > 0.0
+    beside = path.z[even & (path.parameter > 11.7) & (path.parameter < 11.9)]
+    assert len(beside) > 4
+    for z in beside[:: len(beside) // 4]:
+        assert of.verdict(z).stable == 1.0
+    assert exact(system, beside[0]).stable

@@ -43,21 +43,21 @@ class Refined:
 
         The forces are those of z, whatever their level: what the harmonics balanced there lack is kept. None
         where Newton's method finds nothing near; nor, if it is persistent, by parts from z itself. Of many
-        contacts damped steps lead from z itself, see `normal_plane_prolongation`.
+        contacts damped steps are taken then instead, see `normal_plane_prolongation`.
         """
         here = self.system.extended(z, self.harmonics)
         self.balance.measure(here)
         self.balance.probe(here)
         newton, lack = self.newton, np.array(self.balance.residual)
-        if self.damped is not None:
-            kept = np.where(self.balanced, lack, 0.0)
-            return np.array(self.damped.newton.z) if self.damped.rebalance(here, kept) else None
         newton.z[:-1], newton.z[-1] = x, z[-1]
         newton.scale[:] = self.balance.scale
         by_parts = persistent and len(lack) < self.options.unknowns
-        if self._settled(lack, 1.0) or (by_parts and self._by_parts(here, lack)):
+        if self._settled(lack, 1.0):
             return np.array(newton.z)
-        return None
+        if self.damped is not None:
+            kept = np.where(self.balanced, lack, 0.0)
+            return np.array(self.damped.newton.z) if self.damped.rebalance(here, kept) else None
+        return np.array(newton.z) if by_parts and self._by_parts(here, lack) else None
 
     def _settled(self, lack: FloatArray, part: float) -> bool:
         """Whether Newton's method leads to a solution near, of a part of the further harmonics' equations."""
