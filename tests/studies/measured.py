@@ -32,7 +32,7 @@ from fcm.response.fit import fit
 from fcm.results.fitted import Fitted
 from fcm.scene.load import load_scene
 
-from ..guide.figures import STATES
+from ..guide.figures import BLUE, ORANGE
 
 FloatArray = npt.NDArray[np.float64]
 FORCE, RESPONSE = "ForceControl", "ResponseControl"
@@ -150,8 +150,8 @@ def draw_beam(path: Path, parts: list[list[tuple[FloatArray, ...]]]) -> None:
             figure.subplots(1, 2), parts, ("fitted: four forces", "tried: eight responses"), strict=True
         ):
             for frequency, measured, model in rows:
-                axes.plot(frequency, measured, "+", color=STATES["E"], ms=3)
-                axes.plot(frequency, model, "-", color=STATES["P"], lw=0.8)
+                axes.plot(frequency, measured, "+", color=BLUE, ms=3)
+                axes.plot(frequency, model, "-", color=ORANGE, lw=0.8)
             axes.set(xlabel="frequency [Hz]", ylabel="acceleration [m/s²]", title=title)
         figure.savefig(path, dpi=110)
 
@@ -252,8 +252,8 @@ def joint(folder: Path, out: Path) -> None:
         for axes, name, (measured, model) in zip(
             figure.subplots(1, 2), ("frequency [Hz]", "damping ratio"), (hertz, damping), strict=True
         ):
-            axes.plot(one.amplitude, measured, "+", color=STATES["E"], label="measured")
-            axes.plot(one.amplitude, model, "-", color=STATES["P"], label="fitted")
+            axes.plot(one.amplitude, measured, "+", color=BLUE, label="measured")
+            axes.plot(one.amplitude, model, "-", color=ORANGE, label="fitted")
             axes.set(xscale="log", xlabel="modal amplitude", ylabel=name)
         axes.legend()
         figure.savefig(out / "bolted-beam.png", dpi=110)
