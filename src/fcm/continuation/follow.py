@@ -167,6 +167,7 @@ class Follower:
         if self.problem.costly and (self.over(step) or self.over(control.shortened * step)):
             return self.smooth()
         while step > control.shortest:
+            known: cython.bint = step <= stepper.past  # the last corner and all that is nearer are one
             reach: cython.double = ahead(stepper, step)
             if reach < step and step > self.near and many and self.over(step):
                 return self.smooth()
@@ -177,7 +178,10 @@ class Follower:
             if self.near < reach < step and clear(stepper, switching.nearer * reach) and self.hidden() == 0.0:
                 return self.smooth()
             if stepper.go(reach * (1.0 + switching.past) + control.shortest if reach < step else step):
-                if crosses(stepper):
+                if crosses(stepper) and not known:
+                    if stepper.past > 0.0 and before_corner(stepper) < stepper.past:
+                        step = stepper.past  # to the value of the parameter that is nearer
+                        continue
                     status = self.corner() if stepper.missed < 1.0 else Status.STALLED
                     if status is not Status.STALLED:
                         return status
