@@ -16,6 +16,7 @@ from fcm.continuation import follow
 from fcm.continuation.all_branches import contains
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.modal_condensation import OPTIONS
+from fcm.harmonic_balance.options import HARMONIC_BALANCE
 from fcm.harmonic_balance.system import System
 from fcm.harmonic_balance.work_budget import TooLongError
 from fcm.response.request import Request
@@ -240,6 +241,7 @@ def test_an_evaluation_takes_what_was_measured(contacts, modes, taken):
         linear=SimpleNamespace(natural=[1.0] * modes),
         yields=np.full(modes, np.inf),
         condensing=OPTIONS,
+        options=HARMONIC_BALANCE,
     )
     told = [1e6 * seconds_of(sizes, 1, harmonics) for harmonics in (3, 9, 20, 50)]
     assert np.log(told) == pytest.approx(np.log(taken), abs=np.log(1.3))
