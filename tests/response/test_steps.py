@@ -80,8 +80,8 @@ def test_units_do_not_matter():
 
 
 def test_a_value_to_land_on_just_beyond_a_corner_takes_no_countless_steps():
-    """Where the contact opens for an instant. The point beyond a corner lay beyond the value, too, so that the
-    corner was met again a hair further on, 19 000 times."""
+    """Where the contact opens for an instant. The point beyond a corner lay beyond the value, too, so that
+    the corner was met again a hair further on, 19 000 times."""
     curves = fcm.load_scene("yang1998").each_curve()
     scene = next(replace(one, curves=()) for one in curves if one.contacts[0].n_0 == -5.0).in_use()
     balance = System(scene, range(1, 10)).balance()
