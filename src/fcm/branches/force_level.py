@@ -25,7 +25,7 @@ from fcm.branches.linear_limits import (
 )
 from fcm.branches.options import LEVEL_CURVE, LINEAR_LIMITS
 from fcm.branches.shared_levels import in_common, passings
-from fcm.continuation import Events, FollowOptions, Mark, Path, Status, follow
+from fcm.continuation import Events, FollowOptions, Path, Status, follow
 from fcm.continuation.corrector import Newton
 from fcm.harmonic_balance.cost_model import paid, seconds_of
 from fcm.harmonic_balance.system import System
@@ -51,14 +51,20 @@ class Found:
 class LevelReachOptions:
     """How far the level of the forces is followed with many contacts, of which there always is one that slips
     or opens only far above 1: contacts, from so many on up to the level most, or only up to straight where
-    the curve has not turned until then. turn, miss, close: of the steps of a curve of which the passings of
-    the level 1 alone matter, as of `fcm.continuation.options`, and to what its other points are known."""
+    the curve has not turned until then, or back by this part of its level at most: a contact that begins to
+    slip in a plane turns its mean displacement as a root, which turns the level back a little.
+
+    turn, miss, cosine, far, close: of the steps of a curve of which the passings of the level 1 alone matter,
+    as of `fcm.continuation.options`, and to what its other points are known."""
 
     contacts: int = 12
     most: float = 12.0
     straight: float = 3.0
+    back: float = 1e-3
     turn: float = 0.35
     miss: float = 0.1
+    cosine: float = 0.5
+    far: float = 1.0
     close: float = 1e-6
 
 
@@ -104,13 +110,19 @@ def _found(system: System, omega: float, linear: float, top: float) -> Found:
     path, near = None, LEVEL_REACH.straight
     if len(system.scene.contacts) >= LEVEL_REACH.contacts and linear < near < top:
         path = _hasty(system, omega, linear, near, (1.0,))
-        path = None if path.where(Mark.FOLD).size or path.status is not Status.COMPLETE else path
+        path = None if _turned(path) or path.status is not Status.COMPLETE else path
     path = path or _hasty(system, omega, linear, top, (1.0,))
     found = path.z[path.parameter == 1.0]
     found[:, -1] = omega
     complete = path.status in (Status.COMPLETE, Status.RETURNED)
     reach, turns = _reach(system, path.status, path.parameter), turns_of(path, omega)
     return Found(omega, system.harmonics, tuple(found), complete, reach, turns)
+
+
+def _turned(path: Path) -> bool:
+    """Whether a curve turns back by more than a beginning slip does."""
+    levels = path.parameter
+    return bool((levels < (1.0 - LEVEL_REACH.back) * np.maximum.accumulate(levels)).any())
 
 
 def _shared(system: System, omega: float, top: float) -> Found | None:
@@ -215,8 +227,9 @@ def _raised(
     level.begin(omega, lightly)
     wanted, options = Events(stations), FollowOptions(step, hasty)
     if lightly and len(system.scene.contacts) >= LEVEL_REACH.contacts:
-        steps = replace(options.step, turn=LEVEL_REACH.turn, miss=LEVEL_REACH.miss)
-        newton = replace(options.newton, preliminary=LEVEL_REACH.close)
+        reach = LEVEL_REACH
+        steps = replace(options.step, turn=reach.turn, miss=reach.miss, cosine=reach.cosine, far=reach.far)
+        newton = replace(options.newton, preliminary=reach.close)
         options = replace(options, step=steps, newton=newton)
     along = partial(follow, level, start, span, wanted, options, stepper=stepper)
     return paid(system, stepper, None, lambda report: along(progress=report))

@@ -30,6 +30,9 @@ cdef class Balance(Problem):
     cdef public double[:, :, ::1] tangent
     cdef public double[::1] largest
     cdef double[::1] size
+    cdef double own
+    cdef double greatest
+    cdef bint alike
     cdef public double[::1] evaluated
     cdef double[::1] now
     cdef double[::1] rate
@@ -37,6 +40,7 @@ cdef class Balance(Problem):
     cdef int forces_at(self, double[::1] z, double[::1] direction) except -1
     cdef int pushed(self, double[::1] z, bint tangents) except -1
     cdef int slopes(self) except -1
+    cdef int together(self) except -1
     cdef int contact_forces(self, double[::1] z, bint tangents) except -1
 
 cdef class Points:

@@ -14,6 +14,8 @@ The answer G F of the structure to forces of its contacts is laid out as the unk
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import cython
 import numpy as np
 import numpy.typing as npt
@@ -158,8 +160,27 @@ def less_external_slopes(seen: Receptance, load: cython.double, out: cython.doub
                 out[row + 1] -= load * seen.dX_im[k, p]
 
 
-OWN_FLOOR = cython.declare(cython.double, 0.1)  # a unit is at least this much of its own maximum,
-OTHER_FLOOR = cython.declare(cython.double, 1e-6)  # and of the greatest
+@dataclass(frozen=True)
+class UnitOptions:
+    """In which units displacements are measured along a curve.
+
+    Attributes
+    ----------
+    own : float
+        Part of its greatest value so far that the unit of a displacement is at least,
+    greatest : float
+        and of the greatest of all.
+    contacts : int
+        Of so many and more all displacements have one unit. What a single contact does then matters as far as
+        it moves beside the others, and its corners turn the curve by no more than that.
+    """
+
+    own: float = 0.1
+    greatest: float = 1e-6
+    contacts: int = 12
+
+
+UNITS = UnitOptions()
 
 
 @cython.cclass
@@ -175,6 +196,7 @@ class Balance(Problem):
         counted: npt.NDArray[np.float64],
         span: cython.double,
         rank: cython.int = 0,
+        units: UnitOptions = UNITS,
     ) -> None:
         width: cython.int = layout.width
         Problem.__init__(self, layout.unknowns, sum(law.margins for law in laws), shown.dofs, rank)
@@ -190,6 +212,7 @@ class Balance(Problem):
         self.condensed: Condensed | None = None  # of the rank, see `condense`
         self.answer: ModalAnswer | None = None  # then
         self.largest, self.size = np.zeros(layout.ports), np.zeros(layout.ports)
+        self.own, self.greatest, self.alike = units.own, units.greatest, len(laws) >= units.contacts
 
     def condense(self, condensed: Condensed) -> None:
         """Solve the systems of Newton's method, of which there is a rank, by this."""
@@ -276,7 +299,8 @@ class Balance(Problem):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def measure(self, z: cython.double[::1]) -> cython.int:
-        """Displacements by their present size, in each direction of a contact; the frequency by its range."""
+        """Displacements by their present size, in each direction of a contact, or where contacts are many of
+        all; both directions of sliding by that in the plane. The frequency by its range."""
         p: cython.Py_ssize_t
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -288,17 +312,35 @@ class Balance(Problem):
                 k = self.seen.wave_at[p] + self.seen.stride * i
                 total += z[k] * z[k] + z[k + 1] * z[k + 1]
             self.size[p] = sqrt(total)
+        self.together()
+        for p in range(self.ports):
             self.largest[p] = max(self.largest[p], self.size[p])
             overall = max(overall, self.largest[p])
         many: cython.double = sqrt(cython.cast(cython.double, self.ports))
         for p in range(self.ports):
-            unit: cython.double = max(self.size[p], max(OWN_FLOOR * self.largest[p], OTHER_FLOOR * overall))
+            unit: cython.double = max(self.size[p], max(self.own * self.largest[p], self.greatest * overall))
             unit = unit * many if unit > 0.0 else many
             self.scale[self.seen.mean_at[p]] = unit
             for i in range(self.seen.count):
                 k = self.seen.wave_at[p] + self.seen.stride * i
                 self.scale[k] = self.scale[k + 1] = unit
         self.scale[self.unknowns] = self.span
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def together(self) -> cython.int:
+        """One size of all displacements of many contacts, their mean; else of both directions of sliding."""
+        p: cython.Py_ssize_t
+        total: cython.double = 0.0
+        if self.alike:
+            for p in range(self.ports):
+                total += self.size[p] * self.size[p]
+            self.size[:] = sqrt(total / max(self.ports, 1))
+        elif self.directions > 2:
+            for p in range(0, self.ports, self.directions):
+                total = sqrt(self.size[p] * self.size[p] + self.size[p + 1] * self.size[p + 1])
+                self.size[p] = self.size[p + 1] = total
         return 0
 
     @cython.ccall
