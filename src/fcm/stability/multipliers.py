@@ -26,6 +26,7 @@ from fcm.stability.disturbance import Propagator, Stiffness
 from fcm.stability.eigenvalues import eigenvalues
 from fcm.stability.force_harmonics import PORTS, Finer, beyond
 from fcm.stability.many_monodromy import ManyMonodromy
+from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy
 from fcm.stability.monodromy import Monodromy
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.planar_monodromy import PlanarMonodromy
@@ -39,7 +40,7 @@ class Followed(NamedTuple):
     """A balanced motion by its states, and what follows its disturbances through them."""
 
     states: BalancedSequence | PlanarSequence
-    monodromy: Monodromy | ManyMonodromy | PlanarMonodromy
+    monodromy: Monodromy | ManyMonodromy | PlanarMonodromy | ManyPlanarMonodromy
 
 
 class Multipliers:
@@ -94,7 +95,9 @@ class Multipliers:
         linear = self.system.linear
         structure = linear.ports, linear.natural, linear.damping, self.far
         planar = (one for one in self.states if isinstance(one, PlanarSequence))
-        return [Followed(one, PlanarMonodromy(*structure, one)) for one in planar]
+        many = len(self.contact) >= self.options.structure.contacts
+        make = ManyPlanarMonodromy if many else PlanarMonodromy
+        return [Followed(one, make(*structure, one)) for one in planar]
 
     def of(self, z: FloatArray) -> list[complex] | None:
         """The multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""

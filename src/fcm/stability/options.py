@@ -160,7 +160,8 @@ class PlanarStabilityOptions:
     tolerance, what steps may leave out that end where a slipping contact opens, or begin where it closes.
     longest: step [rad]. shrink, grow, safety: limits of the ratio of two steps, and what it is multiplied by.
 
-    most: disturbances that are followed; with more, stability is not told. panels: of slip that are recorded
+    most, most_of_many: disturbances that are followed, of few and of many contacts; with more, stability is
+    not told. panels: of slip that are recorded
     for a contact at first. same: [rad] between events that are one. apart: [rad] between events, from where
     on a period may begin between them.
     """
@@ -174,6 +175,7 @@ class PlanarStabilityOptions:
     grow: float = 2.5
     safety: float = 0.8
     most: int = 160
+    most_of_many: int = 800
     panels: int = 200
     same: float = 1e-13
     apart: float = 1e-6

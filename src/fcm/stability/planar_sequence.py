@@ -18,7 +18,7 @@ if cython.compiled:
     from cython.cimports.fcm.contact.plane.cycle import UNSOLVED
     from cython.cimports.fcm.contact.plane.forces import PlanarContact
     from cython.cimports.fcm.contact.plane.panel import STAGES
-    from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP
+    from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK
     from cython.cimports.fcm.stability.state_sequence import FREE
 else:
     from fcm.contact.periodic.cycle import TWO_PI
@@ -26,12 +26,17 @@ else:
     from fcm.contact.plane.cycle import UNSOLVED
     from fcm.contact.plane.forces import PlanarContact
     from fcm.contact.plane.radau import STAGES
-    from fcm.contact.plane.slider import SEPARATION, SLIP
+    from fcm.contact.plane.slider import SEPARATION, SLIP, STICK
     from fcm.stability.state_sequence import FREE
 
 from fcm.contact.plane.options import OPTIONS
 from fcm.contact.plane.radau import radau
 from fcm.stability.options import STABILITY, PlanarStabilityOptions
+
+
+def states() -> tuple[int, int, int]:
+    """The numbers of the states STICK, SLIP and SEPARATION."""
+    return STICK, SLIP, SEPARATION
 
 
 @cython.cclass
@@ -177,6 +182,25 @@ class PlanarSequence:
         while i > 0 and self.begin[c, i] - self.begin[c, 0] > since:
             i -= 1
         return self.state[c, i]
+
+    def state_of(self, c: cython.int, theta: cython.double) -> int:
+        """`state_at` for other modules."""
+        return self.state_at(c, theta)
+
+    def slip_at(
+        self, c: cython.int, angles: cython.double[::1], before: cython.bint = False
+    ) -> npt.NDArray[np.float64]:
+        """(angle, 6) of a contact at angles of its slip: e_x, e_y, x_1, y_1, r_1, r; before as of `panel`."""
+        found = np.zeros((angles.shape[0], 6))
+        out: cython.double[:, ::1] = found
+        i: cython.Py_ssize_t
+        for i in range(angles.shape[0]):
+            if self.first[c + 1] > self.first[c]:
+                self.direction(self.panel(c, angles[i], before), angles[i])
+            self.rates(c, angles[i])
+            out[i, 0], out[i, 1] = self.e_x, self.e_y
+            out[i, 2], out[i, 3], out[i, 4], out[i, 5] = self.x_1, self.y_1, self.r_1, self.r
+        return found
 
     def rates(self, c: cython.int, theta: float) -> None:
         """`x_1`, `y_1`, `r_1`, and `r`, at an angle."""

@@ -1,0 +1,71 @@
+"""Disturbances of many contacts in a plane over a period: condensed to what slips, and not condensed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy
+from fcm.stability.options import STABILITY
+from fcm.stability.planar_monodromy import PlanarMonodromy
+from fcm.stability.planar_sequence import PlanarSequence
+
+OMEGA = 1.1
+# u_x, u_y, v of harmonics 0 to 2, and mu, k_u, k_v, n_0 of each contact
+SLIPS = ((0.0, 2.0, 0.1), (0.0, -1.8j, 0.0), (0.0, 0.1, 0.0)), (0.5, 1.3, 0.8, 1.0)
+CATCHES = ((0.0, 1.0, 0.2j), (0.0, 0.5j, 0.1), (0.0, 0.3j, 0.0)), (0.5, 1.3, 0.8, 2.0)
+OPENS = ((0.0, 4.0, 0.2), (0.0, 0.1j, 0.3), (0.0, -3.0j, 0.0)), (0.4, 1.1, 0.9, 0.4)
+OPENS_TWICE = ((0.0, 1.0, 0.2), (0.0, 0.7j, 0.3), (0.0, 1.0j, 0.3)), (0.5, 1.3, 0.8, 0.2)
+SLIDES_FREELY = ((0.0, 1.0, 0.1), (0.0, 0.5j, 0.0), (0.0, 2.0, 0.1)), (0.0, 1.3, 0.8, 0.5)
+STICKS = ((0.0, 0.1, 0.0), (0.0, 0.1j, 0.0), (0.0, 0.1, 0.0)), (0.5, 1.3, 0.8, 3.0)
+STAYS_OPEN = ((0.0, 1.0, 0.0), (0.0, 1.0j, 0.0), (-9.0, 0.1, 0.0)), (0.5, 1.3, 0.8, 3.0)
+ALL = SLIPS, STICKS, CATCHES, OPENS, STAYS_OPEN, OPENS_TWICE, SLIDES_FREELY, STICKS
+
+
+def structure(contacts, modes, seed=3):
+    generator = np.random.default_rng(seed)
+    shapes = generator.uniform(-0.5, 0.5, (modes, 3 * contacts))
+    return shapes, np.linspace(0.8, 4.0, modes), np.linspace(0.02, 0.1, modes)
+
+
+def motion(some):
+    """The unknowns, and the numbers of the contacts."""
+    blocks = []
+    for waves, _ in some:
+        X = np.array(waves, dtype=complex)
+        blocks.append(np.concatenate((X[:, 0].real, X[:, 1:].T.ravel().view(float))))
+    return np.concatenate(blocks), np.array([numbers for _, numbers in some])
+
+
+@pytest.mark.parametrize("far", [0, 3])
+@pytest.mark.parametrize("some", [ALL, (STICKS, SLIPS), (OPENS, STAYS_OPEN), (STICKS, STICKS)])
+def test_condensed_as_by_all_displacements(some, far):
+    """All states at once, with modes that follow without delay and without."""
+    x, contact = motion(some)
+    shapes, natural, damping = structure(len(some), 6)
+    above = np.arange(6) >= 6 - far
+    found = []
+    for make, tolerance in (
+        (PlanarMonodromy, 1e-9),
+        (ManyPlanarMonodromy, 1e-9),
+        (ManyPlanarMonodromy, 1e-4),
+    ):
+        sequence = PlanarSequence(contact, (1, 2), replace(STABILITY.planar, tolerance=tolerance))
+        assert sequence.find_events(x)
+        monodromy = make(shapes, natural, damping, above, sequence)
+        monodromy.follow(OMEGA)
+        found.append(np.array(monodromy.matrix()))
+    assert found[0].shape[0] >= 2 * (6 - far)
+    assert found[1] == pytest.approx(found[0], abs=1e-9)
+    assert found[2] == pytest.approx(found[0], abs=2e-6)
+
+
+def test_more_disturbances_than_are_followed_are_none():
+    x, contact = motion((SLIPS,))
+    sequence = PlanarSequence(contact, (1, 2), replace(STABILITY.planar, most_of_many=5))
+    assert sequence.find_events(x)
+    monodromy = ManyPlanarMonodromy(*structure(1, 6), np.zeros(6, dtype=bool), sequence)
+    monodromy.follow(OMEGA)
+    assert np.isnan(monodromy.matrix()).all()
