@@ -178,13 +178,34 @@ class WorkspaceOptions:
 
 
 @dataclass(frozen=True)
+class UnitOptions:
+    """In which units displacements are measured along a curve.
+
+    Attributes
+    ----------
+    own : float
+        Part of its greatest value so far that the unit of a displacement is at least,
+    greatest : float
+        and of the greatest of all.
+    contacts : int
+        Of so many and more all displacements have one unit. What a single contact does then matters as far as
+        it moves beside the others, and its corners turn the curve by no more than that.
+    """
+
+    own: float = 0.1
+    greatest: float = 1e-6
+    contacts: int = 12
+
+
+@dataclass(frozen=True)
 class HarmonicBalanceOptions:
     """What a `System` is computed with.
 
     Attributes
     ----------
-    extremes, spectrum, digits, stiff, rest, rigid, cost, workspace : ExtremeOptions, SpectrumOptions,\
- DigitOptions, StiffContactOptions, StaticLoadOptions, RigidMotionOptions, EvaluationCost, WorkspaceOptions
+    extremes, spectrum, digits, stiff, rest, rigid, cost, workspace, units : ExtremeOptions, SpectrumOptions,\
+ DigitOptions, StiffContactOptions, StaticLoadOptions, RigidMotionOptions, EvaluationCost, WorkspaceOptions,\
+ UnitOptions
         Of the parts.
     samples : int
         Of a cycle for each period of the highest harmonic, at least, where a contact's own law is sampled.
@@ -198,6 +219,7 @@ class HarmonicBalanceOptions:
     rigid: RigidMotionOptions = field(default_factory=RigidMotionOptions)
     cost: EvaluationCost = field(default_factory=EvaluationCost)
     workspace: WorkspaceOptions = field(default_factory=WorkspaceOptions)
+    units: UnitOptions = field(default_factory=UnitOptions)
     samples: int = 8
 
 

@@ -14,8 +14,6 @@ The answer G F of the structure to forces of its contacts is laid out as the unk
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import cython
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +21,7 @@ from cython.cimports.libc.math import sqrt
 
 from fcm.harmonic_balance.displacement import Displacements
 from fcm.harmonic_balance.modal_condensation import Condensed
+from fcm.harmonic_balance.options import HARMONIC_BALANCE, UnitOptions
 from fcm.structure.layout import Layout
 from fcm.structure.receptance import Receptance
 
@@ -160,29 +159,6 @@ def less_external_slopes(seen: Receptance, load: cython.double, out: cython.doub
                 out[row + 1] -= load * seen.dX_im[k, p]
 
 
-@dataclass(frozen=True)
-class UnitOptions:
-    """In which units displacements are measured along a curve.
-
-    Attributes
-    ----------
-    own : float
-        Part of its greatest value so far that the unit of a displacement is at least,
-    greatest : float
-        and of the greatest of all.
-    contacts : int
-        Of so many and more all displacements have one unit. What a single contact does then matters as far as
-        it moves beside the others, and its corners turn the curve by no more than that.
-    """
-
-    own: float = 0.1
-    greatest: float = 1e-6
-    contacts: int = 12
-
-
-UNITS = UnitOptions()
-
-
 @cython.cclass
 class Balance(Problem):
     """The balance of laws (contact,) on a structure; unknowns laid out as in `fcm.structure.layout`."""
@@ -196,7 +172,7 @@ class Balance(Problem):
         counted: npt.NDArray[np.float64],
         span: cython.double,
         rank: cython.int = 0,
-        units: UnitOptions = UNITS,
+        units: UnitOptions = HARMONIC_BALANCE.units,
     ) -> None:
         width: cython.int = layout.width
         Problem.__init__(self, layout.unknowns, sum(law.margins for law in laws), shown.dofs, rank)

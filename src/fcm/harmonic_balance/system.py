@@ -171,7 +171,9 @@ class System:
         rank = condensed_size(yields, linear.ports.shape[1], len(self.harmonics), self.condensing)
         seen = linear.receptance(np.array(self.harmonics, dtype=np.float64), not rank)
         shown = _displacements(linear, seen)
-        balance = Balance(seen, self.layout, self.laws(), shown, linear.counted, high - low, rank)
+        balance = Balance(
+            seen, self.layout, self.laws(), shown, linear.counted, high - low, rank, self.options.units
+        )
         if rank:
             tangent, options = np.asarray(balance.tangent), self.condensing
             stuck, counted = self.springs(stuck=True), linear.counted
@@ -284,7 +286,7 @@ def _workspace_of(system: System) -> _Workspace:
     if scene.ring is not None or scene.loads or system.own_laws or large:
         return _Workspace(system)
     approximate = system.table is not None, system.corrected
-    key = (*system.linear.numbers, scene.frequency_range, system.harmonics, *approximate)
+    key = (*system.linear.numbers, scene.frequency_range, system.harmonics, system.options, *approximate)
     if key not in kept:
         kept[key] = _Workspace(system, key)
         if len(kept) > system.options.workspace.most:

@@ -96,13 +96,15 @@ class _Period:
         self.next, self.steps, self._taken = self.options.longest, 0, -1.0
 
     def _structure(self, springs: FloatArray, omega: float) -> None:
-        """That with the springs: what ports of moving contacts see of the modes, and of one another's forces."""
+        """That with the springs: what moving contacts see of the modes, and of one another's forces."""
         of, m = self.of, len(self.of.natural)
         ports = (3 * self.moving[:, None] + np.arange(3)).ravel()
-        seen, soft = of.shapes.T, of.soft
+        seen: FloatArray = of.shapes.T
+        soft: FloatArray = of.soft
         if soft.any():
-            R = np.eye(springs.size) + soft * springs
-            found = np.linalg.solve(R, np.concatenate((seen, soft[:, ports]), axis=1))
+            R: FloatArray = np.eye(springs.size) + soft * springs
+            right = np.concatenate((seen, soft[:, ports]), axis=1)
+            found = np.asarray(np.linalg.solve(R, right), dtype=np.float64)
             seen, soft = found[:, :m], found[:, m:]
         else:
             soft = soft[:, ports]
@@ -186,7 +188,7 @@ class _Period:
         self.g[self.sticks, :2] = still
 
     def _propagate(self, theta: float, length: float, opens: bool) -> bool:
-        """Carry the disturbances on, in steps; false where no step is short enough. As in `PlanarMonodromy`."""
+        """Carry the disturbances on, in steps as of `PlanarMonodromy`; false where none is short enough."""
         options, left, s = self.options, length, self.options.stages
         if length <= options.same:
             return True
@@ -253,8 +255,8 @@ class _Period:
         self.e, self.aside = e, aside
 
     def _coupled(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """At each node: the unknowns by the modes (s, unknown, mode), what they push these by, what they do to
-        one another by the flexibility, and what the memory of those that stick does to them."""
+        """At each node: the unknowns by the modes (s, unknown, mode), what they push these by, what they do
+        to one another by the flexibility, and what the memory of those that stick does to them."""
         m, s, columns = len(self.of.natural), self.options.stages, self.q.shape[1]
         gamma, sigma, apart = self.at
         size = gamma.size + sigma.size + apart.size

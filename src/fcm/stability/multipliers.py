@@ -96,8 +96,8 @@ class Multipliers:
         structure = linear.ports, linear.natural, linear.damping, self.far
         planar = (one for one in self.states if isinstance(one, PlanarSequence))
         many = len(self.contact) >= self.options.structure.contacts
-        make = ManyPlanarMonodromy if many else PlanarMonodromy
-        return [Followed(one, make(*structure, one)) for one in planar]
+        carried = ManyPlanarMonodromy if many else PlanarMonodromy
+        return [Followed(one, carried(*structure, one)) for one in planar]
 
     def of(self, z: FloatArray) -> list[complex] | None:
         """The multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""

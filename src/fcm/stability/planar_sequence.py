@@ -185,7 +185,7 @@ class PlanarSequence:
 
     def state_of(self, c: cython.int, theta: cython.double) -> int:
         """`state_at` for other modules."""
-        return self.state_at(c, theta)
+        return int(self.state_at(c, theta))
 
     def slip_at(
         self, c: cython.int, angles: cython.double[::1], before: cython.bint = False
