@@ -57,7 +57,7 @@ def check_plane(contact: Contact, mistakes: Mistakes, where: str) -> None:
     if other is None or not one.any() or not other.any():
         return
     name = f"the tangential directions of contact {quoted(contact.name)}"
-    if _line(one) == _line(other):
+    if axis_key(one) == axis_key(other):
         mistakes.add(where, f"{name} are one: no displacement tells them apart; give {TWO}")
         return
     sizes = [np.sort(np.abs(direction[direction != 0.0])) for direction in (one, other)]
@@ -97,8 +97,8 @@ def _scales(ratio: float) -> str:
     )
 
 
-def _line(direction: FloatArray) -> bytes:
-    """The same of directions that are equal up to sign and scale."""
+def axis_key(direction: FloatArray) -> bytes:
+    """A key of a direction, the same of directions that are equal up to sign and scale."""
     largest: Any = direction[int(np.abs(direction).argmax())]
     return (
         (

@@ -9,6 +9,7 @@ import numpy as np
 from fcm.model.scene import Contact, FloatArray, Scene
 from fcm.scene.errors import bare, counted, quoted, several, shown
 from fcm.scene.options import MESSAGES, TOLERANCES
+from fcm.scene.plane import axis_key
 
 
 def note_of_shared_normals(scene: Scene) -> list[str]:
@@ -21,7 +22,7 @@ def note_of_shared_normals(scene: Scene) -> list[str]:
     groups: dict[bytes, list[Contact]] = {}
     for contact in scene.contacts:
         if contact.normal.any():
-            groups.setdefault(_line(contact.normal), []).append(contact)
+            groups.setdefault(axis_key(contact.normal), []).append(contact)
     doubled = [group for group in groups.values() if _counts_twice(group)]
     if not doubled:
         return []
@@ -39,7 +40,7 @@ def note_of_shared_normals(scene: Scene) -> list[str]:
 def _two_directions(scene: Scene, group: list[Contact]) -> list[str]:
     """The first two directions of friction that differ, as the scene can have them: axes of pairs of nodes,
     or degrees of freedom."""
-    along = {_line(one.tangential): one for one in group if one.mu > 0.0 and one.tangential.any()}
+    along = {axis_key(one.tangential): one for one in group if one.mu > 0.0 and one.tangential.any()}
     first, second = list(along.values())[:2]
     drafts = () if scene.draft is None else scene.draft.parts["contact"]
     of_pairs = {one["name"] for one in drafts if "group" in one}
@@ -91,16 +92,4 @@ def _presses_as_it_slides(contact: Contact) -> bool:
 def _counts_twice(group: list[Contact]) -> bool:
     """Whether several contacts of one normal carry a load, in different directions of friction."""
     carrying = [one for one in group if one.n_0 != 0.0 or one.k_v != 0.0]
-    return len({tuple(map(_line, one.directions[:-1])) for one in carrying if one.mu > 0.0}) > 1
-
-
-def _line(direction: FloatArray) -> bytes:
-    """The same of directions that are equal up to sign and scale."""
-    largest = direction[int(np.abs(direction).argmax())]
-    return (
-        (
-            np.round(direction / largest / TOLERANCES.same_direction) * TOLERANCES.same_direction + 0.0
-        ).tobytes()
-        if largest
-        else b""
-    )
+    return len({tuple(map(axis_key, one.directions[:-1])) for one in carrying if one.mu > 0.0}) > 1
