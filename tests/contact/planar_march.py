@@ -144,3 +144,34 @@ class March:
         F = total.view(complex).reshape(2, -1) / np.pi * self.k_u
         F[:, 0] *= 0.5
         return F, words
+
+
+def returned(cases, steps, highest, periods=6):
+    """Coefficients (case, 2, harmonic) of f_x and f_y by radial return, no event located, for any load.
+
+    A step goes once and in two halves, and the places of the slider are extrapolated: of second order.
+    """
+    h = np.arange(max(one.size for case in cases for one in (case.u_x, case.u_y, case.v)))
+    wave = np.exp(1j * np.outer(np.pi * np.arange(2 * steps) / steps, h))
+    u_x, u_y, v = (
+        np.stack([(wave[:, : getattr(case, key).size] @ getattr(case, key)).real for case in cases], axis=1)
+        for key in ("u_x", "u_y", "v")
+    )
+    mu, k_u, k_v, n_0 = (
+        np.array([getattr(case, key) for case in cases]) for key in ("mu", "k_u", "k_v", "n_0")
+    )
+    u, reach = np.stack((u_x, u_y), axis=1), mu * np.maximum(n_0 + k_v * v, 0.0) / k_u
+
+    def held(i, w):
+        d = u[i] - w
+        return u[i] - d * np.minimum(1.0, reach[i] / np.maximum(np.hypot(*d), 1e-300))
+
+    w, f = u[0].copy(), np.zeros((steps, 2, len(cases)))
+    for step in range(1, periods * steps + 1):
+        i = 2 * (step % steps)
+        once, twice = held(i, w), held(i, held(i - 1, w))
+        w = held(i, 2.0 * twice - once)
+        f[step % steps] = k_u * (u[i] - w)
+    F = np.fft.fft(f, axis=0)[: highest + 1] / steps
+    F[1:] *= 2.0
+    return np.moveaxis(F, 2, 0).swapaxes(1, 2)

@@ -1,6 +1,7 @@
 """The forces of a contact in its plane: against numbers, marches, closed forms and the contact on a line."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import mpmath
@@ -14,7 +15,7 @@ from fcm.contact.plane.options import OPTIONS
 
 from ..scale import SCALE
 from .motions import BOUNDARIES, random_cases
-from .planar_march import March
+from .planar_march import March, returned
 from .planar_motions import Planar, kernel, random_planars
 
 POINTS = json.loads((Path(__file__).parent / "planar_points.json").read_text())
@@ -235,6 +236,27 @@ def test_at_the_slip_limit_and_where_the_load_touches_zero():
     for one, low, high in zip(touching.forces(), *beside, strict=True):
         assert np.abs(one - low).max() <= 1e-8
         assert np.abs(one - high).max() <= 1e-8
+
+
+def touched(case):
+    """The same with a preload with which the least load of the cycle is nothing."""
+    h, theta = np.arange(case.v.size), np.linspace(0.0, 2.0 * np.pi, 20001)
+    at = theta[(np.exp(1j * np.outer(theta, h)) @ case.v).real.argmin()]
+    for _ in range(20):
+        slope, bend = (((1j * h) ** k * np.exp(1j * h * at) * case.v).sum().real for k in (1, 2))
+        at -= slope / bend
+    return replace(case, n_0=-case.k_v * (np.exp(1j * h * at) * case.v).sum().real)
+
+
+def test_loads_that_just_touch_zero_against_a_march():
+    cases = [touched(case) for case in random_planars(20, 5, 3)]
+    marched = returned(cases, 2000, 4)
+    for case, F in zip(cases, marched, strict=True):
+        found = np.stack(case.forces(harmonics=4)[:2])
+        assert np.abs(found - F)[:, 1:].max() <= 5e-6 * case.size, case
+        for miss in (-1e-9, 1e-9):  # an opening of no length, and none
+            beside = replace(case, n_0=case.n_0 + miss * case.k_v).forces(harmonics=4)
+            assert np.abs(np.stack(beside[:2]) - found)[:, 1:].max() <= 2e-8 * case.size, case
 
 
 HUGE = st.sampled_from([0.0, 1e-12, 1e-6, 0.5, 1.0, 2.0, 1e6, 1e12])

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 
 from fcm import periodic_gradients, planar_gradients
 from fcm.contact.plane.forces import PlanarContact
+from fcm.contact.plane.options import FINEST, OPTIONS
 
 from ..scale import SCALE
 from .motions import random_cases
@@ -59,6 +60,18 @@ def test_against_differences(seed, nearly_straight):
             settled += 1
             assert np.abs(J[:, column] - found).max() <= 1e-8 * size, (case, column)
     assert settled > 100
+
+
+def test_along_a_line_as_a_balance_uses_it():
+    """The derivatives of the finest options, to a millionth."""
+    rng = np.random.default_rng(0)
+    for case in random_planars(150, 20, 5):
+        found, case = [], along_a_line(case, rng)
+        for options in (OPTIONS, FINEST):
+            contact, x = kernel(case, options=options)
+            contact.at(x, case.mu, case.k_u, case.k_v, case.n_0)
+            found.append(np.array(contact.jacobian))
+        assert np.abs(found[0] - found[1]).max() <= 1e-6 * max(case.k_u, case.k_v), case
 
 
 def test_across_a_line_from_closing_to_opening():

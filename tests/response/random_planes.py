@@ -1,10 +1,14 @@
 """Random scenes of contacts in a plane against marches in time: ``make study-plane`` prints what came of it.
 
 One to three contacts in a plane, two to six modes. Of each scene the highest peak is sought with the
-harmonics that an accuracy takes. The whole motion is marched by central differences with radial return, of
-all scenes at once: first at frequencies around the peak, then at three beside the top of these with steps
-that are halved twice. The errors of first and second order are extrapolated; a parabola has the top. Where a
-peak is at an end of the range, it is compared with the motion there.
+harmonics that an accuracy takes. The whole motion is marched by central differences, of all scenes at once.
+In a step the sliders are moved by radial return, once and in two halves, which errs by the first order, and
+the two are extrapolated to the second. Steps are halved, and the last change says how far the march errs.
+
+The march begins with the balance's state, sliders too. It has the peak by a parabola through three
+frequencies, the middle one where the balance has its own, and by another one half as wide: where these differ
+the peak is a corner. Where one of the three is on another branch, and at the ends of the range, its motion at
+the balance's peak is compared.
 
 A peak is stable by the march where the motion that begins with the balance's state stays there, and one that
 is disturbed comes back to it.
@@ -12,7 +16,6 @@ is disturbed comes back to it.
 
 from __future__ import annotations
 
-import itertools
 import sys
 from dataclasses import replace
 from math import pi
@@ -21,6 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fcm.contact.plane.loop import planar_loop
 from fcm.model.scene import FloatArray, Scene
 from fcm.response import trace
 from fcm.results.result import Curve
@@ -35,12 +39,13 @@ else:  # run as a program
     from random_peaks import ACCURACY, SAME, Peak, report
 
 SECONDS = 60  # of a processor, for a scene
-STEPS = 100  # of a period, of the longest of three
-PERIODS = 60  # that are marched before anything is measured, and once more with each of the steps
+STEPS = 200  # of a period, at first; they are halved twice
+PERIODS = 80  # that are marched with each of the steps
 LITTLE = 1e-3  # of the motion, a disturbance
 LEFT = 0.1  # relative change of an amplitude, from which on a motion has left its solution
-COARSE, ASIDE = 1e-2, 4e-3  # relative, from a frequency to the next
-AROUND = 3  # frequencies to either side at first
+ASIDE = 2e-3  # relative, from a frequency to the next
+JUMPS = 0.05  # relative, from one of three amplitudes to the next, if it is on another branch
+TIMES = 2.0  # an error that is smaller than so many changes by the last steps is not known
 SPAN = (0.7, 2.2)  # of the response
 MODES, CONTACTS = 6, 3  # at most
 
@@ -55,6 +60,7 @@ class Traced(NamedTuple):
     shape: FloatArray  # (mode,) of the degree of freedom that has it
     q: FloatArray
     p: FloatArray
+    w: FloatArray  # (contact, 2), the sliders
 
 
 def random_plane(seed: int) -> Scene:
@@ -97,17 +103,24 @@ def traced(seed: int) -> Traced:
     return Traced(top.amplitude, top.frequency, top.error, top.stable, scene.modal.shapes[:, d], *state)
 
 
-def _start(scene: Scene, curve: Curve, row: int) -> tuple[FloatArray, FloatArray]:
-    """Displacements and velocities of the modes at the beginning of a period."""
+def _start(scene: Scene, curve: Curve, row: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Displacements and velocities of the modes as a period begins, and the places of the sliders."""
     omega = curve.frequency[row]
     if curve.harmonic is None:
         X = (curve.amplitude[row] * np.exp(1j * curve.phase[row]))[None]
-        order = np.ones(1)
+        order = [1]
     else:
-        X, order = curve.harmonic[row], np.array(curve.harmonics)
-    x, rate = curve.mean[row] + X.imag.sum(axis=0), omega * (order @ X.real)
+        X, order = curve.harmonic[row], list(curve.harmonics)
+    x, rate = curve.mean[row] + X.imag.sum(axis=0), omega * (np.array(order) @ X.real)
     back = np.linalg.pinv(scene.modal.shapes.T)
-    return back @ x, back @ rate
+    # x = mean + Im sum X_h exp(i h theta) = Re sum X_h / i exp(i h theta)
+    whole = np.zeros((max(order) + 1, X.shape[1]), complex)
+    whole[0], whole[order] = curve.mean[row], X / 1j
+    w = np.zeros((len(scene.contacts), 2))
+    for place, c in zip(w, scene.contacts, strict=True):
+        u = whole @ np.array(c.directions).T
+        place[:] = planar_loop(*u.T, c.mu, c.k_u, c.k_v, c.n_0).slider(0.0)
+    return back @ x, back @ rate, w
 
 
 def padded(rows: list[FloatArray], *shape: int) -> FloatArray:
@@ -123,14 +136,11 @@ class State(NamedTuple):
 
     q: FloatArray
     p: FloatArray
-    w: FloatArray | None = None  # None: where the displacements are
+    w: FloatArray
 
-    def of(self, motion: int | FloatArray, times: int) -> State:
-        """So often that of one motion, of all scenes or of each another."""
-        scene = np.arange(len(self.q))
-        return State(
-            *(np.repeat(one[scene, motion][:, None], times, axis=1) for one in self if one is not None)
-        )
+    def of(self, motion: int, times: int) -> State:
+        """So often that of one motion."""
+        return State(*(np.repeat(one[:, motion][:, None], times, axis=1) for one in self))
 
 
 class March:
@@ -170,18 +180,25 @@ class March:
         push, back = self.push(steps), np.swapaxes(self.ports, 1, 2).copy()
         divisor = np.where(self.k_u > 0.0, self.k_u, 1.0)[..., None]
         force = np.empty((*q.shape[:2], CONTACTS, 3))
-        if w is None:
-            w = (q @ self.ports).reshape(force.shape)[..., :2].copy()
+        before = (q @ self.ports).reshape(force.shape)
         path, states = np.empty((steps, *omega.shape)), []
 
-        def contact(q: FloatArray) -> FloatArray:
-            nonlocal w
-            u = (q @ self.ports).reshape(force.shape)
+        def held(u: FloatArray, w: FloatArray) -> tuple[FloatArray, FloatArray]:
+            """The friction, back on its disc, and where the slider is then."""
             n = np.maximum(self.n_0 + self.k_v * u[..., 2], 0.0)
             f = self.k_u[..., None] * (u[..., :2] - w)
             size = np.sqrt(f[..., 0] ** 2 + f[..., 1] ** 2)
             f *= np.minimum(1.0, self.mu * n / np.maximum(size, 1e-300))[..., None]
-            w = u[..., :2] - f / divisor
+            return f, u[..., :2] - f / divisor
+
+        def contact(q: FloatArray) -> FloatArray:
+            nonlocal w, before
+            u = (q @ self.ports).reshape(force.shape)
+            _, once = held(u, w)
+            _, twice = held(u, held(0.5 * (before + u), w)[1])
+            f, w = held(u, 2.0 * twice - once)
+            before = u
+            n = np.maximum(self.n_0 + self.k_v * u[..., 2], 0.0)
             force[..., :2], force[..., 2] = f, n - np.maximum(self.n_0, 0.0)
             return force.reshape(*q.shape[:2], 3 * CONTACTS) @ back
 
@@ -210,49 +227,50 @@ def beyond(low: FloatArray, here: FloatArray, high: FloatArray) -> FloatArray:
     return np.where(bend > 0.0, (high - low) ** 2 / (8.0 * np.maximum(bend, 1e-300)), 0.0)
 
 
-def extrapolated(march: March, omega: FloatArray, state: State) -> tuple[FloatArray, State, list[State]]:
-    """Amplitudes (scene, motion), of steps halved twice; the last state; those with the longest step."""
+def halved(march: March, omega: FloatArray, state: State) -> tuple[FloatArray, FloatArray, list[State]]:
+    """Amplitudes (scene, motion) of steps halved twice, their last change, states of the longest step."""
     heights, first = [], list[State]()
     for times in (1, 2, 4):
         height, states = march.run(omega, times * STEPS, state)
         first = first or states
         heights.append(height)
         state = states[-1]
-    once = [2.0 * b - a for a, b in itertools.pairwise(heights)]
-    return (4.0 * once[1] - once[0]) / 3.0, state, first
+    return heights[2], np.abs(heights[2] - heights[1]), first
 
 
-def marched(seeds: list[int], found: list[Traced]) -> tuple[FloatArray, FloatArray]:
-    """True errors (scene,), NaN where the march has no such peak, and 1 where it is stable, else 0."""
+def marched(seeds: list[int], found: list[Traced]) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """True errors (scene,), NaN where the march has no such peak; how far it errs, and 1 if it is stable."""
     told, amplitude = (np.array([getattr(one, key) for one in found]) for key in ("frequency", "amplitude"))
     shape, q, p = (padded([getattr(one, key) for one in found], MODES) for key in ("shape", "q", "p"))
-    march, balance = March([random_plane(seed) for seed in seeds], shape), State(q[:, None], p[:, None])
-    scene = np.arange(len(seeds))
+    w = padded([one.w for one in found], CONTACTS, 2)
+    march = March([random_plane(seed) for seed in seeds], shape)
+    balance = State(q[:, None], p[:, None], w[:, None])
 
-    # at the frequency of the peak, and disturbed
-    state, rng = balance.of(0, 2), np.random.default_rng(0)
+    # at the frequency of the peak, and disturbed; and beside it
+    beside = np.clip(told[:, None] * (1.0 + ASIDE * np.array([-1.0, 1.0, -0.5, 0.5])), *SPAN)
+    omega = np.concatenate((told[:, None], told[:, None], beside), axis=1)
+    state, rng = balance.of(0, omega.shape[1]), np.random.default_rng(0)
     for one in state[:2]:
         one[:, 1] *= 1.0 + LITTLE * rng.standard_normal(one[:, 1].shape)
-    at_peak, last, states = extrapolated(march, np.repeat(told[:, None], 2, axis=1), state)
+    height, change, states = halved(march, omega, state)
     apart = np.array([np.abs(one.q[:, 1] - one.q[:, 0]).max(axis=-1) for one in states])
-    apart += np.array(
-        [np.abs(one.w[:, 1] - one.w[:, 0]).max(axis=(-2, -1)) for one in states if one.w is not None]
-    )
-    stays = np.abs(at_peak[:, 0] / amplitude - 1.0) < LEFT
+    apart += np.array([np.abs(one.w[:, 1] - one.w[:, 0]).max(axis=(-2, -1)) for one in states])
+    middle = height[:, 0]
+    stays = np.abs(middle / amplitude - 1.0) < LEFT
     stable = stays & (apart[-5:].max(axis=0) < apart[:5].max(axis=0))
 
-    # around it, then beside the top of these
-    around = np.clip(told[:, None] * (1.0 + COARSE * np.arange(-AROUND, AROUND + 1)), *SPAN)
-    height, states = march.run(around, STEPS, last.of(0, around.shape[1]))
-    best = height.argmax(axis=1)
-    omega = around[scene, best][:, None] * np.array([1.0 - ASIDE, 1.0, 1.0 + ASIDE])
-    height, _, _ = extrapolated(march, omega, states[-1].of(best, 3))
-    low, middle, high = height.T
-    inside = np.abs(high - low) <= 4.0 * (2.0 * middle - low - high)
-    top = middle + np.where(inside, beyond(low, middle, high), np.nan)
     end = (np.abs(told - SPAN[0]) < 1e-9) | (np.abs(told - SPAN[1]) < 1e-9)
-    error = np.abs(amplitude / np.where(end, at_peak[:, 0], top) - 1.0)
-    return np.where(error < SAME, error, np.nan), stable.astype(np.float64)
+    wide, narrow = (middle + np.where(end, 0.0, over(middle, *height[:, i : i + 2].T)) for i in (2, 4))
+    error = np.abs(amplitude / narrow - 1.0)
+    unsure = (change[:, 0] + np.abs(wide - narrow)) / middle
+    return np.where(error < SAME, error, np.nan), unsure, stable.astype(np.float64)
+
+
+def over(middle: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
+    """By how much the top of a parabola is above the middle of three amplitudes of one branch; else 0."""
+    one_branch = np.maximum(np.abs(low - middle), np.abs(high - middle)) < JUMPS * middle
+    inside = np.abs(high - low) <= 4.0 * (2.0 * middle - low - high)
+    return np.where(one_branch & inside, beyond(low, middle, high), 0.0)
 
 
 def main(count: int = 24, at_once: int = 2) -> None:
@@ -265,18 +283,22 @@ def main(count: int = 24, at_once: int = 2) -> None:
 def told(done: dict[int, Traced]) -> None:
     """Print what became of scenes."""
     seeds, found = list(done), list(done.values())
-    error, stable = marched(seeds, found)
+    error, change, stable = marched(seeds, found)
     print(
         f"The highest peaks of {len(seeds)} random scenes in the plane, accuracy {ACCURACY:g}, and marches;"
     )
+    estimate = np.array([one.estimate for one in found])
+    known = np.maximum(np.nan_to_num(error, nan=1.0), np.nan_to_num(estimate)) >= TIMES * change
     report(
         [
             Peak(seed, len(random_plane(seed).contacts), one.estimate, true)
-            for seed, one, true in zip(seeds, found, error.tolist(), strict=True)
+            for seed, one, true, so in zip(seeds, found, error.tolist(), known.tolist(), strict=True)
+            if so
         ]
     )
+    print(f"of less than the march errs by: {[seeds[i] for i in np.flatnonzero(~known)]}")
     verdict = np.array([one.stable for one in found])
-    known = np.isfinite(verdict) & np.isfinite(error)
+    known = np.isfinite(verdict)
     same = (verdict > 0.5) == (stable > 0.5)
     print(f"stability as the march says: {same[known].sum()} of {known.sum()} that tell it")
     print(f"of another: {[seeds[i] for i in np.flatnonzero(known & ~same)]}")

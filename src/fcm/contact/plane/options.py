@@ -73,8 +73,8 @@ class PlanarOptions:
     safety: float = 0.7
     near: float = 1.0
     ends: float = 1e-3
-    unturned: float = 1e-8
-    deepest: float = 0.75
+    unturned: float = 1e-9
+    deepest: float = 0.6
     nothing: float = 1e-12
     negligible: float = 1e-10
     shortest: float = 1e-13
@@ -93,8 +93,8 @@ class PlanarOptions:
     faint: float = 1e-150
 
 
-OPTIONS = PlanarOptions()  # of a balance: forces within 1e-10, derivatives 2e-8 mostly, 1e-4 at worst
+OPTIONS = PlanarOptions()  # of a balance: forces within 1e-10, derivatives 1e-8 mostly, 1e-6 at worst
 FINE = replace(
-    OPTIONS, tolerance=1e-9, resolved=4.0, converged=1e-6, varied=1e-3, unturned=1e-11, deepest=0.6
+    OPTIONS, tolerance=1e-9, resolved=4.0, converged=1e-6, varied=1e-3, unturned=1e-11
 )  # of `planar_forces`: forces within 1e-11, derivatives 1e-8
 FINEST = replace(FINE, tolerance=1e-11)  # of a loop, whose polynomials are read between the ends of panels
