@@ -84,4 +84,4 @@ cdef class Derivatives:
     cdef void direct(self) noexcept nogil
     cdef void row(self, Py_ssize_t row, int rows, int h, int which, int part, double factor) noexcept nogil
     cdef void settle(self, bint kept) noexcept nogil
-    cdef void rescale(self, int row, double by_motion, double by_load) noexcept nogil
+    cdef void rescale(self, double by_motion, double by_load, double load_by_load) noexcept nogil

@@ -383,15 +383,20 @@ class Derivatives:
         for i in range(3 + 6 * self.outputs):
             self.jacobian[i, 0] = self.jacobian[i, 1] = 0.0
 
-    def rescale(self, row: cython.int, by_motion: float, by_load: float) -> None:
-        """Derivatives of one number by u and by v."""
-        k: cython.int
+    def rescale(self, by_motion: float, by_load: float, load_by_load: float) -> None:
+        """All derivatives: of the friction by u and by v, and of the load by v; `w_x`, `w_y` are lost."""
+        i: cython.Py_ssize_t
+        j: cython.int
         p: cython.int
-        self.jacobian[row, 0] *= by_motion
-        self.jacobian[row, 1] *= by_motion
-        self.jacobian[row, 2] *= by_load
-        for k in range(3, self.unknowns, 6):
-            for p in range(4):
-                self.jacobian[row, k + p] *= by_motion
-            self.jacobian[row, k + 4] *= by_load
-            self.jacobian[row, k + 5] *= by_load
+        for j in range(self.unknowns):  # three means, then six numbers of each harmonic
+            p = 2 * j if j < 3 else (j - 3) % 6
+            self.w_x[j] = by_load if p >= 4 else by_motion
+            self.w_y[j] = load_by_load if p >= 4 else 0.0
+        for i in range(3 + 6 * self.outputs):
+            p = 2 * i if i < 3 else (i - 3) % 6
+            if p < 4:
+                for j in range(self.unknowns):
+                    self.jacobian[i, j] *= self.w_x[j]
+            else:
+                for j in range(self.unknowns):
+                    self.jacobian[i, j] *= self.w_y[j]

@@ -344,7 +344,5 @@ class PlanarContact:
                 self.forces[row + p] *= self.motion.scale
                 self.forces[row + step + p] *= self.motion.scale
                 self.forces[row + 2 * step + p] *= self.motion.load_scale
-                if gradient:
-                    self.derivatives.rescale(row + p, k_u, mu * k_v)
-                    self.derivatives.rescale(row + step + p, k_u, mu * k_v)
-                    self.derivatives.rescale(row + 2 * step + p, 0.0, k_v)
+        if gradient:
+            self.derivatives.rescale(k_u, mu * k_v, k_v)
