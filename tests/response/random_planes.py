@@ -273,7 +273,7 @@ def over(middle: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
     return np.where(one_branch & inside, beyond(low, middle, high), 0.0)
 
 
-def main(count: int = 24, at_once: int = 2) -> None:
+def main(count: int = 200, at_once: int = 2) -> None:
     done = dict(in_time(traced, range(count), SECONDS, at_once))
     told({seed: one for seed, one in sorted(done.items()) if one is not None})
     late = sorted(seed for seed, one in done.items() if one is None)
