@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from fcm.accuracy.options import PAIR, PairOptions
@@ -16,8 +16,9 @@ class Budget:
     left: float = PAIR.seconds
 
     @classmethod
-    def of(cls, work: Work, options: PairOptions) -> Budget:
-        """In proportion to the work that the response itself took, so that its error never takes much more.
+    def of(cls, work: Work, options: PairOptions, part: float = 1.0) -> Budget:
+        """In proportion to the work that the response itself took, so that its error never takes much more;
+        for a part of it the same part.
 
         >>> from fcm.harmonic_balance.work_budget import Work
         >>> work = Work()
@@ -25,7 +26,13 @@ class Budget:
         >>> Budget.of(work, PairOptions(part=0.3, unnoticed=0.1)).left
         0.3
         """
-        return cls(min(max(options.part * work.seconds, options.unnoticed), options.seconds))
+        return cls(part * min(max(options.part * work.seconds, options.unnoticed), options.seconds))
+
+    @classmethod
+    def elsewhere(cls, work: Work, options: PairOptions, part: float = 1.0) -> Budget:
+        """The same for what the partners have elsewhere."""
+        most = max(options.elsewhere * work.seconds, options.unnoticed_elsewhere)
+        return cls(part * min(most, options.seconds_elsewhere))
 
     def shares(self, count: int) -> Iterator[Budget]:
         """One after the other for so many: what one leaves is for the others, too."""
@@ -34,3 +41,12 @@ class Budget:
             one = Budget(share)
             yield one
             self.left -= share - one.left
+
+
+def share_of(evaluations: Sequence[int], first: int) -> float:
+    """Part of the evaluations that following all paths took, of the paths from the first on.
+
+    >>> share_of([300, 60, 40], 1)
+    0.25
+    """
+    return sum(evaluations[first:]) / max(sum(evaluations), 1)

@@ -7,22 +7,25 @@ one budget.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fcm.accuracy.budget import Budget
+from fcm.accuracy.budget import Budget, share_of
 from fcm.accuracy.options import PairOptions
-from fcm.accuracy.partner import give_back, lifted_of
 from fcm.accuracy.partner_curve import curve_piece
 from fcm.accuracy.partner_pieces import CurvePiece
 from fcm.accuracy.partner_stretch import Stretches
 from fcm.continuation import Path
+from fcm.harmonic_balance.normal_plane_prolongation import DampedOptions, Lifted
 from fcm.harmonic_balance.reported_quantities import Reported
 from fcm.harmonic_balance.system import System
 
 if TYPE_CHECKING:
     from fcm.accuracy.embedded_pair import Errors
+
+DAMPED = DampedOptions(contacts=0)  # whatever their number: the motions lie far from those that are sought
 
 
 def elsewhere(
@@ -37,43 +40,76 @@ def elsewhere(
     to pass, as far as the work allows.
 
     They are followed from points of the paths from the first on whose errors are not told, those of the
-    smallest motions before the others: there the partner has fewest.
+    smallest motions before the others: there the partner has fewest. Where no motion of such a path leads to
+    one of its partner, the level of the forces may.
     """
     found: list[list[CurvePiece]] = [[] for _ in paths]
     known = [piece for one in errors for piece in one.pieces]
-    sizes = [
-        np.where(one.met, np.inf, each.amplitude.max(axis=1)) for one, each in zip(errors, shown, strict=True)
-    ]
-    for size, path, one in zip(sizes, paths, errors, strict=True):
-        for piece in known:
-            size[piece.within(path.parameter)] = np.inf
-        if one.partner == system.harmonics:  # it has none
-            size[:] = np.inf
-    budget, followers = Budget.of(system.work, options), dict[int, Stretches]()
-    while budget.left > 0.0:
-        least = [size.min(initial=np.inf) if k >= first else np.inf for k, size in enumerate(sizes)]
-        k = int(np.argmin(least)) if least else -1
-        if k < 0 or not np.isfinite(least[k]):
-            break
-        untold = np.concatenate(
-            [path.parameter[np.isfinite(size)] for path, size in zip(paths, sizes, strict=True)]
-        )
-        i = int(sizes[k].argmin())
-        stretches = followers.get(k)
-        if stretches is None:
-            more = errors[k].partner
-            finer = system.with_harmonics(more)
-            lifted = lifted_of(system, more)
-            stretches = Stretches(system, finer, lifted, paths[k], options, budget)
-            followers[k] = stretches
-        new = stretches.through(i, (float(untold.min()), float(untold.max())))
-        sizes[k][i] = np.inf
-        for piece in (curve_piece(stretches.finer, one) for one in new):
-            found[k].append(piece)
-            for size, path in zip(sizes, paths, strict=True):
-                size[piece.within(path.parameter)] = np.inf
-    for k, stretches in followers.items():
-        give_back(stretches.lifted, system, errors[k].partner)
+    untold = [_Untold(*one, system.harmonics) for one in zip(paths, shown, errors, strict=True)]
+    for piece in known:
+        _told_by(piece, untold)
+    part = share_of([path.evaluations for path in paths], first)
+    budget, followers = Budget.elsewhere(system.work, options, part), dict[int, Stretches]()
+    for by_level in (False, True):
+        for one in untold:
+            one.tried[:] = False
+        while budget.left > 0.0:
+            k = min(range(first, len(paths)), key=lambda k: untold[k].least, default=-1)
+            if k < 0 or not np.isfinite(untold[k].least):
+                break
+            i = untold[k].smallest
+            untold[k].tried[max(i - options.every, 0) : i + options.every] = True
+            stretches = followers.get(k)
+            if stretches is None:
+                stretches = followers[k] = _stretches(system, paths[k], errors[k].partner, options)
+            stretches.budget = Budget(budget.left * options.piece)
+            given = stretches.budget.left
+            span = _gap(known, float(paths[k].parameter[i]), system.scene.frequency_range)
+            for piece in (curve_piece(stretches.finer, one) for one in stretches.through(i, span, by_level)):
+                found[k].append(piece)
+                known.append(piece)
+                _told_by(piece, untold)
+            budget.left -= given - stretches.budget.left
     # what the levels took is paid already
     system.work.take(sum(one.each * one.evaluations for one in followers.values()))
     return found
+
+
+class _Untold:
+    """The points of a path whose errors are not told, and whether they were tried, with the sizes of their
+    motions."""
+
+    def __init__(self, path: Path, shown: Reported, errors: Errors, harmonics: tuple[int, ...]) -> None:
+        self.path, self.size = path, shown.amplitude.max(axis=1)
+        self.size[errors.met] = np.inf
+        if errors.partner == harmonics:  # it has none
+            self.size[:] = np.inf
+        self.tried = np.zeros(len(self.size), dtype=np.bool_)
+
+    @property
+    def least(self) -> float:
+        return float(np.where(self.tried, np.inf, self.size).min(initial=np.inf))
+
+    @property
+    def smallest(self) -> int:
+        return int(np.where(self.tried, np.inf, self.size).argmin())
+
+
+def _told_by(piece: CurvePiece, untold: Sequence[_Untold]) -> None:
+    for one in untold:
+        one.size[piece.within(one.path.parameter)] = np.inf
+
+
+def _gap(known: Sequence[CurvePiece], omega: float, span: tuple[float, float]) -> tuple[float, float]:
+    """Between the frequencies next to one, below and above, that pieces are known to pass."""
+    low = max((top for piece in known if (top := float(piece.frequency.max())) < omega), default=span[0])
+    high = min((end for piece in known if (end := float(piece.frequency.min())) > omega), default=span[1])
+    return max(low, span[0]), min(high, span[1])
+
+
+def _stretches(system: System, path: Path, more: tuple[int, ...], options: PairOptions) -> Stretches:
+    """Of the partner of a path, sought from motions that lie far from it."""
+    finer = system.with_harmonics(more)
+    lifted = Lifted(finer.balance(), list(system.harmonics), list(more), options.enough, DAMPED)
+    rough = replace(options, following=options.roughly)
+    return Stretches(system, finer, lifted, path, rough, Budget(0.0))

@@ -26,6 +26,7 @@ from fcm.accuracy.partner_curve import Followed, Indices, PartnerCurve
 from fcm.accuracy.partner_pieces import CurvePiece, distinct, lengths, nearest, piece_of
 from fcm.accuracy.peaks import heights, rise_beside
 from fcm.continuation import Mark, Path
+from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.reported_quantities import Reported, reported
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.harmonic_balance.response_quantities import borne_along
@@ -100,7 +101,7 @@ def errors_along(
         own = (_itself(system, path, shown),) if known.all() and len(path.z) > 1 else ()
         more = system.harmonics
         return Errors(none, none[:, 0], known, none[0], size, of_folds, share, more, borne, borne[0], own)
-    partner = PartnerCurve(system, path, shown, more, options, budget or Budget(options.seconds))
+    partner = _partner(system, path, shown, share, options, budget or Budget(options.seconds))
     change = partner.everywhere(np.union1d(partner.apart(special), np.union1d(folds, met)))
     followed = partner.followed(change)
     compared, dofs = partner.compared(change), shown.amplitude.shape[1]
@@ -140,11 +141,41 @@ def errors_along(
         height=height,
         fold=of_folds,
         share=share,
-        partner=more,
+        partner=partner.more,
         borne=borne,
         greatest=greatest,
         pieces=partner.pieces(compared, followed),
     )
+
+
+def _partner(
+    system: System,
+    path: Path,
+    shown: Reported,
+    share: FloatArray,
+    options: PairOptions,
+    budget: Budget,
+) -> PartnerCurve:
+    """The partner of a path; with fewer harmonics where it is another curve, too dear to be followed."""
+    ports, most = system.layout.ports, Budget.elsewhere(system.work, options).left
+    more = partner_of(system.harmonics, share, ports, options)
+    partner = PartnerCurve(system, path, shown, more, options, budget)
+    if partner.alike() or _seconds_along(system, path, more) <= most:
+        return partner
+    system.work.take(partner.seconds())
+    partner.done()
+    for times in options.fewer_times:
+        more = partner_of(system.harmonics, share, ports, replace(options, times=times, named=1))
+        if _seconds_along(system, path, more) <= most:
+            break
+    other = PartnerCurve(system, path, shown, more, options, budget)
+    other.stretches.budget = Budget(0.0)  # see `elsewhere`
+    return other
+
+
+def _seconds_along(system: System, path: Path, more: tuple[int, ...]) -> float:
+    """About what following a partner takes: as many evaluations, for so many times as many harmonics."""
+    return seconds_of(system, 1, len(more)) * path.evaluations * len(more) / len(system.harmonics)
 
 
 def with_nearest(

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+from fcm.continuation.options import EventOptions, FollowOptions, NewtonOptions, StepOptions
 
 
 @dataclass(frozen=True)
@@ -34,16 +36,24 @@ class PairOptions:
         Relative change of an amplitude over that of the frequency, up to which both count.
     seconds : float
         Of work, as of `fcm.harmonic_balance.cost_model`, that following the partner may take where no
-        point of it lies normal to the curve; as much again for points that are not found, and as much again
-        for what it has elsewhere;
+        point of it lies normal to the curve; as much again for points that are not found;
     part, unnoticed : float
         but no more than this part of the work that the response itself took, or so many seconds.
+    seconds_elsewhere, elsewhere, unnoticed_elsewhere : float
+        The same of what the partner has elsewhere.
+    piece : float
+        Part of what is left of that, that following the partner from one motion may take.
+    probes, alike : int, float
+        About so many points along a curve are displaced first. Where less than this part of them is found,
+        the partner is another curve.
+    fewer_times : tuple of int
+        `times` where following it takes longer than it may, about as many evaluations as the curve did for
+        so many times as many harmonics: the first with which it does not.
+    following, roughly : FollowOptions
+        How the partner is followed; and what it has elsewhere, where corners and folds matter less, and peaks
+        not at all.
     points : float
         The same that all points may take that are moved to the partner, those that are found too.
-    step : float
-        Longest along the partner.
-    high : float
-        Part of an amplitude, to which a peak of the partner is known where many have their own.
     beyond : float
         Times the width of a stretch, how far beyond it the partner is followed.
     tries : int
@@ -112,8 +122,25 @@ class PairOptions:
     points: float = math.inf
     part: float = 0.3
     unnoticed: float = 0.4
-    step: float = 0.1
-    high: float = 1e-5
+    seconds_elsewhere: float = 8.0
+    elsewhere: float = 1.2
+    unnoticed_elsewhere: float = 0.8
+    piece: float = 0.25
+    probes: int = 24
+    alike: float = 0.5
+    fewer_times: tuple[int, ...] = (3, 2)
+    following: FollowOptions = field(
+        default_factory=lambda: FollowOptions(0.1, events=EventOptions(high_of_many=1e-5))
+    )
+    roughly: FollowOptions = field(
+        default_factory=lambda: FollowOptions(
+            0.2,
+            hasty=True,
+            newton=NewtonOptions(preliminary=1e-6),
+            step=StepOptions(turn=0.4, miss=0.1, uneven=0.5, cosine=0.8),
+            events=EventOptions(nearly_greatest=math.inf),
+        )
+    )
     beyond: float = 1.0
     tries: int = 8
     same: float = 0.02
@@ -143,7 +170,7 @@ class PairOptions:
 
 PAIR = PairOptions()
 # of harmonics that are given: the pair is for the errors alone, and nothing is traced again
-OF_GIVEN = PairOptions(part=2.0, seconds=8.0)
+OF_GIVEN = PairOptions(part=2.0, seconds=8.0, elsewhere=2.0)
 # at single points, where many harmonics take little: as many as the partner of a partner has
 AT_POINTS = PairOptions(times=PAIR.times * PAIR.again, least=PAIR.least * PAIR.again, named=PAIR.again_named)
 

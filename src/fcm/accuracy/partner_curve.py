@@ -142,6 +142,13 @@ class PartnerCurve:
             )
         return self.interpolated(np.arange(count))
 
+    def alike(self) -> bool:
+        """Whether the partner is found from most of some points evenly along the curve."""
+        even = np.arange(0, len(self.known), self.options.every)
+        some = even[:: max(len(even) // self.options.probes, 1)].copy()
+        self.find(some)
+        return bool(np.isfinite(self.change[some, 0]).mean() >= self.options.alike)
+
     def apart(self, points: Indices) -> Indices:
         """Those of points, in order, that are not next to another of them.
 

@@ -15,9 +15,8 @@ from fcm.accuracy.budget import Budget
 from fcm.accuracy.options import PairOptions
 from fcm.branches.force_level import solutions
 from fcm.branches.options import LEVEL_CURVE
-from fcm.continuation import Events, FollowOptions, Path, Status
+from fcm.continuation import Events, Path, Status
 from fcm.continuation.follow import Follower
-from fcm.continuation.options import EventOptions
 from fcm.continuation.stepper import Stepper
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.normal_plane_prolongation import Lifted
@@ -83,10 +82,10 @@ class Stretches:
         if self.budget.left <= 0.0:
             return []
         tries, count = self.options.tries, len(self.curve.z)
-        before = self._end(range(first, max(first - tries, -1), -1)) if first >= 0 else self._normal_point(0)
+        before = self._end(range(first, max(first - tries, -1), -1)) if first >= 0 else self._alike(0)
         behind = self._end(range(last, min(last + tries, count))) if last < count else None
         if before is None and behind is None:
-            behind = self._normal_point(last - 1)
+            behind = self._alike(last - 1)
         span, pieces = self._span(before, behind), list[Piece]()
         for begin, end in ((before, behind), (behind, before)):
             if begin is None or not span[0] < span[1]:
@@ -99,13 +98,20 @@ class Stretches:
             pieces += [piece] if len(piece.path.z) > 1 else []
         return pieces
 
-    def through(self, i: int, span: tuple[float, float]) -> list[Piece]:
+    def through(self, i: int, span: tuple[float, float], by_level: bool) -> list[Piece]:
         """The partner both ways from the frequency of a point, as far as it stays in a span and the work
         allows; nothing where no motion of it is found there."""
-        begin = self._normal_point(i, False) if self.budget.left > 0.0 else None
+        before = self.lifted.newton.evaluations
+        begin = self._passed_beside(i, False) if by_level else self._same_frequency(i)
+        new = int(self.lifted.newton.evaluations - before)
+        self.evaluations += new
+        self.budget.left -= new * self.each
         if begin is None:
             return []
-        pieces = [self._followed(begin, None, span, way) for way in (True, False) if self.budget.left > 0.0]
+        pieces = list[Piece]()
+        for way in (True, False):
+            if self.budget.left > 0.0 and not any(piece.path.status is Status.CLOSED for piece in pieces):
+                pieces.append(self._followed(begin, None, span, way))
         return [piece for piece in pieces if len(piece.path.z) > 1]
 
     def _end(self, places: Iterable[int]) -> End | None:
@@ -117,15 +123,22 @@ class Stretches:
                 return self._found(i)
         return None
 
-    def _normal_point(self, i: int, alike: bool = True) -> End | None:
-        """At the frequency of a point: what its motion leads to, or the nearest that the level of the forces
-        passes; alike with an odd or even number of real multipliers above 1 as it has."""
-        z, lifted, curve = self.curve.z[i], self.lifted, self.curve
-        guess = self.finer.extended(z, self.fewer)
-        if lifted.normal_point(guess, True):
-            return self._found(i)
+    def _same_frequency(self, i: int) -> End | None:
+        """At the frequency of a point: what its motion leads to."""
+        guess = self.finer.extended(self.curve.z[i], self.fewer)
+        return self._found(i) if self.lifted.normal_point(guess, True) else None
+
+    def _alike(self, i: int) -> End | None:
+        """At the frequency of a point: what its motion leads to, or one as even that the level passes."""
+        return self._same_frequency(i) or self._passed_beside(i, True)
+
+    def _passed_beside(self, i: int, alike: bool) -> End | None:
+        """At the frequency of a point the nearest motion that the level of the forces passes; alike with an
+        odd or even number of real multipliers above 1 as it has."""
+        lifted, curve = self.lifted, self.curve
+        guess = self.finer.extended(curve.z[i], self.fewer)
         even = curve.orientation[i] * np.sign(curve.direction[i, -1])
-        known = self._passed(float(z[-1]))
+        known = self._passed(float(curve.z[i, -1]))
         for one in sorted(known, key=lambda one: float(np.linalg.norm((one - guess) / lifted.newton.scale))):
             if not lifted.normal_point(one, False):
                 continue
@@ -174,8 +187,7 @@ class Stretches:
                 raise SpentError
 
         wanted = Events((float(end.z[-1]),) if end else ())
-        options = FollowOptions(self.options.step, events=EventOptions(high_of_many=self.options.high))
-        follower = Follower(stepper.problem, span, wanted, options, pay, stepper)
+        follower = Follower(stepper.problem, span, wanted, self.options.following, pay, stepper)
         if not follower.begin(begin.z, forward):
             path = follower.path(Status.STALLED)
         else:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fcm.accuracy.budget import Budget
+from fcm.accuracy.budget import Budget, share_of
 from fcm.accuracy.embedded_pair import Errors, errors_along, with_nearest
 from fcm.accuracy.options import OF_GIVEN, PAIR, REFINEMENT, PairOptions, RefinementOptions
 from fcm.accuracy.outline import Outline, near, outlined, with_more
@@ -151,7 +151,8 @@ def judged(
     system, response, shown = outline.system, outline.traced, outline.shown
     paths = response.branches.paths
     rest = list(zip(paths, shown, strict=True))[len(known) :]
-    shares = Budget.of(system.work, options).shares(len(rest))
+    part = share_of([path.evaluations for path in paths], len(known))
+    shares = Budget.of(system.work, options, part).shares(len(rest))
     new = [errors_along(system, *one, options, share) for one, share in zip(rest, shares, strict=True)]
     errors = with_nearest(system, paths, shown, (*known, *new), len(known), options)
     own = system, response, shown, outline.seconds, errors
@@ -161,8 +162,8 @@ def judged(
     heights = np.array([one.amplitude.max(axis=0) for one in shown])
     height, peak = heights.max(axis=0), _peaks(heights, errors)
     matter = peak[height > REFINEMENT.nothing * height.max()]
-    every = np.concatenate((matter, *(one.fold for one in errors)))
-    worst, told = float(every.max(initial=0.0)), float(every[np.isfinite(every)].max(initial=0.0))
+    each = np.concatenate((matter, *(one.fold for one in errors)))
+    worst, told = float(each.max(initial=0.0)), float(each[np.isfinite(each)].max(initial=0.0))
     return Accurate(*own, peak, worst, told, accuracy)
 
 
