@@ -20,9 +20,9 @@ except ImportError:  # run as a program
     from truth import MANY, SAME, Truth, exact, scene
 
 from fcm.accuracy.options import PAIR
-from fcm.accuracy.refinement import estimated
+from fcm.accuracy.refinement import with_estimated_errors
 from fcm.continuation import FollowOptions, Mark, follow
-from fcm.harmonic_balance.reported_quantities import reported
+from fcm.harmonic_balance.reported_quantities import reported_quantities
 from fcm.harmonic_balance.system import System
 
 CASES = (
@@ -38,7 +38,7 @@ MOVING = 1e-3  # of the greatest amplitude at a point, from which on a degree of
 
 def points(system, number):
     """(estimate, truth) of amplitudes at points of the system's curves, and how many could not be told."""
-    found, truth = estimated(system, 0.0), Truth(system)
+    found, truth = with_estimated_errors(system, 0.0), Truth(system)
     pairs, silent, alone, checked = [], 0, 0, 0
     for path, shown, errors in zip(found.traced.branches.paths, found.shown, found.errors, strict=True):
         at = np.linspace(1, len(path.z) - 2, number).astype(int)
@@ -67,12 +67,12 @@ def peaks(case, harmonics):
     where a branch of fewer harmonics leads to it and the exact motion is there, too; for all of these.
     """
     system = System(case)
-    true = estimated(system.with_harmonics(MANY), 0.0)
+    true = with_estimated_errors(system.with_harmonics(MANY), 0.0)
     height = np.max([one.amplitude.max(axis=0) for one in true.shown], axis=0)
-    few = [estimated(system.with_harmonics(one), 0.0) for one in harmonics]
+    few = [with_estimated_errors(system.with_harmonics(one), 0.0) for one in harmonics]
     for found in few:
         for path, shown in zip(found.traced.branches.paths, found.shown, strict=True):
-            if (shown.amplitude.max(axis=0) > PAIR.rival * height).any():
+            if (shown.amplitude.max(axis=0) > PAIR.rival_fraction * height).any():
                 height = np.maximum(height, beyond(found.system, path, shown.amplitude))
     for found in few:
         now = np.max([shown.amplitude.max(axis=0) for shown in found.shown], axis=0)
@@ -88,10 +88,10 @@ def beyond(system, path, amplitude):
         return np.zeros(amplitude.shape[1])
     span = system.scene.frequency_range
     sides = [
-        follow(truth.many.balance(), z, span, options=FollowOptions(STEP), forward=forward)
+        follow(truth.many.new_balance(), z, span, options=FollowOptions(STEP), forward=forward)
         for forward in (True, False)
     ]
-    return np.max([reported(truth.many, side).amplitude.max(axis=0) for side in sides], axis=0)
+    return np.max([reported_quantities(truth.many, side).amplitude.max(axis=0) for side in sides], axis=0)
 
 
 def summary(pairs):

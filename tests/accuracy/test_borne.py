@@ -10,7 +10,7 @@ import pytest
 import fcm
 from fcm.accuracy.contact_load_errors import relative
 from fcm.accuracy.options import PAIR
-from fcm.accuracy.refinement import estimated
+from fcm.accuracy.refinement import with_estimated_errors
 from fcm.continuation import Mark
 from fcm.harmonic_balance.response_quantities import borne_along
 from fcm.harmonic_balance.system import System
@@ -44,7 +44,7 @@ def exactly(truth, z):
 
 def pairs(system, number):
     """(told, true) of each output, and how many of the points are told."""
-    found, truth, both, told = estimated(system, 0.0), Truth(system), [[], [], [], []], []
+    found, truth, both, told = with_estimated_errors(system, 0.0), Truth(system), [[], [], [], []], []
     for path, errors in zip(found.traced.branches.paths, found.errors, strict=True):
         own = borne_along(system, path.z)
         at = np.linspace(1, len(path.z) - 2, number).astype(int)
@@ -128,7 +128,7 @@ def test_of_nothing_an_error_is_nothing_or_infinite():
 
 def test_where_nothing_slips_or_opens_there_is_no_error():
     for preload in (100, -60):
-        found = estimated(System(scene("yang1998", preload)), 0.0)
+        found = with_estimated_errors(System(scene("yang1998", preload)), 0.0)
         assert (found.errors[0].borne == 0.0).all() and (found.errors[0].greatest == 0.0).all()
 
 

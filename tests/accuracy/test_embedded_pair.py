@@ -9,11 +9,11 @@ import pytest
 from fcm.accuracy.budget import Budget, share_of
 from fcm.accuracy.embedded_pair import errors_along
 from fcm.accuracy.options import PAIR, VALIDITY
-from fcm.accuracy.refinement import estimated
-from fcm.accuracy.stability_validity import astray
+from fcm.accuracy.refinement import with_estimated_errors
+from fcm.accuracy.stability_validity import on_other_branch
 from fcm.continuation import Mark, Status
 from fcm.harmonic_balance.system import System
-from fcm.harmonic_balance.work_budget import Work
+from fcm.harmonic_balance.work_budget import WorkCount
 from fcm.response import trace
 from fcm.response.exact import trace_exact
 from fcm.scene import load_scene, scene_from_dict
@@ -35,8 +35,8 @@ EXACT_FOLDS = {5: (1.239829, 1.193559)}  # of the exact motion: `trace_exact`, t
 def test_where_nothing_slips_or_opens_there_is_no_error():
     for preload in (100, -60):
         for harmonics in ((1,), (1, 2, 3)):
-            found = estimated(System(scene("yang1998", preload), harmonics), 0.0)
-            assert found.worst == 0.0
+            found = with_estimated_errors(System(scene("yang1998", preload), harmonics), 0.0)
+            assert found.max_error == 0.0
             assert (found.errors[0].amplitude == 0.0).all()
             assert (found.errors[0].truncation == 0.0).all()
 
@@ -65,10 +65,10 @@ def test_points_at_which_harmonics_left_out_meet_a_mode_beside_the_exact_motion(
 @pytest.mark.parametrize("preload", [20, 10, 5, 2, 0, -5, -20])
 def test_peaks_beside_those_of_many_harmonics(preload):
     system = System(scene("yang1998", preload))
-    many = estimated(system.with_harmonics(tuple(range(1, 22))), 0.0)
+    many = with_estimated_errors(system.with_harmonics(tuple(range(1, 22))), 0.0)
     height = many.shown[0].amplitude.max(axis=0)
     for harmonics in ((1,), (1, 2), (1, 2, 3)):
-        found = estimated(system.with_harmonics(harmonics), 0.0)
+        found = with_estimated_errors(system.with_harmonics(harmonics), 0.0)
         true = np.abs(height / found.shown[0].amplitude.max(axis=0) - 1.0)
         for known, is_really in zip(found.peak, true, strict=True):
             if is_really > 1e-3:
@@ -78,7 +78,7 @@ def test_peaks_beside_those_of_many_harmonics(preload):
 
 
 def test_folds_beside_those_of_the_exact_motion():
-    found = estimated(System(scene("yang1998", 5)), 0.0)
+    found = with_estimated_errors(System(scene("yang1998", 5)), 0.0)
     (path,) = found.traced.branches.paths
     folds = path.parameter[path.where(Mark.FOLD)]
     true = np.abs(np.array(EXACT_FOLDS[5]) / folds - 1.0)
@@ -89,7 +89,10 @@ def test_folds_beside_those_of_the_exact_motion():
 def test_the_error_of_a_closed_branch_of_twice_the_true_height():
     """That of one harmonic of `isola`, where no point of more harmonics lies normal to the curve."""
     system = System(scene("isola"))
-    found, many = estimated(system, 0.0), estimated(system.with_harmonics(up_to(15)), 0.0)
+    found, many = (
+        with_estimated_errors(system, 0.0),
+        with_estimated_errors(system.with_harmonics(up_to(15)), 0.0),
+    )
     height, true = (
         np.max([one.amplitude.max(axis=0) for one in each.shown], axis=0) for each in (found, many)
     )
@@ -102,7 +105,7 @@ def test_errors_and_multipliers_do_not_depend_on_the_curve_before():
     """What the contacts of one curve were looked at with is taken again for the next, in the same thread."""
 
     def judged(preload):
-        found = estimated(System(scene("yang1998", preload)), 0.0)
+        found = with_estimated_errors(System(scene("yang1998", preload)), 0.0)
         (path,) = found.traced.branches.paths
         top = found.shown[0].amplitude[:, 0].argmax()
         return found.errors[0].amplitude, found.peak, multipliers(found.system, path.z[top])
@@ -117,7 +120,7 @@ def test_errors_and_multipliers_do_not_depend_on_the_curve_before():
 
 def test_errors_do_not_depend_on_the_direction():
     """But for the points between which they are interpolated, and the harmonics shared between them."""
-    found = estimated(System(scene("gap5"), (1, 2, 3)), 0.0)
+    found = with_estimated_errors(System(scene("gap5"), (1, 2, 3)), 0.0)
     (path,) = found.traced.branches.paths
     back = errors_along(found.system, path.backwards())
     assert back.peak == pytest.approx(found.errors[0].peak, rel=0.1)
@@ -127,7 +130,7 @@ def test_errors_do_not_depend_on_the_direction():
 
 
 def test_a_fold_at_a_corner_has_an_error_too():
-    found = estimated(System(scene("fam2"), (1, 2, 3, 4, 5)), 0.0)
+    found = with_estimated_errors(System(scene("fam2"), (1, 2, 3, 4, 5)), 0.0)
     (errors,) = found.errors
     assert len(errors.fold) == 2
     assert (errors.fold < 1e-4).all()
@@ -136,7 +139,7 @@ def test_a_fold_at_a_corner_has_an_error_too():
 def test_an_unstable_closed_branch_has_the_error_of_the_exact_motion():
     """Its peak lies beside a fold: Newton at once leads elsewhere, by and by to it."""
     system = System(scene("shroud", 10))
-    found, truth = estimated(system, 0.0), Truth(system)
+    found, truth = with_estimated_errors(system, 0.0), Truth(system)
     path, amplitude = max(
         (
             (path, shown.amplitude)
@@ -160,7 +163,7 @@ def test_an_unstable_closed_branch_has_the_error_of_the_exact_motion():
 def test_the_errors_of_peaks_of_irregular_curves_are_those_of_the_exact_motion(seed, harmonics, span, dofs):
     """One is a corner that moves along its curve; the others lie where each place is corrected by chance."""
     one = replace(random_scene(seed), harmonics=harmonics, frequency_range=span)
-    found = estimated(System(one, harmonics), 0.0)
+    found = with_estimated_errors(System(one, harmonics), 0.0)
     problem, known = OrbitProblem(one), []
     for d in dofs:
         now = found.shown[0].amplitude[:, d].max()
@@ -171,7 +174,10 @@ def test_the_errors_of_peaks_of_irregular_curves_are_those_of_the_exact_motion(s
 def test_what_hardly_moves_says_nothing_of_what_moves():
     """Rounding alone moves v, by one part in 1e16 of u."""
     system = System(load_scene("extreme/no-normal-motion"), (1, 2, 3))
-    found, many = estimated(system, 0.0), estimated(system.with_harmonics((1, 3, 5, 7, 9)), 0.0)
+    found, many = (
+        with_estimated_errors(system, 0.0),
+        with_estimated_errors(system.with_harmonics((1, 3, 5, 7, 9)), 0.0),
+    )
     u = list(system.scene.modal.dofs).index("u")
     top, true = (max(one.amplitude[:, u].max() for one in each.shown) for each in (found, many))
     assert abs(top / true - 1.0) <= 3.0 * found.peak[u] <= 3e-4
@@ -184,19 +190,19 @@ def test_what_hardly_moves_says_nothing_of_what_moves():
 def test_beside_what_is_astray_many_harmonics_have_no_motion(seed, harmonics):
     """Nor is it called stable in a response. A stretch is astray by how many points it has."""
     one = replace(random_scene(seed), harmonics=None, max_step=0.03)
-    found = estimated(System(one, harmonics), 0.0)
+    found = with_estimated_errors(System(one, harmonics), 0.0)
     (path,), (errors,) = found.traced.branches.paths, found.errors
-    far = np.flatnonzero(astray(errors.believed))
+    far = np.flatnonzero(on_other_branch(errors.on_same_branch))
     assert len(far) > 64
     assert (
-        np.mean(errors.truncation[far] <= VALIDITY.believed) < 0.1
+        np.mean(errors.truncation[far] <= VALIDITY.max_error) < 0.1
     )  # from what else there is at that frequency
     truth = Truth(found.system)
     some = far[np.linspace(0, len(far) - 1, 12).astype(int)]
     lost = [truth.beside(path.z[i], path.direction[i]) is None for i in some]
     assert np.mean(lost) > 0.9
     (curve,) = trace(one, harmonics=harmonics).curves
-    beyond = np.isfinite(curve.frequency) & ~(curve.truncation_error <= VALIDITY.believed)
+    beyond = np.isfinite(curve.frequency) & ~(curve.truncation_error <= VALIDITY.max_error)
     assert beyond.sum() > 64
     assert not (curve.stable[beyond] == 1.0).any()
 
@@ -204,9 +210,9 @@ def test_beside_what_is_astray_many_harmonics_have_no_motion(seed, harmonics):
 def test_a_branch_that_more_harmonics_do_not_have_is_as_far_as_the_motion_there():
     """The closed branch of one harmonic has up to ten times the amplitude of the motion from rest."""
     one = random_scene(8)
-    found = estimated(System(one), 0.0)
+    found = with_estimated_errors(System(one), 0.0)
     path, shown, errors = found.traced.branches.paths[1], found.shown[1], found.errors[1]
-    assert path.status is Status.CLOSED and not errors.met.any()
+    assert path.status is Status.CLOSED and not errors.is_same_curve.any()
     assert np.isfinite(errors.amplitude).all()
     for i in range(5, len(path.z), 40):
         motion = periodic(one, float(path.parameter[i])).measure.amplitude
@@ -222,7 +228,7 @@ def test_a_branch_that_more_harmonics_do_not_have_is_as_far_as_the_motion_there(
 def test_where_curve_and_partner_cross_the_error_is_that_of_the_partner(name, omegas):
     """Their amplitudes are the same to 6e-4 where the exact motion is 8e-2 off."""
     one = load_scene(f"extreme/{name}")
-    found = estimated(System(one), 0.0)
+    found = with_estimated_errors(System(one), 0.0)
     (path,), (shown,), (errors,) = found.traced.branches.paths, found.shown, found.errors
     for omega in omegas:
         i = int(np.abs(path.parameter - omega).argmin())
@@ -275,7 +281,7 @@ def test_what_is_lost_beside_what_is_not_believed_is_not_called_stable():
 @pytest.mark.slow
 def test_a_row_of_contacts_in_partial_slip_is_told_of_everywhere():
     """Of one harmonic, by more than a tenth; the peaks beside those of six harmonics."""
-    few, many = (estimated(System(strip(), tuple(up_to(count))), 0.0) for count in (1, 6))
+    few, many = (with_estimated_errors(System(strip(), tuple(up_to(count))), 0.0) for count in (1, 6))
     (errors,) = few.errors
     assert np.isfinite(errors.truncation).mean() > 0.9
     heights = np.array(
@@ -289,10 +295,10 @@ def test_a_row_of_contacts_in_partial_slip_is_told_of_everywhere():
 def test_points_are_moved_to_the_partner_as_the_work_allows():
     """An interrupted curve is not looked at for longer than somebody waits."""
     system = System(strip(), (1,))
-    outline = estimated(system, np.inf)
+    outline = with_estimated_errors(system, np.inf)
     path = outline.traced.branches.paths[0]
     every = errors_along(system, path)
-    none = replace(PAIR, seconds=0.0, points=0.0, dearest=0)
+    none = replace(PAIR, max_seconds=0.0, max_point_seconds=0.0, max_second_unknowns=0)
     some = errors_along(system, path, options=none)
     assert np.isfinite(every.truncation).mean() > 0.9
     told = np.isfinite(some.truncation)
@@ -305,8 +311,8 @@ def test_a_curve_of_which_more_harmonics_have_another_is_told_of():
     The true errors are those to the nearest motion of 15 harmonics, of which all branches were traced from
     levels of the forces: 3.7 % or less of a tenth of the points, 12.6 % of half, 55 % of nine tenths.
     """
-    found = estimated(System(random_scene(4), (1, 2, 3)), 1e-2)
-    beside = np.concatenate([one.met for one in found.errors])
+    found = with_estimated_errors(System(random_scene(4), (1, 2, 3)), 1e-2)
+    beside = np.concatenate([one.is_same_curve for one in found.errors])
     told = np.concatenate([one.truncation for one in found.errors])
     assert beside.mean() < 0.2 and np.isfinite(told).mean() > 0.9
     less, half, most = np.nanquantile(told, (0.1, 0.5, 0.9))
@@ -316,8 +322,8 @@ def test_a_curve_of_which_more_harmonics_have_another_is_told_of():
 
 def test_the_partner_of_a_further_branch_takes_no_more_than_its_part_of_the_work():
     """A branch that took a tenth of the evaluations is not looked at as long as all of them are."""
-    work, part = Work(), share_of([900, 100], 1)
-    work.take(1.0)
+    work, part = WorkCount(), share_of([900, 100], 1)
+    work.add(1.0)
     (one,) = Budget.of(work, PAIR, part).shares(1)
-    assert one.left == pytest.approx(0.1 * max(PAIR.part, PAIR.unnoticed))
-    assert Budget.elsewhere(work, PAIR, part).left == pytest.approx(0.1 * PAIR.elsewhere)
+    assert one.seconds == pytest.approx(0.1 * max(PAIR.work_fraction, PAIR.min_seconds))
+    assert Budget.elsewhere(work, PAIR, part).seconds == pytest.approx(0.1 * PAIR.work_fraction_elsewhere)

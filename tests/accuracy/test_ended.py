@@ -1,6 +1,6 @@
 """Points beside a fold that further harmonics move past them: the branch has ended there."""
 
-from fcm.accuracy.refinement import given
+from fcm.accuracy.refinement import with_given_harmonics
 from fcm.continuation import Mark
 from fcm.harmonic_balance.system import System
 from fcm.scene import scene_from_dict
@@ -31,16 +31,16 @@ def test_nothing_is_told_of_what_further_harmonics_have_no_branch_of():
             "response": {"frequency": [0.27, 0.285]},
         }
     )  # fmt: skip
-    found = given(System(one, (*range(1, 10), 11, 12)))
+    found = with_given_harmonics(System(one, (*range(1, 10), 11, 12)))
     ((path, errors),) = _with_a_fold(found.traced.branches.paths, found.errors)
-    many = given(System(one, tuple(range(1, 25))))
+    many = with_given_harmonics(System(one, tuple(range(1, 25))))
     ((finer, _),) = _with_a_fold(many.traced.branches.paths, many.errors)
     end = finer.parameter.max()
     assert end < 0.996 * path.parameter.max()
     beyond = path.parameter > 1.0001 * end
     assert beyond.sum() > 20
-    assert not errors.met[beyond].any()
-    assert errors.met[~beyond].mean() > 0.5
+    assert not errors.is_same_curve[beyond].any()
+    assert errors.is_same_curve[~beyond].mean() > 0.5
 
 
 def _with_a_fold(paths, errors):

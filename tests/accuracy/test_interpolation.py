@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fcm.accuracy.curve_distance import Filled, places, steepness
+from fcm.accuracy.curve_distance import PartialInterpolant, places, steepness
 
 ALL = np.arange(9)
 
@@ -14,7 +14,7 @@ def filled(known, values):
     place = np.array([0.0, 0.4, 1.0, 1.1, 2.0, 2.5, 3.0, 3.7, 4.0])
     value = values(place)
     flags = np.isin(ALL, known)
-    return place, value, Filled(place, value * flags[:, None], flags.view(np.uint8))
+    return place, value, PartialInterpolant(place, value * flags[:, None], flags.view(np.uint8))
 
 
 def parabolas(x):
@@ -25,7 +25,7 @@ def parabolas(x):
 def test_parabolas_are_met_exactly_where_there_are_neighbours(known):
     _, value, between = filled(known, parabolas)
     out = np.empty((9, 3))
-    between.at(ALL, out)
+    between.interpolate(ALL, out)
     inner = slice(known[1], known[-2] + 1)
     assert np.abs(out[inner] - value[inner]).max() < 1e-12
     assert np.abs(out - value)[known].max() == 0.0
@@ -35,14 +35,14 @@ def test_parabolas_are_met_exactly_where_there_are_neighbours(known):
 def test_straight_lines_are_met_exactly_also_beyond_the_known_points(known):
     _, value, between = filled(known, lambda x: np.column_stack((2.0 - x, 3.0 * x)))
     out = np.empty((9, 2))
-    between.at(ALL, out)
+    between.interpolate(ALL, out)
     assert np.abs(out - value).max() < 1e-14
 
 
 def test_one_known_point_speaks_for_all():
     _, value, between = filled([5], parabolas)
     out = np.empty((9, 3))
-    between.at(ALL, out)
+    between.interpolate(ALL, out)
     assert (out == value[5]).all()
 
 
@@ -50,9 +50,9 @@ def test_beside_a_gap_the_slope_is_that_of_the_other_side():
     """A straight line stays one, and nothing is said of what is next to the missing one."""
     place, value, between = filled([0, 2, 4, 6, 8], lambda x: np.column_stack((x, 2.0 * x)))
     value[6] = np.nan
-    between = Filled(place, value, np.isin(ALL, [0, 2, 4, 6, 8]).view(np.uint8))
+    between = PartialInterpolant(place, value, np.isin(ALL, [0, 2, 4, 6, 8]).view(np.uint8))
     out = np.empty((9, 2))
-    between.at(ALL, out)
+    between.interpolate(ALL, out)
     assert np.isnan(out[[5, 6, 7]]).all()
     assert np.abs(out[:5, 0] - place[:5]).max() < 1e-15
 
@@ -61,20 +61,20 @@ def test_what_is_off_is_unforeseen_and_so_is_what_comes_or_goes():
     value = np.ones((9, 2))
     value[[1, 3], 1] = 1.3, 1.05
     value[5] = np.nan
-    between = Filled(np.arange(9.0), value, np.ones(9, dtype=np.uint8))
+    between = PartialInterpolant(np.arange(9.0), value, np.ones(9, dtype=np.uint8))
     middle = np.array([1, 3, 5, 5, 7])
     points = np.array((middle - 1, middle, middle + 1))
     expected = np.ones((5, 2))
     expected[[2, 4]] = np.nan
     out = np.zeros(5, dtype=np.uint8)
-    between.unforeseen(points, expected, np.ones(9), 0.2, 1e-6, out)
+    between.misses_expected(points, expected, np.ones(9), 0.2, 1e-6, out)
     assert out.tolist() == [1, 0, 0, 1, 1]
     expected[:] = 1.0
     expected[1, 0] = 0.95  # of the first value, which the weight makes large
     weight, points = np.where(np.arange(9) == 3, 10.0, 1.0), np.array([[2], [3], [4]])
-    between.unforeseen(points, expected[1:2], weight, 0.01, 0.0, out[:1])
+    between.misses_expected(points, expected[1:2], weight, 0.01, 0.0, out[:1])
     assert out[0] == 1
-    between.unforeseen(points, expected[1:2], weight, 0.2, 1.0, out[:1])
+    between.misses_expected(points, expected[1:2], weight, 0.2, 1.0, out[:1])
     assert out[0] == 0
 
 

@@ -9,16 +9,16 @@ import pytest
 
 from fcm.accuracy import outline, refinement
 from fcm.accuracy.options import RefinementOptions
-from fcm.accuracy.outline import Outline, outlined
-from fcm.accuracy.refinement import accurate, enlarged, estimated, judged
+from fcm.accuracy.outline import UncheckedResponse, unchecked_response
+from fcm.accuracy.refinement import enlarged, refined_response, with_errors, with_estimated_errors
 from fcm.branches import force_level, shared_levels, trace
 from fcm.continuation import follow
 from fcm.continuation.all_branches import contains
 from fcm.harmonic_balance.cost_model import seconds_of
-from fcm.harmonic_balance.modal_condensation import OPTIONS
+from fcm.harmonic_balance.modal_condensation import CONDENSATION
 from fcm.harmonic_balance.options import HARMONIC_BALANCE
 from fcm.harmonic_balance.system import System
-from fcm.harmonic_balance.work_budget import TooLongError
+from fcm.harmonic_balance.work_budget import WorkLimitError
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 
@@ -37,10 +37,10 @@ def test_a_linear_response_takes_one_harmonic_and_one_pass(monkeypatch):
     passes = []
     traced = outline.traced
     monkeypatch.setattr(outline, "traced", lambda *args: passes.append(args) or traced(*args))
-    found = accurate(System(scene("yang1998", 100)), 1e-6)
+    found = refined_response(System(scene("yang1998", 100)), 1e-6)
     assert found.system.harmonics == (1,)
     assert found.reached
-    assert found.worst == 0.0
+    assert found.max_error == 0.0
     assert len(passes) == 1
 
 
@@ -48,9 +48,9 @@ def test_a_linear_response_takes_one_harmonic_and_one_pass(monkeypatch):
 @pytest.mark.parametrize("preload", EXACT)
 def test_a_blade_to_one_percent(preload):
     one = scene("shroud", preload)
-    found = accurate(System(one), 1e-2)
+    found = refined_response(System(one), 1e-2)
     assert found.reached
-    assert found.worst <= 1e-2
+    assert found.max_error <= 1e-2
     at = list(one.modal.dofs).index("40z")
     # closed branches with light preloads are higher at 5500 rad/s and more, and unstable all along
     heights = [
@@ -64,7 +64,7 @@ def test_a_blade_to_one_percent(preload):
 @pytest.mark.parametrize("preload", [300, 100])
 def test_a_blade_to_a_tenth_of_a_percent(preload):
     one = scene("shroud", preload)
-    found = accurate(System(one), 1e-3)
+    found = refined_response(System(one), 1e-3)
     assert found.reached
     at = list(one.modal.dofs).index("40z")
     height = max(shown.amplitude[:, at].max() for shown in found.shown)
@@ -75,9 +75,9 @@ def test_a_blade_to_a_tenth_of_a_percent(preload):
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-3, 1e-4])
 @pytest.mark.parametrize("case", [("yang1998", 5), ("yang1998", -5), ("gap5", None), ("stuck_mean", None)])
 def test_peaks_are_as_accurate_as_was_asked_for(case, accuracy):
-    found = accurate(System(scene(*case)), accuracy)
+    found = refined_response(System(scene(*case)), accuracy)
     assert found.reached
-    many = estimated(System(scene(*case), tuple(range(1, 32))), 0.0)
+    many = with_estimated_errors(System(scene(*case), tuple(range(1, 32))), 0.0)
     true = many.shown[0].amplitude.max(axis=0)
     assert np.abs(found.shown[0].amplitude.max(axis=0) / true - 1.0).max() < 1.5 * accuracy
 
@@ -96,14 +96,14 @@ def test_a_degree_of_freedom_that_never_moves_changes_no_harmonics():
     )
     forces = tuple(replace(one, direction=np.append(one.direction, 0.0)) for one in alone.forces)
     beside = replace(alone, modal=modal, contacts=contacts, forces=forces)
-    found, other = (accurate(System(one), 1e-3) for one in (alone, beside))
+    found, other = (refined_response(System(one), 1e-3) for one in (alone, beside))
     assert len(found.system.harmonics) > 1
     assert other.system.harmonics == found.system.harmonics
 
 
 def test_harmonics_are_chosen_by_need():
     """At n_0 = -5 the ninth meets the mode at 10 rad/s; the fourth to eighth do next to nothing."""
-    found = accurate(System(scene("yang1998", -5)), 2e-3)
+    found = refined_response(System(scene("yang1998", -5)), 2e-3)
     assert 9 in found.system.harmonics
     assert len(found.system.harmonics) < 9
 
@@ -111,7 +111,7 @@ def test_harmonics_are_chosen_by_need():
 def test_folds_that_cannot_be_told_ask_for_no_more_harmonics(monkeypatch):
     """The same harmonics as where they can, and this is said."""
     system = System(scene("yang1998", 5))
-    known, real = accurate(system, 1e-2), refinement.with_nearest
+    known, real = refined_response(system, 1e-2), refinement.with_nearest
 
     def untold(*args):
         return tuple(
@@ -120,34 +120,34 @@ def test_folds_that_cannot_be_told_ask_for_no_more_harmonics(monkeypatch):
         )
 
     monkeypatch.setattr(refinement, "with_nearest", untold)
-    found = accurate(system, 1e-2)
+    found = refined_response(system, 1e-2)
     assert known.reached and not found.reached
     assert found.system.harmonics == known.system.harmonics
-    assert np.isnan(found.worst) and not found.further
+    assert np.isnan(found.max_error) and not found.further
     assert np.count_nonzero(np.isnan(found.folds)) == 1
-    assert found.told == max(found.peak.max(), np.nanmax(found.folds)) <= 1e-2
+    assert found.max_known_error == max(found.peak.max(), np.nanmax(found.folds)) <= 1e-2
 
 
 def test_levels_are_followed_with_the_last_harmonics_and_lead_to_no_branch_that_is_missed(monkeypatch):
     """The rounds between go on from the branches of fewer harmonics; every solution is on a branch."""
     followed, passes = [], []
-    found_at, led = trace.found_at, outline.traced_from
+    found_at, led = trace.solutions_at, outline.traced_from
     monkeypatch.setattr(
-        trace, "found_at", lambda one, *a: followed.append(one.harmonics) or found_at(one, *a)
+        trace, "solutions_at", lambda one, *a: followed.append(one.harmonics) or found_at(one, *a)
     )
     monkeypatch.setattr(outline, "traced_from", lambda one, *a: passes.append(one.harmonics) or led(one, *a))
-    found = accurate(System(scene("yang1998", 5)), 1e-4)
+    found = refined_response(System(scene("yang1998", 5)), 1e-4)
     last = found.system.harmonics
     assert found.reached and len(passes) == 2 and passes[-1] == last
     assert followed == [(1,), last]
-    for omega in force_level.looked_at(found.system):
+    for omega in force_level.level_frequencies(found.system):
         for z in force_level.solutions(found.system, omega).solutions:
-            assert any(contains(path, z, found.system.balance()) for path in found.traced.branches.paths)
+            assert any(contains(path, z, found.system.new_balance()) for path in found.traced.branches.paths)
 
 
 def test_a_branch_that_fewer_harmonics_do_not_lead_to_is_found_by_the_level_at_last(monkeypatch):
     """As if there were no other way to a closed branch: that is another to be chosen for, too."""
-    known = accurate(System(scene("isola")), 1e-2)
+    known = refined_response(System(scene("isola")), 1e-2)
     led, ahead = outline.traced_from, refinement.required_harmonics
     asked: list[int] = []
 
@@ -160,7 +160,7 @@ def test_a_branch_that_fewer_harmonics_do_not_lead_to_is_found_by_the_level_at_l
     monkeypatch.setattr(
         refinement, "required_harmonics", lambda one, *a: asked.append(len(one.shown)) or ahead(one, *a)
     )
-    found = accurate(System(scene("isola")), 1e-2)
+    found = refined_response(System(scene("isola")), 1e-2)
     assert asked == [1] and len(known.shown) == 2
     assert found.reached and found.system.harmonics == known.system.harmonics
     assert found.peak == pytest.approx(known.peak, rel=1e-3)
@@ -171,16 +171,16 @@ def test_a_branch_that_fewer_harmonics_do_not_lead_to_is_found_by_the_level_at_l
 
 def test_where_the_levels_take_too_long_the_response_is_that_of_fewer_harmonics_and_says_so(monkeypatch):
     system = System(scene("yang1998", 5))
-    last = accurate(system, 1e-4).system.harmonics
+    last = refined_response(system, 1e-4).system.harmonics
 
     def too_long(one, before):
         if one.harmonics == last:
-            raise TooLongError
+            raise WorkLimitError
         return with_levels(one, before)
 
     with_levels = outline.with_levels
     monkeypatch.setattr(outline, "with_levels", too_long)
-    found = accurate(System(system.scene), 1e-4)
+    found = refined_response(System(system.scene), 1e-4)
     assert found.further == last and found.begun and not found.reached
     assert {1} < set(found.system.harmonics) < set(last)
     assert all(one.harmonics == found.system.harmonics for one in found.traced.found)
@@ -189,11 +189,11 @@ def test_where_the_levels_take_too_long_the_response_is_that_of_fewer_harmonics_
 def test_what_has_been_taken_counts_in_what_takes_too_long(monkeypatch):
     """A round that alone is not too long is not begun after others."""
     system = System(scene("yang1998", 5))
-    enough, taken = accurate(system, 1e-4), system.work.seconds
+    enough, taken = refined_response(system, 1e-4), system.work.seconds
     assert enough.reached and not enough.begun
-    monkeypatch.setattr(outline, "PATIENCE", taken)
-    monkeypatch.setattr(Outline, "seconds_with", lambda *_: 0.9 * taken)
-    found = accurate(System(system.scene), 1e-4)
+    monkeypatch.setattr(outline, "MAX_SECONDS", taken)
+    monkeypatch.setattr(UncheckedResponse, "seconds_with", lambda *_: 0.9 * taken)
+    found = refined_response(System(system.scene), 1e-4)
     assert not found.reached and not found.begun
     assert set(found.system.harmonics) > {1}
     assert set(found.further) > set(found.system.harmonics)
@@ -202,7 +202,7 @@ def test_what_has_been_taken_counts_in_what_takes_too_long(monkeypatch):
 def test_what_is_taken_is_levels_branches_and_error_points(monkeypatch):
     """Of levels and branches as counted from outside, by evaluations of balances of their sizes; curves of
     folds, which are followed in the level as well, take no more than these again."""
-    shared_levels.forget()  # those that another test has followed
+    shared_levels.clear()  # those that another test has followed
     system = System(scene("yang1998", 5), (1, 2, 3))
     paths = {}
     for module in (force_level, trace):
@@ -211,12 +211,12 @@ def test_what_is_taken_is_levels_branches_and_error_points(monkeypatch):
         monkeypatch.setattr(
             module, "follow", lambda *a, keep=keep, **k: keep(path := follow(*a, **k)) or path
         )
-    found = outlined(system)
+    found = unchecked_response(system)
     assert paths[force_level] and paths[trace]
     evaluations = sum(path.evaluations for some in paths.values() for path in some)
     counted = seconds_of(system, evaluations, 3)
     assert counted <= found.seconds < 2.0 * counted
-    judged(found, 1e-3)
+    with_errors(found, 1e-3)
     assert system.work.seconds > found.seconds
     assert found.seconds_with((1, 2, 3)) == pytest.approx(found.seconds)
 
@@ -239,8 +239,8 @@ def test_an_evaluation_takes_what_was_measured(contacts, modes, taken):
     sizes = SimpleNamespace(
         scene=SimpleNamespace(contacts=[None] * contacts, directions_of_contact=2),
         linear=SimpleNamespace(natural=[1.0] * modes),
-        yields=np.full(modes, np.inf),
-        condensing=OPTIONS,
+        modal_compliance=np.full(modes, np.inf),
+        condensation=CONDENSATION,
         options=HARMONIC_BALANCE,
     )
     told = [1e6 * seconds_of(sizes, 1, harmonics) for harmonics in (3, 9, 20, 50)]
@@ -250,14 +250,14 @@ def test_an_evaluation_takes_what_was_measured(contacts, modes, taken):
 def test_a_round_that_takes_longer_than_was_foreseen_is_given_up(monkeypatch):
     """And that of fewer harmonics before it stays, with its error."""
     system = System(scene("yang1998", 5))
-    first = outlined(system)
-    monkeypatch.setattr(Outline, "seconds_with", lambda *_: 0.0)
-    monkeypatch.setattr(outline, "PATIENCE", 1.01 * first.seconds)
-    found = accurate(System(system.scene), 1e-3)
+    first = unchecked_response(system)
+    monkeypatch.setattr(UncheckedResponse, "seconds_with", lambda *_: 0.0)
+    monkeypatch.setattr(outline, "MAX_SECONDS", 1.01 * first.seconds)
+    found = refined_response(System(system.scene), 1e-3)
     assert found.begun and set(found.further) > {1, 2, 3}
     assert found.system.harmonics == (1,) and not found.reached
-    assert found.worst == pytest.approx(0.062, rel=0.1)
-    assert found.system.work.most == np.inf
+    assert found.max_error == pytest.approx(0.062, rel=0.1)
+    assert found.system.work.limit == np.inf
     curve = traced_curve(system.scene, Request(harmonics=None, accuracy=1e-3))
     assert "with 1 harmonic an estimated error of 6" in curve.short_of
     assert "; more were given up after" in curve.short_of
@@ -265,16 +265,16 @@ def test_a_round_that_takes_longer_than_was_foreseen_is_given_up(monkeypatch):
 
 
 def test_what_would_take_too_long_is_said(monkeypatch):
-    monkeypatch.setattr(outline, "PATIENCE", 0.0)
-    found = accurate(System(scene("yang1998", 5)), 1e-3)
+    monkeypatch.setattr(outline, "MAX_SECONDS", 0.0)
+    found = refined_response(System(scene("yang1998", 5)), 1e-3)
     assert not found.reached
     assert found.system.harmonics == (1,)
-    assert found.worst == found.told == pytest.approx(0.062, rel=0.1)
+    assert found.max_error == found.max_known_error == pytest.approx(0.062, rel=0.1)
     assert set(found.further) > {1, 2, 3}
 
 
 def test_no_more_harmonics_are_added_than_some_seconds_allow():
-    found = estimated(System(scene("yang1998", -5)), 1e-3)
+    found = with_estimated_errors(System(scene("yang1998", -5)), 1e-3)
     every = enlarged(found, 1e-4)
     assert {2, 9} < set(every)
     for count in range(1, len(every)):
@@ -288,19 +288,21 @@ def test_no_more_harmonics_are_added_than_some_seconds_allow():
 def test_where_nothing_is_told_of_more_harmonics_they_take_no_longer_than_some_seconds(monkeypatch):
     """The lowest three are added all the same: one harmonic may have a branch of no motion at all."""
     own = refinement.required_harmonics
-    monkeypatch.setattr(refinement, "required_harmonics", lambda *a: replace(own(*a), change=0.0, told=False))
-    monkeypatch.setattr(outline, "REFINEMENT", RefinementOptions(doubtful=0.0))
-    found = accurate(System(scene("yang1998", 5)), 1e-4)
+    monkeypatch.setattr(
+        refinement, "required_harmonics", lambda *a: replace(own(*a), change=0.0, is_known=False)
+    )
+    monkeypatch.setattr(outline, "REFINEMENT", RefinementOptions(max_doubtful_seconds=0.0))
+    found = refined_response(System(scene("yang1998", 5)), 1e-4)
     assert found.system.harmonics == (1, 2, 3) and not found.reached
     assert set(found.further) > {1, 2, 3} and not found.begun
-    monkeypatch.setattr(outline, "REFINEMENT", RefinementOptions(doubtful=np.inf))
-    assert set(accurate(System(scene("yang1998", 5)), 1e-4).system.harmonics) > {1, 2, 3}
+    monkeypatch.setattr(outline, "REFINEMENT", RefinementOptions(max_doubtful_seconds=np.inf))
+    assert set(refined_response(System(scene("yang1998", 5)), 1e-4).system.harmonics) > {1, 2, 3}
 
 
 def test_the_highest_of_more_harmonics_are_left_out_where_they_take_too_long():
-    found = outlined(System(scene("yang1998", 5)))
+    found = unchecked_response(System(scene("yang1998", 5)))
     every = (1, 2, 3, 5, 9)
     for count in (3, 4, 5):
-        assert found.within(found.seconds_with(every[:count]), every) == every[:count]
-    assert found.within(0.0, every) == (1, 2, 3)
-    assert found.within(0.0, (1, 2)) == (1, 2)
+        assert found.limited_harmonics(found.seconds_with(every[:count]), every) == every[:count]
+    assert found.limited_harmonics(0.0, every) == (1, 2, 3)
+    assert found.limited_harmonics(0.0, (1, 2)) == (1, 2)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from fcm.accuracy.refinement import estimated
-from fcm.accuracy.stability_limits import Lost, lost_along, moved
+from fcm.accuracy.refinement import with_estimated_errors
+from fcm.accuracy.stability_limits import StabilityLimit, distances_from, stability_limits
 from fcm.harmonic_balance.system import System
 from fcm.response.exact import trace_exact
 from fcm.response.request import Request
@@ -40,8 +40,10 @@ def flips():
 
 def lost(scene, harmonics):
     system = System(scene, harmonics)
-    paths = estimated(system, np.inf).traced.branches.paths
-    return [one for path in paths for one in lost_along(system, path, stability(system, path).crossings)]
+    paths = with_estimated_errors(system, np.inf).traced.branches.paths
+    return [
+        one for path in paths for one in stability_limits(system, path, stability(system, path).crossings)
+    ]
 
 
 @pytest.mark.parametrize("count", [2, 3, 5])
@@ -139,8 +141,16 @@ def test_where_it_cannot_be_told_how_far_the_loss_of_stability_is_off_more_harmo
 
 def test_a_crossing_that_fewer_harmonics_have_too_is_as_far_off_as_it_moved():
     """One that another is nearly as near to may be that other, and one that is told stays as it is."""
-    fewer = [Lost(1.0, 0.1, (1, 2)), Lost(2.0, np.nan, (1, 2)), Lost(2.1, 0.1, (1, 2))]
-    more = [Lost(1.001, np.nan, (1, 2, 3)), Lost(2.05, np.nan, (1, 2, 3)), Lost(2.3, 0.2, (1, 2, 3))]
-    error = [one.error for one in moved(more, fewer)]
+    fewer = [
+        StabilityLimit(1.0, 0.1, (1, 2)),
+        StabilityLimit(2.0, np.nan, (1, 2)),
+        StabilityLimit(2.1, 0.1, (1, 2)),
+    ]
+    more = [
+        StabilityLimit(1.001, np.nan, (1, 2, 3)),
+        StabilityLimit(2.05, np.nan, (1, 2, 3)),
+        StabilityLimit(2.3, 0.2, (1, 2, 3)),
+    ]
+    error = [one.error for one in distances_from(more, fewer)]
     assert error[0] == pytest.approx(1e-3, rel=1e-2) and np.isnan(error[1]) and error[2] == 0.2
-    assert np.isnan(moved(more[:1], [])[0].error)
+    assert np.isnan(distances_from(more[:1], [])[0].error)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fcm.accuracy.refinement import given
+from fcm.accuracy.refinement import with_given_harmonics
 from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.response.exact import trace_exact
@@ -35,7 +35,7 @@ def test_errors_where_a_corner_has_moved_are_those_at_the_same_frequency():
             "response": {"frequency": [0.815, 1.3]},
         }
     )  # fmt: skip
-    found = given(System(one, (1, 2, 3)))
+    found = with_given_harmonics(System(one, (1, 2, 3)))
     (path,), (shown,), (errors,) = found.traced.branches.paths, found.shown, found.errors
     some = np.flatnonzero((path.parameter > 0.996) & (path.parameter < 1.0005))
     assert some.size > 8

@@ -11,12 +11,12 @@ import matplotlib as mpl
 import numpy as np
 
 from fcm.branches.fold_continuation import folds_from
-from fcm.branches.force_level import looked_at, solutions
+from fcm.branches.force_level import level_frequencies, solutions
 from fcm.branches.options import FOLDS
 from fcm.branches.search import every_branch
 from fcm.branches.surface import Surface
 from fcm.continuation import Status
-from fcm.harmonic_balance.reported_quantities import reported
+from fcm.harmonic_balance.reported_quantities import reported_quantities
 from fcm.harmonic_balance.system import System
 from fcm.scene import load_scene
 
@@ -46,17 +46,19 @@ def calculated():
     """What the picture shows."""
     system = System(load_scene(SCENE).each_curve()[0], HARMONICS)
     folds, turns = [], []
-    for omega in looked_at(system):
-        for turn in solutions(system, omega, np.inf).turns:
-            if not (turn.short and FOLDS.within(turn.level)):
+    for omega in level_frequencies(system):
+        for turn in solutions(system, omega, np.inf).folds:
+            if not (turn.unfinished and FOLDS.covers(turn.level)):
                 continue
             turns.append((omega, turn.level))
             start, span = np.append(turn.z, turn.level), system.scene.frequency_range
-            curve = folds_from(Surface(system.balance()), start, turn.directions, span)
+            curve = folds_from(Surface(system.new_balance()), start, turn.directions, span)
             if curve is not None:
                 folds.append(np.column_stack((curve.frequency, curve.level)))
     paths = every_branch(system).branches.paths
-    branches = [np.column_stack((path.parameter, reported(system, path).amplitude[:, 0])) for path in paths]
+    branches = [
+        np.column_stack((path.parameter, reported_quantities(system, path).amplitude[:, 0])) for path in paths
+    ]
     return Picture(folds, np.array(turns), branches, [path.status is Status.CLOSED for path in paths])
 
 
@@ -71,8 +73,8 @@ def draw(picture):
     above.plot(*picture.turns.T, "o", color="C0", markersize=4, label="the level turns here")
     above.axhline(1.0, color="black", linewidth=0.8)
     above.set_yscale("log")
-    above.set_ylim(FOLDS.lowest, FOLDS.highest)
-    levels = [FOLDS.lowest, 0.5, 1.0, 2.0, FOLDS.highest]
+    above.set_ylim(FOLDS.min_level, FOLDS.max_level)
+    levels = [FOLDS.min_level, 0.5, 1.0, 2.0, FOLDS.max_level]
     above.set_yticks(levels, [f"{level:g}" for level in levels])
     above.minorticks_off()
     above.set_ylabel("level of the forces")

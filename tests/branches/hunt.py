@@ -73,7 +73,7 @@ def marched(scene, curve, frequencies, tries, seed=0):
 def deflated(scene, curve, frequencies, tries, seed=0):
     """The solutions of the balance on no branch that Newton's method finds turned away from those known."""
     rng, system = np.random.default_rng(seed), System(scene, curve.harmonics)
-    balance = system.balance()
+    balance = system.new_balance()
     for omega in frequencies:
         known = list[np.ndarray]()
         for _ in range(tries):

@@ -44,14 +44,17 @@ def test_both_sides_of_a_branch_point_are_mirror_images_of_which_one_is_traced()
     points = list(branch_points(system, system.harmonics, known.branches.paths))
     assert len(points) >= 4 and all(len(point.starts) == 2 for point in points)
     found = every_branch(system)
-    balance = system.balance()
+    balance = system.new_balance()
     for point in points:
         one, other = point.starts
         (mirror,) = mirrors(system, point.z, one)
         balance.measure(one)
         off = (mirror.image(one) - other) / np.asarray(balance.scale)
         assert np.abs(off).max() < 1e-3 and np.allclose(mirror.image(mirror.image(one)), one)
-        on = [sum(contains(path, z, system.afresh()) for path in found.branches.paths) for z in (one, other)]
+        on = [
+            sum(contains(path, z, system.reset_balance()) for path in found.branches.paths)
+            for z in (one, other)
+        ]
         assert sorted(on) == [0, 1]
 
 

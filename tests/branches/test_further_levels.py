@@ -107,7 +107,7 @@ def test_a_level_that_is_not_followed_to_its_end_leaves_branches_unsure(monkeypa
 def test_ranges_are_looked_at_the_widest_first_as_long_as_it_may_take_and_the_others_are_told(monkeypatch):
     scene = replace(load_scene(KNOWN / "chaos.toml"), frequency_range=(1.15, 1.45))
     every = traced_curve(scene, Request(tuple(range(1, 6)), 1e-2)).summary()
-    few = replace(LEVELS, share=0.05, unnoticed=0.0)
+    few = replace(LEVELS, work_fraction=0.05, min_seconds=0.0)
     whole = further_levels.with_levels_where_unstable
     monkeypatch.setattr(refined, "with_levels_where_unstable", lambda *args: whole(*args, few))
     some = traced_curve(scene, Request(tuple(range(1, 6)), 1e-2)).summary()

@@ -9,8 +9,8 @@ import pytest
 
 from fcm.branches import search
 from fcm.branches.fold_continuation import Ending, Folds, folds_from
-from fcm.branches.force_level import looked_at, solutions
-from fcm.branches.isolas import crossings
+from fcm.branches.force_level import level_frequencies, solutions
+from fcm.branches.isolas import level_one_crossings
 from fcm.branches.options import FOLDS
 from fcm.branches.search import every_branch
 from fcm.branches.surface import Surface
@@ -60,8 +60,8 @@ def test_a_closed_branch_of_an_impact_oscillator_is_found(harmonics, within):
 
 def folds_of(system, omega):
     """The curves of folds from the turns of the level at a frequency."""
-    for turn in solutions(system, omega, np.inf).turns:
-        surface = Surface(system.afresh())
+    for turn in solutions(system, omega, np.inf).folds:
+        surface = Surface(system.reset_balance())
         z = np.append(turn.z, turn.level)
         yield turn, folds_from(surface, z, turn.directions, system.scene.frequency_range)
 
@@ -69,11 +69,11 @@ def folds_of(system, omega):
 def test_a_curve_of_folds_passes_where_the_level_turns_at_other_frequencies():
     """With four harmonics: at 1.6 rad/s the level turns at 2.308 and 0.896, as following it there says."""
     system = System(scene("closed_impact"), (1, 2, 3, 4))
-    expected = sorted(turn.level for turn in solutions(system, 1.6, np.inf).turns)[:2]
+    expected = sorted(turn.level for turn in solutions(system, 1.6, np.inf).folds)[:2]
     assert expected == pytest.approx([0.896, 2.308], abs=1e-3)
     found = []
     for turn, curve in folds_of(system, 1.0):
-        if curve is None or not turn.short:
+        if curve is None or not turn.unfinished:
             continue
         off = curve.frequency - 1.6
         for i in np.flatnonzero(off[:-1] * off[1:] < 0.0):
@@ -96,10 +96,12 @@ def test_where_two_curves_of_folds_touch_the_one_leads_to_the_other(preload):
     """They come together at 1.27 rad/s, where the level turns no more: below, it does on either."""
     (one,) = (one for one in load_scene("yang1998").each_curve() if one.contacts[0].n_0 == preload)
     system = System(one)
-    (omega,) = (w for w in looked_at(system) if any(turn.short for turn in solutions(system, w).turns))
-    (curve,) = (curve for turn, curve in folds_of(system, omega) if turn.short)
+    (omega,) = (
+        w for w in level_frequencies(system) if any(turn.unfinished for turn in solutions(system, w).folds)
+    )
+    (curve,) = (curve for turn, curve in folds_of(system, omega) if turn.unfinished)
     assert curve is not None and set(curve.endings) == {Ending.LEVEL}
-    turns = sorted(turn.level for turn in solutions(system, 1.255, np.inf).turns)
+    turns = sorted(turn.level for turn in solutions(system, 1.255, np.inf).folds)
     met = np.array(levels_at(curve, 1.255))
     assert len(turns) == 2 and all(np.abs(met / level - 1.0).min() < 1e-2 for level in turns)
 
@@ -110,12 +112,12 @@ def test_folds_in_corners_are_followed_round_a_closed_curve():
     curve, *_ = (
         curve
         for turn, curve in folds_of(system, 2.0001)
-        if turn.short and abs(turn.level - 1.4895) < 1e-2 and curve is not None
+        if turn.unfinished and abs(turn.level - 1.4895) < 1e-2 and curve is not None
     )
     assert curve.endings == (Ending.CLOSED, Ending.CLOSED)
     for omega in (1.9, 2.1):
         levels = levels_at(curve, omega)
-        turns = np.array([turn.level for turn in solutions(system, omega, np.inf).turns])
+        turns = np.array([turn.level for turn in solutions(system, omega, np.inf).folds])
         assert levels
         for level in levels:
             assert np.abs(turns / level - 1.0).min() < 1e-2
@@ -125,31 +127,31 @@ def test_where_a_curve_of_folds_passes_the_level_one_the_response_has_a_fold():
     """The solutions beside the crossings are on branches with folds there, and on none that was known."""
     system = System(scene("closed_impact"), (1, 2, 3, 4))
     known = traced(system)
-    found = crossings(system, known.found, known.branches.paths)
-    assert found.unsure == () and len(found.solutions) == 2
+    found = level_one_crossings(system, known.found, known.branches.paths)
+    assert found.uncertain == () and len(found.solutions) == 2
     low, high = sorted(z[-1] for z in found.solutions)
     before = [len(solutions(system, omega, np.inf).solutions) for omega in (low - 0.01, low + 0.01)]
     after = [len(solutions(system, omega, np.inf).solutions) for omega in (high - 0.01, high + 0.01)]
     assert before == [1, 3] and after[0] - after[1] == 2
-    assert all(low > omega or omega > high for omega in looked_at(system))
+    assert all(low > omega or omega > high for omega in level_frequencies(system))
 
 
 @pytest.mark.parametrize(
     "options",
     [
-        replace(FOLDS, most=3),  # steps of a curve
-        replace(FOLDS, upright=0.0),  # no fold is found near the start
-        replace(FOLDS, share=0.0, unnoticed=0.0),
+        replace(FOLDS, max_steps=3),  # steps of a curve
+        replace(FOLDS, max_tangent=0.0),  # no fold is found near the start
+        replace(FOLDS, work_fraction=0.0, min_seconds=0.0),
     ],
 )
 def test_where_curves_of_folds_are_not_followed_to_their_end_the_crossings_say_so(options):
     """Their points or their work come to an end, or they do not begin."""
     system = System(scene("closed_impact"), (1, 2, 3, 4))
     known = traced(system)
-    found = crossings(system, known.found, known.branches.paths, options)
+    found = level_one_crossings(system, known.found, known.branches.paths, options)
     low, high = system.scene.frequency_range
-    assert found.solutions == () and found.unsure
-    assert all(low <= omega <= high for omega in found.unsure)
+    assert found.solutions == () and found.uncertain
+    assert all(low <= omega <= high for omega in found.uncertain)
 
 
 def test_a_closed_curve_of_folds_has_lost_nothing_and_others_their_open_ends():
@@ -161,8 +163,8 @@ def test_a_closed_curve_of_folds_has_lost_nothing_and_others_their_open_ends():
 
 def test_where_folds_are_lost_a_response_says_from_where_on(monkeypatch):
     """And with what is left of them the closed branch is not found."""
-    options = replace(FOLDS, share=0.0, unnoticed=0.0)
-    monkeypatch.setattr(search, "crossings", lambda *args: crossings(*args, options))
+    options = replace(FOLDS, work_fraction=0.0, min_seconds=0.0)
+    monkeypatch.setattr(search, "level_one_crossings", lambda *args: level_one_crossings(*args, options))
     curve = traced_curve(scene("closed_impact"), Request((1, 2, 3, 4), ACCURACY))
     assert curve.complete and curve.folds_unsure and not curve.unsure
     assert curve.summary()["folds_unsure_at"] == curve.folds_unsure

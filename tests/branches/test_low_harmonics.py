@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fcm.accuracy.refinement import accurate
+from fcm.accuracy.refinement import refined_response
 from fcm.branches.force_level import with_low_harmonics
 from fcm.branches.trace import traced
 from fcm.harmonic_balance.system import System
@@ -32,7 +32,7 @@ def beyond():
 
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-4])
 def test_a_window_that_one_harmonic_has_outside_the_range_is_found(accuracy):
-    found = accurate(beyond(), accuracy)
+    found = refined_response(beyond(), accuracy)
     path, shown = max(
         zip(found.traced.branches.paths, found.shown, strict=True),
         key=lambda one: one[1].amplitude[:, 1].max(),
@@ -55,7 +55,7 @@ def test_harmonics_that_have_the_same_solutions_stay():
     """Beyond the true fold as well the level turns near 1, but above it with any harmonics."""
     system = System(scene(MODAL, [STOP], (1.665, 2.05)))
     found = traced(system).found
-    assert 1.0 < min(turn.level for turn in found[0].turns) < 2.0
+    assert 1.0 < min(turn.level for turn in found[0].folds) < 2.0
     assert with_low_harmonics(system, found) == (1,)
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fcm.accuracy.refinement import accurate, given
+from fcm.accuracy.refinement import refined_response, with_given_harmonics
 from fcm.branches.prolongation import at_its_frequency
 from fcm.branches.trace import traced
 from fcm.harmonic_balance.system import System
@@ -39,7 +39,7 @@ def test_a_closed_branch_is_not_lost_with_more_harmonics():
     together with the others, and leads to that of ten only where it is about to leave it."""
     system = System(random_scene(1), up_to(10))
     alone = [path.z[:, -1] for path in traced(system).branches.paths]
-    found = given(system)
+    found = with_given_harmonics(system)
     closed = [i for i, path in enumerate(found.traced.branches.paths) if path.status.name == "CLOSED"]
     (path,) = (found.traced.branches.paths[i] for i in closed)
     (amplitude,) = (found.shown[i].amplitude for i in closed)
@@ -57,7 +57,7 @@ def test_an_isolated_branch_is_not_lost_with_more_harmonics_where_its_peak_is_un
     of the range; it is closed.
     """
     scene = load_scene(KNOWN / "loose_isola.toml").each_curve()[0]
-    found = given(System(replace(scene, frequency_range=(0.977, 1.5)), up_to(highest)))
+    found = with_given_harmonics(System(replace(scene, frequency_range=(0.977, 1.5)), up_to(highest)))
     there = amplitudes_at(found, 1.05324)
     assert min(np.abs(one[[0, 3]] / (0.4170, 0.1473) - 1.0).max() for one in there) < 2e-2
 
@@ -69,7 +69,7 @@ def test_a_branch_that_hangs_together_with_the_others_with_one_harmonic_alone_is
     branch.
     """
     scene = load_scene(KNOWN / "high_isola.toml").each_curve()[0]
-    found = given(System(scene, up_to(highest)))
+    found = with_given_harmonics(System(scene, up_to(highest)))
     there = amplitudes_at(found, 1.7)
     assert min(np.abs(one[:4] / (6.022, 29.47, 1.393, 4.921) - 1.0).max() for one in there) < 2e-2
 
@@ -83,7 +83,7 @@ def test_a_high_branch_is_found_beside_what_some_of_the_harmonics_make_of_few():
     begin = State(np.array([-1.0, 5.0]), np.zeros(2), np.zeros(3))
     settled = simulate(scene, 1.73, 800, begin).measures(last=1)[0].amplitude
     assert settled.min() > 6.0
-    found = accurate(System(replace(scene, frequency_range=(1.4, 2.0)), (1,)), 1e-2)
+    found = refined_response(System(replace(scene, frequency_range=(1.4, 2.0)), (1,)), 1e-2)
     there = amplitudes_at(found, 1.73)
     assert min(np.abs(one / settled - 1.0).max() for one in there) < 0.04
 
@@ -96,7 +96,7 @@ def test_what_lies_beside_a_peak_out_of_the_range_starts_no_branch():
     beyond = np.append(alone[0].z[0, :-1], 0.99 * low)
     for path in traced(system, near=[beyond]).branches.paths:
         assert path.parameter.min() >= low and path.parameter.max() <= high
-    assert [path.status.name for path in given(system).traced.branches.paths] == ["COMPLETE"]
+    assert [path.status.name for path in with_given_harmonics(system).traced.branches.paths] == ["COMPLETE"]
 
 
 def displacements_at(curve, omega):
@@ -110,7 +110,7 @@ def displacements_at(curve, omega):
 def test_all_solutions_of_a_window_are_those_that_a_march_comes_to():
     """At 1.5 rad/s a march of the contact law settles at these fundamentals of v, of rest and of the closed
     branch."""
-    found = given(System(isola_stuck(), up_to(13)))
+    found = with_given_harmonics(System(isola_stuck(), up_to(13)))
     heights = sorted(
         float(abs(displacements(found.system, z)[0][1]))
         for path in found.traced.branches.paths
@@ -135,7 +135,7 @@ def test_two_motions_of_which_the_level_of_many_harmonics_leads_to_one():
     """What seven lead to, and the level of eleven does not: both are motions of the exact contact law."""
     scene, omega = random_scene(5), 1.4389632784841668
     near = replace(scene, frequency_range=(0.95 * omega, 1.02 * omega))
-    found = given(System(near, up_to(11)))
+    found = with_given_harmonics(System(near, up_to(11)))
     passed = [z for path in found.traced.branches.paths for z in passed_at(found.system, path, omega)]
     fronts = {round(float(displacements(found.system, z)[1][0]), 6): z for z in passed}
     z, other = fronts[max(fronts)], fronts[min(fronts)]

@@ -26,7 +26,6 @@ def short(scene, monkeypatch):
     monkeypatch.setattr(comparison, "STEPS", (2.0, 1.0))
     monkeypatch.setattr(comparison, "STEPS_EXACT", (1.0,))
     monkeypatch.setattr(comparison, "FINEST", 0.25)
-    monkeypatch.setattr(startups, "REPEATS", 1)
     return scene
 
 

@@ -126,7 +126,7 @@ def test_where_folds_of_the_level_were_lost_a_run_says_once_that_branches_may_be
     scene.write_text(scene.read_text() + '[sweep]\n"contact.0.n_0" = [1.0, 2.0, 3.0]\n')
     lost = {1.0: (1.25, 1.5), 2.0: (), 3.0: (1.0,)}
     monkeypatch.setattr(
-        search, "crossings", lambda system, *_: Crossings((), lost[system.scene.contacts[0].n_0])
+        search, "level_one_crossings", lambda system, *_: Crossings((), lost[system.scene.contacts[0].n_0])
     )
     run = fcm("respond", scene, "--harmonics", "1", "--json", "-o", "a.nc")
     said = (

@@ -191,7 +191,7 @@ def test_a_curve_that_stopped_is_reported_and_written(fcm, scene, tmp_path, monk
     done = fcm("respond", scene, "-o", "a.nc")
     assert done.code == 3
     assert "NOT COMPLETE: stopped at 1.2 rad/s" in done.out
-    assert "1 of 1 curves not complete" in done.err
+    assert "the curve stopped early" in done.err
     assert files(tmp_path) == ["a.nc", "scene.toml"]
 
 
@@ -215,7 +215,7 @@ def test_a_defect_is_one_only_if_it_takes_every_curve(fcm, scene, monkeypatch):
     assert fcm("respond", scene).code == 1
     fails_below(3.0)
     done = fcm("respond", scene)
-    assert done.code == 3 and "1 of 2 curves not complete" in done.err
+    assert done.code == 3 and "1 of 2 curves stopped early" in done.err
 
 
 def test_a_full_disk_does_not_take_the_result_away(fcm, scene, tmp_path, monkeypatch):

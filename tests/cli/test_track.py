@@ -251,7 +251,7 @@ TWO = OPTIMUM.replace('"]', '", "contact.shroud.mu"]').replace("]]", "], [0.2, 0
 
 @pytest.mark.parametrize(
     ("wanted", "where", "stops_at"),
-    [(OPTIMUM, "lowest_peak", "whole"), (TWO, "minimax", "downhill")],
+    [(OPTIMUM, "lowest_peak", "both_ways"), (TWO, "minimax", "downhill")],
     ids=["one number", "two"],
 )
 def test_the_least_so_far_of_an_interrupted_search_is_kept(fcm, scene, monkeypatch, wanted, where, stops_at):

@@ -18,7 +18,7 @@ def slip_limit(b, phi):
         return (abs(1 - turned) + abs(1 + turned)) / 2
 
 
-def test_values():
+def multiplier_sample():
     n0, b, phi = points("linear", 200)
     exact = [(x + y, x - y, x - slip_limit(y, z)) for x, y, z in zip(n0, b, phi, strict=True)]
     np.testing.assert_allclose(regime_boundaries(n0, b, phi), np.array(exact, dtype=float).T, atol=1e-15)

@@ -11,7 +11,7 @@ import pytest
 
 from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.periodic.margins import Measures
-from fcm.harmonic_balance.line_contact import Periodic
+from fcm.harmonic_balance.line_contact import LineLaw
 
 from .motions import SINE, STILL, Case, random_case, random_cases
 
@@ -135,7 +135,7 @@ def test_measures_of_a_contact_that_is_open_or_never_moves():
 def test_another_extreme_of_a_limit_comes_to_hold_a_slider(side):
     """u = side (5 + c cos(theta) + cos(2 theta)) under a load 4: the limit is furthest at 0, or at pi."""
     contact, law = PeriodicContact([1, 2], [1, 2]), (0.5, 1.0, 0.0, 4.0)
-    bounds, margins = Periodic(contact, *law), []
+    bounds, margins = LineLaw(contact, *law), []
     for c in (1e-7, -1e-7):
         x = side * np.array([5.0, 0.0, c, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
         contact.at(x, *law)

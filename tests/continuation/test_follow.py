@@ -842,7 +842,7 @@ class Counted(Planar):
 def corrected(f, x, p, costly=False, close=1e-13):
     """Newton's method from x at the parameter p."""
     newton = Newton(Counted(f))
-    newton.problem.costly, newton.close = costly, close
+    newton.problem.costly, newton.tolerance = costly, close
     newton.z[:], newton.scale[:] = start(x, p), 1.0
     newton.row[:] = np.array([0.0, 0.0, 1.0])
     assert newton.correct(1.0)

@@ -8,7 +8,7 @@ import pytest
 from fcm.continuation import options
 from fcm.continuation.options import FollowOptions, NewtonOptions, StepOptions
 
-CHANGED = FollowOptions(0.2, newton=NewtonOptions(close=1e-9), step=StepOptions(back=(2,)))
+CHANGED = FollowOptions(0.2, newton=NewtonOptions(tolerance=1e-9), step=StepOptions(retreats=(2,)))
 
 
 @pytest.mark.parametrize("one", [FollowOptions(), CHANGED], ids=["default", "changed"])
@@ -17,7 +17,7 @@ def test_what_is_sent_or_printed_is_the_same_options(one):
     for other in (sent, printed):
         assert other == one and hash(other) == hash(one)
         assert all(getattr(other, field.name) == getattr(one, field.name) for field in fields(one))
-    assert sent.newton.close == one.newton.close and printed.step.back == one.step.back
+    assert sent.newton.tolerance == one.newton.tolerance and printed.step.retreats == one.step.retreats
 
 
 def test_one_other_field_makes_other_options():

@@ -5,19 +5,19 @@ import math
 import pytest
 from scipy.optimize import brentq
 
-from fcm.continuation.events import Secants
+from fcm.continuation.events import SignChange
 
 
 def looked(f, low, high, within, zero=1e-10, may_jump=True):
     """The sides, and at how many places the function was looked at until it was known."""
-    sides, count = Secants(low, high, f(low), f(high), may_jump), 0
+    sides, count = SignChange(low, high, f(low), f(high), may_jump), 0
     while sides.width > within and count < 200:
         at = sides.at
         assert sides.low <= at <= sides.high
         value, count = f(at), count + 1
         if abs(value) < zero:
             return at, count
-        sides.saw(at, value)
+        sides.update(at, value)
         assert f(sides.low) * f(sides.high) < 0.0
     return 0.5 * (sides.low + sides.high), count
 

@@ -17,7 +17,7 @@ def condition_number(scene: Scene, curve: Curve) -> float:
     singular, is nothing special; in the coordinates of the path follower, dimensionless by the curve's size.
     """
     at = np.flatnonzero(np.isfinite(curve.frequency))
-    problem = System(scene, curve.harmonics).balance()
+    problem = System(scene, curve.harmonics).new_balance()
     n, worst = problem.unknowns, float("nan")
     for z in unknowns(curve, scene, at, curve.harmonics):
         problem.evaluate(z)

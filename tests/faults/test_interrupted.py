@@ -13,7 +13,7 @@ SCHEDULE = "".join(
 )
 OF_SCHEDULE = TITLE + oscillator(SCHEDULE)
 KINDS = {  # scene, options, what begins each of the parts, and their number
-    "level": (ONE, ["--level", "0.1:2", "--at", "1.15:1.3:4"], "fcm.response.level._level", 4),
+    "level": (ONE, ["--level", "0.1:2", "--at", "1.15:1.3:4"], "fcm.response.level._level_curve", 4),
     "mode": (ONE + FEW_CURVES, ["--mode", "1", "--level", "0.5:5"], "fcm.response.mode._curve", 4),
     "schedule": (OF_SCHEDULE, [], "fcm.time_domain.schedule_record.cycles_from", 3),
     "schedules": (OF_SCHEDULE + FEW_CURVES, [], "fcm.time_domain.schedule_record.cycles_from", 12),

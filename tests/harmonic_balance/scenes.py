@@ -88,7 +88,7 @@ class Curves:
 
 def displacements(system, z):
     """Fundamental and half the peak-to-peak of each degree of freedom at a solution."""
-    balance = system.balance()
+    balance = system.new_balance()
     balance.evaluate(z)
     balance.report(z, np.zeros(z.size))
     j = system.harmonics.index(1)

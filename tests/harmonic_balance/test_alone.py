@@ -69,6 +69,6 @@ def test_a_curve_after_one_that_was_interrupted(harmonics, error):
 def test_a_balance_that_follows_a_curve_is_nobody_elses():
     scenes = [scene(TWO_MODES, [{**STUCK, "n_0": n_0}], (0.7, 1.5)) for n_0 in (2.0, 0.5, 1.0)]
     one, other, last = (System(each, up_to(3)) for each in scenes)
-    with one.alone():
-        assert other.looking is not one.looking
-    assert last.looking is one.looking
+    with one.exclusive_balance():
+        assert other.shared_balance is not one.shared_balance
+    assert last.shared_balance is one.shared_balance

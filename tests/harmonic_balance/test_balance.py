@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fcm.harmonic_balance.homotopy import Level
+from fcm.harmonic_balance.homotopy import ForceLevelProblem
 from fcm.harmonic_balance.system import System
 
 from ..time_domain.cases import yang
@@ -27,7 +27,7 @@ def some_motion(system, seed, size):
 @pytest.mark.parametrize("size", [0.3, 3.0, 30.0])
 def test_derivatives_by_displacements_and_frequency(name, harmonics, size):
     system = System(SCENES[name], harmonics)
-    balance = system.balance()
+    balance = system.new_balance()
     n = balance.unknowns
     assert n == len(system.scene.contacts) * (2 + 4 * len(harmonics))
     for seed in range(5):
@@ -50,7 +50,7 @@ def test_derivatives_by_displacements_and_frequency(name, harmonics, size):
 def test_the_level_scales_the_external_forces(harmonics):
     """The derivative by the level is minus the answer to the forces, whatever the contacts do."""
     system = System(yang(5.0), harmonics)
-    level = Level(system.balance(), 1.1)
+    level = ForceLevelProblem(system.new_balance(), 1.1)
     z = np.append(some_motion(system, 0, 3.0)[:-1], 0.7)
     level.evaluate(z)
     column, residual = np.array(level.jacobian)[:, -1], np.array(level.residual)
@@ -70,14 +70,14 @@ def test_the_level_scales_the_external_forces(harmonics):
 def test_one_harmonic_by_the_closed_form_is_the_general_case(seed):
     """The kernel for any harmonics, given one, has the forces of the paper's closed form."""
     from fcm.contact.periodic.forces import PeriodicContact
-    from fcm.harmonic_balance.line_contact import Periodic
+    from fcm.harmonic_balance.line_contact import LineLaw
 
     for scene in SCENES.values():
         system = System(scene, (1,))
         z = some_motion(system, seed, 3.0)
-        single, periodic = (system.balance() for _ in range(2))
+        single, periodic = (system.new_balance() for _ in range(2))
         kernel = PeriodicContact([1], [1])
-        periodic.laws = [Periodic(kernel, c.mu, c.k_u, c.k_v, c.n_0) for c in scene.contacts]
+        periodic.laws = [LineLaw(kernel, c.mu, c.k_u, c.k_v, c.n_0) for c in scene.contacts]
         single.evaluate(z)
         periodic.evaluate(z)
         scale = np.abs(z[:-1]).max()

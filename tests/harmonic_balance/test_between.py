@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fcm.accuracy.refinement import accurate, given
+from fcm.accuracy.refinement import refined_response, with_given_harmonics
 from fcm.harmonic_balance.system import System
 from fcm.scene import scene_from_dict
 from fcm.time_domain import State, simulate
@@ -22,11 +22,11 @@ CLOSED_AT_REST = {
 
 
 def within_a_hundredth(scene):
-    return accurate(System(scene, (1,)), 1e-2)
+    return refined_response(System(scene, (1,)), 1e-2)
 
 
 def of_three_harmonics(scene):
-    return given(System(scene, up_to(3)))
+    return with_given_harmonics(System(scene, up_to(3)))
 
 
 @pytest.mark.parametrize("response", [within_a_hundredth, of_three_harmonics])

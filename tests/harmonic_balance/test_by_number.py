@@ -20,7 +20,7 @@ KEYS = (
 
 
 def solved(system, z):
-    newton = Newton(system.balance())
+    newton = Newton(system.new_balance())
     newton.problem.measure(z)
     newton.scale[:], newton.z[:] = newton.problem.scale, z
     newton.row[:] = np.eye(z.size)[-1]

@@ -7,21 +7,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fcm.branches.linear_limits import foresee
+from fcm.branches.linear_limits import precompute
 from fcm.continuation import Events, Mark, follow
 from fcm.continuation.corrector import Newton
 from fcm.harmonic_balance.dense_jacobian import jacobian_of
-from fcm.harmonic_balance.modal_condensation import CondensedOptions
+from fcm.harmonic_balance.modal_condensation import CondensationOptions
 from fcm.harmonic_balance.options import HARMONIC_BALANCE, DigitOptions, HarmonicBalanceOptions
 from fcm.harmonic_balance.response_quantities import recorded
-from fcm.harmonic_balance.rounding import _moved, with_digits
+from fcm.harmonic_balance.rounding import _moved_across_curve, with_precise_fundamental
 from fcm.harmonic_balance.system import System
 from fcm.scene import scene_from_dict
 
 from .strips import strip
 
-EVERY_MODE = CondensedOptions(fewest=1, share=1.0, stiff=(0.0,))
-WHOLE, CONDENSED = CondensedOptions(fewest=10**9), CondensedOptions(fewest=1, share=1.0)
+EVERY_MODE = CondensationOptions(min_unknowns=1, max_fraction=1.0, compliance_limits=(0.0,))
+WHOLE, CONDENSED = (
+    CondensationOptions(min_unknowns=10**9),
+    CondensationOptions(min_unknowns=1, max_fraction=1.0),
+)
 
 
 def many_contacts(contacts=36, modes=4):
@@ -76,7 +79,7 @@ def jacobian(system, z):
         step = 1e-6 * max(abs(z[i]), 1e-2)
         ends = []
         for sign in (1.0, -1.0):
-            problem, moved = system.balance(), z.copy()
+            problem, moved = system.new_balance(), z.copy()
             moved[i] += sign * step
             problem.evaluate(moved)
             ends.append(np.array(problem.residual))
@@ -96,8 +99,8 @@ def jacobian(system, z):
     ],
 )
 def test_direction_and_orientation_are_those_of_the_whole_system(scene, options, harmonics):
-    system = System(scene(), harmonics, condensing=options)
-    problem = system.balance()
+    system = System(scene(), harmonics, condensation=options)
+    problem = system.new_balance()
     assert 0 < problem.rank < problem.unknowns
     rng = np.random.default_rng(2)
     z = np.append(rng.normal(size=problem.unknowns), 1.05)
@@ -120,14 +123,14 @@ def test_contacts_that_stay_stuck_or_open_are_condensed(scene, harmonics):
     """The equations are no more than those of the forces that two contacts have beside them."""
     at, solutions, parts = (1.0, 1.15, 1.3), [], 1 + 2 * len(harmonics)
     for options in (EVERY_MODE, WHOLE):
-        problem = System(scene(), harmonics, condensing=options).balance()
+        problem = System(scene(), harmonics, condensation=options).new_balance()
         path = follow(problem, np.append(np.zeros(problem.unknowns), 0.9), (0.9, 1.5), Events(at))
         solutions.append(path.z[np.isin(path.parameter, at)])
         problem.evaluate(path.z[np.flatnonzero(path.parameter == 1.15)[0]])
-        assert any(law.mixed for law in problem.laws)  # contacts slip or separate
+        assert any(law.nonlinear for law in problem.laws)  # contacts slip or separate
         if options is EVERY_MODE:
-            assert problem.condensed is not None and problem.condensed.holds
-            assert parts < problem.condensed.held.size <= 4 * parts + 1
+            assert problem.condensed is not None and problem.condensed.by_contacts
+            assert parts < problem.condensed.linear_contacts.size <= 4 * parts + 1
     found, expected = solutions
     assert len(found) == 3
     np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected[:, :-1]).max())
@@ -135,8 +138,8 @@ def test_contacts_that_stay_stuck_or_open_are_condensed(scene, harmonics):
 
 def test_contacts_that_begin_to_slip_or_open_are_taken_back():
     """By a level of the forces at which all stick, one at which all slip, and back."""
-    system = System(strip(24, n_0=3.0), (1, 3), condensing=EVERY_MODE)
-    problem, whole = system.balance(), System(system.scene, (1, 3), condensing=WHOLE).balance()
+    system = System(strip(24, n_0=3.0), (1, 3), condensation=EVERY_MODE)
+    problem, whole = system.new_balance(), System(system.scene, (1, 3), condensation=WHOLE).new_balance()
     rng, holds = np.random.default_rng(3), []
     for size in (1e-3, 1.0, 1e-3):
         z = np.append(size * rng.normal(size=problem.unknowns), 1.05)
@@ -149,13 +152,13 @@ def test_contacts_that_begin_to_slip_or_open_are_taken_back():
             assert newton.take_tangent()
             tangents.append((newton.orientation, *newton.tangent))
         np.testing.assert_allclose(*tangents, atol=1e-7)
-        holds.append(problem.condensed.holds)
+        holds.append(problem.condensed.by_contacts)
     assert holds == [True, False, True]
 
 
 def test_points_of_the_curve_balance():
-    system = System(many_contacts(), (1,), condensing=CONDENSED)
-    newton = Newton(system.balance())
+    system = System(many_contacts(), (1,), condensation=CONDENSED)
+    newton = Newton(system.new_balance())
     z = np.append(np.zeros(newton.problem.unknowns), 0.9)
     newton.problem.measure(np.append(np.ones(newton.problem.unknowns), 0.9))
     newton.scale[:] = newton.problem.scale
@@ -167,8 +170,8 @@ def test_points_of_the_curve_balance():
 
 
 def stations(condensing, harmonics):
-    system = System(strip(), harmonics, condensing=condensing)
-    problem = system.balance()
+    system = System(strip(), harmonics, condensation=condensing)
+    problem = system.new_balance()
     at = (1.0, 1.15, 1.3)
     path = follow(problem, np.append(np.zeros(problem.unknowns), 0.9), (0.9, 1.5), Events(at))
     return problem, path.z[np.isin(path.parameter, at)]
@@ -183,11 +186,13 @@ def test_few_modes_and_the_contacts_themselves_have_the_same_solutions(harmonics
     assert len(found) == 3
     np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected[:, :-1]).max())
     whole.evaluate(expected[1])
-    assert any(law.mixed for law in whole.laws)  # contacts slip or separate
+    assert any(law.nonlinear for law in whole.laws)  # contacts slip or separate
 
 
 def test_modes_that_yield_too_much_to_be_left_out_are_taken_after_all():
-    left_out = CondensedOptions(fewest=1, share=1.0, stiff=(1e9,), corrections=1)
+    left_out = CondensationOptions(
+        min_unknowns=1, max_fraction=1.0, compliance_limits=(1e9,), max_corrections=1
+    )
     problem, found = stations(left_out, (1,))
     expected = stations(WHOLE, (1,))[1]
     np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected[:, :-1]).max())
@@ -195,7 +200,7 @@ def test_modes_that_yield_too_much_to_be_left_out_are_taken_after_all():
 
 
 def test_many_contacts_make_no_arrays_of_ports_by_ports():
-    problem = System(strip(contacts=80), (1, 2, 3)).balance()
+    problem = System(strip(contacts=80), (1, 2, 3)).new_balance()
     assert problem.rank == 3 * 7
     assert np.asarray(problem.seen.G_re).size == 0
     assert np.asarray(problem.jacobian).shape == (problem.unknowns, 1)
@@ -206,13 +211,13 @@ def test_modes_left_out_that_yield_as_much_as_contacts_are_in_the_solutions(stif
     """As in a joint, where no mode is stiff beside the contacts."""
     soft = {"kept": (1.0, 1.6, 2.7), "stiff": (4.7, 5.3, 6.1)}
     solutions = []
-    for options in (CondensedOptions(fewest=1, share=1.0, stiff=(stiff,)), WHOLE):
-        system = System(strip(**soft), (1, 3), condensing=options)
-        problem, at = system.balance(), (1.0, 1.15, 1.3)
+    for options in (CondensationOptions(min_unknowns=1, max_fraction=1.0, compliance_limits=(stiff,)), WHOLE):
+        system = System(strip(**soft), (1, 3), condensation=options)
+        problem, at = system.new_balance(), (1.0, 1.15, 1.3)
         path = follow(problem, np.append(np.zeros(problem.unknowns), 0.9), (0.9, 1.5), Events(at))
         solutions.append(path.z[np.isin(path.parameter, at)])
         if options is not WHOLE:
-            left_out = system.yields[system.yields <= stiff]
+            left_out = system.modal_compliance[system.modal_compliance <= stiff]
             assert problem.condensed is not None and problem.condensed.modes < 6 and left_out.max() > 0.05
     found, expected = solutions
     assert len(found) == 3
@@ -220,7 +225,7 @@ def test_modes_left_out_that_yield_as_much_as_contacts_are_in_the_solutions(stif
 
 
 def test_what_is_not_finite_is_refused_without_a_warning():
-    newton = Newton(System(strip(), (1,), condensing=CONDENSED).balance())
+    newton = Newton(System(strip(), (1,), condensation=CONDENSED).new_balance())
     newton.z[:] = np.append(np.full(newton.problem.unknowns, np.nan), 1.0)
     newton.row[:] = np.append(np.zeros(newton.problem.unknowns), 1.0)
     assert not newton.correct(1.0)
@@ -232,12 +237,12 @@ def test_linear_responses_at_many_frequencies_take_one_matrix_at_a_time():
     frequencies = np.linspace(0.5, 1.5, 60)
     system.linear.at(1.0)
     tracemalloc.start()
-    foresee(system, frequencies)
+    precompute(system, frequencies)
     most = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     (G,), (X,) = system.linear.at(frequencies[7])
     stuck = system.springs(stuck=True)
-    assert system.on_ports[frequencies[7]][1, 0] == pytest.approx(
+    assert system.port_responses[frequencies[7]][1, 0] == pytest.approx(
         np.linalg.solve(np.eye(ports) + G * stuck, X)
     )
     assert most < 16 * ports**2 * 16
@@ -245,13 +250,13 @@ def test_linear_responses_at_many_frequencies_take_one_matrix_at_a_time():
 
 def test_rounding_of_many_contacts_is_that_of_random_errors():
     """Three times the root of the sum of squares of the inverse of the whole system times each error."""
-    system = System(mostly_stuck(), (1, 3), condensing=EVERY_MODE)
-    balance = system.balance()
+    system = System(mostly_stuck(), (1, 3), condensation=EVERY_MODE)
+    balance = system.new_balance()
     path = follow(balance, np.append(np.zeros(balance.unknowns), 0.9), (0.9, 1.5), Events((1.15,)))
     (i,) = np.flatnonzero(path.parameter == 1.15)
     balance.evaluate(path.z[i])
     errors = np.random.default_rng(4).uniform(0.5, 1.0, balance.unknowns)
-    found = _moved(balance, path.z[i], path.direction[i], errors, HARMONIC_BALANCE.digits)
+    found = _moved_across_curve(balance, path.z[i], path.direction[i], errors, HARMONIC_BALANCE.digits)
     scale = np.array(balance.scale)
     row = path.direction[i] / scale
     matrix = np.vstack((jacobian_of(balance) * scale, row / np.linalg.norm(row)))
@@ -264,14 +269,14 @@ def test_rounding_of_many_contacts_is_that_of_random_errors():
 def test_rounding_between_points_that_are_looked_at_is_the_greater_of_theirs():
     scene = mostly_stuck()
     hard = tuple(replace(one, k_u=1e3, k_v=1e3, n_0=10.0) for one in scene.contacts)
-    system = System(replace(scene, contacts=hard), (1,), condensing=EVERY_MODE)
-    balance = system.balance()
+    system = System(replace(scene, contacts=hard), (1,), condensation=EVERY_MODE)
+    balance = system.new_balance()
     path = follow(balance, np.append(np.zeros(balance.unknowns), 0.9), (0.9, 1.5))
     roundings = []
     for points in (10**6, 3):
         options = HarmonicBalanceOptions(digits=DigitOptions(stiff=0.0, points=points))
         looking = replace(system, options=options)
-        roundings.append(with_digits(looking, recorded(looking, [path]))[1])
+        roundings.append(with_precise_fundamental(looking, recorded(looking, [path]))[1])
     every, some = roundings
     last = len(path.z) - 1
     looked = [0, round(0.5 * last), last]
@@ -283,7 +288,7 @@ def test_rounding_between_points_that_are_looked_at_is_the_greater_of_theirs():
 
 
 def test_degrees_of_freedom_that_are_greatest_together_have_one_point():
-    problem = System(strip(contacts=30), (1,), condensing=CONDENSED).balance()
+    problem = System(strip(contacts=30), (1,), condensation=CONDENSED).new_balance()
     path = follow(problem, np.append(np.zeros(problem.unknowns), 0.9), (0.9, 1.5))
     peaks = path.parameter[path.where(Mark.PEAK)]
     assert 1 < len(peaks) < problem.outputs and np.unique(peaks).size == len(peaks)

@@ -110,7 +110,7 @@ def test_friction_written_as_a_law_moves_as_the_law_of_fcm():
     assert np.allclose(z, ours, rtol=0.0, atol=3e-3 * np.abs(ours[:-1]).max())
     law = System(scene_from_dict(DATA, "ours.toml"), (1, 2, 3)).laws()[0]
     law.evaluate(ours, 0)
-    assert law.mixed  # it slips
+    assert law.nonlinear  # it slips
 
 
 def test_a_kinetic_coefficient_lets_it_slide_farther():

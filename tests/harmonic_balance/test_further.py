@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fcm.accuracy.refinement import estimated
+from fcm.accuracy.refinement import with_estimated_errors
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.harmonic_balance.system import System
 
@@ -13,7 +13,7 @@ from .truth import scene
 
 @pytest.fixture(scope="module")
 def response():
-    return estimated(System(scene("yang1998", -5), (1, 2, 3)), 0.0)
+    return with_estimated_errors(System(scene("yang1998", -5), (1, 2, 3)), 0.0)
 
 
 def test_padding_keeps_the_motion(response):
@@ -21,7 +21,7 @@ def test_padding_keeps_the_motion(response):
     (path,) = response.traced.branches.paths
     more = (1, 2, 3, 5, 9)
     wider = response.system.with_harmonics(more)
-    problem = wider.balance()
+    problem = wider.new_balance()
     z = path.z[len(path.z) // 2]
     wide = wider.extended(z, (1, 2, 3))
     problem.evaluate(wide)
@@ -44,8 +44,8 @@ def test_a_share_is_what_a_harmonic_then_has(response):
     assert (share[:3] == 0.0).all()
     others = share[3:].copy()
     assert others.argmax() + 4 == 9
-    with_ninth = estimated(response.system.with_harmonics((1, 2, 3, 9)), 0.0)
-    problem = with_ninth.system.balance()
+    with_ninth = with_estimated_errors(response.system.with_harmonics((1, 2, 3, 9)), 0.0)
+    problem = with_ninth.system.new_balance()
     highest = with_ninth.shown[0].amplitude[:, 1].argmax()
     z = with_ninth.traced.branches.paths[0].z[highest]
     problem.evaluate(z)
@@ -55,7 +55,7 @@ def test_a_share_is_what_a_harmonic_then_has(response):
 
 
 def test_a_contact_that_never_slips_or_opens_is_linear():
-    found = estimated(System(scene("yang1998", 100)), 0.0)
+    found = with_estimated_errors(System(scene("yang1998", 100)), 0.0)
     (path,) = found.traced.branches.paths
     further = FurtherHarmonics(found.system)
     assert further.linear(path.z).all()
@@ -77,15 +77,15 @@ def test_a_harmonic_meets_a_mode_where_its_frequency_is_that_of_the_mode(respons
                 wanted |= {at - 1, at, at + 1}
             else:
                 assert share.max() == 0.0
-    assert further.meetings(path.z, shown.amplitude).tolist() == sorted(wanted)
+    assert further.resonances(path.z, shown.amplitude).tolist() == sorted(wanted)
 
 
 def test_meetings_of_many_contacts_are_those_of_every_point_alone():
     """A harmonic that leads there meets a mode at the same points, be forces worked out at all or at some."""
-    found = estimated(System(strip(stiff=(4.02, 8.3, 11.4)), (1,)), 0.0)
+    found = with_estimated_errors(System(strip(stiff=(4.02, 8.3, 11.4)), (1,)), 0.0)
     (path,), (shown,) = found.traced.branches.paths, found.shown
     further = FurtherHarmonics(found.system)
-    alone = further.meetings(path.z, shown.amplitude)
-    many = further.meetings_of_many(path.z, shown.amplitude)
+    alone = further.resonances(path.z, shown.amplitude)
+    many = further.resonances_of_many(path.z, shown.amplitude)
     assert 3 <= len(alone) < 0.5 * len(path.z)
     assert many.tolist() == alone.tolist()

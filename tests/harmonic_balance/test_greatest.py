@@ -17,7 +17,7 @@ WAVES = np.exp(1j * np.outer(ANGLES, HARMONICS))
 
 @pytest.fixture(scope="module")
 def balance():
-    return System(load_scene(Path(__file__).parent / "scenes" / "chaos.toml"), HARMONICS).balance()
+    return System(load_scene(Path(__file__).parent / "scenes" / "chaos.toml"), HARMONICS).new_balance()
 
 
 def places(balance, count):

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from fcm.branches import force_level
-from fcm.branches.force_level import LEVEL_REACH, LevelReachOptions, level_curve, looked_at
-from fcm.branches.linear_limits import highest, least
+from fcm.branches.force_level import LEVEL_REACH, LevelReachOptions, level_curve, level_frequencies
+from fcm.branches.linear_limits import highest_linear_limit, lowest_linear_limit
 from fcm.branches.options import LEVEL_CURVE
 from fcm.harmonic_balance.system import System
 from fcm.scene import load_scene
@@ -19,14 +19,17 @@ def test_a_hasty_curve_of_many_contacts_comes_to_the_same_with_less():
     """Against the same curve by way of all its corners, of ten contacts; they are followed up to a level."""
     system = System(load_scene("blade").each_curve()[0], (1, 2, 3))
     hasty = careful = passed = 0
-    for omega in looked_at(system):
-        linear, top = LEVEL_CURVE.before * least(system, omega), min(highest(system, omega), 20.0)
+    for omega in level_frequencies(system):
+        linear, top = (
+            LEVEL_CURVE.linear_fraction * lowest_linear_limit(system, omega),
+            min(highest_linear_limit(system, omega), 20.0),
+        )
         if linear >= top:
             continue
         one = level_curve(
-            system, omega, (0.0, top), LEVEL_CURVE.long, (1.0,), linear, hasty=True, lightly=True
+            system, omega, (0.0, top), LEVEL_CURVE.max_step_stations, (1.0,), linear, hasty=True, lightly=True
         )
-        other = level_curve(system, omega, (0.0, top), LEVEL_CURVE.step, (1.0,), linear)
+        other = level_curve(system, omega, (0.0, top), LEVEL_CURVE.max_step, (1.0,), linear)
         there, true = (path.z[path.parameter == 1.0, :-1] for path in (one, other))
         assert there == pytest.approx(true, abs=1e-9 * np.abs(other.z[:, :-1]).max())
         hasty, careful = hasty + one.evaluations, careful + other.evaluations
@@ -41,11 +44,13 @@ def test_with_many_contacts_the_level_is_followed_no_further_than_allowed(monkey
     contacts = tuple(replace(c, n_0=c.n_0 * (1.0 + i) ** 2) for i, c in enumerate(one.contacts))
     system = System(replace(one, contacts=contacts))
     taken, found = [], []
-    assert all(highest(system, omega) > LEVEL_REACH.most for omega in looked_at(system))
-    for contacts in (LEVEL_REACH.contacts, 10**6):
+    assert all(
+        highest_linear_limit(system, omega) > LEVEL_REACH.max_level for omega in level_frequencies(system)
+    )
+    for contacts in (LEVEL_REACH.min_contacts, 10**6):
         monkeypatch.setattr(force_level, "LEVEL_REACH", LevelReachOptions(contacts))
         before = system.work.seconds
-        found.append([force_level.solutions(system, omega) for omega in looked_at(system)])
+        found.append([force_level.solutions(system, omega) for omega in level_frequencies(system)])
         taken.append(system.work.seconds - before)
     for near, far in zip(*found, strict=True):
         assert near.complete and len(near.solutions) == len(far.solutions) > 0

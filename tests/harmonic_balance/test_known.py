@@ -150,7 +150,7 @@ def test_all_solutions_at_a_frequency(of, omega, count, amplitudes):
     system = System(of(), up_to(count))
     found = solutions(system, omega)
     assert found.complete and len(found.solutions) == len(amplitudes)
-    balance = system.balance()
+    balance = system.new_balance()
     heights = []
     for z in found.solutions:
         balance.evaluate(z)

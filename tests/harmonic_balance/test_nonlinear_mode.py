@@ -12,7 +12,7 @@ from fcm.continuation import Mark, Status
 from fcm.harmonic_balance.response_quantities import cycles, loops
 from fcm.harmonic_balance.system import System
 from fcm.nonlinear_modes.backbone import ModeError, linear_modes, nonlinear_mode, truncation
-from fcm.nonlinear_modes.extended_periodic_motion import Autonomous
+from fcm.nonlinear_modes.extended_periodic_motion import AutonomousProblem
 from fcm.nonlinear_modes.forced_response import flanks, resonances, resonant_level
 from fcm.scene.load import scene_from_dict
 
@@ -48,7 +48,7 @@ def test_one_mass_on_a_friction_element_against_its_describing_function():
 
 def test_jacobian_against_differences():
     system = System(load_scene("two-contacts").in_use(), (1, 2, 3))
-    problem = Autonomous(system, linear_modes(system, 2)[0])
+    problem = AutonomousProblem(system, linear_modes(system, 2)[0])
     rng = np.random.default_rng(1)
     z = problem.start(np.log(2e-4))
     problem.measure(z)

@@ -16,8 +16,8 @@ from fcm.branches.trace import traced
 from fcm.contact.periodic.workspace import periodic_contact
 from fcm.contact.plane.workspace import planar_contact
 from fcm.continuation import Status
-from fcm.harmonic_balance.line_contact import Periodic
-from fcm.harmonic_balance.planar_contact import Planar
+from fcm.harmonic_balance.line_contact import LineLaw
+from fcm.harmonic_balance.planar_contact import PlanarLaw
 from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.system import System
 from fcm.response import ResponseError
@@ -288,10 +288,10 @@ def test_the_onset_of_slip_in_a_plane_moves_as_its_slopes_say():
         kernel, width = planar_contact(harmonics, harmonics), 3 + 6 * len(harmonics)
         for kind in ("slip", "start"):
             x = rng.standard_normal(width)
-            found = onset(Planar(kernel, **numbers), x, kind, harmonics)
+            found = onset(PlanarLaw(kernel, **numbers), x, kind, harmonics)
 
             def value(at, kind=kind, harmonics=harmonics, kernel=kernel, **other):
-                return onset(Planar(kernel, **(numbers | other)), at, kind, harmonics).value
+                return onset(PlanarLaw(kernel, **(numbers | other)), at, kind, harmonics).value
 
             h = 1e-6
             slope = [(value(x + h * one) - value(x - h * one)) / (2.0 * h) for one in np.eye(width)]
@@ -303,9 +303,9 @@ def test_the_onset_of_slip_in_a_plane_moves_as_its_slopes_say():
 def test_the_onset_of_slip_on_a_straight_way_is_that_of_a_line():
     x = np.array([0.1, 0.3, 1.0, 0.2, 0.4, -0.5])
     numbers = (0.5, 1.3, 0.7, 4.0)
-    line = onset(Periodic(periodic_contact((1,), (1,)), *numbers), x, "slip", (1,))
+    line = onset(LineLaw(periodic_contact((1,), (1,)), *numbers), x, "slip", (1,))
     oblique = np.array([0.06, 0.08, 0.3, 0.6, 0.12, 0.8, 0.16, 0.4, -0.5])
-    plane = onset(Planar(planar_contact((1,), (1,)), *numbers), oblique, "slip", (1,))
+    plane = onset(PlanarLaw(planar_contact((1,), (1,)), *numbers), oblique, "slip", (1,))
     assert plane.value == pytest.approx(line.value, rel=1e-12)
     assert plane.by_number == pytest.approx(line.by_number, abs=1e-7)
 

@@ -11,7 +11,7 @@ import pytest
 
 import fcm
 from fcm.continuation.corrector import Newton
-from fcm.harmonic_balance.modal_condensation import CondensedOptions
+from fcm.harmonic_balance.modal_condensation import CondensationOptions
 from fcm.harmonic_balance.residual_traction import peak_changes
 from fcm.harmonic_balance.system import System
 from fcm.response.exact import trace_exact
@@ -106,13 +106,13 @@ def test_systems_condensed_to_modes_tell_the_same():
     held = scene(1.0, [HELD])
     omega = fcm.respond(held).peak_frequency.sel(dof="a").item()
     told = []
-    for options in (CondensedOptions(), CondensedOptions(fewest=1, share=2.0)):
-        system = System(held, (1, 3), condensing=options)
-        newton = Newton(system.balance())
+    for options in (CondensationOptions(), CondensationOptions(min_unknowns=1, max_fraction=2.0)):
+        system = System(held, (1, 3), condensation=options)
+        newton = Newton(system.new_balance())
         newton.z[-1], newton.row[-1] = omega, 1.0
         newton.problem.measure(newton.z)
         newton.scale[:] = newton.problem.scale
-        assert newton.correct(1.0) and (newton.problem.rank > 0) == (options.fewest == 1)
+        assert newton.correct(1.0) and (newton.problem.rank > 0) == (options.min_unknowns == 1)
         z, newton_row = np.array(newton.z), np.zeros(len(newton.z))
         newton.problem.report(z, newton_row)
         amplitude, stuck = np.array(newton.problem.output)[None], np.zeros((3, 2), dtype=bool)

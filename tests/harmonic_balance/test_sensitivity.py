@@ -222,7 +222,7 @@ def test_a_condensed_balance_has_the_jacobian_of_its_differences():
         "force": [{"dof": "u0", "amplitude": 1.0}],
         "response": {"frequency": [0.5, 4.0]},
     })  # fmt: skip
-    balance = System(scene, (1, 2)).balance()
+    balance = System(scene, (1, 2)).new_balance()
     assert balance.rank > 0
     z = np.append(0.5 * np.random.default_rng(2).normal(size=balance.unknowns), 1.3)
     balance.evaluate(z)

@@ -16,7 +16,7 @@ def test_the_error_is_the_distance_to_the_solution_by_the_table_alone_and_none_w
     scene, table = fcm.load_scene("yang1998-n5"), fcm.open_table()
     system = System(scene, (1,), table)
     points = recorded(system, traced(system).branches.paths)
-    newton, problem = Newton(balance := System(scene, (1,), table, corrected=False).balance()), balance
+    newton, problem = Newton(balance := System(scene, (1,), table, corrected=False).new_balance()), balance
     corners = np.flatnonzero(points.mark & (Mark.CORNER | Mark.END))
     error, found, nothing = table_errors(system, points), [], 0
     for i, (z, direction) in enumerate(zip(points.z, points.tangent, strict=True)):

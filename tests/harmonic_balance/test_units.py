@@ -61,7 +61,7 @@ def test_level_curves_step_over_corners_of_single_contacts():
 
 def test_both_directions_of_sliding_have_one_unit():
     """As they have in any other two directions of the same plane."""
-    balance = System(plane(3)).balance()
+    balance = System(plane(3)).new_balance()
     z = np.random.default_rng(1).normal(size=balance.unknowns + 1)
     balance.measure(z)
     units = np.asarray(balance.scale)[:-1].reshape(3, 9)

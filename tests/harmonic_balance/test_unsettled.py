@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fcm.accuracy.refinement import given
+from fcm.accuracy.refinement import with_given_harmonics
 from fcm.harmonic_balance.system import System
 from fcm.scene import scene_from_dict
 from fcm.shooting.problem import OrbitProblem
@@ -33,7 +33,7 @@ def test_a_peak_that_further_harmonics_lead_to_and_more_do_not_has_no_error_that
             "response": {"frequency": [1.22, 1.36]},
         }
     )  # fmt: skip
-    found = given(System(one, tuple(range(1, 11))))
+    found = with_given_harmonics(System(one, tuple(range(1, 11))))
     (shown,) = found.shown
     exact = height(found, OrbitProblem(one), [], 0, 1)
     assert exact is not None

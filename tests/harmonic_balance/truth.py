@@ -9,7 +9,7 @@ import numpy as np
 
 import fcm
 from fcm.continuation import FollowOptions, follow
-from fcm.harmonic_balance.normal_plane_prolongation import Lifted
+from fcm.harmonic_balance.normal_plane_prolongation import Prolongation
 from fcm.time_domain import SimulationError, State
 
 SCENES = Path(__file__).parent / "scenes"
@@ -30,7 +30,7 @@ def scene(name, preload=None):
 def state(system, z):
     """The exact motion's state at the forces' angle 0, of a motion of a balance."""
     linear, omega = system.linear, z[-1]
-    problem = system.balance()
+    problem = system.new_balance()
     problem.evaluate(z)
     force = np.asarray(problem.force).reshape(len(system.scene.contacts), -1)
     q = -linear.flexibility @ linear.ports @ force[:, :2].ravel()
@@ -63,7 +63,7 @@ class Truth:
 
     def __init__(self, system, many=MANY):
         self.system, self.many = system, system.with_harmonics(many)
-        self.lifted = Lifted(self.many.balance(), list(system.harmonics), list(many), 1e-9)
+        self.lifted = Prolongation(self.many.new_balance(), list(system.harmonics), list(many), 1e-9)
 
     def at(self, z, direction):
         """The motion of many harmonics at the frequency of z, on the curve next to it; None if there is none.
@@ -80,7 +80,7 @@ class Truth:
         onward = (z[-1] - near[-1]) * tangent[-1] > 0.0  # along the curve, whichever way that leads
         forward = z[-1] > near[-1]
         span = (min(near[-1], z[-1]), max(near[-1], z[-1]))
-        path = follow(self.many.balance(), near, span, options=FollowOptions(0.05), forward=forward)
+        path = follow(self.many.new_balance(), near, span, options=FollowOptions(0.05), forward=forward)
         if not len(path.z) or path.parameter[-1] != z[-1]:
             return None
         heading = path.direction[0] / newton.scale @ tangent
@@ -88,11 +88,11 @@ class Truth:
 
     def beside(self, z, direction):
         """The motion of many harmonics next to z, normal to the curve; None if there is none."""
-        return np.array(self.lifted.newton.z) if self.lifted.beside(z, direction) else None
+        return np.array(self.lifted.newton.z) if self.lifted.find_normal(z, direction) else None
 
     def amplitude(self, z):
         """Half the peak-to-peak displacements of a motion of many harmonics."""
-        problem = self.many.balance()
+        problem = self.many.new_balance()
         problem.evaluate(z)
         problem.report(z, np.zeros_like(z))
         return np.array(problem.output)

@@ -15,10 +15,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fcm.accuracy.refinement import Accurate, accurate
+from fcm.accuracy.refinement import RefinedResponse, refined_response
 from fcm.harmonic_balance.system import System
 from fcm.shooting.harmonic_balance_state import state_of
-from fcm.shooting.orbit_record import Sample
+from fcm.shooting.orbit_record import OrbitRecord
 from fcm.shooting.peaks_and_folds import Guess, located
 from fcm.shooting.problem import OrbitProblem
 from fcm.time_domain import SimulationError
@@ -48,11 +48,11 @@ class Peak(NamedTuple):
 def peaks(seed: int) -> list[Peak]:
     """Those of a scene; none of one whose curve has no branches."""
     scene = replace(random_scene(seed), harmonics=None)
-    found = accurate(System(scene), ACCURACY)
+    found = refined_response(System(scene), ACCURACY)
     if not found.traced.branches.paths:
         return []
     heights = np.array([one.amplitude.max(axis=0) for one in found.shown])
-    problem, known, out = OrbitProblem(scene), list[Sample](), []
+    problem, known, out = OrbitProblem(scene), list[OrbitRecord](), []
     for d, k in enumerate(heights.argmax(axis=0)):
         if heights[k, d] < MOVING * heights.max():
             continue
@@ -63,7 +63,9 @@ def peaks(seed: int) -> list[Peak]:
     return out
 
 
-def height(found: Accurate, problem: OrbitProblem, known: list[Sample], number: int, d: int) -> float | None:
+def height(
+    found: RefinedResponse, problem: OrbitProblem, known: list[OrbitRecord], number: int, d: int
+) -> float | None:
     """Of the exact peak beside the greatest amplitude of a degree of freedom on a path."""
     path, amplitude = found.traced.branches.paths[number], found.shown[number].amplitude[:, d]
     top = int(amplitude.argmax())

@@ -112,7 +112,7 @@ def test_a_force_that_grows_is_at_one_frequency_a_constant_one(method):
 
 def test_derivatives_by_the_frequency_know_that_forces_grow():
     scene = loaded(growing(YANG, 1.0), [(U, 0.5), (V, 1.0)])
-    balance = System(scene, (1, 2, 3)).balance()
+    balance = System(scene, (1, 2, 3)).new_balance()
     z = np.append(np.random.default_rng(1).normal(size=balance.unknowns), 1.2)
     step = 1e-6 * np.eye(z.size)[-1]
     balance.evaluate(z)
@@ -128,7 +128,9 @@ def test_derivatives_by_the_frequency_know_that_forces_grow():
     assert growth == pytest.approx((shown[0] - shown[1]) / 2e-6, rel=1e-5, abs=1e-6)
     problem, x = Shooting(scene), np.array([3.0, 1.0, 2.0, -4.0, 0.5])
     ends = [problem.residual(x, 1.2 + h) for h in (0.0, 1e-6, -1e-6)]
-    assert ends[0].by_parameter == pytest.approx((ends[1].gap - ends[2].gap) / 2e-6, rel=1e-5, abs=1e-5)
+    assert ends[0].by_parameter == pytest.approx(
+        (ends[1].closure - ends[2].closure) / 2e-6, rel=1e-5, abs=1e-5
+    )
 
 
 def test_the_exact_motion_under_all_of_them_is_that_of_an_ordinary_solver():

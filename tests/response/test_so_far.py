@@ -68,7 +68,7 @@ def test_before_the_first_curve_there_is_nothing(monkeypatch):
     def stop(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(System, "balance", stop)
+    monkeypatch.setattr(System, "new_balance", stop)
     with pytest.raises(KeyboardInterrupt) as stopped:
         traced_curve(scene("isola"), FINE)
     assert not isinstance(stopped.value, Interrupted)

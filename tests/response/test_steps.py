@@ -84,7 +84,7 @@ def test_a_value_to_land_on_just_beyond_a_corner_takes_no_countless_steps():
     the corner was met again a hair further on, 19 000 times."""
     curves = fcm.load_scene("yang1998").each_curve()
     scene = next(replace(one, curves=()) for one in curves if one.contacts[0].n_0 == -5.0).in_use()
-    balance = System(scene, range(1, 10)).balance()
+    balance = System(scene, range(1, 10)).new_balance()
     start = np.append(np.zeros(balance.unknowns), 0.7)
     alone = follow(balance, start, (0.7, 1.7))
     corner = alone.parameter[alone.where(Mark.CORNER)][2]

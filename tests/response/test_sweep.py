@@ -117,7 +117,7 @@ def test_an_interrupted_sweep_is_continued(scene, small_groups, tmp_path, monkey
 @pytest.mark.parametrize("slow", [False, True])
 def test_what_is_finished_of_a_group_is_not_traced_again(scene, small_groups, tmp_path, monkeypatch, slow):
     """Be it saved when the interruption comes, or before, as the curves take long."""
-    monkeypatch.setattr(groups, "SWEEP", SweepOptions(saved=0.0 if slow else np.inf))
+    monkeypatch.setattr(groups, "SWEEP", SweepOptions(save_interval=0.0 if slow else np.inf))
     reference = trace(scene, "closed-form")
     keep = tmp_path / "a.nc.unfinished"
     with monkeypatch.context() as patch:

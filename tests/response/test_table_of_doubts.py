@@ -98,7 +98,7 @@ LOST = {  # analyses that trace branches over the range, and where they say it
 
 @pytest.mark.parametrize("analysis", LOST)
 def test_where_folds_of_the_level_are_lost_branches_may_be_missing(fcm, tmp_path, monkeypatch, analysis):
-    monkeypatch.setattr(search, "crossings", lambda *_: Crossings((), (1.25,)))
+    monkeypatch.setattr(search, "level_one_crossings", lambda *_: Crossings((), (1.25,)))
     done, found = run(fcm, tmp_path, PAIR, analysis, *FEW)
     assert done.code == 0, done.err
     assert "may be missing" in done.err and "1.25 rad/s" in done.err
@@ -143,8 +143,8 @@ def test_what_creeps_is_no_steady_state(fcm, tmp_path, analysis):
 
 @pytest.mark.parametrize("analysis", [*MISSED])
 def test_what_misses_the_accuracy_says_so(fcm, tmp_path, monkeypatch, analysis):
-    monkeypatch.setattr(outline, "PATIENCE", 0.0)
-    monkeypatch.setattr(outline, "REFINEMENT", RefinementOptions(doubtful=0.0))
+    monkeypatch.setattr(outline, "MAX_SECONDS", 0.0)
+    monkeypatch.setattr(outline, "REFINEMENT", RefinementOptions(max_doubtful_seconds=0.0))
     for module in (level, mode):
         monkeypatch.setattr(module, "with_twice_as_many", lambda *_: None)
     done, found = run(fcm, tmp_path, PAIR, analysis, "--accuracy", 1e-7)
@@ -159,7 +159,7 @@ def test_what_misses_the_accuracy_says_so(fcm, tmp_path, monkeypatch, analysis):
 @pytest.mark.parametrize("analysis", [one for one in MISSED if one != "mode"])
 def test_where_stability_is_not_told_no_peak_is_without_that_word(fcm, tmp_path, monkeypatch, analysis):
     for module in (stability_validity, level, tracked_work):
-        monkeypatch.setattr(module, "VALIDITY", ValidityOptions(believed=0.0))
+        monkeypatch.setattr(module, "VALIDITY", ValidityOptions(max_error=0.0))
     extra, options = ANALYSES[analysis]
     (tmp_path / "s.toml").write_text(PAIR + extra)
     said = fcm("respond", "s.toml", *FEW, *options).out

@@ -38,7 +38,7 @@ def test_solutions_of_a_sector_solve_the_ring(sectors, order, contacts, harmonic
     for omega in 2.0 * np.pi * np.array([172.0, 205.0]):
         (z,) = solutions(one, omega).solutions
         around = rings.around(z, harmonics, len(contacts), ring)
-        balance = whole.balance()
+        balance = whole.new_balance()
         balance.evaluate(around)
         assert np.abs(balance.residual).max() < 1e-11 * np.abs(around[:-1]).max()
         (X,), (mean,) = amplitudes_at(one, z[None])
@@ -62,7 +62,7 @@ def test_loads_and_forces_of_any_harmonic_act_on_every_sector(harmonic):
     assert one.harmonics == whole.harmonics == tuple(sorted({1, 3, harmonic}))
     (z,) = solutions(one, 2.0 * np.pi * 190.0).solutions
     around = rings.around(z, one.harmonics, 2, one.scene.ring)
-    balance, of_one = whole.balance(), one.balance()
+    balance, of_one = whole.new_balance(), one.new_balance()
     balance.evaluate(around)
     assert np.abs(balance.residual).max() < 1e-11 * np.abs(around[:-1]).max()
     of_one.evaluate(z)
@@ -149,7 +149,7 @@ def test_a_base_that_moves_along_the_axis_shakes_all_sectors():
     one, whole = (System(scene_from_dict(found), (1, 3)) for found in (data, full))
     (z,) = solutions(one, 2.0 * np.pi * 95.0).solutions
     around = rings.around(z, (1, 3), 2, one.scene.ring)
-    balance = whole.balance()
+    balance = whole.new_balance()
     balance.evaluate(around)
     assert np.abs(balance.residual).max() < 1e-11 * np.abs(around[:-1]).max()
     (X,), (ring_X,) = (amplitudes_at(of, at[None])[0] for of, at in ((one, z), (whole, around)))

@@ -14,25 +14,26 @@ import fcm
 from fcm.continuation import FollowOptions, Mark, Status, follow
 from fcm.continuation.corrector import Newton
 from fcm.continuation.path import Path as Followed
-from fcm.response import exact_curve
 from fcm.response.exact import trace_exact
 from fcm.response.options import ExactOptions
-from fcm.response.trace import traced_curve
 from fcm.scene import Force, Modal, scene_from_dict
 from fcm.shooting import (
     OrbitProblem,
-    force_level,
     harmonic_state,
     initial_orbits,
-    orbit_record,
     periodic,
     trace,
 )
 from fcm.shooting.damping_homotopy import less_damped, more_damped
 from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.harmonic_balance_branches import passes
-from fcm.shooting.initial_orbits import Along, first_point, inner_resonances, near_balance, starts
-from fcm.shooting.trace import explore, incomplete, known, spread
+from fcm.shooting.initial_orbits import (
+    find_initial_orbits,
+    first_point,
+    inner_resonances,
+    near_balance,
+)
+from fcm.shooting.trace import distinct_motions, explore, incomplete, is_known
 from fcm.time_domain import State, simulate
 from fcm.time_domain.errors import SimulationError
 
@@ -80,17 +81,11 @@ def test_a_branch_that_no_end_of_the_range_leads_to_is_found():
     assert rest.amplitude[1] < 0.5 * last.amplitude[1]
 
 
-def test_a_search_for_further_branches_that_is_given_up_is_told(monkeypatch):
-    """Whether for their time, or as the level of the forces cannot be followed."""
+def test_a_search_for_further_branches_that_is_given_up_for_its_time_is_told():
     scene = fcm.load_scene(Path(__file__).parent / "scenes/isolated.toml")
     paths, missed = explore(OrbitProblem(scene), most=0.0)
     assert paths and all(path.status is not Status.STALLED for path in paths)
     assert missed.startswith("the search for further branches was given up: what leads")
-    monkeypatch.setattr(trace, "along_balance", lambda *_: Along([], False, []))
-    monkeypatch.setattr(force_level, "_begun", lambda *_: ())
-    (curve,) = trace_exact(scene).curves
-    assert not curve.complete and "was given up: the level of the forces cannot" in curve.reason
-    assert curve.frequency[0] == pytest.approx(scene.frequency_range[0])
 
 
 @pytest.mark.slow
@@ -105,7 +100,7 @@ def test_no_branches_are_looked_for_without_end_where_those_that_are_followed_br
     scene, begun = fcm.load_scene(SCENES / "closed_inside.toml"), []
     problem = OrbitProblem(scene)
     paths, missed = explore(problem, broken)
-    assert len(paths) == len(begun) == len(starts(problem, lambda: None)[0])
+    assert len(paths) == len(begun) == len(find_initial_orbits(problem, lambda: None)[0])
     assert missed == "the search for further branches was given up: 3 that were followed break off"
     said = incomplete(scene, paths, missed)
     assert said.startswith("stopped at ") and said.endswith(missed)
@@ -174,7 +169,7 @@ def test_a_curve_is_not_complete_while_the_balance_has_a_stable_branch_that_it_h
     """Where shooting leads to none of its motions, nor does the level of the forces."""
     scene = fcm.load_scene(SCENES / "stuck_at_the_ends.toml")
     monkeypatch.setattr(initial_orbits, "_points", lambda *_: iter(()))
-    monkeypatch.setattr(trace, "raised", lambda *_: iter(()))
+    monkeypatch.setattr(trace, "level_motions", lambda *_: iter(()))
     paths, missed = explore(OrbitProblem(scene))
     assert paths and "from the stable branch of the balance at 1.5794" in missed
 
@@ -208,7 +203,9 @@ def test_a_branch_followed_again_from_beside_its_fold_is_known_and_the_other_is_
     span = problem.scene.frequency_range
     again = follow(problem, beside, span, options=FollowOptions(0.7 * problem.scene.max_step))
     assert len(again.z) > 10
-    assert known([isolated], spread(again), problem) and not known([other], spread(again), problem)
+    assert is_known([isolated], distinct_motions(again), problem) and not is_known(
+        [other], distinct_motions(again), problem
+    )
 
 
 def lightly_damped(seed):
@@ -246,7 +243,7 @@ def test_a_curve_goes_on_from_a_corner_at_right_angles():
     """At 1.57431 it goes on where the frequency hardly changes, to motions a fifth of its size away."""
     scene = random_scene(21)
     problem = OrbitProblem(scene)
-    begin = max(starts(problem)[0], key=lambda z: z[-1])
+    begin = max(find_initial_orbits(problem)[0], key=lambda z: z[-1])
     path = follow(
         problem,
         begin,
@@ -262,7 +259,7 @@ def test_a_curve_goes_on_from_a_corner_at_right_angles():
 def test_a_start_is_looked_for_anywhere_and_ends_that_are_not_reached_are_said():
     scene = lightly_damped(20)
     problem = OrbitProblem(scene)
-    found, missed, sought, _ = starts(problem)
+    found, missed, sought, _ = find_initial_orbits(problem)
     (z,) = found
     low, high = scene.frequency_range
     assert sought and low < z[-1] < high and set(missed) == {low, high}
@@ -327,15 +324,14 @@ def test_a_limit_of_time_is_said():
 
 
 @pytest.mark.slow
-def test_of_a_contact_too_stiff_to_follow_it_is_said_what_would_do(monkeypatch):
+def test_of_a_contact_too_stiff_to_follow_it_is_said_what_would_do():
     """Without a limit of one's own, too; with what is said the curve is there, and nothing is said of it."""
     bundled = fcm.load_scene("den-hartog").each_curve()[0]
 
     def of(k_u):
         return replace(bundled, contacts=(replace(bundled.contacts[0], k_u=k_u),))
 
-    monkeypatch.setattr("fcm.response.exact_curve.EXACT_CURVES", ExactOptions(stiff=1e-9))
-    curve = curve_of(of(1e12))
+    curve = curve_of(of(1e12), options=ExactOptions(stiff_seconds=1e-9))
     said = re.fullmatch(
         r"not finished in 1e-09 s of processor time, at the start; the k_u of contact wall is 1e\+12 times "
         r"as stiff as the structure there, so .*: try (\S+), nearly rigid; half of that tells how nearly",
@@ -380,19 +376,10 @@ def test_peaks_and_folds_alone_are_those_of_the_curve(n_0):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("number", range(3))
-def test_of_peaks_alone_no_balance_is_followed_that_takes_longer_than_the_curve(monkeypatch, number):
-    """Dry friction takes six harmonics and more to 1e-2; a solution with these costs more than a motion."""
+def test_peaks_alone_of_dry_friction_are_those_of_the_curve(number):
     scene = replace(fcm.load_scene("den-hartog").each_curve()[number], curves=())
-    followed = list[int]()
-
-    def counted(*args):
-        found = traced_curve(*args)
-        followed.append(len(found.harmonics))
-        return found
-
-    monkeypatch.setattr("fcm.response.only_peaks.traced_curve", counted)
     whole, alone = curve_of(scene), curve_of(scene, only="peaks")
-    assert max(followed) == 1 and alone.complete and alone.points < whole.points
+    assert alone.complete and alone.points < whole.points
     for dof, (amplitude, omega, *_) in whole.peaks.items():
         assert alone.peaks[dof][0] == pytest.approx(amplitude, rel=1e-8)
         assert alone.peaks[dof][1] == pytest.approx(omega, rel=1e-5)
@@ -481,19 +468,3 @@ def test_a_force_elsewhere_has_no_range_to_be_without():
     """Without a force there is no motion, and its peaks are none."""
     curve = curve_of(replace(yang(), forces=(Force(np.array([1.0, 0.0]), 0.0, 0.0),)), only="peaks")
     assert not curve.amplitude[np.isfinite(curve.frequency)].any()
-
-
-@pytest.mark.slow
-def test_peaks_of_a_curve_that_was_followed_are_located_once(monkeypatch):
-    """Where its stability is lost is sought as often as for the whole curve."""
-    scene, times = between(fcm.load_scene(SCENES / "two_periods.toml"), 2.01, 2.05), []
-    crossing = orbit_record.crossing
-    monkeypatch.setattr(orbit_record, "crossing", lambda *args: times.append(0) or crossing(*args))
-    whole = curve_of(scene)
-    every = len(times)
-    monkeypatch.setattr(exact_curve, "peaks_alone", lambda *_: None)
-    peaks = curve_of(scene, only="peaks")
-    assert every > 0 and len(times) == 2 * every
-    assert {d: (p.amplitude, p.frequency) for d, p in peaks.peaks.items()} == {
-        d: (p.amplitude, p.frequency) for d, p in whole.peaks.items()
-    }

@@ -26,7 +26,7 @@ def test_the_multipliers_beside_a_stuck_contact_are_those_of_the_whole_matrix():
     orbit, problem = periodic(light(), 0.6), Shooting(light())
     shot = problem.residual(problem.unknowns(orbit.state), 0.6)
     assert [states for states in orbit.states if states == "E"] == ["E"]
-    assert (shot.multipliers == 1.0).sum() == 1 and not (shot.others == 1.0).any()
+    assert (shot.multipliers == 1.0).sum() == 1 and not (shot.other_multipliers == 1.0).any()
     for one in np.linalg.eigvals(shot.derivative):
         assert np.abs(shot.multipliers - one).min() < 1e-9
 
@@ -53,7 +53,7 @@ def crossed():
     scene = replace(light(), frequency_range=(0.54, 0.55))
     problem, begin = OrbitProblem(scene), periodic(scene, 0.54)
     path = follow(problem, problem.z(begin.state, 0.54), scene.frequency_range, options=FollowOptions(0.05))
-    stable = [greatest(problem, z) <= 1.0 + SHOOTING.floquet.verdict.excess for z in path.z]
+    stable = [greatest(problem, z) <= 1.0 + SHOOTING.floquet.verdict.growth_tolerance for z in path.z]
     steps = [
         k
         for k in range(len(stable) - 1)
@@ -69,10 +69,16 @@ def test_stability_changes_at_the_place(crossed):
     assert len(steps) > 10
     for k in steps:
         place, between = crossing(problem, path, k), Segment(problem, path, k)
-        assert place is not None and greatest(problem, place.z) <= 1.0 + SHOOTING.floquet.verdict.excess
+        assert (
+            place is not None
+            and greatest(problem, place.z) <= 1.0 + SHOOTING.floquet.verdict.growth_tolerance
+        )
         aside = max(1e-5, 2e-8 / between.length)
         part = place.part + (aside if stable[k] else -aside)
-        assert between.put(part) and greatest(problem, between.z) > 1.0 + SHOOTING.floquet.verdict.excess
+        assert (
+            between.find(part)
+            and greatest(problem, between.z) > 1.0 + SHOOTING.floquet.verdict.growth_tolerance
+        )
         jumps += greatest(problem, between.z) > 1.0 + 1e-3 and greatest(problem, place.z) < 1.0 + 1e-8
     assert 0 < jumps < len(steps)
 
@@ -93,15 +99,15 @@ def test_a_place_beside_known_ones_is_the_same_and_takes_fewer_periods(crossed):
     for k in steps:
         among = Segment(again, path, k)
         for part in parts:
-            assert among.put(part)
+            assert among.find(part)
         found, fresh = among.z, OrbitProblem(problem.scene)
         by_itself = Segment(fresh, path, k)
         before = fresh.periods
-        assert by_itself.put(parts[-1])
+        assert by_itself.find(parts[-1])
         problem.measure(found)
         assert (np.abs(found - by_itself.z) < 1e-10 * np.asarray(problem.scale)).all()
         alone += fresh.periods - before
         before = again.periods
-        assert among.put(0.5 * (parts[-1] + parts[-2]))
+        assert among.find(0.5 * (parts[-1] + parts[-2]))
         beside += again.periods - before
     assert beside < 0.8 * alone

@@ -15,7 +15,7 @@ from fcm.response.resumable_branches import Legs
 from fcm.run import Report
 from fcm.shooting import OrbitProblem
 from fcm.shooting.orbit_record import samples
-from fcm.shooting.period_doubling import Doubled, doubled_paths, to_flips
+from fcm.shooting.period_doubling import DoubledPeriodProblem, doubled_paths, to_flips
 from fcm.shooting.residual import Shot
 from fcm.shooting.trace import explore
 from fcm.time_domain import simulate
@@ -34,7 +34,7 @@ def cascade():
     found = [(problem, [samples(problem, path) for path in paths])]
     for _ in range(2):
         once, branches = found[-1]
-        problem = Doubled(once)
+        problem = DoubledPeriodProblem(once)
         paths, lost = doubled_paths(problem, branches, legs)
         assert len(paths) == 1 and not lost
         found.append((problem, [to_flips(problem, samples(problem, path), branches) for path in paths]))

@@ -18,7 +18,7 @@ from fcm.shooting.initial_orbits import near_balance
 from fcm.shooting.periodic import converged
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import resting_at
-from fcm.shooting.traction_families import chosen, family
+from fcm.shooting.traction_families import family, member_at_start
 from fcm.time_domain import SimulationError, State, simulate
 from fcm.time_domain.cycle_measures import measure
 from fcm.time_domain.system import System
@@ -64,7 +64,7 @@ def test_beyond_the_extent_the_contact_slips_back_to_it(scene, found, end):
     system, end_state = System(scene, OMEGA), settled(scene, 0.0).end
     x = np.concatenate((end_state.q, end_state.velocity, end_state.friction))
     begun, _ = converged(Shot(system, x, resting_at(system, x)))
-    shot = chosen(begun, np.array([0.0, -1.1 * found.friction[0, end] / scene.contacts[1].k_u]))
+    shot = member_at_start(begun, np.array([0.0, -1.1 * found.friction[0, end] / scene.contacts[1].k_u]))
     assert shot.chosen[0].limited and measure(shot.cycle).amplitude == pytest.approx(amplitude, rel=1e-6)
     stressed = replace(
         shot.state, friction=shot.state.friction + np.array([0.0, 1e-3 * found.friction[0, end]])

@@ -72,4 +72,4 @@ def test_a_contact_that_is_held_is_a_spring_of_the_disturbances():
     shot, _ = converged(Shooting(whole).residual(Shooting(whole).unknowns(start), omega))
     x = np.delete(shot.x, 6)
     other, _ = converged(Shooting(held).residual(x, omega))
-    assert matched(other.others, shot.others) < 1e-8
+    assert matched(other.other_multipliers, shot.other_multipliers) < 1e-8

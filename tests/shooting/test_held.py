@@ -10,9 +10,9 @@ import pytest
 from fcm.continuation import Events, FollowOptions
 from fcm.model.scene import Held, Load
 from fcm.reduction import constant_state_contacts
-from fcm.response import exact_curve, orbit_curve, resumable_branches
 from fcm.response.exact import trace_exact
-from fcm.response.resumable_branches import Leg, Legs, TimeOver
+from fcm.response.exact_curve import ExactWork
+from fcm.response.resumable_branches import BranchLeg, Legs, TimeOver
 from fcm.run import Report
 from fcm.scene import Contact, Force, Modal, Scene
 from fcm.shooting.harmonic_balance_state import balanced_states
@@ -119,91 +119,48 @@ def test_what_a_contact_keeps_is_that_of_its_motion(scene, lightened):
     force, load, gap = cycle.values(rows, np.linspace(0.0, cycle.duration, 4001)).T
     limit = 0.3 * (30.0 + load)
     expected = [(limit - np.abs(force)).min() / limit.max(), (300.0 - gap).min() / (300.0 - gap).max()]
-    assert first.kept == pytest.approx(expected, rel=1e-5)
+    assert first.held_distances == pytest.approx(expected, rel=1e-5)
+
+
+def with_expected(scene, held):
+    """The curve of a scene, some of whose contacts are expected to keep their state."""
+    (curve,) = ExactWork(None, expected=lambda *_: held)((scene,), Report(lambda *_: None))
+    return curve
 
 
 @pytest.mark.slow
-def test_beside_points_that_are_not_kept_no_other_motions_are_sought(scene, monkeypatch):
-    """They are the waste of a curve that is followed again: here it is seen of its points alone."""
-    w, sought = constant_state_contacts.resting(scene), []
-    wrong = tuple(Held(i, one, False, w[i]) for i, one in enumerate(scene.contacts[:1]))
-    monkeypatch.setattr(exact_curve, "expected_constant", lambda *_: wrong)
-    monkeypatch.setattr(exact_curve, "_watched", None)
-    monkeypatch.setattr(orbit_curve, "not_unique", spied(orbit_curve.not_unique, sought))
-    (curve,) = trace_exact(scene).curves
-    assert curve.complete and not curve.orbits.held.size
-    assert len(sought) == 1
-
-
-@pytest.mark.slow
-def test_a_curve_goes_on_where_a_contact_has_lost_its_state(scene, monkeypatch):
-    """From a motion of the contacts that are computed then, as all before are; to the curve of them all."""
+def test_a_curve_goes_on_where_a_contact_has_lost_its_state(scene):
+    """To the curve of all contacts that are computed then; the other is held as before."""
     weak = (scene.contacts[0], replace(scene.contacts[1], n_0=2.0), scene.contacts[2])
-    scene, calls = replace(scene, contacts=weak), []
+    scene = replace(scene, contacts=weak)
     wrong = (Held(1, weak[1], False, constant_state_contacts.resting(scene)[1]), Held(2, weak[2], True))
-    monkeypatch.setattr(exact_curve, "expected_constant", lambda *_: wrong)
-    monkeypatch.setattr(resumable_branches, "follow", spied(resumable_branches.follow, calls))
-    (curve,) = trace_exact(scene).curves
+    curve = with_expected(scene, wrong)
     assert curve.complete and np.isfinite(curve.orbits.held).tolist()[1:] == [[False, False], [False, True]]
-    begun = [(args[0], there) for args, options in calls if (there := options["checkpoint"]) is not None]
-    assert len(begun) == 1
-    problem, checkpoint = begun[0]
-    assert len(checkpoint.kept.before.z) > 10
-    for z in (*checkpoint.kept.before.z, checkpoint.z):
-        assert problem.shot(z).residual < 1e-9 and problem.shot(z).cycle.states[1] == "E"
     (whole,) = trace_exact(scene, tolerance=None).curves
     for dof, peak in whole.peaks.items():
         assert curve.peaks[dof].amplitude == pytest.approx(peak.amplitude, rel=SAME)
 
 
-def spied(function, calls):
-    """The same function, its calls noted."""
-
-    def spy(*args, **options):
-        calls.append((args, options))
-        return function(*args, **options)
-
-    return spy
-
-
 @pytest.mark.slow
-def test_a_contact_that_does_not_keep_its_state_is_computed_after_all(scene, responses, monkeypatch):
+def test_a_contact_that_does_not_keep_its_state_is_computed_after_all(scene, responses):
     """Foreseen wrongly: the first contact, which slips, and the last, which is open, as sticking."""
     w = constant_state_contacts.resting(scene)
-    wrong = tuple(Held(i, one, False, w[i]) for i, one in enumerate(scene.contacts))
-    monkeypatch.setattr(exact_curve, "expected_constant", lambda *_: wrong)
-    response = trace_exact(scene)
-    assert [text.split(",")[0] for text in response.left_out] == ["the transitions of contact sticks"]
-    curve, whole = response.curves[0], responses[1].curves[0]
+    curve = with_expected(scene, tuple(Held(i, one, False, w[i]) for i, one in enumerate(scene.contacts)))
+    assert np.isfinite(curve.orbits.held).any(axis=1).tolist() == [False, True, False]
+    whole = responses[1].curves[0]
     assert curve.peaks["x"].amplitude == pytest.approx(whole.peaks["x"].amplitude, rel=SAME)
     assert set(curve.regime[:, 2]) == {"S"}
-
-
-def test_with_a_contact_that_loses_its_state_no_curve_is_followed_to_its_end(scene, monkeypatch):
-    w, finished, made = constant_state_contacts.resting(scene), [], exact_curve.orbit_curve
-    wrong = tuple(Held(i, one, False, w[i]) for i, one in enumerate(scene.contacts))
-
-    def noted(groups, *rest):
-        finished.append([one.place for one in groups[0].problem.scene.held])
-        return made(groups, *rest)
-
-    monkeypatch.setattr(exact_curve, "expected_constant", lambda *_: wrong)
-    monkeypatch.setattr(exact_curve, "orbit_curve", noted)
-    assert trace_exact(scene).curves[0].complete
-    assert finished == [[1]]
 
 
 def over(*_):
     raise TimeOver
 
 
-def test_a_limit_of_time_before_the_first_point(scene, monkeypatch):
+@pytest.mark.parametrize("tolerance", [1e-5, None])
+def test_a_limit_of_time_before_the_first_point(scene, tolerance):
     """In the balance that tells which contacts keep their state; and where the first motion is sought."""
-    curve = trace_exact(scene, limit=1e-9).curves[0]
+    (curve,) = trace_exact(scene, limit=1e-9, tolerance=tolerance).curves
     assert curve.points == 0 and curve.reason == "not finished in 1e-09 s of processor time, at the start"
-    monkeypatch.setattr(exact_curve, "explore", over)
-    curve = trace_exact(scene, limit=100.0).curves[0]
-    assert curve.points == 0 and curve.reason == "not finished in 100 s of processor time, at the start"
 
 
 def test_the_balance_that_guesses_come_from_is_ended_by_a_look(scene):
@@ -237,7 +194,7 @@ def test_what_is_saved_of_other_unknowns_is_not_gone_on_with(scene):
     Legs(scene.frequency_range, Report(lambda *_: None, save=saved.append))(
         first, z, scene.frequency_range, Events(), FollowOptions(0.1), forward=True
     )
-    assert isinstance(saved[-1], Leg)
+    assert isinstance(saved[-1], BranchLeg)
     problem = OrbitProblem(light)
     z = first_point(problem, next(near_balance(light, 0.9)))
     legs = Legs(scene.frequency_range, Report(lambda *_: None, saved))

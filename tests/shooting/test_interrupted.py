@@ -17,7 +17,7 @@ from fcm.results.orbits import Stuck
 from fcm.run.records import unpacked
 from fcm.shooting import orbit_record, trace
 from fcm.shooting.options import SHOOTING
-from fcm.shooting.period_doubling import Doubled
+from fcm.shooting.period_doubling import DoubledPeriodProblem
 
 from ..interrupted import interrupted_after, interrupted_beyond
 from ..time_domain.cases import yang
@@ -101,7 +101,7 @@ def test_after_an_interruption_no_other_motions_are_sought(scene, searched):
 def test_of_a_run_that_goes_on_and_is_stopped_at_once_there_is_all_that_was(scene, monkeypatch, tmp_path):
     """Before it has come to the curve again that was begun: nothing of that is lost."""
     first = curve_of(scene, keep=tmp_path / "kept", progress=interrupted_after(5))
-    monkeypatch.setattr(trace, "starts", stopped)
+    monkeypatch.setattr(trace, "find_initial_orbits", stopped)
     again = curve_of(scene, keep=tmp_path / "kept", resume=True)
     assert first.points > 0 and again.reason == first.reason
     np.testing.assert_array_equal(again.amplitude, first.amplitude)
@@ -110,16 +110,16 @@ def test_of_a_run_that_goes_on_and_is_stopped_at_once_there_is_all_that_was(scen
 @pytest.mark.slow
 def test_so_there_is_of_motions_of_two_periods(monkeypatch, tmp_path):
     scene = between(fcm.load_scene(SCENES / "irregular.toml"), 1.2, 1.25)
-    begins, begun = Doubled.begins, []
+    begins, begun = DoubledPeriodProblem.reset_flips, []
 
     def progress(_share, _text):
         if begun:
             raise KeyboardInterrupt
 
-    monkeypatch.setattr(Doubled, "begins", lambda problem: begun.append(begins(problem)))
+    monkeypatch.setattr(DoubledPeriodProblem, "reset_flips", lambda problem: begun.append(begins(problem)))
     first = curve_of(scene, keep=tmp_path / "kept", progress=progress, periods=2)
     assert set(first.orbits.repeats[np.isfinite(first.orbits.repeats)]) == {1.0, 2.0}
-    monkeypatch.setattr(trace, "starts", stopped)
+    monkeypatch.setattr(trace, "find_initial_orbits", stopped)
     again = curve_of(scene, keep=tmp_path / "kept", resume=True, periods=2)
     np.testing.assert_array_equal(again.amplitude, first.amplitude)
     np.testing.assert_array_equal(again.orbits.repeats, first.orbits.repeats)
@@ -132,7 +132,7 @@ def stopped(*_):
 def test_of_peaks_alone_those_that_were_found_are_kept(monkeypatch):
     scene = between(yang(), 1.1, 1.3)
     whole, steps = curve_of(scene, only="peaks"), []
-    monkeypatch.setattr(exact_curve, "peaks_alone", stopped_after(2, exact_curve.peaks_alone, steps))
+    monkeypatch.setattr(exact_curve, "peaks_only", stopped_after(2, exact_curve.peaks_only, steps))
     curve = curve_of(scene, only="peaks")
     found = curve.frequency[np.isfinite(curve.frequency)]
     assert 0 < found.size < np.isfinite(whole.frequency).sum()
@@ -140,7 +140,7 @@ def test_of_peaks_alone_those_that_were_found_are_kept(monkeypatch):
     assert not curve.complete and curve.reason.startswith("interrupted at 1.")
 
 
-def stopped_after(count, peaks_alone, steps):
+def stopped_after(count, peaks_only, steps):
     """The same search, interrupted after so many of its places."""
 
     def search(scene, known, report, poll):
@@ -150,7 +150,7 @@ def stopped_after(count, peaks_alone, steps):
                 raise KeyboardInterrupt
             report(share, text)
 
-        return peaks_alone(scene, known, shown, poll)
+        return peaks_only(scene, known, shown, poll)
 
     return search
 
@@ -196,9 +196,9 @@ def test_of_a_curve_whose_time_is_over_no_period_is_computed_again(monkeypatch):
         before.append(groups[0].problem.periods)
         return orbit_curve(groups, *rest)
 
-    monkeypatch.setattr(resumable_branches.Clock, "poll", poll)
+    monkeypatch.setattr(resumable_branches.CurveTimeLimit, "poll", poll)
     monkeypatch.setattr(exact_curve, "orbit_curve", made)
-    forgetful = replace(SHOOTING, orbit=replace(SHOOTING.orbit, remembered=0))
+    forgetful = replace(SHOOTING, orbit=replace(SHOOTING.orbit, max_cached=0))
     curve = curve_of(yang(5.0), limit=100.0, shooting=forgetful)
     assert curve.reason.startswith("not finished in 100 s") and np.isfinite(curve.amplitude).sum() > 20
     assert curve.orbits.periods == before[0] > 100

@@ -33,7 +33,7 @@ def test_the_greatest_amplitudes_are_found_and_few_others():
     greatest = outputs.max(axis=0)
     for k in range(len(outputs) - 1):
         between = Segment(problem, path, k)
-        if between.put(0.5):
+        if between.find(0.5):
             assert (amplitudes(problem, between.z, between.direction) <= greatest * (1.0 + 1e-9)).all()
     peaks = [k for k in range(1, len(outputs)) if path.mark[k] & Mark.PEAK]
     lower = [k for k in peaks if (outputs[k] < outputs[:k].max(axis=0)).all()]

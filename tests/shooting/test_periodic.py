@@ -47,7 +47,7 @@ def test_the_derivative_is_that_of_differences(name, omega):
         move = np.zeros(shot.x.size)
         move[i] = 1e-6 * shot.scale[i]
         ahead, behind = Shot(shot.system, shot.x + move), Shot(shot.system, shot.x - move)
-        quotient = (ahead.gap + ahead.x - behind.gap - behind.x) / (2e-6 * shot.scale[i])
+        quotient = (ahead.closure + ahead.x - behind.closure - behind.x) / (2e-6 * shot.scale[i])
         column = shot.derivative[:, i]
         assert column * shot.scale[i] / shot.scale == pytest.approx(
             quotient * shot.scale[i] / shot.scale, abs=1e-7

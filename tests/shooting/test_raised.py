@@ -9,15 +9,17 @@ import numpy as np
 import pytest
 
 from fcm import load_scene
-from fcm.continuation import Status
+from fcm.branches.force_level import level_frequencies
+from fcm.continuation import Status, follow
 from fcm.harmonic_balance.system import System as Balanced
-from fcm.harmonic_balance.work_budget import TooLongError
-from fcm.shooting import OrbitProblem, force_level, work_budget
-from fcm.shooting.force_level import Raised, raised_at
+from fcm.harmonic_balance.work_budget import WorkLimitError
+from fcm.shooting import OrbitProblem
+from fcm.shooting.force_level import LevelMotions, level_motions, level_motions_at
 from fcm.shooting.force_level_problem import LevelProblem
-from fcm.shooting.periodic import without_end
+from fcm.shooting.options import SHOOTING
+from fcm.shooting.periodic import never_interrupt
 from fcm.shooting.residual import Shooting
-from fcm.shooting.work_budget import Bounded
+from fcm.shooting.work_budget import BranchBudget
 from fcm.time_domain import State, simulate
 
 from ..response.random_scenes import random_scene
@@ -36,8 +38,8 @@ def test_the_derivative_by_the_level_is_that_of_differences_of_the_forces(scene,
     """Away from where the period closes, from a motion that slips."""
     x, level, step = LevelProblem(scene, omega).shooting.unknowns(simulate(scene, omega, 20).end), 0.9, 1e-6
     shot = Shooting(scene).residual(x, omega, level, by_level=True)
-    gaps = [Shooting(at_level(scene, level + h)).residual(x, omega).gap for h in (0.0, step, -step)]
-    assert shot.gap == pytest.approx(gaps[0], abs=1e-13 * np.abs(x).max())
+    gaps = [Shooting(at_level(scene, level + h)).residual(x, omega).closure for h in (0.0, step, -step)]
+    assert shot.closure == pytest.approx(gaps[0], abs=1e-13 * np.abs(x).max())
     quotient = (gaps[1] - gaps[2]) / (2.0 * step)
     assert shot.by_parameter / shot.scale == pytest.approx(quotient / shot.scale, abs=1e-7)
     assert np.abs(quotient / shot.scale).max() > 0.1
@@ -46,7 +48,7 @@ def test_the_derivative_by_the_level_is_that_of_differences_of_the_forces(scene,
 def test_every_passing_of_the_level_1_is_a_motion():
     """Ten modes, hardly damped, above a contact: simulated, each of the three repeats after a period."""
     scene, omega = random_scene(3), 2.1490306
-    found = raised_at(scene, Balanced(scene, (1,)), omega, (), without_end)
+    found = level_motions_at(scene, Balanced(scene, (1,)), omega, (), never_interrupt)
     m, free = scene.modal.mass.size, OrbitProblem(scene).free
     starts = np.zeros((len(found.motions), 2 * m + 1))
     starts[:, free] = [z[:-1] for z in found.motions]
@@ -59,61 +61,60 @@ def test_every_passing_of_the_level_1_is_a_motion():
 def test_what_a_level_passed_is_kept_when_its_time_is_over():
     scene, omega = random_scene(3), 2.1490306
     one, looks = Balanced(scene, (1,)), []
-    whole = raised_at(scene, one, omega, (), lambda: looks.append(0))
+    whole = level_motions_at(scene, one, omega, (), lambda: looks.append(0))
     left = iter(looks[: -len(looks) // 4])
 
     def poll():
         if next(left, None) is None:
-            raise TooLongError
+            raise WorkLimitError
 
-    part = raised_at(scene, one, omega, (), poll)
-    assert part.over and not part.complete and 0 < len(part.motions) <= len(whole.motions)
+    part = level_motions_at(scene, one, omega, (), poll)
+    assert part.out_of_time and not part.complete and 0 < len(part.motions) <= len(whole.motions)
     for z in part.motions:
         assert min(np.abs(z - other).max() for other in whole.motions) < 1e-9 * np.abs(z).max()
 
 
-def test_where_the_level_from_rest_stalls_it_is_followed_from_what_is_known(monkeypatch):
+def test_where_the_level_from_rest_stalls_it_is_followed_from_what_is_known():
     """Once is enough from rest: other steps end there, too."""
     scene, omega, begun = load_scene("yang1998-n5"), 1.22, []
     one = Balanced(scene, (1,))
-    whole = raised_at(scene, one, omega, (), without_end)
-    follow = force_level.follow
+    whole = level_motions_at(scene, one, omega, (), never_interrupt)
 
     def stalls(problem, start, *rest, **options):
         begun.append(start[-1])
         path = follow(problem, start, *rest, **options)
         return replace(path, z=path.z[:2], status=Status.STALLED) if start[-1] == begun[0] else path
 
-    monkeypatch.setattr(force_level, "follow", stalls)
-    found = raised_at(scene, one, omega, whole.motions[:1], without_end)
+    found = level_motions_at(scene, one, omega, whole.motions[:1], never_interrupt, along=stalls)
     assert not found.complete and begun.count(begun[0]) == 1 and begun[0] != 1.0
     assert len(whole.motions) == 3
     for z in whole.motions:
         assert min(np.abs(z - other).max() for other in found.motions) < 1e-9 * np.abs(z).max()
 
 
-def test_levels_have_equal_shares_of_the_time_and_what_others_leave(monkeypatch):
-    """The first takes 60 of 110 s, the others 5 s each: it is begun, given up, and followed to its end."""
+def test_levels_have_equal_shares_of_the_time_and_what_others_leave():
+    """Of 22 s for each level the first takes 30, the others 5: it is begun, given up, and followed to its
+    end."""
     scene, now, came = random_scene(3), [0.0], []
+    frequencies = level_frequencies(Balanced(scene, (1,)))
+    count = len(frequencies)
 
     def at(scene, one, omega, known, poll, options):
-        begin, end = now[0], now[0] + (60.0 if omega == 1.0 else 5.0)
+        begin, end = now[0], now[0] + (30.0 if omega == frequencies[0] else 5.0)
         while now[0] < end:
             now[0] += 0.5
             try:
                 poll()
-            except TooLongError:
+            except WorkLimitError:
                 came.append((omega, now[0] - begin))
-                return Raised(omega, (), False, over=True)
+                return LevelMotions(omega, (), False, out_of_time=True)
         came.append((omega, now[0] - begin))
-        return Raised(omega, (), True)
+        return LevelMotions(omega, (), True)
 
-    monkeypatch.setattr(force_level, "raised_at", at)
-    monkeypatch.setattr("fcm.branches.force_level.looked_at", lambda system: [1.0, 2.0, 3.0, 4.0, 5.0])
-    monkeypatch.setattr(work_budget.time, "process_time", lambda: now[0])
-    monkeypatch.setattr(work_budget.time, "monotonic", lambda: now[0])
-    limited = Bounded(without_end, 110.0)
-    found = list(limited.each(force_level.raised(scene, lambda omega: (), limited)))
-    assert came == [(1.0, 22.5), (2.0, 5.0), (3.0, 5.0), (4.0, 5.0), (5.0, 5.0), (1.0, 60.0)]
+    options = replace(SHOOTING, search=replace(SHOOTING.search, poll_interval=-1.0))
+    limited = BranchBudget(never_interrupt, 22.0 * count, options, lambda: now[0])
+    found = list(limited.each(level_motions(scene, lambda omega: (), limited, at)))
+    others = [(omega, 5.0) for omega in frequencies[1:]]
+    assert count > 2 and came == [(frequencies[0], 22.5), *others, (frequencies[0], 30.0)]
     assert found[-1].complete and not limited.given_up
-    assert [one.omega for one in found] == [1.0, 2.0, 3.0, 4.0, 5.0, 1.0]
+    assert [one.omega for one in found] == [*frequencies, frequencies[0]]

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.shooting import trace
+from fcm.continuation import FollowOptions, follow
 from fcm.shooting.orbit_record import samples
 from fcm.shooting.periodic import shoot
 from fcm.shooting.problem import OrbitProblem
-from fcm.shooting.trace import explore
+from fcm.shooting.unstable_range_search import orbits_in_unstable_ranges
 from fcm.time_domain.state import State
 from fcm.time_domain.system import System
 
@@ -20,17 +20,17 @@ UNSTABLE = [0.2578, -0.1272, -0.0544], [0.7575, 0.6428, -0.0122], [0.0, 0.0667, 
 MARCHED = [0.79029, 0.31136, 1.13541]  # from rest at 1.55 rad/s, 4000 steps of Runge and Kutta a cycle
 
 
-def test_the_motion_that_rest_comes_to_is_on_a_branch(monkeypatch):
+def test_the_motion_that_rest_comes_to_is_on_a_branch():
     """All else leads to unstable ones alone; marches from random states come to the same."""
     scene = fcm.load_scene(Path(__file__).parent / "scenes/restless.toml")
     problem, low = OrbitProblem(scene), scene.frequency_range[0]
     orbit = shoot(System(scene, low), State(*map(np.array, UNSTABLE)))
     assert orbit is not None and not orbit.stable
-    begin = problem.z(orbit.state, low)
-    monkeypatch.setattr(trace, "starts", lambda *_: ([begin], {}, True, False))
-    paths, missed = explore(problem)
-    assert not missed and len(paths) == 2
-    unstable, found = (samples(problem, path) for path in paths)
+    span, options = scene.frequency_range, FollowOptions(scene.max_step)
+    path = follow(problem, problem.z(orbit.state, low), span, options=options)
+    (z,) = orbits_in_unstable_ranges(problem, [path], lambda: None)
+    ways = [follow(problem, z, span, options=options, forward=forward) for forward in (False, True)]
+    unstable, found = samples(problem, path), samples(problem, ways[0].backwards().then(ways[1]))
     assert not any(point.stable for point in unstable) and all(point.stable for point in found)
     omega = np.array([point.frequency for point in found])
     amplitude = np.array([point.measure.amplitude for point in found])

@@ -54,7 +54,7 @@ def test_the_derivative_by_the_frequency_is_that_of_differences(name, omega):
         shot, step = problem.residual(x, omega), 1e-6 * omega
         ahead, behind = problem.residual(x, omega + step), problem.residual(x, omega - step)
         assert ahead.sequence == behind.sequence
-        quotient = (ahead.gap - behind.gap) / (2.0 * step)
+        quotient = (ahead.closure - behind.closure) / (2.0 * step)
         assert omega * relative(shot, shot.by_parameter) == pytest.approx(
             omega * relative(shot, quotient), abs=1e-7
         )
@@ -68,11 +68,11 @@ def test_the_derivatives_of_many_modes(modes, contacts):
     x = problem.unknowns(simulate(scene, omega, 10).end)
     shot = problem.residual(x, omega)
     assert len(shot.segments) > 4
-    quotient = (problem.residual(x, omega + 1e-6).gap - problem.residual(x, omega - 1e-6).gap) / 2e-6
+    quotient = (problem.residual(x, omega + 1e-6).closure - problem.residual(x, omega - 1e-6).closure) / 2e-6
     assert relative(shot, shot.by_parameter) == pytest.approx(relative(shot, quotient), abs=1e-6)
     way = np.random.default_rng(0).normal(size=x.size) * shot.scale
     quotient = (
-        problem.residual(x + 1e-6 * way, omega).gap - problem.residual(x - 1e-6 * way, omega).gap
+        problem.residual(x + 1e-6 * way, omega).closure - problem.residual(x - 1e-6 * way, omega).closure
     ) / 2e-6
     assert relative(shot, shot.by_state @ way) == pytest.approx(relative(shot, quotient), abs=1e-5)
 
@@ -110,7 +110,7 @@ def test_a_contact_that_always_sticks_has_the_friction_that_is_wanted(preload):
     problem = Shooting(scene)
     orbit = periodic(scene, omega)
     shot = problem.residual(problem.unknowns(orbit.state), omega)
-    step = np.linalg.solve(shot.by_state, -shot.gap)
+    step = np.linalg.solve(shot.by_state, -shot.closure)
     shot = problem.residual(shot.x + step, omega)
     assert shot.residual < 1e-10
     u = scene.modal.shapes.T @ shot.state.q

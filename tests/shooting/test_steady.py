@@ -14,7 +14,7 @@ from fcm.shooting import Shooting, periodic
 from fcm.shooting.periodic import converged
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import resting_at
-from fcm.shooting.steady_state import Steady, steady
+from fcm.shooting.steady_state import SteadyMotion, steady
 from fcm.time_domain import State, simulate
 from fcm.time_domain.system import System
 
@@ -26,7 +26,7 @@ TWO, IRREGULAR = (fcm.load_scene(SCENES / f"{name}.toml") for name in ("two_peri
 
 def found_at(scene, omega):
     found = steady(System(scene, omega), State.rest(scene))
-    assert isinstance(found, Steady)
+    assert isinstance(found, SteadyMotion)
     return found
 
 
@@ -97,7 +97,7 @@ def test_an_irregular_motion_that_lingers_has_an_extent():
     rest = State.rest(IRREGULAR)
     for k in range(6):
         found = steady(System(IRREGULAR, 1.3), replace(rest, q=rest.q + 1e-12 * k))
-        assert isinstance(found, Steady) and found.periods == 0
+        assert isinstance(found, SteadyMotion) and found.periods == 0
 
 
 def test_the_extent_holds_bursts_that_are_seldom():
@@ -142,5 +142,5 @@ def test_the_residual_of_several_periods():
     assert np.sort(np.abs(shot.multipliers)) == pytest.approx(
         np.sort(np.abs(orbit.multipliers**2)), abs=1e-12
     )
-    quotient = (two.residual(x, omega + 1e-6).gap - two.residual(x, omega - 1e-6).gap) / 2e-6
+    quotient = (two.residual(x, omega + 1e-6).closure - two.residual(x, omega - 1e-6).closure) / 2e-6
     assert shot.by_parameter == pytest.approx(quotient, abs=1e-7 * np.abs(quotient).max())

@@ -11,10 +11,10 @@ import pytest
 
 from fcm import load_scene
 from fcm.cli.exact import remarks
-from fcm.response.coexisting_orbits import unreached
+from fcm.response.coexisting_orbits import coexisting_orbits
 from fcm.response.exact import trace_exact
 from fcm.run import Report
-from fcm.shooting.work_budget import Doubts
+from fcm.shooting.work_budget import UncertainFrequencies
 from fcm.time_domain import simulate
 
 from ..interrupted import interrupted_after
@@ -47,7 +47,9 @@ def test_single_frequencies_have_what_sweeps_from_far_come_to():
 
 def test_they_go_on_as_they_are():
     scene = load_scene(HARMONIC / "isola.toml")
-    _, found = unreached(scene, [1.22], [], Report(lambda *_: None), lambda: None, Doubts())
+    _, found = coexisting_orbits(
+        scene, [1.22], [], Report(lambda *_: None), lambda: None, UncertainFrequencies()
+    )
     last = simulate(scene, 1.22, 200, found.state).measures(last=1)[0]
     assert last.amplitude == pytest.approx(found.measure.amplitude, rel=1e-9)
 

@@ -36,7 +36,7 @@ def test_a_window_between_two_points_that_agree_is_on_the_curve():
             continue
         way, told = Segment(problem, path, k), set()
         for part in np.linspace(0.1, 0.9, 9):
-            assert way.put(part)
+            assert way.find(part)
             i = int(np.searchsorted(known, way.z[-1]))
             if min(way.z[-1] - known[i - 1], known[i] - way.z[-1]) > EDGE * (known[i] - known[i - 1]):
                 told.add(points[i - 1].stable and points[i].stable)

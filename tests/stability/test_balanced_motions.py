@@ -15,12 +15,12 @@ from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.scene import Contact, Force, Modal, Scene, scene_from_dict
 from fcm.shooting import periodic
-from fcm.stability.bifurcation_functions import dip, seen
+from fcm.stability.bifurcation_functions import multiplier_sample, predicted_minimum
 from fcm.stability.bifurcations import stability, with_points
 from fcm.stability.floquet import multipliers
 from fcm.stability.multipliers import Multipliers
 from fcm.stability.options import STABILITY
-from fcm.stability.verdict import Bifurcation, Spectrum, Verdict, even
+from fcm.stability.verdict import Bifurcation, MultiplierSpectrum, Verdict, even_verdict
 from fcm.time_domain import simulate
 
 from ..harmonic_balance.truth import state
@@ -43,7 +43,7 @@ def only(scene, omega, highest):
 def path(scene, highest, span):
     of = system(scene, highest, span)
     start = solutions(of, span[0]).solutions[0]
-    found = follow(of.balance(), start, span, options=FollowOptions(scene.max_step))
+    found = follow(of.new_balance(), start, span, options=FollowOptions(scene.max_step))
     assert found.status is Status.COMPLETE
     return of, found
 
@@ -139,8 +139,10 @@ def test_the_same_backwards():
 def test_the_determinant_of_a_path_from_within():
     of = system(yang(5.0), 3, (1.15, 1.3))
     start = solutions(of, 1.25).solutions[0]
-    found = follow(of.balance(), start, (1.15, 1.3), options=FollowOptions(0.05), forward=False).backwards()
-    problem = of.balance()
+    found = follow(
+        of.new_balance(), start, (1.15, 1.3), options=FollowOptions(0.05), forward=False
+    ).backwards()
+    problem = of.new_balance()
     for z, direction, orientation in zip(found.z, found.direction, found.orientation, strict=True):
         problem.evaluate(z)
         sign = np.linalg.slogdet(np.asarray(problem.jacobian)[:, :-1])[0]
@@ -260,7 +262,7 @@ def test_many_modes_that_follow_are_as_good_as_all():
     scene = Scene("many", modal, (contact,), (Force(np.array([1.0, 0.0]), 0.3, 0.0),), (0.8, 1.2), 0.05)
     z = only(scene, 1.1, 3)
     few = multipliers(system(scene, 3), z)
-    followed = replace(STABILITY, structure=replace(STABILITY.structure, modes=count))
+    followed = replace(STABILITY, structure=replace(STABILITY.structure, many_modes=count))
     all_modes = multipliers(system(scene, 3), z, followed)
     assert few.size < 0.5 * all_modes.size
     assert error(all_modes, few) < 5e-3
@@ -317,7 +319,7 @@ PAIR = [0.6 + 0.9j, 0.6 - 0.9j]
     ],
 )
 def test_verdicts_of_spectra_with_an_even_number_above_one(fine, plain, stable):
-    found = even(*(Spectrum([complex(v) for v in values]) for values in (fine, plain)))
+    found = even_verdict(*(MultiplierSpectrum([complex(v) for v in values]) for values in (fine, plain)))
     assert found.stable == stable or (math.isnan(stable) and math.isnan(found.stable))
     assert math.isnan(stable) or (found.growth > 0.0) == (stable == 0.0)
 
@@ -355,15 +357,15 @@ def test_a_window_that_begins_beside_a_place_that_was_looked_at_is_found():
 
 def test_multipliers_beyond_all_bounds_are_no_trouble():
     one, other = (
-        seen(s, Verdict(0.0, g, Bifurcation.REAL, values=(1e200 + 0j, 1e160 + 0j)))
+        multiplier_sample(s, Verdict(0.0, g, Bifurcation.REAL, values=(1e200 + 0j, 1e160 + 0j)))
         for s, g in ((0.0, 9.0), (1.0, 8.0))
     )
-    assert dip(one, other, [one, other]) is None
+    assert predicted_minimum(one, other, [one, other]) is None
 
 
 def test_a_pair_and_a_flip_are_told_apart():
-    assert Spectrum([0.5 + 0j, *PAIR]).verdict().kind is Bifurcation.NEIMARK_SACKER
-    assert Spectrum([0.5 + 0j, -1.2 + 0j]).verdict().kind is Bifurcation.PERIOD_DOUBLING
+    assert MultiplierSpectrum([0.5 + 0j, *PAIR]).verdict().kind is Bifurcation.NEIMARK_SACKER
+    assert MultiplierSpectrum([0.5 + 0j, -1.2 + 0j]).verdict().kind is Bifurcation.PERIOD_DOUBLING
 
 
 def test_small_disturbances_grow_as_the_multipliers_say():

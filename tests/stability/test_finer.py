@@ -8,7 +8,7 @@ from fcm.harmonic_balance.system import System
 from fcm.scene import scene_from_dict
 from fcm.shooting import periodic
 from fcm.stability.multipliers import Multipliers
-from fcm.stability.verdict import meeting
+from fcm.stability.verdict import flip_distance
 
 
 def halves(contacts):
@@ -63,8 +63,8 @@ def test_a_pair_near_minus_one_that_decays_where_it_meets_is_stable(harmonics):
 
 def test_how_far_a_pair_is_from_meeting_and_how_far_it_has_parted():
     turned = 0.9 * np.exp(1j * (np.pi - 0.2))
-    apart, size = meeting([turned, turned.conjugate(), 0.9 + 0.1j, 0.9 - 0.1j])
+    apart, size = flip_distance([turned, turned.conjugate(), 0.9 + 0.1j, 0.9 - 0.1j])
     assert (apart, size) == pytest.approx((2.0 - 2.0 * np.cos(0.2), np.log(0.9)))
-    apart, size = meeting([complex(-0.9 * np.exp(0.1)), complex(-0.9 * np.exp(-0.1)), 0.5 + 0j])
+    apart, size = flip_distance([complex(-0.9 * np.exp(0.1)), complex(-0.9 * np.exp(-0.1)), 0.5 + 0j])
     assert (apart, size) == pytest.approx((2.0 - 2.0 * np.cosh(0.1), np.log(0.9)))
-    assert np.isnan(meeting([0.9 + 0.1j, 0.9 - 0.1j, -0.1 + 0j])).all()
+    assert np.isnan(flip_distance([0.9 + 0.1j, 0.9 - 0.1j, -0.1 + 0j])).all()

@@ -10,8 +10,8 @@ from fcm.shooting import periodic
 from fcm.stability.bifurcations import stability
 from fcm.stability.confirmation import confirmed_stable
 from fcm.stability.floquet import multipliers_of
-from fcm.stability.force_harmonics import beyond
-from fcm.stability.rebalanced import Refined
+from fcm.stability.force_harmonics import enriched_harmonics
+from fcm.stability.rebalanced import Rebalancing
 
 from ..harmonic_balance.strips import elastic_strip, strip
 from ..harmonic_balance.truth import state
@@ -36,7 +36,7 @@ def test_few_points_tell_the_stability_of_all(harmonics, looks):
 
 def exact(system, z):
     """The exact motion beside a solution, from that with further harmonics at its frequency."""
-    refined = Refined(system, beyond(list(system.harmonics)))
+    refined = Rebalancing(system, enriched_harmonics(list(system.harmonics)))
     there = refined.rebalance(z, refined.system.extended(z, system.harmonics)[:-1])
     return periodic(system.scene, float(z[-1]), state(refined.system, there))
 

@@ -119,4 +119,4 @@ def test_disturbances_do_not_depend_on_the_steps(sequence, far):
 
 
 def test_more_disturbances_than_are_followed_are_none():
-    assert np.isnan(followed(*MOTIONS["P"], most=5)).all()
+    assert np.isnan(followed(*MOTIONS["P"], max_disturbances=5)).all()

@@ -10,9 +10,9 @@ import pytest
 from fcm.branches.trace import traced
 from fcm.scene import Contact, Force, Modal, Scene, load_scene
 from fcm.shooting import periodic
-from fcm.stability.force_harmonics import beyond
+from fcm.stability.force_harmonics import enriched_harmonics
 from fcm.stability.multipliers import Multipliers
-from fcm.stability.rebalanced import Refined
+from fcm.stability.rebalanced import Rebalancing
 
 from ..harmonic_balance.truth import state
 from .test_balanced_motions import only, system
@@ -58,7 +58,7 @@ def judged(scene, omega, highest):
     of = system(scene, highest)
     z = only(scene, omega, highest)
     orbit = periodic(scene, omega, state(of, z))
-    balance = of.balance()
+    balance = of.new_balance()
     balance.report(z, np.zeros_like(z))
     np.testing.assert_allclose(orbit.measure.amplitude, np.asarray(balance.output), rtol=0.02)
     return Multipliers(of, omega).verdict(z), orbit.stable
@@ -110,7 +110,7 @@ def test_a_solution_with_many_harmonics_takes_few_jacobians():
     scene = load_scene("blade").each_curve()[0]
     of = system(scene, 1)
     path, finer = traced(of).branches.paths[0], Multipliers(of, scene.frequency_range[1]).finer
-    refined = Refined(of, beyond([1]))
+    refined = Rebalancing(of, enriched_harmonics([1]))
     assert refined.balance.unknowns >= 300
     found = taken = 0
     for z in path.z[::20]:

@@ -6,7 +6,12 @@ from itertools import combinations
 
 import numpy as np
 
-from fcm.stability.bifurcation_functions import Seen, dip, foretold, products
+from fcm.stability.bifurcation_functions import (
+    MultiplierSample,
+    predicted_minima,
+    predicted_minimum,
+    products,
+)
 
 
 def test_products_of_multipliers_are_determinants():
@@ -31,12 +36,14 @@ def test_a_dip_is_foretold_at_once_where_it_is_one_by_one():
     rng = np.random.default_rng(2)
     s = np.cumsum(rng.choice([0.0, 1e-16, 5e-4, 0.01, 0.1, 0.3], 400) * rng.uniform(0.5, 1.0, 400))
     flip, none = np.log(rng.uniform(0.0, 1.0, s.size) ** 3), np.zeros(s.size)
-    places = [Seen(*row) for row in zip(s.tolist(), none + 1.0, none, flip.tolist(), none, strict=True)]
+    places = [
+        MultiplierSample(*row) for row in zip(s.tolist(), none + 1.0, none, flip.tolist(), none, strict=True)
+    ]
     sides = [[], []]
     for k in range(len(places) - 2):
         three = places[k : k + 3]
         for i, side in enumerate(sides):
-            side.append(dip(three[i], three[i + 1], three) is not None)
-    found = foretold(s, flip, logarithms=True)
+            side.append(predicted_minimum(three[i], three[i + 1], three) is not None)
+    found = predicted_minima(s, flip, logarithms=True)
     assert 20 < np.sum(found) < 700
     assert np.array_equal(found, sides)

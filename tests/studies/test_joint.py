@@ -97,7 +97,7 @@ def test_forces_that_do_what_its_negative_damping_does_balance_it(mode):
             replace(scene.forces[0], direction=direction, amplitude=abs(F), phase=float(np.angle(1j * F)))
             for direction, F in zip(np.eye(pushed.size), pushed, strict=True)
         ]
-        balance = System(replace(scene, forces=tuple(forces)), (1,)).balance()
+        balance = System(replace(scene, forces=tuple(forces)), (1,)).new_balance()
         z = np.ascontiguousarray(mode.contacts[i])
         balance.evaluate(z)
         # the soft springs yield 5e-5 m/N to what rounding makes of mean forces
@@ -109,7 +109,8 @@ def test_the_error_of_many_unknowns_is_told_at_a_few_points_as_more_harmonics_ch
         nonlinear_mode(System(scene, harmonics), 7, (3e-6, 2e-5), 0.1) for harmonics in ((1,), (1, 2, 3))
     )
     error, borne = truncation(
-        mode, NonlinearModeOptions(truncation=TruncationOptions(dear=1, least=3, share=0.0))
+        mode,
+        NonlinearModeOptions(truncation=TruncationOptions(many_unknowns=1, min_points=3, time_fraction=0.0)),
     )
     told = np.flatnonzero(np.isfinite(error))
     assert told.size == 3 < mode.omega.size and told[-1] == mode.omega.size - 1

@@ -7,15 +7,15 @@ import pytest
 
 from fcm.cli.track import as_table
 from fcm.results.tracked import Optimal
-from fcm.tracking.minimax import Valley, downhill
+from fcm.tracking.minimax import PeakEnvelope, downhill
 from fcm.tracking.options import DESCENT, SEARCH, TRACKING
-from fcm.tracking.peak_envelope import Height, least
+from fcm.tracking.peak_envelope import PieceHeight, least
 from fcm.tracking.trials import by_trials
 
 EDGE = 0.37  # of the first number: below it another, higher peak is there, which no way leads to
 
 
-class Known(Valley):
+class Known(PeakEnvelope):
     """A valley whose peaks are a slope along the first number and a parabola along the second."""
 
     def __init__(self):
@@ -47,10 +47,10 @@ class Tried:
     span, options = (0.0, 1.0), SEARCH
 
     def __init__(self, *heights):
-        self.heights, self.seen = list(heights), {}
+        self.heights, self.visited_values = list(heights), {}
 
     def greatest_at(self, value):
-        self.seen[value] = Height(self.heights.pop(0), 0.0, np.zeros(0), 0)
+        self.visited_values[value] = PieceHeight(self.heights.pop(0), 0.0, np.zeros(0), 0)
 
 
 def test_trials_where_some_responses_have_no_peak():
@@ -77,7 +77,7 @@ class Straight:
         return 2.0 + self.slope * s
 
     def at(self, s):
-        return Height(self.roughly(s), self.slope, np.array([s]), 0)
+        return PieceHeight(self.roughly(s), self.slope, np.array([s]), 0)
 
 
 def test_the_least_beside_a_gap_between_pieces():

@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 
 from fcm.branches.trace import traced
-from fcm.harmonic_balance.reported_quantities import reported
+from fcm.harmonic_balance.reported_quantities import reported_quantities
 from fcm.harmonic_balance.system import System
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
 from fcm.tracking import nonsmooth_continuation
-from fcm.tracking.curves import tracks
+from fcm.tracking.curves import tracked_curves
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.options import TRACKING
 from fcm.tracking.parameter_line import along
-from fcm.tracking.starts import moved
-from fcm.tracking.tracked_point import Ending, Way
+from fcm.tracking.starts import for_scene
+from fcm.tracking.tracked_point import Ending, TrackingRun
 
 SPAN, RANGE = (0.5, 0.7), (1.45, 1.65)  # in which the peak of x0 turns back where steps are short
 
@@ -31,13 +31,13 @@ def scene():
 
 def followed(scene, what, span):
     """Curves from three values of the level."""
-    return tracks(levels(scene, span, starts=3), [what]).curves
+    return tracked_curves(levels(scene, span, starts=3), [what]).curves
 
 
 def levels(scene, span, starts):
     """All curves over the level, from so many values of it."""
-    options = replace(TRACKING, curves=replace(TRACKING.curves, starts=starts))
-    return Way(System(scene, (1, 2, 3)), along(number_of(scene, "level")), span, options=options)
+    options = replace(TRACKING, curves=replace(TRACKING.curves, start_values=starts))
+    return TrackingRun(System(scene, (1, 2, 3)), along(number_of(scene, "level")), span, options=options)
 
 
 @pytest.fixture(scope="module")
@@ -85,13 +85,13 @@ def test_a_curve_goes_on_where_the_response_is_an_isolated_point(scene):
     span, isolated = (0.6, 0.68), 0
     narrow = replace(scene, frequency_range=(1.45, 1.56))
     pieces = TRACKING.pieces
-    few = replace(TRACKING, pieces=replace(pieces, step=replace(pieces.step, most=25)))
-    way = Way(System(narrow, (1, 2, 3)), along(number_of(scene, "level")), span, options=few)
+    few = replace(TRACKING, pieces=replace(pieces, step=replace(pieces.step, max_steps=25)))
+    way = TrackingRun(System(narrow, (1, 2, 3)), along(number_of(scene, "level")), span, options=few)
     made = followed(narrow, Condition(Kind.PEAK, 2), span)
     for one, (i, _) in [(curve, turn) for curve in made for turn in curve.turns()]:
         problem = way.tracked(one.condition)
-        problem.measure(one.spots[i].z)
-        problem.evaluate(one.spots[i].z)
+        problem.measure(one.points[i].z)
+        problem.evaluate(one.points[i].z)
         scale = np.array(problem.scale)[:-1]
         by_all = np.array(problem.jacobian)[:-1, :-1] * scale / scale[:-1, None]
         if np.linalg.svd(by_all)[1][-1] > 1e-6:
@@ -99,7 +99,7 @@ def test_a_curve_goes_on_where_the_response_is_an_isolated_point(scene):
         isolated += 1
         for k in (i - 2, i - 3, i - 4):  # from wherever it is come to
             spots, _ = nonsmooth_continuation.follow_special_point(
-                way, one.condition, one.spots[k], one.s[k] < one.s[i]
+                way, one.condition, one.points[k], one.s[k] < one.s[i]
             )
             assert next(spot.z[-1] for spot in spots if spot.turn) == pytest.approx(one.s[i], abs=1e-9)
             assert not spots[-1].turn
@@ -109,10 +109,10 @@ def test_a_curve_goes_on_where_the_response_is_an_isolated_point(scene):
 def tops(scene, dof, level, low, high):
     """Frequencies of an ordinary run's points in a window that are higher than their neighbours."""
     system = System(scene, (1, 2, 3))
-    at = moved(system, number_of(scene, "level").put(scene, level))
+    at = for_scene(system, number_of(scene, "level").put(scene, level))
     found = []
     for path in traced(at).branches.paths:
-        height = reported(at, path).amplitude[:, dof]
+        height = reported_quantities(at, path).amplitude[:, dof]
         top = 1 + np.flatnonzero((height[1:-1] > height[:-2]) & (height[1:-1] > height[2:]))
         found += [omega for omega in path.parameter[top] if low < omega < high]
     return found
@@ -140,7 +140,7 @@ def test_a_peak_at_which_no_curve_begins_is_told():
         load_scene(Path(__file__).parents[1] / "harmonic_balance" / "scenes" / "sub.toml"),
         (0.7, 1.3),
     )
-    made = tracks(levels(other, span, starts=2), [Condition(Kind.PEAK, 0)])
+    made = tracked_curves(levels(other, span, starts=2), [Condition(Kind.PEAK, 0)])
     assert made.lost and made.curves
     for level in span:
         told = [z[-2] for _, z in made.lost if z[-1] == level]

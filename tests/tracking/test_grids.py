@@ -19,11 +19,11 @@ from fcm.response.options import OptimumOptions
 from fcm.response.tracked_work import conditions_of
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
-from fcm.tracking.curves import tracks
+from fcm.tracking.curves import tracked_curves
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.parameter_line import along
-from fcm.tracking.starts import moved
-from fcm.tracking.tracked_point import Way
+from fcm.tracking.starts import for_scene
+from fcm.tracking.tracked_point import TrackingRun
 
 from ..harmonic_balance.scenes import gap5
 
@@ -51,7 +51,7 @@ def frequencies(scene, key, value, mark):
 def grid(scene, what, key, span):
     """Values of the number at which curves were followed through, and their frequencies there."""
     system, line = System(scene, (1,)), along(number_of(scene, key))
-    found = tracks(Way(system, line, span), conditions_of(scene, what))
+    found = tracked_curves(TrackingRun(system, line, span), conditions_of(scene, what))
     assert not found.problems and all(curve.whole for curve in found.curves)
     for value in np.linspace(*span, 13)[::3]:
         there = [curve.frequency[np.abs(curve.s - value) < 1e-9] for curve in found.curves]
@@ -91,7 +91,7 @@ def test_an_optimum_short_of_the_accuracy_says_so(scene, monkeypatch):
     aimed = replace(scene, optimum=Optimum((PRELOAD,), ((2.0, 20.0),), (Aim("u"),)))
     enough = optimise(aimed, accuracy=1e-3)
     assert enough.tracking.optima[0].error <= 1e-3 and not enough.curves[0].short_of
-    monkeypatch.setattr(least_peak, "AGAIN", 0.0)
+    monkeypatch.setattr(least_peak, "MAX_SECONDS_REPEATED", 0.0)
     short = optimise(aimed, accuracy=1e-3)
     assert short.tracking.harmonics == (1,) and short.tracking.optima[0].error > 1e-3
     assert "with 1 harmonic the error of the least peak" in short.curves[0].short_of
@@ -101,8 +101,8 @@ def test_an_optimum_short_of_the_accuracy_says_so(scene, monkeypatch):
 def test_an_optimum_short_of_the_accuracy_says_what_fewer_harmonics_found(scene, monkeypatch):
     aimed = replace(scene, optimum=Optimum((PRELOAD,), ((2.0, 20.0),), (Aim("u"),)))
     (fewer,) = optimise(aimed, harmonics=1).tracking.optima
-    monkeypatch.setattr(least_peak, "OPTIMUM", OptimumOptions(rounds=2))
-    monkeypatch.setattr(least_peak, "AGAIN", 0.2)
+    monkeypatch.setattr(least_peak, "OPTIMUM", OptimumOptions(max_rounds=2))
+    monkeypatch.setattr(least_peak, "MAX_SECONDS_REPEATED", 0.2)
     short = optimise(aimed, accuracy=1e-7)
     assert short.tracking.optima[0].error > 1e-7 and len(short.tracking.harmonics) > 1
     found = f"with 1 harmonic it is {fewer.value:.6g} at {PRELOAD} = {fewer.values[PRELOAD]:.6g}"
@@ -157,19 +157,19 @@ def test_an_isolated_branch_is_between_the_turns_that_are_told():
     """It is followed from a fold of the track, and is one of the branches of an ordinary run."""
     scene = gap5()
     gap, value = number_of(scene, "contact.c.gap"), 3.5
-    way = Way(System(scene, (1, 3)), along(gap), (3.0, 4.0), (value,), 0.05)
-    curves = tracks(way, [Condition(Kind.FOLD)], (value,)).curves
+    way = TrackingRun(System(scene, (1, 3)), along(gap), (3.0, 4.0), (value,), 0.05)
+    curves = tracked_curves(way, [Condition(Kind.FOLD)], (value,)).curves
     turns = [(kind, curve.s[i]) for curve in curves for i, kind in curve.turns()]
     assert [kind for kind, _ in turns] == ["isola", "isola"]
     assert min(s for _, s in turns) < value < max(s for _, s in turns)
-    spots = [spot for curve in curves for spot in curve.spots if abs(spot.z[-1] - value) < 1e-9]
+    spots = [spot for curve in curves for spot in curve.points if abs(spot.z[-1] - value) < 1e-9]
     folds = np.unique([spot.z[-2] for spot in spots])
-    ordinary = every_branch(moved(way.system, gap.put(scene, value))).branches.paths
+    ordinary = every_branch(for_scene(way.system, gap.put(scene, value))).branches.paths
     isolated = [path for path in ordinary if path.status is Status.CLOSED]
     others = [path for path in ordinary if path.status is not Status.CLOSED]
     at_ordinary = np.concatenate([path.parameter[path.where(Mark.FOLD)] for path in others])
     closed = follow(
-        moved(way.system, gap.put(scene, value)).balance(),
+        for_scene(way.system, gap.put(scene, value)).new_balance(),
         beside_fold(way, max(spots, key=lambda spot: spot.z[-2]).z),
         (0.7, 1.5),
         options=FollowOptions(0.05),

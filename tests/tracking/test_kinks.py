@@ -16,8 +16,8 @@ from fcm.tracking.nonsmooth_continuation import Pieces, land
 from fcm.tracking.options import TRACKING
 from fcm.tracking.parameter_line import along
 from fcm.tracking.peak_check import is_top
-from fcm.tracking.starts import moved, special_points
-from fcm.tracking.tracked_point import Spot, Way
+from fcm.tracking.starts import for_scene, special_points
+from fcm.tracking.tracked_point import TrackedPoint, TrackingRun
 
 RADIUS = 1e-4
 PEAK = Condition(Kind.PEAK, 0)
@@ -26,13 +26,13 @@ PEAK = Condition(Kind.PEAK, 0)
 @pytest.fixture(scope="module")
 def way():
     scene = load_scene("yang1998-n5")
-    return Way(System(scene, (1,)), along(number_of(scene, "contact.shroud.n_0")), (4.0, 10.0))
+    return TrackingRun(System(scene, (1,)), along(number_of(scene, "contact.shroud.n_0")), (4.0, 10.0))
 
 
 @pytest.fixture(scope="module")
 def spot(way):
     """A peak, on which a curve of peaks runs through."""
-    here = moved(way.system, way.line.scene(way.system.scene, 5.0))
+    here = for_scene(way.system, way.line.scene(way.system.scene, 5.0))
     (_, z), *_ = special_points(here, [PEAK])[0]
     return land(way, PEAK, np.append(z, 5.0))
 
@@ -61,11 +61,11 @@ def test_a_circle_on_which_there_is_no_motion_leads_nowhere(blind, ways):
 def test_from_a_kink_a_curve_goes_on_only_along_a_line_that_leads_away(way, spot, cosine, taken):
     """A curve crosses the circle in both cases; its angle with the radius tells whether it is the way on."""
     follower = Pieces(way, PEAK)
-    follower._use(None)
+    follower._switch_equations(None)
     follower._measure(spot.z)
     assert follower._solve(spot.z, follower.held)
     follower._accept()
-    follower.spots = [follower._spot(follower.z, follower.t)]
+    follower.points = [follower._point(follower.z, follower.t)]
     there, scale = follower.z, np.array(follower.newton.scale)
     aside = np.eye(there.size)[-1] - follower.t[-1] * follower.t
     radius = cosine * follower.t + np.sqrt(1.0 - cosine**2) * aside / np.linalg.norm(aside)
@@ -91,4 +91,4 @@ def test_where_the_response_crosses_itself_there_is_a_direction_and_no_peak(way,
     assert crossed(problem.varied.balance) @ (np.asarray(problem.scale)[:-1] * t) == pytest.approx(
         0.0, abs=1e-12
     )
-    assert not is_top(problem, Spot(spot.z, spot.direction))
+    assert not is_top(problem, TrackedPoint(spot.z, spot.direction))

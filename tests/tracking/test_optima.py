@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fcm.response import optima
-from fcm.response.least_peak import Task, optimum
+from fcm.response.least_peak import PeakTask, optimum
 from fcm.response.sweep import trace
 from fcm.results.tracked import Optimal
 from fcm.run import Checkpoint
@@ -80,11 +80,11 @@ def found(task, harmonics, _progress):
 
 
 def tasks_of(scene):
-    return [Task(curve, [], 1e-3) for curve in load_scene(scene).each_curve()]
+    return [PeakTask(curve, [], 1e-3) for curve in load_scene(scene).each_curve()]
 
 
 def test_what_is_sought_again_with_the_harmonics_of_all_is_kept_too(scene, sought, monkeypatch):
-    monkeypatch.setattr(optima, "enough", lambda _task, _found, harmonics: (harmonics, 0.0))
+    monkeypatch.setattr(optima, "harmonics_for_peaks", lambda _task, _found, harmonics: (harmonics, 0.0))
     begun = sought(2, found)
     with Checkpoint(scene.with_name("kept")) as kept:
         first, stopped = optima.optima(tasks_of(scene), None, kept, None)

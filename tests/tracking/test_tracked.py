@@ -22,14 +22,14 @@ from fcm.scene import load_scene
 from fcm.scene.draft import number_of
 from fcm.scene.load import scene_from_dict
 from fcm.tracking import starts
-from fcm.tracking.curve import Track
-from fcm.tracking.curves import tracks
+from fcm.tracking.curve import SpecialPointCurve
+from fcm.tracking.curves import tracked_curves
 from fcm.tracking.extended_system import Condition, Kind
-from fcm.tracking.lowest_peak import Lowest, Search
+from fcm.tracking.lowest_peak import LowestPeak, LowestPeakSearch
 from fcm.tracking.options import TRACKING
 from fcm.tracking.parameter_line import along
-from fcm.tracking.peak_envelope import Height, Least
-from fcm.tracking.tracked_point import Ending, Spot, Way
+from fcm.tracking.peak_envelope import EnvelopeMinimum, PieceHeight
+from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingRun
 
 from ..interrupted import interrupted_beyond
 
@@ -93,10 +93,12 @@ def test_a_turn_of_folds_is_told_by_what_the_frequency_does(kind, closes, skew, 
         place = np.array([x, 2.0 * x**3, -3.0 * x * x]) if closes else np.array([0.0, x, x * x])
         for one in (place, rate):
             one[1] = unit * (one[1] + skew * one[2])
-        spots.append(Spot(place, rate, turn=x == 0.0))
+        spots.append(TrackedPoint(place, rate, turn=x == 0.0))
     z, none = np.array([spot.z for spot in spots]), np.zeros((len(spots), 0))
     ends = (Ending.SPAN, Ending.SPAN)
-    curve = Track(Condition(Kind.FOLD), tuple(spots), z[:, 2], z[:, 1], none, z[:, 0] == z[:, 0], ends)
+    curve = SpecialPointCurve(
+        Condition(Kind.FOLD), tuple(spots), z[:, 2], z[:, 1], none, z[:, 0] == z[:, 0], ends
+    )
     assert curve.turns() == [(2, kind)]
 
 
@@ -166,7 +168,7 @@ def test_an_interrupted_run_goes_on_to_the_same_curves(scene, folds, tmp_path):
 def test_the_window_in_the_level_is_the_one_in_the_preload(scene, folds):
     """Twice the forces with twice the preload is twice the motion: levels are 5 / n_0."""
     system, line = System(scene, (1,)), along(number_of(scene, "level"))
-    levels = tracks(Way(system, line, (0.55, 2.5)), [Condition(Kind.FOLD)]).curves
+    levels = tracked_curves(TrackingRun(system, line, (0.55, 2.5)), [Condition(Kind.FOLD)]).curves
     assert all(curve.whole for curve in levels)
     turns = np.sort([5.0 / curve.s[i] for curve in levels for i, _ in curve.turns()])
     expected = [one["number"] for curve in folds.curves for one in curve.summary("rad/s")["turns"]]
@@ -312,15 +314,19 @@ def two_resonances():
     return scene_from_dict(data | {"response": {"frequency": [0.7, 2.6]}})
 
 
-class FallsAndEnds(Search):
+class FallsAndEnds(LowestPeakSearch):
     """A peak that falls to 1.8 and ends at 3, and one of 1.3 there that is followed only from there."""
 
     def __init__(self):
         self.system, self.span, self.curves = SimpleNamespace(harmonics=(1,)), (1.0, 9.0), []
-        self.seen, self.way = {}, SimpleNamespace(span=self.span, options=TRACKING)
+        self.visited_values, self.way = {}, SimpleNamespace(span=self.span, options=TRACKING)
 
     def best(self):
-        return Least(3.0, 1.3, (), "end") if "lower" in self.curves else Least(3.0, 1.8, (), "corner")
+        return (
+            EnvelopeMinimum(3.0, 1.3, (), "end")
+            if "lower" in self.curves
+            else EnvelopeMinimum(3.0, 1.8, (), "corner")
+        )
 
     def pieces(self):
         return [SimpleNamespace(s=np.array(self.span))]
@@ -350,31 +356,33 @@ class Line:
         return s
 
     def at(self, s):
-        return Height(s, 1.0, np.zeros(0), 0)
+        return PieceHeight(s, 1.0, np.zeros(0), 0)
 
 
-class Parted(Search):
+class Parted(LowestPeakSearch):
     """Two pieces, and nothing that can be followed between them; fewer harmonics lead to none."""
 
     def __init__(self, between):
         self.system, self.span, self.between = SimpleNamespace(harmonics=(1,)), (1.0, 9.0), between
         self.way, self.curves = SimpleNamespace(span=self.span, options=TRACKING), []
-        self.seen, self.visited = {}, set()
+        self.visited_values, self.visited = {}, set()
 
-    def lift(self, known):
+    def refine_curves(self, known):
         pass
 
     def pieces(self):
         return self.curves
 
     def greatest_at(self, value):
-        self.seen[value] = Height(self.between if 4.0 < value < 6.0 else value, 0.0, np.zeros(0), 0)
+        self.visited_values[value] = PieceHeight(
+            self.between if 4.0 < value < 6.0 else value, 0.0, np.zeros(0), 0
+        )
 
     def visit(self, value):
         self.visited.add(value)
         self.greatest_at(value)
         self.curves += [line for line in (Line(1.0, 4.0), Line(6.0, 9.0)) if line.covers(value)]
-        return self.seen[value].value
+        return self.visited_values[value].value
 
 
 @pytest.mark.parametrize(
@@ -383,7 +391,7 @@ class Parted(Search):
     ids=["higher", "as high", "lower", "none"],
 )
 def test_where_fewer_harmonics_lead_to_nothing_the_response_is_looked_at(between, checked):
-    found = Parted(between).run(Lowest(None, (), True, (1,)))
+    found = Parted(between).run(LowestPeak(None, (), True, (1,)))
     assert (found.best.s, found.best.value, found.best.kind) == (1.0, 1.0, "bound")
     assert found.checked == checked
 

@@ -8,14 +8,14 @@ import pytest
 import fcm
 from fcm.harmonic_balance.system import System
 from fcm.scene.draft import number_of
-from fcm.tracking.parameter_line import Varied, along
+from fcm.tracking.parameter_line import VariedBalance, along
 
 Z = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.5, 1.2])
 STEP = 1e-5
 
 
 def residual(varied, s):
-    varied.put(s)
+    varied.set_parameter(s)
     varied.balance.evaluate(Z)
     return np.array(varied.balance.residual)
 
@@ -26,7 +26,7 @@ def residual(varied, s):
 )
 def test_rates_are_those_where_the_number_is(key, s):
     system = System(fcm.load_scene("yang1998-n5"))
-    varied = Varied(system, along(number_of(system.scene, key)))
+    varied = VariedBalance(system, along(number_of(system.scene, key)))
     difference = (residual(varied, s + STEP) - residual(varied, s - STEP)) / (2.0 * STEP)
     residual(varied, s)
     assert np.abs(difference).max() > 0.01
@@ -37,7 +37,7 @@ def test_rates_are_those_where_the_number_is(key, s):
 def test_a_balance_whose_number_moved_is_that_of_the_scene_with_it(key, s):
     scene = fcm.load_scene("yang1998-n5")
     number = number_of(scene, key)
-    varied, there = Varied(System(scene), along(number)), System(number.put(scene, s)).balance()
+    varied, there = VariedBalance(System(scene), along(number)), System(number.put(scene, s)).new_balance()
     residual(varied, 0.9)
     there.evaluate(Z)
     assert residual(varied, s) == pytest.approx(np.array(there.residual), rel=1e-14, abs=1e-15)

@@ -6,41 +6,43 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from fcm.accuracy.options import PAIR, PairOptions
-from fcm.harmonic_balance.work_budget import Work
+from fcm.harmonic_balance.work_budget import WorkCount
 
 
 @dataclass
 class Budget:
     """Seconds of work that are left, as of `harmonic_balance.cost_model`: those who follow take from it."""
 
-    left: float = PAIR.seconds
+    seconds: float = PAIR.max_seconds
 
     @classmethod
-    def of(cls, work: Work, options: PairOptions, part: float = 1.0) -> Budget:
+    def of(cls, work: WorkCount, options: PairOptions, part: float = 1.0) -> Budget:
         """In proportion to the work that the response itself took, so that its error never takes much more;
         for a part of it the same part.
 
-        >>> from fcm.harmonic_balance.work_budget import Work
-        >>> work = Work()
-        >>> work.take(1.0)
-        >>> Budget.of(work, PairOptions(part=0.3, unnoticed=0.1)).left
+        >>> from fcm.harmonic_balance.work_budget import WorkCount
+        >>> work = WorkCount()
+        >>> work.add(1.0)
+        >>> Budget.of(work, PairOptions(work_fraction=0.3, min_seconds=0.1)).seconds
         0.3
         """
-        return cls(part * min(max(options.part * work.seconds, options.unnoticed), options.seconds))
+        return cls(
+            part * min(max(options.work_fraction * work.seconds, options.min_seconds), options.max_seconds)
+        )
 
     @classmethod
-    def elsewhere(cls, work: Work, options: PairOptions, part: float = 1.0) -> Budget:
+    def elsewhere(cls, work: WorkCount, options: PairOptions, part: float = 1.0) -> Budget:
         """The same for what the partners have elsewhere."""
-        most = max(options.elsewhere * work.seconds, options.unnoticed_elsewhere)
-        return cls(part * min(most, options.seconds_elsewhere))
+        most = max(options.work_fraction_elsewhere * work.seconds, options.min_seconds_elsewhere)
+        return cls(part * min(most, options.max_seconds_elsewhere))
 
     def shares(self, count: int) -> Iterator[Budget]:
         """One after the other for so many: what one leaves is for the others, too."""
         for number in range(count):
-            share = self.left / (count - number)
+            share = self.seconds / (count - number)
             one = Budget(share)
             yield one
-            self.left -= share - one.left
+            self.seconds -= share - one.seconds
 
 
 def share_of(evaluations: Sequence[int], first: int) -> float:

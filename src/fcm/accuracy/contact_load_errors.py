@@ -8,15 +8,15 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.options import PairOptions
-from fcm.accuracy.partner_curve import Compared, Followed, PartnerCurve
+from fcm.accuracy.partner_curve import ComparedQuantities, FollowedStretch, PartnerCurve
 from fcm.model.scene import FloatArray
 
 
 def of_borne(
     partner: PartnerCurve,
-    compared: Compared,
+    compared: ComparedQuantities,
     shift: FloatArray,
-    followed: Sequence[Followed],
+    followed: Sequence[FollowedStretch],
     folds: npt.NDArray[np.intp],
 ) -> tuple[FloatArray, FloatArray]:
     """Errors of forces, slip and energy, relative: (point, contact, 4) and of the greatest (contact, 4).
@@ -29,7 +29,7 @@ def of_borne(
     own, unit = compared.value[:, columns], compared.unit[:, columns]
     error = np.abs(shift[:, columns])
     # differences may cancel at a frequency, but not what the partner itself is off by
-    moved = partner.options.own * _moved(partner, compared, columns)
+    moved = partner.options.partner_error * _moved(partner, compared, columns)
     error = np.where(partner.linear[:, None], 0.0, np.maximum(error, np.where(np.isnan(moved), 0.0, moved)))
     error[folds] = np.nan
     top, last, c = own.argmax(axis=0), len(own) - 1, np.arange(own.shape[1])
@@ -51,13 +51,13 @@ def relative(change: FloatArray, own: FloatArray, most: FloatArray, options: Pai
         return np.where(off <= options.rounding * most, 0.0, off / own)
 
 
-def _moved(partner: PartnerCurve, compared: Compared, columns: slice) -> FloatArray:
+def _moved(partner: PartnerCurve, compared: ComparedQuantities, columns: slice) -> FloatArray:
     """How far the partner is away (point, column): by the frequency and by what is compared, in its unit.
 
     That of the frequency counts by how steep the curve is, up to a limit.
     """
     own, unit, change = compared.value[:, columns], compared.unit[:, columns], compared.change
-    omega, most = partner.path.parameter, partner.options.steep
+    omega, most = partner.path.parameter, partner.options.max_steepness
     k = np.arange(len(omega))
     before, after = np.maximum(k - 1, 0), np.minimum(k + 1, len(omega) - 1)
     rise, run = np.abs(own[after] - own[before]), np.abs(omega[after] / omega[before] - 1.0)[:, None]
@@ -68,7 +68,7 @@ def _moved(partner: PartnerCurve, compared: Compared, columns: slice) -> FloatAr
 
 
 def _greatest(
-    partner: PartnerCurve, compared: Compared, columns: slice, followed: Sequence[Followed]
+    partner: PartnerCurve, compared: ComparedQuantities, columns: slice, followed: Sequence[FollowedStretch]
 ) -> FloatArray:
     """The greatest of the partner (column,); NaN where it may be on a stretch that it was not followed
     along."""
@@ -80,6 +80,6 @@ def _greatest(
             greatest = np.fmax(greatest, partner.borne_of(piece).max(axis=0))
     for one in followed:
         if not any(piece.whole for piece in one.pieces):
-            rival = own[one.first : one.end].max(axis=0) > partner.options.rival * own.max(axis=0)
+            rival = own[one.first : one.end].max(axis=0) > partner.options.rival_fraction * own.max(axis=0)
             greatest[rival] = np.nan
     return greatest

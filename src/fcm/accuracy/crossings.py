@@ -55,7 +55,7 @@ def crossings(shift: FloatArray, counts: Mask, options: PairOptions) -> list[Cro
             before, behind = tops[k], tops[k + 1]
             hidden = float(min(abs(value[before]), abs(value[behind])))
             point = change + int(abs(value[change + 1]) < abs(value[change]))
-            if hidden > options.hidden:
+            if hidden > options.min_hidden:
                 found.append(Crossing(d, int(rows[point]), int(rows[before]), int(rows[behind]), hidden))
     return sorted(found, key=lambda one: -one.hidden)
 
@@ -66,11 +66,11 @@ def with_crossings(partner: PartnerCurve, shift: FloatArray, error: FloatArray) 
     counts = (partner.amplitude >= partner.unit) & ~partner.linear[:, None]
     raised, known, options = error.copy(), dict[int, FloatArray | None](), partner.options
     for one in crossings(shift, counts, options):
-        place = next((k for k in known if abs(k - one.point) <= options.near), one.point)
+        place = next((k for k in known if abs(k - one.point) <= options.crossing_spacing), one.point)
         if place not in known:
-            if len(known) == options.crossings:
+            if len(known) == options.max_crossings:
                 continue
-            known[place] = partner.off(place)
+            known[place] = partner.own_error(place)
         off = known[place]
         if off is not None:
             rows = slice(one.before, one.behind + 1)

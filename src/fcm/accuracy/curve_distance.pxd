@@ -1,6 +1,6 @@
-from fcm.harmonic_balance.normal_plane_prolongation cimport Lifted
+from fcm.harmonic_balance.normal_plane_prolongation cimport Prolongation
 
-cdef class Displacement:
-    cdef public Lifted lifted
+cdef class PointwiseDisplacement:
+    cdef public Prolongation lifted
     cdef public double missed
-    cdef int led(self, Py_ssize_t i, double[:, ::1] z, double[:, ::1] theirs, unsigned char[::1] known) except -1
+    cdef int predict_from_nearest(self, Py_ssize_t i, double[:, ::1] z, double[:, ::1] theirs, unsigned char[::1] known) except -1

@@ -1,8 +1,8 @@
 """Where a curve lies beside another, at the same parameter and near the same place along it.
 
-What is known at some points is known of those between, with how far that is off (`Filled`). What the other
-curve has at the same parameter is found along it (`OtherCurve`), and what a partner with more harmonics has
-near a point by Newton's method in the normal plane (`Displacement`).
+What is known at some points is known of those between, with how far that is off (`PartialInterpolant`).
+What the other curve has at the same parameter is found along it (`PartnerCurveData`), and what a partner
+with more harmonics has near a point by Newton's method in the normal plane (`PointwiseDisplacement`).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import fabs, isnan, sqrt
 
-from fcm.harmonic_balance.normal_plane_prolongation import Lifted
+from fcm.harmonic_balance.normal_plane_prolongation import Prolongation
 from fcm.model.scene import FloatArray
 
 NEAR = cython.declare(cython.double, 1e-4)  # of the length of a curve: points nearer coincide
@@ -20,8 +20,9 @@ INFINITY = cython.declare(cython.double, float("inf"))
 
 
 @cython.cclass
-class Filled:
-    """`at` points fills values (point, column) by cubics through those at the known (point,) ones, by bytes.
+class PartialInterpolant:
+    """`interpolate` points fills values (point, column) by cubics through those at the known (point,) ones,
+    by bytes.
 
     place (point,) is how far along the curve each is. The slopes are those of parabolas through neighbours.
     """
@@ -30,15 +31,15 @@ class Filled:
     value: cython.double[:, ::1]
     known: cython.uchar[::1]
     number: cython.Py_ssize_t[::1]  # of the known points
-    count: cython.Py_ssize_t
+    known_points: cython.Py_ssize_t
 
     def __init__(
         self, place: cython.double[::1], value: cython.double[:, ::1], known: cython.uchar[::1]
     ) -> None:
         self.place, self.value, self.known = place, value, known
-        self.number, self.count = np.zeros(place.shape[0], dtype=np.intp), 0
+        self.number, self.known_points = np.zeros(place.shape[0], dtype=np.intp), 0
 
-    def at(self, points: cython.Py_ssize_t[::1], out: cython.double[:, ::1]) -> None:
+    def interpolate(self, points: cython.Py_ssize_t[::1], out: cython.double[:, ::1]) -> None:
         """Values (point, column) at some points."""
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -47,7 +48,7 @@ class Filled:
         for i in range(points.shape[0]):
             first = self.before(points[i])
             for j in range(self.value.shape[1]):
-                if self.known[points[i]] or self.count == 1:
+                if self.known[points[i]] or self.known_points == 1:
                     out[i, j] = self.value[self.number[first], j]
                 else:
                     out[i, j] = self.cubic(first, self.place[points[i]], j)
@@ -60,24 +61,24 @@ class Filled:
         i: cython.Py_ssize_t
         before: cython.Py_ssize_t
         near: cython.double = NEAR * (self.place[self.place.shape[0] - 1] - self.place[0])
-        self.count = 0
+        self.known_points = 0
         for i in range(self.known.shape[0]):
             if not self.known[i]:
                 continue
-            if self.count:
-                before = self.number[self.count - 1]
+            if self.known_points:
+                before = self.number[self.known_points - 1]
                 same: cython.bint = isnan(self.value[i, 0]) == isnan(self.value[before, 0])
                 if same and self.place[i] - self.place[before] < near:
                     continue
-            self.number[self.count] = i
-            self.count += 1
+            self.number[self.known_points] = i
+            self.known_points += 1
 
     @cython.cfunc
     @cython.exceptval(check=False)
     def before(self, point: cython.Py_ssize_t) -> cython.Py_ssize_t:
         """Which of the known points is the last at or before one."""
         low: cython.Py_ssize_t = 0
-        high: cython.Py_ssize_t = self.count
+        high: cython.Py_ssize_t = self.known_points
         while high - low > 1:
             middle: cython.Py_ssize_t = (low + high) // 2
             if self.number[middle] <= point:
@@ -90,7 +91,7 @@ class Filled:
     @cython.exceptval(check=False)
     def cubic(self, k: cython.Py_ssize_t, place: cython.double, j: cython.Py_ssize_t) -> cython.double:
         """From known point k to the next, or beyond the last."""
-        last: cython.Py_ssize_t = self.count - 1
+        last: cython.Py_ssize_t = self.known_points - 1
         k = min(k, last - 1)
         begin: cython.double = self.place[self.number[k]]
         length: cython.double = self.place[self.number[k + 1]] - begin
@@ -105,7 +106,7 @@ class Filled:
     def slope(self, k: cython.Py_ssize_t, j: cython.Py_ssize_t) -> cython.double:
         """At known point k; beside a gap by what is there."""
         one: cython.Py_ssize_t = max(k - 1, 0)
-        other: cython.Py_ssize_t = min(k, self.count - 2)
+        other: cython.Py_ssize_t = min(k, self.known_points - 2)
         before: cython.double = self.secant(one, j)
         after: cython.double = self.secant(other, j)
         if isnan(before):
@@ -129,7 +130,7 @@ class Filled:
         length: cython.double = self.place[self.number[k + 1]] - self.place[self.number[k]]
         return length if length > 0.0 else 1.0
 
-    def unforeseen(
+    def misses_expected(
         self,
         points: cython.Py_ssize_t[:, ::1],
         expected: cython.double[:, ::1],
@@ -224,7 +225,7 @@ NAN = cython.declare(cython.double, float("nan"))
 
 
 @cython.cclass
-class OtherCurve:
+class PartnerCurveData:
     """The other curve at its points (point,): where along the curve, its parameter and the rate of that."""
 
     place: cython.double[::1]
@@ -265,7 +266,7 @@ class OtherCurve:
                         value[k, j], value[k + 1, j], slope[k, j] * length, slope[k + 1, j] * length, self.at
                     )
 
-    def passings(
+    def values_at_crossings(
         self,
         orientation: cython.double[::1],
         value: cython.double[:, ::1],
@@ -407,7 +408,7 @@ def shifted(
     z, direction (point, unknown + 1): the parameter is the last. change (point, 1 + dof): from each point to
     one of the other curve, of the parameter, relative, and of the amplitudes in their unit, in which the
     differences are, too. growth (point, dof) is that of the amplitudes along the curve. NaN as of
-    `OtherCurve.values`.
+    `PartnerCurveData.values`.
     """
     i: cython.Py_ssize_t
     d: cython.Py_ssize_t
@@ -431,7 +432,7 @@ def shifted(
         moved[1, i] = direction[i, n] + slope(place, off, i, 0)
         for d in range(dofs):
             other[1, i, d] = growth[i, d] + slope(place, off, i, 1 + d)
-    OtherCurve(place, along[0], along[1]).values(along[2], along[3], across[0], across[1], out)
+    PartnerCurveData(place, along[0], along[1]).values(along[2], along[3], across[0], across[1], out)
     for i in range(count):
         for d in range(dofs):
             found[i, d] = (found[i, d] - amplitude[i, d]) / unit[i, d]
@@ -493,10 +494,10 @@ def rises(
 
 
 @cython.cclass
-class Displacement:
+class PointwiseDisplacement:
     """`find` displaces points to the curve of the partner's balance, that of lifted."""
 
-    def __init__(self, lifted: Lifted) -> None:
+    def __init__(self, lifted: Prolongation) -> None:
         self.lifted, self.missed = lifted, 0.0
 
     def find(
@@ -528,8 +529,8 @@ class Displacement:
                 continue
             known[i] = 1
             before: cython.double = self.lifted.newton.evaluations
-            self.led(i, z, theirs, known)
-            if self.missed > most or not self.lifted.beside(z[i], direction[i], True):
+            self.predict_from_nearest(i, z, theirs, known)
+            if self.missed > most or not self.lifted.find_normal(z[i], direction[i], True):
                 self.missed += self.lifted.newton.evaluations - before
                 change[i, :] = NAN
                 theirs[i, :] = NAN
@@ -541,7 +542,7 @@ class Displacement:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def led(
+    def predict_from_nearest(
         self,
         i: cython.Py_ssize_t,
         z: cython.double[:, ::1],
@@ -554,5 +555,5 @@ class Displacement:
         for off in range(1, known.shape[0]):
             for j in (i - off, i + off):
                 if 0 <= j < known.shape[0] and known[j] and theirs[j, 0] == theirs[j, 0]:
-                    return self.lifted.lead(z[j], theirs[j])
+                    return self.lifted.predict_from(z[j], theirs[j])
         return 0

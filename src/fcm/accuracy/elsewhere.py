@@ -16,22 +16,24 @@ from fcm.accuracy.budget import Budget, share_of
 from fcm.accuracy.options import PairOptions
 from fcm.accuracy.partner_curve import curve_piece
 from fcm.accuracy.partner_pieces import CurvePiece
-from fcm.accuracy.partner_stretch import Stretches
+from fcm.accuracy.partner_stretch import StretchFollower
 from fcm.continuation import Path
-from fcm.harmonic_balance.normal_plane_prolongation import DampedOptions, Lifted
-from fcm.harmonic_balance.reported_quantities import Reported
+from fcm.harmonic_balance.normal_plane_prolongation import DampedOptions, Prolongation
+from fcm.harmonic_balance.reported_quantities import ReportedQuantities
 from fcm.harmonic_balance.system import System
 
 if TYPE_CHECKING:
     from fcm.accuracy.embedded_pair import Errors
 
-DAMPED = DampedOptions(contacts=0)  # whatever their number: the motions lie far from those that are sought
+DAMPED = DampedOptions(
+    min_contacts=0
+)  # whatever their number: the motions lie far from those that are sought
 
 
-def elsewhere(
+def partner_elsewhere(
     system: System,
     paths: Sequence[Path],
-    shown: Sequence[Reported],
+    shown: Sequence[ReportedQuantities],
     errors: Sequence[Errors],
     first: int,
     options: PairOptions,
@@ -49,29 +51,29 @@ def elsewhere(
     for piece in known:
         _told_by(piece, untold)
     part = share_of([path.evaluations for path in paths], first)
-    budget, followers = Budget.elsewhere(system.work, options, part), dict[int, Stretches]()
+    budget, followers = Budget.elsewhere(system.work, options, part), dict[int, StretchFollower]()
     for by_level in (False, True):
         for one in untold:
             one.tried[:] = False
-        while budget.left > 0.0:
+        while budget.seconds > 0.0:
             k = min(range(first, len(paths)), key=lambda k: untold[k].least, default=-1)
             if k < 0 or not np.isfinite(untold[k].least):
                 break
             i = untold[k].smallest
-            untold[k].tried[max(i - options.every, 0) : i + options.every] = True
+            untold[k].tried[max(i - options.point_interval, 0) : i + options.point_interval] = True
             stretches = followers.get(k)
             if stretches is None:
                 stretches = followers[k] = _stretches(system, paths[k], errors[k].partner, options)
-            stretches.budget = Budget(budget.left * options.piece)
-            given = stretches.budget.left
+            stretches.budget = Budget(budget.seconds * options.piece_fraction)
+            given = stretches.budget.seconds
             span = _gap(known, float(paths[k].parameter[i]), system.scene.frequency_range)
             for piece in (curve_piece(stretches.finer, one) for one in stretches.through(i, span, by_level)):
                 found[k].append(piece)
                 known.append(piece)
                 _told_by(piece, untold)
-            budget.left -= given - stretches.budget.left
+            budget.seconds -= given - stretches.budget.seconds
     # what the levels took is paid already
-    system.work.take(sum(one.each * one.evaluations for one in followers.values()))
+    system.work.add(sum(one.each * one.evaluations for one in followers.values()))
     return found
 
 
@@ -79,9 +81,11 @@ class _Untold:
     """The points of a path whose errors are not told, and whether they were tried, with the sizes of their
     motions."""
 
-    def __init__(self, path: Path, shown: Reported, errors: Errors, harmonics: tuple[int, ...]) -> None:
+    def __init__(
+        self, path: Path, shown: ReportedQuantities, errors: Errors, harmonics: tuple[int, ...]
+    ) -> None:
         self.path, self.size = path, shown.amplitude.max(axis=1)
-        self.size[errors.met] = np.inf
+        self.size[errors.is_same_curve] = np.inf
         if errors.partner == harmonics:  # it has none
             self.size[:] = np.inf
         self.tried = np.zeros(len(self.size), dtype=np.bool_)
@@ -97,7 +101,7 @@ class _Untold:
 
 def _told_by(piece: CurvePiece, untold: Sequence[_Untold]) -> None:
     for one in untold:
-        one.size[piece.within(one.path.parameter)] = np.inf
+        one.size[piece.passes(one.path.parameter)] = np.inf
 
 
 def _gap(known: Sequence[CurvePiece], omega: float, span: tuple[float, float]) -> tuple[float, float]:
@@ -107,9 +111,11 @@ def _gap(known: Sequence[CurvePiece], omega: float, span: tuple[float, float]) -
     return max(low, span[0]), min(high, span[1])
 
 
-def _stretches(system: System, path: Path, more: tuple[int, ...], options: PairOptions) -> Stretches:
+def _stretches(system: System, path: Path, more: tuple[int, ...], options: PairOptions) -> StretchFollower:
     """Of the partner of a path, sought from motions that lie far from it."""
     finer = system.with_harmonics(more)
-    lifted = Lifted(finer.balance(), list(system.harmonics), list(more), options.enough, DAMPED)
-    rough = replace(options, following=options.roughly)
-    return Stretches(system, finer, lifted, path, rough, Budget(0.0))
+    lifted = Prolongation(
+        finer.new_balance(), list(system.harmonics), list(more), options.newton_tolerance, DAMPED
+    )
+    rough = replace(options, following=options.coarse_following)
+    return StretchFollower(system, finer, lifted, path, rough, Budget(0.0))

@@ -19,15 +19,15 @@ import numpy.typing as npt
 from fcm.accuracy.budget import Budget
 from fcm.accuracy.contact_load_errors import of_borne, relative
 from fcm.accuracy.crossings import with_crossings
-from fcm.accuracy.elsewhere import elsewhere
+from fcm.accuracy.elsewhere import partner_elsewhere
 from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.partner import partner_of
-from fcm.accuracy.partner_curve import Followed, Indices, PartnerCurve
+from fcm.accuracy.partner_curve import FollowedStretch, Indices, PartnerCurve
 from fcm.accuracy.partner_pieces import CurvePiece, distinct, lengths, nearest, piece_of
 from fcm.accuracy.peaks import heights, rise_beside
 from fcm.continuation import Mark, Path
 from fcm.harmonic_balance.cost_model import seconds_of
-from fcm.harmonic_balance.reported_quantities import Reported, reported
+from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.harmonic_balance.response_quantities import borne_along
 from fcm.harmonic_balance.system import System
@@ -59,7 +59,7 @@ class Errors:
 
     amplitude: FloatArray
     truncation: FloatArray
-    met: Mask
+    is_same_curve: Mask
     peak: FloatArray
     height: FloatArray
     fold: FloatArray
@@ -70,15 +70,15 @@ class Errors:
     pieces: tuple[CurvePiece, ...] = field(default=(), repr=False)
 
     @property
-    def believed(self) -> FloatArray:
+    def on_same_branch(self) -> FloatArray:
         """Truncation (point,) where the partner has that branch, too; NaN elsewhere."""
-        return np.where(self.met, self.truncation, np.nan)
+        return np.where(self.is_same_curve, self.truncation, np.nan)
 
 
 def errors_along(
     system: System,
     path: Path,
-    shown: Reported | None = None,
+    shown: ReportedQuantities | None = None,
     options: PairOptions = PAIR,
     budget: Budget | None = None,
 ) -> Errors:
@@ -86,7 +86,7 @@ def errors_along(
 
     Where the partner's own branch does not come to a frequency nothing is told, see `with_nearest`.
     """
-    shown = shown or reported(system, path)
+    shown = shown or reported_quantities(system, path)
     tops, d = shown.amplitude.argmax(axis=0), np.arange(shown.amplitude.shape[1])
     folds, size = path.where(Mark.FOLD), shown.amplitude.max(axis=0)
     special = np.unique(np.concatenate((folds, path.where(Mark.PEAK), tops)))
@@ -98,13 +98,13 @@ def errors_along(
         of_folds = np.full(len(folds), none[0, 0])
         borne = np.full((len(path.z), len(system.scene.contacts), 4), none[0, 0])
         known: Mask = np.isfinite(none[:, 0])  # then the partner's curve is this one
-        own = (_itself(system, path, shown),) if known.all() and len(path.z) > 1 else ()
+        own = (_same_curve(system, path, shown),) if known.all() and len(path.z) > 1 else ()
         more = system.harmonics
         return Errors(none, none[:, 0], known, none[0], size, of_folds, share, more, borne, borne[0], own)
-    partner = _partner(system, path, shown, share, options, budget or Budget(options.seconds))
-    change = partner.everywhere(np.union1d(partner.apart(special), np.union1d(folds, met)))
-    followed = partner.followed(change)
-    compared, dofs = partner.compared(change), shown.amplitude.shape[1]
+    partner = _partner(system, path, shown, share, options, budget or Budget(options.max_seconds))
+    change = partner.displacements(np.union1d(partner.distinct_points(special), np.union1d(folds, met)))
+    followed = partner.follow_stretches(change)
+    compared, dofs = partner.compared_quantities(change), shown.amplitude.shape[1]
     shift = partner.shifts(compared, followed)
     borne, greatest = of_borne(partner, compared, shift, followed, folds)
     shift = shift[:, :dofs]
@@ -114,7 +114,7 @@ def errors_along(
     inside = (tops > 0) & (tops < len(path.z) - 1)
     at_ends = shown.amplitude[tops, d] + unit[tops, d] * shift[tops, d]
     for end in {0, len(path.z) - 1}.intersection(tops.tolist()):  # which the partner is known beyond, or not
-        there = partner.normal_point(end)
+        there = partner.amplitude_at_frequency(end)
         at_ends = at_ends if there is None else np.where(tops == end, there, at_ends)
     height = np.where(inside, heights(partner, change[:, 1:], followed, tops), at_ends)
     rise = rise_beside(partner, np.zeros_like(unit), tops)  # no error
@@ -122,7 +122,9 @@ def errors_along(
     settles = inside | ~partner.linear[tops]
     told = settles & np.isfinite(height)
     every = np.unique(tops[told])
-    further, beyond = partner.lacking(every, np.array([inside[tops == top][0] for top in every], dtype=bool))
+    further, beyond = partner.errors_at_peaks(
+        every, np.array([inside[tops == top][0] for top in every], dtype=bool)
+    )
     which = np.searchsorted(every, tops[told])
     height[told] += further[which, d[told]]
     at_tops = _of_peaks(np.abs(height - now) / unit[tops, d], options)[told]
@@ -130,13 +132,13 @@ def errors_along(
     error[tops[told], d[told]] = np.maximum(at_tops, left)
     error *= unit / np.where(shown.amplitude > 0.0, shown.amplitude, unit)
     comes: Mask = ~np.any(np.isnan(error), axis=1)
-    system.work.take(partner.seconds())
+    system.work.add(partner.seconds())
     of_folds = _of_folds(partner, folds, change, followed)
-    partner.done()
+    partner.release()
     return Errors(
         amplitude=error,
         truncation=_truncation(error, shown.amplitude),
-        met=comes,
+        is_same_curve=comes,
         peak=np.where(told | ~settles, error[tops, d], np.nan),
         height=height,
         fold=of_folds,
@@ -151,21 +153,23 @@ def errors_along(
 def _partner(
     system: System,
     path: Path,
-    shown: Reported,
+    shown: ReportedQuantities,
     share: FloatArray,
     options: PairOptions,
     budget: Budget,
 ) -> PartnerCurve:
     """The partner of a path; with fewer harmonics where it is another curve, too dear to be followed."""
-    ports, most = system.layout.ports, Budget.elsewhere(system.work, options).left
+    ports, most = system.layout.ports, Budget.elsewhere(system.work, options).seconds
     more = partner_of(system.harmonics, share, ports, options)
     partner = PartnerCurve(system, path, shown, more, options, budget)
-    if partner.alike() or _seconds_along(system, path, more) <= most:
+    if partner.is_same_curve() or _seconds_along(system, path, more) <= most:
         return partner
-    system.work.take(partner.seconds())
-    partner.done()
-    for times in options.fewer_times:
-        more = partner_of(system.harmonics, share, ports, replace(options, times=times, named=1))
+    system.work.add(partner.seconds())
+    partner.release()
+    for times in options.fewer_factors:
+        more = partner_of(
+            system.harmonics, share, ports, replace(options, harmonics_factor=times, max_named=1)
+        )
         if _seconds_along(system, path, more) <= most:
             break
     other = PartnerCurve(system, path, shown, more, options, budget)
@@ -181,7 +185,7 @@ def _seconds_along(system: System, path: Path, more: tuple[int, ...]) -> float:
 def with_nearest(
     system: System,
     paths: Sequence[Path],
-    shown: Sequence[Reported],
+    shown: Sequence[ReportedQuantities],
     errors: Sequence[Errors],
     first: int = 0,
     options: PairOptions = PAIR,
@@ -194,14 +198,14 @@ def with_nearest(
     at least the distance of the greatest. The paths before the first have theirs already.
     """
     every = list(errors)
-    for k, further in enumerate(elsewhere(system, paths, shown, errors, first, options)):
+    for k, further in enumerate(partner_elsewhere(system, paths, shown, errors, first, options)):
         every[k] = replace(every[k], pieces=(*every[k].pieces, *further)) if further else every[k]
     pieces = [piece for one in every for piece in one.pieces]
     for k in range(first, len(every)):
         path, amplitude, dofs = paths[k], shown[k].amplitude, shown[k].amplitude.shape[1]
         if np.isnan(every[k].fold).any():
             every[k] = replace(every[k], fold=_with_nearest_folds(path, amplitude, every[k], pieces, options))
-        rows = np.flatnonzero(~every[k].met)
+        rows = np.flatnonzero(~every[k].is_same_curve)
         if not rows.size or not pieces:
             continue
         now, error, borne = amplitude[rows], every[k].amplitude.copy(), every[k].borne.copy()
@@ -217,7 +221,7 @@ def with_nearest(
     return tuple(every)
 
 
-def _itself(system: System, path: Path, shown: Reported) -> CurvePiece:
+def _same_curve(system: System, path: Path, shown: ReportedQuantities) -> CurvePiece:
     """A path whose partner is the same curve."""
     return piece_of(path, shown, borne_along(system, path.z).reshape(len(path.z), -1))
 
@@ -235,18 +239,25 @@ def _truncation_of(off: FloatArray, amplitude: FloatArray) -> FloatArray:
 
 
 def _spectrum(
-    system: System, path: Path, shown: Reported, special: Indices, size: FloatArray, options: PairOptions
+    system: System,
+    path: Path,
+    shown: ReportedQuantities,
+    special: Indices,
+    size: FloatArray,
+    options: PairOptions,
 ) -> tuple[FloatArray, Indices]:
     """What each harmonic left out would have without feedback (harmonic,) of sizes (dof,), at most, at
     special points and where one that is left out meets a mode and leads there; and these."""
     further, place = FurtherHarmonics(system), lengths(path)
-    special = special[distinct(place[special], options.together * (place[-1] - place[0]))]
-    met: Indices = further.meetings(path.z, shown.amplitude)
+    special = special[distinct(place[special], options.peak_spacing * (place[-1] - place[0]))]
+    met: Indices = further.resonances(path.z, shown.amplitude)
     share = further.shares(path.z[special], np.tile(size, (len(special), 1))).max(axis=0)
     if met.size:  # there it leads, however small the motion is
         local = further.shares(path.z[met], shown.amplitude[met])
-        leads = local > options.leads * local.max(axis=1, keepdims=True)
-        share = np.maximum(share, np.where(leads & (local > options.matters), local, 0.0).max(axis=0))
+        leads = local > options.leading_share * local.max(axis=1, keepdims=True)
+        share = np.maximum(
+            share, np.where(leads & (local > options.min_resonant_share), local, 0.0).max(axis=0)
+        )
     return share[: LIMITS.harmonics], met
 
 
@@ -256,11 +267,13 @@ def _of_points(partner: PartnerCurve, shift: FloatArray, change: FloatArray) -> 
     # what hardly moves may have any error, and says nothing of that of others
     most = np.where(partner.amplitude < partner.unit, 0.0, error).max(axis=1, keepdims=True)
     typical = _medians(np.minimum(error, most))[:, None]
-    error = np.where(partner.linear[:, None], 0.0, np.maximum(error, partner.options.chance * typical))
+    error = np.where(
+        partner.linear[:, None], 0.0, np.maximum(error, partner.options.chance_fraction * typical)
+    )
     # displacements may cancel at a frequency, but not what the partner itself is off by
     moved = partner.weight[:, None] * np.abs(change[:, :1]) + np.abs(change[:, 1:])
     moved[np.isnan(moved).any(axis=1)] = 0.0  # where it was followed the shifts alone tell
-    every: FloatArray = np.maximum(error, partner.options.own * moved)
+    every: FloatArray = np.maximum(error, partner.options.partner_error * moved)
     return every
 
 
@@ -268,12 +281,12 @@ def _of_peaks(error: FloatArray, options: PairOptions) -> FloatArray:
     """Errors (dof,) of the greatest amplitudes by their changes, of which one may be small by chance."""
     told = error[np.isfinite(error)]
     typical = _medians(told[None])[0] if told.size else 0.0
-    peaks: FloatArray = np.maximum(error, options.chance_at_peaks * typical)
+    peaks: FloatArray = np.maximum(error, options.chance_fraction_at_peaks * typical)
     return peaks
 
 
 def _of_folds(
-    partner: PartnerCurve, folds: Indices, change: FloatArray, followed: list[Followed]
+    partner: PartnerCurve, folds: Indices, change: FloatArray, followed: list[FollowedStretch]
 ) -> FloatArray:
     """Errors (fold,) of the frequencies of folds: to the partner's own beside them, or in their order where
     the partner was followed and has as many; NaN elsewhere."""
@@ -302,14 +315,14 @@ def _with_nearest_folds(
     """Errors (fold,), where these are not told the relative distances in frequency to the nearest folds of
     pieces, of those where the frequency turns back to the same side; NaN where there is none near.
 
-    Near is one whose amplitudes and frequency are both within `PairOptions.same`: with the same amplitudes
-    at another frequency it is another fold.
+    Near is one whose amplitudes and frequency are both within `PairOptions.end_tolerance`: with the same
+    amplitudes at another frequency it is another fold.
     """
     error, folds = errors.fold.copy(), path.where(Mark.FOLD)
     for k in np.flatnonzero(np.isnan(error)).tolist():
         fold = int(folds[k])
         now, omega, side = amplitude[fold], path.parameter[fold], _side(path.parameter, fold)
-        least, size = options.same, float(now.max()) or 1.0
+        least, size = options.end_tolerance, float(now.max()) or 1.0
         for piece in pieces:
             for i in piece.turns(float(np.sign(side))).tolist():
                 shift = abs(float(piece.frequency[i] / omega) - 1.0)

@@ -64,7 +64,7 @@ def errors_at_levels(
     there, theirs = _balanced(system, system.with_harmonics(more), z[bent], level[bent], even[bent])
     now, size = amplitude[bent], amplitude[bent].max(axis=1, keepdims=True)
     change = np.abs(there - now)
-    far = (change > VALIDITY.changed * size).any(axis=1)
+    far = (change > VALIDITY.max_change * size).any(axis=1)
     change[far], theirs[far] = np.nan, np.nan
     error[bent] = change / np.where(now > 0.0, now, 1.0)
     of_borne[bent] = relative(theirs - borne[bent], borne[bent], borne.max(axis=0), options)
@@ -79,7 +79,7 @@ def _balanced(
     NaN where Newton's method finds none that is as the point is, with an even or odd number of real
     multipliers above 1.
     """
-    raised, front = finer.raised
+    raised, front = finer.level_problem
     newton, found = front.newton, np.zeros((len(z), raised.unknowns + 1))
     known = np.zeros(len(z), dtype=np.bool_)
     for i, one in enumerate(z):

@@ -1,8 +1,8 @@
 """A balance's response whose errors are not known, and that with more harmonics, as long as nobody waits.
 
 To see which harmonics it takes the branches will do that those of fewer lead to. The levels of the forces,
-which take about as long as these, are followed at last, with the harmonics that are enough (`Outline.whole`).
-"""
+which take about as long as these, are followed at last, with the harmonics that are enough
+(`UncheckedResponse.with_levels`)."""
 
 from __future__ import annotations
 
@@ -12,40 +12,40 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from fcm.accuracy.options import REFINEMENT
-from fcm.branches.force_level import Found
+from fcm.branches.force_level import LevelSolutions
 from fcm.branches.prolongation import prolongated
 from fcm.branches.trace import Traced, traced, traced_from, with_levels
 from fcm.continuation import Path
 from fcm.continuation.follow import Progress
-from fcm.harmonic_balance.cost_model import PATIENCE, seconds_of
-from fcm.harmonic_balance.reported_quantities import Reported, reported
+from fcm.harmonic_balance.cost_model import MAX_SECONDS, seconds_of
+from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
 from fcm.harmonic_balance.system import System
-from fcm.harmonic_balance.work_budget import TooLongError
+from fcm.harmonic_balance.work_budget import WorkLimitError
 from fcm.model.scene import FloatArray
 
 
 @dataclass(frozen=True)
-class Outline:
+class UncheckedResponse:
     """A response whose errors are not known yet; shown (path,) belongs to the branches' paths.
 
     seconds: about what following its levels and branches took. further: the harmonics that would do more but
     take too long, if any, and whether that was seen only when they had been begun. before: the response of
-    fewer harmonics that its branches come of, as long as no level was followed with its own, see `whole`.
-    """
+    fewer harmonics that its branches come of, as long as no level was followed with its own, see
+    `with_levels`."""
 
     system: System
     traced: Traced
-    shown: tuple[Reported, ...]
+    shown: tuple[ReportedQuantities, ...]
     seconds: float
     further: tuple[int, ...] = field(default=(), kw_only=True)
     begun: bool = field(default=False, kw_only=True)
-    before: Outline | None = field(default=None, kw_only=True)
+    before: UncheckedResponse | None = field(default=None, kw_only=True)
 
     def seconds_with(self, harmonics: tuple[int, ...]) -> float:
         """About what following its levels and branches with other harmonics takes."""
-        return self._grown(self.seconds, harmonics)
+        return self._seconds_with(self.seconds, harmonics)
 
-    def _grown(self, seconds: float, harmonics: tuple[int, ...]) -> float:
+    def _seconds_with(self, seconds: float, harmonics: tuple[int, ...]) -> float:
         """What takes some seconds, with other harmonics."""
         few, many = len(self.system.harmonics), len(harmonics)
         if not seconds:  # nothing was to be followed
@@ -53,32 +53,34 @@ class Outline:
         grown = seconds_of(self.system, 1, many) / seconds_of(self.system, 1, few)
         return seconds * grown * many / few
 
-    def within(self, seconds: float, more: tuple[int, ...]) -> tuple[int, ...]:
+    def limited_harmonics(self, seconds: float, more: tuple[int, ...]) -> tuple[int, ...]:
         """More harmonics without the highest of those that are new, until following them takes no longer.
 
         The lowest stay: a branch of one harmonic may be of no motion at all.
         """
-        least = {*self.system.harmonics, *range(1, REFINEMENT.low + 1)}
+        least = {*self.system.harmonics, *range(1, REFINEMENT.complete_harmonics + 1)}
         while self.seconds_with(more) > seconds and not least.issuperset(more):
             highest = max(set(more) - least)
             more = tuple(h for h in more if h != highest)
         return more
 
-    def led(
+    def prolongated(
         self, harmonics: tuple[int, ...], near: Sequence[FloatArray], progress: Progress | None
-    ) -> Outline:
+    ) -> UncheckedResponse:
         """The response with more harmonics: the branches that its own lead to, and those through solutions
         near. Where these are none, what the level of the forces leads to."""
         system = self.system.with_harmonics(harmonics)
         begin = system.work.seconds
         response = traced_from(system, self.traced, near, progress)
         if response is None or not response.branches.paths:
-            return outlined(system, progress, self.traced.found, near)
-        levels = self._grown(self.traced.work, harmonics)  # are still to be followed
+            return unchecked_response(system, progress, self.traced.found, near)
+        levels = self._seconds_with(self.traced.work, harmonics)  # are still to be followed
         response, seconds = replace(response, work=levels), system.work.seconds - begin + levels
-        return Outline(system, response, _shown(system, response.branches.paths), seconds, before=self)
+        return UncheckedResponse(
+            system, response, _shown(system, response.branches.paths), seconds, before=self
+        )
 
-    def whole(self, most: float = PATIENCE) -> Outline:
+    def with_levels(self, most: float = MAX_SECONDS) -> UncheckedResponse:
         """With the branches that the level of the forces leads to and those of fewer harmonics do not.
 
         Where all comes to more seconds than the most, the response of fewer harmonics, which says so.
@@ -88,55 +90,55 @@ class Outline:
         system, known = self.system, len(self.shown)
         begin = system.work.seconds
         try:
-            with system.work.up_to(most):
+            with system.work.limited_to(most):
                 response = with_levels(system, self.traced)
-        except TooLongError:
-            return replace(self.before.whole(np.inf), further=system.harmonics, begun=True)
+        except WorkLimitError:
+            return replace(self.before.with_levels(np.inf), further=system.harmonics, begun=True)
         shown = (*self.shown, *_shown(system, response.branches.paths[known:]))
         seconds = self.seconds - self.traced.work + system.work.seconds - begin
-        return Outline(system, response, shown, seconds)
+        return UncheckedResponse(system, response, shown, seconds)
 
 
-def outlined(
+def unchecked_response(
     system: System,
     progress: Progress | None = None,
-    fewer: tuple[Found, ...] = (),
+    fewer: tuple[LevelSolutions, ...] = (),
     near: Sequence[FloatArray] = (),
-) -> Outline:
+) -> UncheckedResponse:
     """The response of a system; fewer and near as of `traced`."""
     before = system.work.seconds
     response = traced(system, progress, fewer, near)
     shown = _shown(system, response.branches.paths)
-    return Outline(system, response, shown, system.work.seconds - before)
+    return UncheckedResponse(system, response, shown, system.work.seconds - before)
 
 
-def _shown(system: System, paths: Sequence[Path]) -> tuple[Reported, ...]:
-    return tuple(reported(system, path) for path in paths)
+def _shown(system: System, paths: Sequence[Path]) -> tuple[ReportedQuantities, ...]:
+    return tuple(reported_quantities(system, path) for path in paths)
 
 
 def with_more(
-    found: Outline, more: tuple[int, ...], told: bool, progress: Progress | None
-) -> tuple[Outline | None, tuple[int, ...], bool]:
+    found: UncheckedResponse, more: tuple[int, ...], told: bool, progress: Progress | None
+) -> tuple[UncheckedResponse | None, tuple[int, ...], bool]:
     """The response with more harmonics; if there is none, those that take too long, and whether they had
     been begun. told: whether something tells that they bring the accuracy nearer."""
     work, wanted = found.system.work, more
     if not told:
-        more = found.within(REFINEMENT.doubtful - work.seconds, more)
+        more = found.limited_harmonics(REFINEMENT.max_doubtful_seconds - work.seconds, more)
     if more == found.system.harmonics:
         return None, () if more == wanted else wanted, False
-    if work.seconds + found.seconds_with(more) > PATIENCE:
+    if work.seconds + found.seconds_with(more) > MAX_SECONDS:
         return None, more, False
     stable = near(found, more)
     try:
-        with work.up_to(PATIENCE):
-            then = found.led(more, stable, progress)
-    except TooLongError:
+        with work.limited_to(MAX_SECONDS):
+            then = found.prolongated(more, stable, progress)
+    except WorkLimitError:
         return None, more, True
     # where no solution was found the one of fewer harmonics, which says its error, stays
     return (then if then.shown else None), (), False
 
 
-def near(before: Outline, harmonics: tuple[int, ...]) -> list[FloatArray]:
+def near(before: UncheckedResponse, harmonics: tuple[int, ...]) -> list[FloatArray]:
     """Solutions with more harmonics near the branches of a response."""
     system = before.system
     return list(prolongated(system.with_harmonics(harmonics), system.harmonics, before.traced.branches.paths))

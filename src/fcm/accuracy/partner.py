@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fcm.accuracy.options import PAIR, PairOptions
-from fcm.harmonic_balance.normal_plane_prolongation import Lifted
+from fcm.harmonic_balance.normal_plane_prolongation import Prolongation
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.scene.options import LIMITS
@@ -39,48 +39,53 @@ def partner_of(
     (1, 2, 3, 4, 5, 6, 7, 8, 12)
     """
     has, count = set(harmonics), len(harmonics)
-    allowed = max(options.unknowns // (2 * max(ports, 1)) - count, options.fewest)
+    allowed = max(options.max_unknowns // (2 * max(ports, 1)) - count, options.min_added)
     total = float(share.sum())
-    order = [int(k) + 1 for k in np.argsort(-share, kind="stable") if share[k] > options.share * total]
-    highest = min(options.times * count, count + options.most)
-    low = range(1, min(max(highest, options.least), LIMITS.harmonics + options.most) + 1)
-    named = [h for h in order if h not in low][: options.named]
+    order = [int(k) + 1 for k in np.argsort(-share, kind="stable") if share[k] > options.min_share * total]
+    highest = min(options.harmonics_factor * count, count + options.max_added)
+    low = range(1, min(max(highest, options.min_harmonic), LIMITS.harmonics + options.max_added) + 1)
+    named = [h for h in order if h not in low][: options.max_named]
     # where not all can be had what matters most comes first, then the lowest
     wanted = dict.fromkeys((*order[:1], *low, *named))
     more = [h for h in wanted if h not in has][:allowed]
     return tuple(sorted(has.union(more)))
 
 
-class _Kept(threading.local):
+class _BalanceCache(threading.local):
     """The balances that each thread used last, by what they are for."""
 
     def __init__(self) -> None:
-        self.of: OrderedDict[tuple[object, ...], Lifted] = OrderedDict()
+        self.by_key: OrderedDict[tuple[object, ...], Prolongation] = OrderedDict()
 
 
-_KEPT = _Kept()
+_BALANCES = _BalanceCache()
 
 
-def lifted_of(system: System, more: tuple[int, ...]) -> Lifted:
+def prolongation_to(system: System, more: tuple[int, ...]) -> Prolongation:
     """From points of a system to those of its partner; as if it were new: in a sweep the contacts are
     others. Nobody else has it until it is given back, see `give_back`."""
-    made = _KEPT.of.pop(_key(system, more), None) if _plain(system) else None
+    made = _BALANCES.by_key.pop(_key(system, more), None) if _is_shareable(system) else None
     if made is None:
-        return Lifted(system.with_harmonics(more).balance(), list(system.harmonics), list(more), PAIR.enough)
+        return Prolongation(
+            system.with_harmonics(more).new_balance(),
+            list(system.harmonics),
+            list(more),
+            PAIR.newton_tolerance,
+        )
     contacts = system.scene.contacts
-    made.take(list(system.harmonics), [(c.mu, c.k_u, c.k_v, c.n_0) for c in contacts])
+    made.reset(list(system.harmonics), [(c.mu, c.k_u, c.k_v, c.n_0) for c in contacts])
     return made
 
 
-def give_back(lifted: Lifted, system: System, more: tuple[int, ...]) -> None:
-    """Keep what `lifted_of` the same has made for the next curve."""
-    if _plain(system):
-        _KEPT.of[_key(system, more)] = lifted
-        if len(_KEPT.of) > PAIR.kept:
-            _KEPT.of.popitem(last=False)
+def give_back(lifted: Prolongation, system: System, more: tuple[int, ...]) -> None:
+    """Keep what `prolongation_to` the same has made for the next curve."""
+    if _is_shareable(system):
+        _BALANCES.by_key[_key(system, more)] = lifted
+        if len(_BALANCES.by_key) > PAIR.max_kept:
+            _BALANCES.by_key.popitem(last=False)
 
 
-def _plain(system: System) -> bool:
+def _is_shareable(system: System) -> bool:
     """Whether the next curve may have the same structure, seen by other contacts."""
     return system.scene.ring is None and not system.scene.loads and not system.own_laws
 

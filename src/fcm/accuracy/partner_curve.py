@@ -10,15 +10,15 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.budget import Budget
-from fcm.accuracy.curve_distance import Displacement, Filled, places, shifted, steepness
+from fcm.accuracy.curve_distance import PartialInterpolant, PointwiseDisplacement, places, shifted, steepness
 from fcm.accuracy.options import PAIR, PairOptions
-from fcm.accuracy.partner import give_back, lifted_of, partner_of
+from fcm.accuracy.partner import give_back, partner_of, prolongation_to
 from fcm.accuracy.partner_pieces import CurvePiece, distinct, piece_of, piece_through, rates
-from fcm.accuracy.partner_stretch import Piece, Stretches
-from fcm.accuracy.residual import left_out
+from fcm.accuracy.partner_stretch import PartnerPiece, StretchFollower
+from fcm.accuracy.residual import changes_left_out
 from fcm.continuation import Mark, Path
 from fcm.harmonic_balance.cost_model import seconds_of
-from fcm.harmonic_balance.reported_quantities import Reported
+from fcm.harmonic_balance.reported_quantities import ReportedQuantities
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.harmonic_balance.response_quantities import borne_along
 from fcm.harmonic_balance.runs import runs
@@ -30,16 +30,16 @@ Mask = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
-class Followed:
+class FollowedStretch:
     """A stretch of a curve, points first to before end, beside which the partner was followed: its pieces."""
 
     first: int
     end: int
-    pieces: list[Piece]
+    pieces: list[PartnerPiece]
 
 
 @dataclass(frozen=True)
-class Compared:
+class ComparedQuantities:
     """What is compared of a curve with its partner: amplitudes, and then what the contacts bear.
 
     value, growth along the curve, unit (point, column); change (point, 1 + column) to the partner, that of
@@ -52,12 +52,12 @@ class Compared:
     change: FloatArray
 
 
-class Second:
+class SecondPartner:
     """The partner of a partner, looked for at single points of that."""
 
     def __init__(self, finer: System, more: tuple[int, ...]) -> None:
         self.finer, self.more = finer, more
-        self.system, self.lifted = finer.with_harmonics(more), lifted_of(finer, more)
+        self.system, self.lifted = finer.with_harmonics(more), prolongation_to(finer, more)
         self.before = self.lifted.newton.evaluations
         self.amplitude = np.empty(0)
 
@@ -65,9 +65,9 @@ class Second:
         """Whether it is found from a point of the partner: at its frequency, or normal to a direction;
         amplitude (dof,) is then there."""
         if direction is None:
-            there = self.lifted.normal_point(self.system.extended(z, self.finer.harmonics), True)
+            there = self.lifted.find_at_frequency(self.system.extended(z, self.finer.harmonics), True)
         else:
-            there = self.lifted.beside(z, direction, True)
+            there = self.lifted.find_normal(z, direction, True)
         self.amplitude = np.array(self.lifted.found[1:])
         return bool(there)
 
@@ -90,7 +90,7 @@ class PartnerCurve:
         self,
         system: System,
         path: Path,
-        shown: Reported,
+        shown: ReportedQuantities,
         more: tuple[int, ...],
         options: PairOptions,
         budget: Budget,
@@ -101,30 +101,30 @@ class PartnerCurve:
         least = system.options.spectrum.least_amplitude * self.amplitude.max(axis=1, keepdims=True)
         self.unit = np.maximum(self.amplitude, least)
         self.unit[self.unit == 0.0] = 1.0
-        lifted, finer = lifted_of(system, more), system.with_harmonics(more)
+        lifted, finer = prolongation_to(system, more), system.with_harmonics(more)
         self.system, self.more = system, more
-        self.finding = Displacement(lifted)
-        self.stretches = Stretches(system, finer, lifted, path, options, budget)
+        self.finding = PointwiseDisplacement(lifted)
+        self.stretches = StretchFollower(system, finer, lifted, path, options, budget)
         self.each = seconds_of(finer, 1, len(more))  # evaluation
-        self.second: Second | None = None  # its own partner, if that is not too dear
-        self.dear = False
-        self.vain, self.before = budget.left / self.each, lifted.newton.evaluations
+        self.second: SecondPartner | None = None  # its own partner, if that is not too dear
+        self.is_costly = False
+        self.failed, self.before = budget.seconds / self.each, lifted.newton.evaluations
         count, dofs = self.amplitude.shape
         self.place, self.weight = np.zeros((2, count))
         places(path.z, path.direction, np.ptp(path.parameter) or 1.0, self.place)
-        steepness(np.ascontiguousarray(path.parameter), self.amplitude, options.steep, self.weight)
+        steepness(np.ascontiguousarray(path.parameter), self.amplitude, options.max_steepness, self.weight)
         self.change = np.zeros((count, 1 + dofs))
         self.theirs = np.full((count, len(lifted.newton.z)), np.nan)  # where it was found
         self.known = self.linear.copy()
-        self.filled = Filled(self.place, self.change, self.known.view(np.uint8))
+        self.filled = PartialInterpolant(self.place, self.change, self.known.view(np.uint8))
 
-    def everywhere(self, special: Indices) -> FloatArray:
+    def displacements(self, special: Indices) -> FloatArray:
         """Displacements (point, 1 + dof): found at special points, at every so many, next to linear
         parts, and between two of these where the middle one is not what they lead to expect; interpolated
         elsewhere."""
         count = len(self.known)
         changes = np.flatnonzero(np.diff(self.linear))
-        even = np.arange(0, count, self.options.every)
+        even = np.arange(0, count, self.options.point_interval)
         first = np.unique(np.concatenate((special, even, [0, count - 1], changes, changes + 1)))
         self.find(first)
         before, after = first[:-1], first[1:]
@@ -135,21 +135,21 @@ class PartnerCurve:
             middle = (before + after) // 2
             expected = self.interpolated(middle)
             self.find(middle)
-            more = self._unforeseen(before, middle, after, expected)
+            more = self._misses_expected(before, middle, after, expected)
             before, after = (
                 np.concatenate((before[more], middle[more])),
                 np.concatenate((middle[more], after[more])),
             )
         return self.interpolated(np.arange(count))
 
-    def alike(self) -> bool:
+    def is_same_curve(self) -> bool:
         """Whether the partner is found from most of some points evenly along the curve."""
-        even = np.arange(0, len(self.known), self.options.every)
+        even = np.arange(0, len(self.known), self.options.point_interval)
         some = even[:: max(len(even) // self.options.probes, 1)].copy()
         self.find(some)
-        return bool(np.isfinite(self.change[some, 0]).mean() >= self.options.alike)
+        return bool(np.isfinite(self.change[some, 0]).mean() >= self.options.min_found)
 
-    def apart(self, points: Indices) -> Indices:
+    def distinct_points(self, points: Indices) -> Indices:
         """Those of points, in order, that are not next to another of them.
 
         Of many degrees of freedom each has its own peak; what the partner has at one is interpolated to the
@@ -157,7 +157,7 @@ class PartnerCurve:
         """
         return points[distinct(self.place[points], self._near)]
 
-    def done(self) -> None:
+    def release(self) -> None:
         """Give back what the next curve can use."""
         give_back(self.finding.lifted, self.system, self.more)
         if self.second is not None:
@@ -172,7 +172,7 @@ class PartnerCurve:
     def find(self, points: Indices) -> None:
         """The displacements of some points, which are then known; of those beyond what the work allows that
         there is none."""
-        most = self.options.points / self.each
+        most = self.options.max_point_seconds / self.each
         if most < np.inf:
             for k, i in enumerate(points.tolist()):
                 if self.finding.lifted.newton.evaluations - self.before > most:
@@ -188,14 +188,14 @@ class PartnerCurve:
         path = self.path
         self.finding.find(
             points, path.z, path.direction, self.amplitude, self.unit,
-            self.change, self.theirs, self.known.view(np.uint8), self.vain,
+            self.change, self.theirs, self.known.view(np.uint8), self.failed,
         )  # fmt: skip
 
-    def off(self, i: int) -> FloatArray | None:
+    def own_error(self, i: int) -> FloatArray | None:
         """By how much (dof,) a partner of its own differs from it at the frequency of a point, in the unit of
         that; None where either has no motion there."""
         lifted = self.finding.lifted
-        if not lifted.normal_point(self._padded(i), True):
+        if not lifted.find_at_frequency(self._padded(i), True):
             return None
         z, amplitude = np.array(lifted.newton.z), np.array(lifted.found[1:])
         second = self._second(z, amplitude)
@@ -204,7 +204,7 @@ class PartnerCurve:
         off: FloatArray = np.abs(second.amplitude - amplitude) / self.unit[i]
         return off
 
-    def lacking(self, tops: Indices, inside: Mask) -> tuple[FloatArray, FloatArray]:
+    def errors_at_peaks(self, tops: Indices, inside: Mask) -> tuple[FloatArray, FloatArray]:
         """What the partner lacks at tops, in their order: by how much (top, dof) the amplitudes of a partner
         of its own differ, and by how much the harmonics that this lacks, too, would change them.
 
@@ -214,17 +214,17 @@ class PartnerCurve:
         each = np.zeros((2, len(tops), self.amplitude.shape[1]))
         alone = distinct(self.place[tops], self._near)
         for k in alone.tolist():
-            each[:, k] = self._lacking(int(tops[k]), bool(inside[k]))
+            each[:, k] = self._error_at_peak(int(tops[k]), bool(inside[k]))
         which = alone[np.searchsorted(alone, np.arange(len(tops)), "right") - 1]
         return each[0, which], each[1, which]
 
-    def _lacking(self, top: int, inside: bool) -> FloatArray:
+    def _error_at_peak(self, top: int, inside: bool) -> FloatArray:
         """The same at one top (2, dof)."""
         nothing, known = np.zeros(self.amplitude.shape[1]), None
         if self.linear[top]:
             return np.stack((nothing, nothing))
-        for i in self._beside_top(top) if inside else (top,):
-            if not self._at(i, inside):
+        for i in self._points_beside_peak(top) if inside else (top,):
+            if not self._has_point(i, inside):
                 continue
             lifted = self.finding.lifted
             z, amplitude = np.array(lifted.newton.z), np.array(lifted.found[1:])
@@ -233,44 +233,49 @@ class PartnerCurve:
             second = self._second(z, amplitude)
             if second is not None and second.found(z, direction if inside else None):
                 there = np.array(second.lifted.newton.z)
-                return np.stack((second.amplitude - amplitude, left_out(second.system, there, self.options)))
+                return np.stack(
+                    (second.amplitude - amplitude, changes_left_out(second.system, there, self.options))
+                )
             if second is None:
                 break
-        left = nothing if known is None else left_out(self.stretches.finer, known, self.options)
+        left = nothing if known is None else changes_left_out(self.stretches.finer, known, self.options)
         return np.stack((nothing, left))
 
-    def _beside_top(self, top: int) -> list[int]:
+    def _points_beside_peak(self, top: int) -> list[int]:
         """A top and points to either side of it, as long as contacts slip or separate there."""
-        beside = (0, *(way * step for step in self.options.beside for way in (-1, 1)))
+        beside = (0, *(way * step for step in self.options.peak_offsets for way in (-1, 1)))
         places = [top + step for step in beside if 0 <= top + step < len(self.linear)]
         return [i for i in places if not self.linear[i]]
 
-    def _at(self, i: int, normal: bool) -> bool:
+    def _has_point(self, i: int, normal: bool) -> bool:
         """Whether the partner has a point normal to a point of the curve, or at its frequency."""
         lifted, path = self.finding.lifted, self.path
-        if normal and lifted.beside(path.z[i], path.direction[i], True):
+        if normal and lifted.find_normal(path.z[i], path.direction[i], True):
             return True
-        return not normal and bool(lifted.normal_point(self._padded(i), True))
+        return not normal and bool(lifted.find_at_frequency(self._padded(i), True))
 
-    def _second(self, z: FloatArray, amplitude: FloatArray) -> Second | None:
+    def _second(self, z: FloatArray, amplitude: FloatArray) -> SecondPartner | None:
         """A partner of its own; None where that has no more harmonics, or too many unknowns. It is that of
         the place from which it is asked first."""
         finer, options = self.stretches.finer, self.options
-        if self.dear:
+        if self.is_costly:
             return None
         if self.second is None:
             share = FurtherHarmonics(finer).shares(z[None], amplitude[None])[0]
-            own = replace(options, times=options.again, named=options.again_named)
+            own = replace(options, harmonics_factor=options.second_factor, max_named=options.second_named)
             more = partner_of(finer.harmonics, share, finer.layout.ports, own)
-            self.dear = more == finer.harmonics or finer.layout.ports * (1 + 2 * len(more)) > options.dearest
-            self.second = None if self.dear else Second(finer, more)
+            self.is_costly = (
+                more == finer.harmonics
+                or finer.layout.ports * (1 + 2 * len(more)) > options.max_second_unknowns
+            )
+            self.second = None if self.is_costly else SecondPartner(finer, more)
         return self.second
 
-    def normal_point(self, i: int) -> FloatArray | None:
+    def amplitude_at_frequency(self, i: int) -> FloatArray | None:
         """Amplitudes (dof,) of the partner at the frequency of a point; None where Newton's method finds
         none that is as even."""
         lifted, path = self.finding.lifted, self.path
-        if self.linear[i] or not lifted.normal_point(self._padded(i), True):
+        if self.linear[i] or not lifted.find_at_frequency(self._padded(i), True):
             return None
         even = path.orientation[i] * path.direction[i, -1]
         if not lifted.newton.orientation * lifted.newton.tangent[-1] * even > 0.0:
@@ -284,27 +289,36 @@ class PartnerCurve:
     def interpolated(self, points: Indices) -> FloatArray:
         """Displacements (point, 1 + dof) by cubics through those that are known, with slopes from them."""
         values = np.empty((len(points), self.change.shape[1]))
-        self.filled.at(points, values)
+        self.filled.interpolate(points, values)
         return values
 
-    def _unforeseen(self, before: Indices, middle: Indices, after: Indices, expected: FloatArray) -> Mask:
+    def _misses_expected(
+        self, before: Indices, middle: Indices, after: Indices, expected: FloatArray
+    ) -> Mask:
         """Where a displacement is not what the two around it lead to expect, as errors of an amplitude.
 
         Along a steep part one of the frequency is a so much larger error of the amplitude.
         """
         more, options = np.zeros(len(middle), dtype=np.uint8), self.options
         points = np.array((before, middle, after))
-        self.filled.unforeseen(points, expected, self.weight, options.interpolated, options.nothing, more)
+        self.filled.misses_expected(
+            points,
+            expected,
+            self.weight,
+            options.interpolation_tolerance,
+            options.negligible_displacement,
+            more,
+        )
         return more.view(np.bool_)
 
-    def followed(self, change: FloatArray) -> list[Followed]:
+    def follow_stretches(self, change: FloatArray) -> list[FollowedStretch]:
         """The stretches without displacements, with the pieces of the partner there; the highest
         are first."""
-        found = [run for run in runs(np.any(np.isnan(change), axis=1)) if not self._bridged(*run, change)]
+        found = [run for run in runs(np.any(np.isnan(change), axis=1)) if not self._is_bridged(*run, change)]
         found.sort(key=lambda run: -float(self.amplitude[run[0] : run[1]].max()))
-        return [Followed(first, end, self.stretches.between(first - 1, end)) for first, end in found]
+        return [FollowedStretch(first, end, self.stretches.between(first - 1, end)) for first, end in found]
 
-    def _bridged(self, first: int, end: int, change: FloatArray) -> bool:
+    def _is_bridged(self, first: int, end: int, change: FloatArray) -> bool:
         """Whether points first to before end are so few between two of nearly the same displacement that this
         is theirs: `change` and what is known then have it. Where the curve turns back it is not."""
         before, after = first - 1, end
@@ -313,8 +327,8 @@ class PartnerCurve:
         if before < 0 or after == len(change) or self.place[after] - self.place[before] > self._near:
             return False
         one, other = change[before], change[after]
-        most = max(np.abs(one).max(), np.abs(other).max(), self.options.nothing)
-        if not np.abs(other - one).max() < self.options.interpolated * most:
+        most = max(np.abs(one).max(), np.abs(other).max(), self.options.negligible_displacement)
+        if not np.abs(other - one).max() < self.options.interpolation_tolerance * most:
             return False
         self.known[first:end] = False
         change[first:end] = self.interpolated(np.arange(first, end))
@@ -322,9 +336,9 @@ class PartnerCurve:
 
     @property
     def _near(self) -> float:
-        return float(self.options.together * (self.place[-1] - self.place[0]))
+        return float(self.options.peak_spacing * (self.place[-1] - self.place[0]))
 
-    def compared(self, change: FloatArray) -> Compared:
+    def compared_quantities(self, change: FloatArray) -> ComparedQuantities:
         """Amplitudes, with changes (point, 1 + dof) that are known everywhere, and what the contacts bear
         in units of the greatest along the curve; its changes are interpolated as those of amplitudes are."""
         most = self.borne.max(axis=0)
@@ -336,15 +350,17 @@ class PartnerCurve:
         found[there, 1:] = (theirs - self.borne[there]) / unit[there]
         found[np.isnan(found[:, 0])] = np.nan
         every = np.empty_like(found)
-        Filled(self.place, found, self.known.view(np.uint8)).at(np.arange(len(change)), every)
-        return Compared(
+        PartialInterpolant(self.place, found, self.known.view(np.uint8)).interpolate(
+            np.arange(len(change)), every
+        )
+        return ComparedQuantities(
             np.hstack((self.amplitude, self.borne)),
             np.hstack((self.shown.growth, rates(self.borne, self.place))),
             np.hstack((self.unit, unit)),
             np.hstack((change, every[:, 1:])),
         )
 
-    def shifts(self, compared: Compared, followed: list[Followed]) -> FloatArray:
+    def shifts(self, compared: ComparedQuantities, followed: list[FollowedStretch]) -> FloatArray:
         """Differences (point, column) at the same frequency, in their unit; NaN where the partner does not
         come to that."""
         path, change = self.path, compared.change
@@ -356,7 +372,7 @@ class PartnerCurve:
             self._by_pieces(one, compared, shift)
         return shift
 
-    def _by_pieces(self, one: Followed, compared: Compared, shift: FloatArray) -> None:
+    def _by_pieces(self, one: FollowedStretch, compared: ComparedQuantities, shift: FloatArray) -> None:
         """Fill those along a stretch, and next to it where the way to the same frequency leads into
         it: by the pieces, else by the partner before and behind them."""
         first, end = one.first, one.end
@@ -376,14 +392,14 @@ class PartnerCurve:
         for way in (map(self._of_piece, one.pieces), self._beside(compared, one.first, one.end)):
             new, own = shift[rows], np.isnan(shift[rows]).any(axis=1) & (number > -2)
             for other in way:
-                found = (other.passed(omega, even, by, number) - now) / compared.unit[rows]
+                found = (other.values_at(omega, even, by, number) - now) / compared.unit[rows]
                 off, before = (np.abs(x[:, :dofs]).max(axis=1) for x in (found, new))
                 nearer = ~(off >= before) & own
                 nearer &= np.isfinite(found).all(axis=1)
                 new[nearer] = found[nearer]
             shift[rows], number = new, np.minimum(number, -1)
 
-    def _beside(self, compared: Compared, first: int, end: int) -> Iterator[CurvePiece]:
+    def _beside(self, compared: ComparedQuantities, first: int, end: int) -> Iterator[CurvePiece]:
         """The partner at the points before a stretch, and behind it, as far as it is known there."""
         missed = np.flatnonzero(np.isnan(compared.change).any(axis=1))
         low = max(missed[missed < first], default=-1) + 1
@@ -393,40 +409,40 @@ class PartnerCurve:
             if piece is not None:
                 yield piece
 
-    def pieces(self, compared: Compared, followed: list[Followed]) -> tuple[CurvePiece, ...]:
+    def pieces(self, compared: ComparedQuantities, followed: list[FollowedStretch]) -> tuple[CurvePiece, ...]:
         """All that is known of the partner: what points are displaced to, and what was followed."""
         missed: Mask = np.any(np.isnan(compared.change), axis=1)
         through = [self._displaced(compared, slice(first, end)) for first, end in runs(~missed)]
         along = [self._of_piece(piece) for one in followed for piece in one.pieces]
         return tuple(one for one in (*through, *along) if one is not None)
 
-    def _displaced(self, compared: Compared, rows: slice) -> CurvePiece | None:
+    def _displaced(self, compared: ComparedQuantities, rows: slice) -> CurvePiece | None:
         """The partner at some points, all of them displaced to it."""
         change = compared.change[rows]
         omega = self.path.parameter[rows] * (1.0 + change[:, 0])
         value = compared.value[rows] + compared.unit[rows] * change[:, 1:]
         return piece_through(self.place[rows], omega, self.path.orientation[rows], value)
 
-    def _of_piece(self, piece: Piece) -> CurvePiece:
+    def _of_piece(self, piece: PartnerPiece) -> CurvePiece:
         return curve_piece(self.stretches.finer, piece)
 
-    def borne_of(self, piece: Piece) -> FloatArray:
+    def borne_of(self, piece: PartnerPiece) -> FloatArray:
         """What the contacts bear along a piece (point, 4 contact)."""
         return borne_along(self.stretches.finer, piece.path.z).reshape(len(piece.path.z), -1)
 
-    def _numbers(self, one: Followed, rows: Indices) -> npt.NDArray[np.intc]:
+    def _numbers(self, one: FollowedStretch, rows: Indices) -> npt.NDArray[np.intc]:
         """Which passing of the partner (row,) belongs to points of a stretch with folds: the same in
         their order where both have as many, the nearest (-1) where the partner has more, none (-2) where it
         has fewer."""
         own = self.path.parameter[max(rows[0] - 1, 0) : rows[-1] + 2]
         number, offset = np.full(len(rows), -1, dtype=np.intc), rows[0] - max(rows[0] - 1, 0)
-        for first in range(0, len(rows), PAIR.at_once):
-            some = np.arange(first, min(first + PAIR.at_once, len(rows)))
+        for first in range(0, len(rows), PAIR.batch):
+            some = np.arange(first, min(first + PAIR.batch, len(rows)))
             omega = self.path.parameter[rows[some]]
-            mine = _passed(own, omega)
+            mine = _passes(own, omega)
             count = np.zeros(len(some), dtype=np.intp)
             for piece in one.pieces:
-                count += _passed(piece.path.parameter, omega).sum(axis=1)
+                count += _passes(piece.path.parameter, omega).sum(axis=1)
             before = np.arange(mine.shape[1]) < (offset + some - 1)[:, None]
             number[some[count < mine.sum(axis=1)]] = -2
             if len(one.pieces) == 1:
@@ -435,13 +451,13 @@ class PartnerCurve:
         return number
 
 
-def curve_piece(finer: System, piece: Piece) -> CurvePiece:
+def curve_piece(finer: System, piece: PartnerPiece) -> CurvePiece:
     """A piece of the partner that was followed, with what the contacts bear."""
     borne = borne_along(finer, piece.path.z).reshape(len(piece.path.z), -1)
     return piece_of(piece.path, piece.shown, borne)
 
 
-def _passed(parameter: FloatArray, omega: FloatArray) -> Mask:
+def _passes(parameter: FloatArray, omega: FloatArray) -> Mask:
     """Whether a curve passes frequencies (place,) on the piece from a point to the next, (place, piece)."""
     below = parameter < omega[:, None]
     passes: Mask = below[:, 1:] != below[:, :-1]

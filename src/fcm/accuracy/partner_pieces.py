@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from fcm.accuracy.curve_distance import OtherCurve, places
+from fcm.accuracy.curve_distance import PartnerCurveData, places
 from fcm.continuation import Path
-from fcm.harmonic_balance.reported_quantities import Reported
+from fcm.harmonic_balance.reported_quantities import ReportedQuantities
 from fcm.model.scene import FloatArray
 
 
@@ -23,13 +23,13 @@ class CurvePiece:
     multipliers above 1 is even.
     """
 
-    curve: OtherCurve
+    curve: PartnerCurveData
     frequency: FloatArray
     orientation: FloatArray
     value: FloatArray
     slope: FloatArray
 
-    def within(self, omega: FloatArray) -> npt.NDArray[np.bool_]:
+    def passes(self, omega: FloatArray) -> npt.NDArray[np.bool_]:
         """Whether it passes frequencies (place,)."""
         inside: npt.NDArray[np.bool_] = (self.frequency.min() <= omega) & (omega <= self.frequency.max())
         return inside
@@ -40,7 +40,7 @@ class CurvePiece:
         found: npt.NDArray[np.intp] = np.flatnonzero((rise[:-1] > 0.0) & (rise[1:] <= 0.0)) + 1
         return found
 
-    def passed(
+    def values_at(
         self,
         omega: FloatArray,
         even: FloatArray,
@@ -48,19 +48,22 @@ class CurvePiece:
         number: npt.NDArray[np.intc] | None = None,
     ) -> FloatArray:
         """Values (place, column) where it passes frequencies omega (place,), whose amplitudes are nearest to
-        a reference (place, dof); as of `OtherCurve.passings`, with no number where all count."""
+        a reference (place, dof); as of `PartnerCurveData.values_at_crossings`, with no number where all
+        count."""
         found, every = np.empty((len(omega), self.value.shape[1])), np.full(len(omega), -1, dtype=np.intc)
         which = every if number is None else number
-        self.curve.passings(self.orientation, self.value, self.slope, omega, even, reference, which, found)
+        self.curve.values_at_crossings(
+            self.orientation, self.value, self.slope, omega, even, reference, which, found
+        )
         return found
 
 
-def piece_of(path: Path, shown: Reported, borne: FloatArray) -> CurvePiece:
+def piece_of(path: Path, shown: ReportedQuantities, borne: FloatArray) -> CurvePiece:
     """A path that has been followed, with what the contacts bear (point, 4 contact)."""
     parameter, rate = (np.ascontiguousarray(one[:, -1]) for one in (path.z, path.direction))
     place = lengths(path)
     return CurvePiece(
-        OtherCurve(place, parameter, rate),
+        PartnerCurveData(place, parameter, rate),
         parameter,
         np.ascontiguousarray(path.orientation),
         np.hstack((shown.amplitude, borne)),
@@ -78,7 +81,7 @@ def piece_through(
         return None
     place, omega, orientation, value = place[apart], omega[apart], orientation[apart], value[apart]
     return CurvePiece(
-        OtherCurve(place, omega, np.gradient(omega, place)),
+        PartnerCurveData(place, omega, np.gradient(omega, place)),
         omega,
         np.ascontiguousarray(orientation),
         np.ascontiguousarray(value),
@@ -109,7 +112,7 @@ def _nearest(
     omega, even = np.ascontiguousarray(omega), np.ascontiguousarray(even)
     reference = np.ascontiguousarray(reference)
     for piece in pieces:
-        other = piece.passed(omega, even, reference)
+        other = piece.values_at(omega, even, reference)
         off, before = (np.abs(one[:, :dofs] - reference).max(axis=1) for one in (other, best))
         nearer = np.isfinite(off) & ~(off >= before)
         best[nearer] = other[nearer]

@@ -19,24 +19,24 @@ from fcm.continuation import Events, Path, Status
 from fcm.continuation.follow import Follower
 from fcm.continuation.stepper import Stepper
 from fcm.harmonic_balance.cost_model import seconds_of
-from fcm.harmonic_balance.normal_plane_prolongation import Lifted
-from fcm.harmonic_balance.reported_quantities import Reported, reported
+from fcm.harmonic_balance.normal_plane_prolongation import Prolongation
+from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
 from fcm.harmonic_balance.system import System
-from fcm.harmonic_balance.work_budget import TooLongError
+from fcm.harmonic_balance.work_budget import WorkLimitError
 from fcm.model.scene import FloatArray
 
 
-class SpentError(Exception):
+class BudgetSpentError(Exception):
     """Following the partner takes more than it may."""
 
 
 @dataclass(frozen=True)
-class Piece:
-    """A piece of the partner, from one end of a stretch; arrived: up to the other."""
+class PartnerPiece:
+    """A piece of the partner, from one end of a stretch; reached_end: up to the other."""
 
     path: Path
-    shown: Reported
-    arrived: bool
+    shown: ReportedQuantities
+    reached_end: bool
 
     @property
     def whole(self) -> bool:
@@ -45,7 +45,7 @@ class Piece:
 
 
 @dataclass(frozen=True)
-class End:
+class StretchEnd:
     """A point of the partner at an end of a stretch, and whether the frequency rises there along the
     curve."""
 
@@ -55,14 +55,14 @@ class End:
     rises: bool
 
 
-class Stretches:
+class StretchFollower:
     """`between` two points of a curve the partner is followed, as long as the budget allows."""
 
     def __init__(
         self,
         fewer: System,
         finer: System,
-        lifted: Lifted,
+        lifted: Prolongation,
         curve: Path,
         options: PairOptions,
         budget: Budget,
@@ -73,66 +73,66 @@ class Stretches:
         self.budget, self.evaluations = budget, 0
         self._stepper: Stepper | None = None
 
-    def between(self, first: int, last: int) -> list[Piece]:
+    def between(self, first: int, last: int) -> list[PartnerPiece]:
         """The partner between point first and point last of the curve, which may be beyond its ends.
 
         One piece that leads from one to the other, or what hangs on both as far as that stays near the
         stretch, and as the work allows.
         """
-        if self.budget.left <= 0.0:
+        if self.budget.seconds <= 0.0:
             return []
-        tries, count = self.options.tries, len(self.curve.z)
+        tries, count = self.options.end_tries, len(self.curve.z)
         before = self._end(range(first, max(first - tries, -1), -1)) if first >= 0 else self._alike(0)
         behind = self._end(range(last, min(last + tries, count))) if last < count else None
         if before is None and behind is None:
             behind = self._alike(last - 1)
-        span, pieces = self._span(before, behind), list[Piece]()
+        span, pieces = self._span(before, behind), list[PartnerPiece]()
         for begin, end in ((before, behind), (behind, before)):
             if begin is None or not span[0] < span[1]:
                 continue
-            if self.budget.left <= 0.0:
+            if self.budget.seconds <= 0.0:
                 break
             piece = self._followed(begin, end, span, begin.rises == (begin is before))
-            if piece.arrived:
+            if piece.reached_end:
                 return [piece]
             pieces += [piece] if len(piece.path.z) > 1 else []
         return pieces
 
-    def through(self, i: int, span: tuple[float, float], by_level: bool) -> list[Piece]:
+    def through(self, i: int, span: tuple[float, float], by_level: bool) -> list[PartnerPiece]:
         """The partner both ways from the frequency of a point, as far as it stays in a span and the work
         allows; nothing where no motion of it is found there."""
         before = self.lifted.newton.evaluations
         begin = self._passed_beside(i, False) if by_level else self._same_frequency(i)
         new = int(self.lifted.newton.evaluations - before)
         self.evaluations += new
-        self.budget.left -= new * self.each
+        self.budget.seconds -= new * self.each
         if begin is None:
             return []
-        pieces = list[Piece]()
+        pieces = list[PartnerPiece]()
         for way in (True, False):
-            if self.budget.left > 0.0 and not any(piece.path.status is Status.CLOSED for piece in pieces):
+            if self.budget.seconds > 0.0 and not any(piece.path.status is Status.CLOSED for piece in pieces):
                 pieces.append(self._followed(begin, None, span, way))
         return [piece for piece in pieces if len(piece.path.z) > 1]
 
-    def _end(self, places: Iterable[int]) -> End | None:
+    def _end(self, places: Iterable[int]) -> StretchEnd | None:
         """At the first of some places where there is one."""
         for i in places:
-            if 0 <= i < len(self.curve.z) and self.lifted.beside(
+            if 0 <= i < len(self.curve.z) and self.lifted.find_normal(
                 self.curve.z[i], self.curve.direction[i], True
             ):
                 return self._found(i)
         return None
 
-    def _same_frequency(self, i: int) -> End | None:
+    def _same_frequency(self, i: int) -> StretchEnd | None:
         """At the frequency of a point: what its motion leads to."""
         guess = self.finer.extended(self.curve.z[i], self.fewer)
-        return self._found(i) if self.lifted.normal_point(guess, True) else None
+        return self._found(i) if self.lifted.find_at_frequency(guess, True) else None
 
-    def _alike(self, i: int) -> End | None:
+    def _alike(self, i: int) -> StretchEnd | None:
         """At the frequency of a point: what its motion leads to, or one as even that the level passes."""
         return self._same_frequency(i) or self._passed_beside(i, True)
 
-    def _passed_beside(self, i: int, alike: bool) -> End | None:
+    def _passed_beside(self, i: int, alike: bool) -> StretchEnd | None:
         """At the frequency of a point the nearest motion that the level of the forces passes; alike with an
         odd or even number of real multipliers above 1 as it has."""
         lifted, curve = self.lifted, self.curve
@@ -140,7 +140,7 @@ class Stretches:
         even = curve.orientation[i] * np.sign(curve.direction[i, -1])
         known = self._passed(float(curve.z[i, -1]))
         for one in sorted(known, key=lambda one: float(np.linalg.norm((one - guess) / lifted.newton.scale))):
-            if not lifted.normal_point(one, False):
+            if not lifted.find_at_frequency(one, False):
                 continue
             if not alike or lifted.newton.orientation * lifted.newton.tangent[-1] * even > 0.0:
                 return self._found(i)
@@ -150,31 +150,33 @@ class Stretches:
         """What the level of the forces passes at a frequency, as the budget allows."""
         work, before = self.finer.work, self.finer.work.seconds
         try:
-            with work.up_to(before + max(self.budget.left, 0.0)):
-                return solutions(self.finer, omega, LEVEL_CURVE.near).solutions
-        except TooLongError:
+            with work.limited_to(before + max(self.budget.seconds, 0.0)):
+                return solutions(self.finer, omega, LEVEL_CURVE.clear_level).solutions
+        except WorkLimitError:
             return ()
         finally:
-            self.budget.left -= work.seconds - before
+            self.budget.seconds -= work.seconds - before
 
-    def _found(self, i: int) -> End:
+    def _found(self, i: int) -> StretchEnd:
         """Where the partner was found last, beside a point."""
         newton = self.lifted.newton
         rises = bool(newton.tangent[-1] * self.curve.direction[i, -1] > 0.0)
-        return End(i, np.array(newton.z), np.array(self.lifted.found[1:]), rises)
+        return StretchEnd(i, np.array(newton.z), np.array(self.lifted.found[1:]), rises)
 
-    def _span(self, before: End | None, behind: End | None) -> tuple[float, float]:
+    def _span(self, before: StretchEnd | None, behind: StretchEnd | None) -> tuple[float, float]:
         """Frequencies of a stretch, and beyond them, as folds may have moved."""
         ends = [end for end in (before, behind) if end]
         first = before.number if before else 0
         last = behind.number if behind else len(self.curve.z) - 1
         inside = np.append(self.curve.parameter[first : last + 1], [end.z[-1] for end in ends])
         low, high = float(inside.min()), float(inside.max())
-        reach = self.options.beyond * (high - low)
+        reach = self.options.span_margin * (high - low)
         lowest, highest = self.finer.scene.frequency_range
         return max(low - reach, min(lowest, low)), min(high + reach, max(highest, high))
 
-    def _followed(self, begin: End, end: End | None, span: tuple[float, float], forward: bool) -> Piece:
+    def _followed(
+        self, begin: StretchEnd, end: StretchEnd | None, span: tuple[float, float], forward: bool
+    ) -> PartnerPiece:
         """The partner from one end to the other, or as far as it stays in the span."""
         stepper, known = self.stepper, 0
 
@@ -182,9 +184,9 @@ class Stretches:
             nonlocal known
             new, known = stepper.newton.evaluations - known, stepper.newton.evaluations
             self.evaluations += new
-            self.budget.left -= new * self.each
-            if self.budget.left < 0.0:
-                raise SpentError
+            self.budget.seconds -= new * self.each
+            if self.budget.seconds < 0.0:
+                raise BudgetSpentError
 
         wanted = Events((float(end.z[-1]),) if end else ())
         follower = Follower(stepper.problem, span, wanted, self.options.following, pay, stepper)
@@ -193,24 +195,24 @@ class Stretches:
         else:
             try:
                 path = follower.run(None)
-            except SpentError:
+            except BudgetSpentError:
                 path = follower.path(Status.INTERRUPTED)
-        shown = reported(self.finer, path)
+        shown = reported_quantities(self.finer, path)
         if end is None:
-            return Piece(path, shown, False)
+            return PartnerPiece(path, shown, False)
         off = np.abs(shown.amplitude - end.amplitude).max(axis=1, initial=0.0)
-        near = off < self.options.same * end.amplitude.max()
+        near = off < self.options.end_tolerance * end.amplitude.max()
         there = np.flatnonzero((path.parameter == end.z[-1]) & near)
         if not there.size:
-            return Piece(path, shown, False)
+            return PartnerPiece(path, shown, False)
         rows = slice(0, int(there[0]) + 1)
-        return Piece(_part(path, rows), shown.part(rows), True)
+        return PartnerPiece(_part(path, rows), shown.part(rows), True)
 
     @property
     def stepper(self) -> Stepper:
         """Of a balance of its own."""
         if self._stepper is None:
-            self._stepper = Stepper(self.finer.balance())
+            self._stepper = Stepper(self.finer.new_balance())
         return self._stepper
 
 

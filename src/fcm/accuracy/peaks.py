@@ -6,12 +6,14 @@ import numpy as np
 
 from fcm.accuracy.curve_distance import rises
 from fcm.accuracy.options import PAIR
-from fcm.accuracy.partner_curve import Followed, Indices, PartnerCurve
+from fcm.accuracy.partner_curve import FollowedStretch, Indices, PartnerCurve
 from fcm.continuation import Mark
 from fcm.model.scene import FloatArray
 
 
-def heights(partner: PartnerCurve, change: FloatArray, followed: list[Followed], tops: Indices) -> FloatArray:
+def heights(
+    partner: PartnerCurve, change: FloatArray, followed: list[FollowedStretch], tops: Indices
+) -> FloatArray:
     """Greatest amplitudes (dof,) of the partner of a curve that is highest at the tops (dof,).
 
     change (point, dof): of the amplitudes along the curve, in their unit. Unknown along a stretch that
@@ -33,7 +35,7 @@ def heights(partner: PartnerCurve, change: FloatArray, followed: list[Followed],
             greatest = np.fmax(greatest, piece.shown.amplitude.max(axis=0))
     for one in followed:
         if not any(piece.whole for piece in one.pieces):
-            greatest[amplitude[one.first : one.end].max(axis=0) > options.rival * now] = np.nan
+            greatest[amplitude[one.first : one.end].max(axis=0) > options.rival_fraction * now] = np.nan
     return greatest
 
 
@@ -52,13 +54,17 @@ def _highest(partner: PartnerCurve, change: FloatArray) -> tuple[FloatArray, Ind
     """Changes (point, dof) and where (dof,) with them the partner is highest of the points where it is found:
     also at those near the highest that are expected to be higher, as an interpolated one may be, by more than
     nothing."""
-    change, count, near = change.copy(), len(change), np.arange(-PAIR.around, PAIR.around + 1)[:, None]
+    change, count, near = (
+        change.copy(),
+        len(change),
+        np.arange(-PAIR.peak_neighbours, PAIR.peak_neighbours + 1)[:, None],
+    )
     while True:
         expected = partner.amplitude + partner.unit * change
         value = np.where(partner.known[:, None] & np.isfinite(change), expected, 0.0)
         places = value.argmax(axis=0)
         d, around = np.arange(len(places)), np.clip(places + near, 0, count - 1)
-        least = value[places, d] * (1.0 + partner.options.nothing)
+        least = value[places, d] * (1.0 + partner.options.negligible_displacement)
         higher = ~partner.known[around] & (expected[around, d] > least)
         if not higher.any():
             return change, places
@@ -81,4 +87,4 @@ def _gap(partner: PartnerCurve, top: int) -> bool:
     higher = np.abs(moved[1] - moved[0]) * slope
     changed = np.abs(partner.change[beside, 1:]).max(axis=0) * partner.unit[top]
     top_of = partner.amplitude[top] >= partner.amplitude.max(axis=0)
-    return bool((higher > partner.options.gap * changed)[top_of].any())
+    return bool((higher > partner.options.gap_fraction * changed)[top_of].any())

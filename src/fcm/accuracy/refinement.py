@@ -11,20 +11,20 @@ import numpy as np
 from fcm.accuracy.budget import Budget, share_of
 from fcm.accuracy.embedded_pair import Errors, errors_along, with_nearest
 from fcm.accuracy.options import OF_GIVEN, PAIR, REFINEMENT, PairOptions, RefinementOptions
-from fcm.accuracy.outline import Outline, near, outlined, with_more
+from fcm.accuracy.outline import UncheckedResponse, near, unchecked_response, with_more
 from fcm.accuracy.required_harmonics import needed, required_harmonics
-from fcm.branches.force_level import few_of, with_low_harmonics
+from fcm.branches.force_level import few_harmonics, with_low_harmonics
 from fcm.continuation.follow import Progress
-from fcm.harmonic_balance.cost_model import AGAIN
+from fcm.harmonic_balance.cost_model import MAX_SECONDS_REPEATED
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
 # what has been traced, by how much its partner changes it (NaN: not told), and the harmonics that come next
-Keep = Callable[[Outline, float, tuple[int, ...]], None]
+Keep = Callable[[UncheckedResponse, float, tuple[int, ...]], None]
 
 
 @dataclass(frozen=True)
-class Accurate(Outline):
+class RefinedResponse(UncheckedResponse):
     """A response, its errors, and the accuracy that was asked for.
 
     errors (path,) belong to the branches' paths, too; peak (dof,) is the relative error of the greatest
@@ -34,14 +34,14 @@ class Accurate(Outline):
 
     errors: tuple[Errors, ...]
     peak: FloatArray
-    worst: float
-    told: float
+    max_error: float
+    max_known_error: float
     accuracy: float
 
     @property
     def reached(self) -> bool:
         """Whether all errors are below the accuracy."""
-        return self.worst <= self.accuracy
+        return self.max_error <= self.accuracy
 
     @property
     def folds(self) -> FloatArray:
@@ -51,16 +51,16 @@ class Accurate(Outline):
     @property
     def agrees(self) -> bool:
         """Whether the pair does: it is accurate, or folds alone cannot be told, which more do not change."""
-        return self.reached or (self.told <= self.accuracy and not np.isnan(self.peak).any())
+        return self.reached or (self.max_known_error <= self.accuracy and not np.isnan(self.peak).any())
 
 
-def accurate(
+def refined_response(
     system: System,
     accuracy: float,
     progress: Progress | None = None,
     options: RefinementOptions = REFINEMENT,
     keep: Keep | None = None,
-) -> Accurate:
+) -> RefinedResponse:
     """The response of a scene (of one curve) with the harmonics that an accuracy takes; system has one.
 
     As long as a peak of a degree of freedom, or a fold, differs from the partner's by more than the accuracy
@@ -71,18 +71,18 @@ def accurate(
     is given up. Whether the branches are complete is another question, see their status. What has been traced
     is told to keep, before more is.
     """
-    found: Outline = outlined(system, progress)
-    sure: Accurate | None = None
+    found: UncheckedResponse = unchecked_response(system, progress)
+    sure: RefinedResponse | None = None
     further, begun = tuple[int, ...](), False
-    for _ in range(options.rounds):
+    for _ in range(options.max_rounds):
         if not found.shown:
             break
         sure, ahead = None, required_harmonics(found, options)
-        if ahead.told and ahead.change <= accuracy:
-            found = found.whole()
+        if ahead.is_known and ahead.change <= accuracy:
+            found = found.with_levels()
             if found.further:
                 break
-            sure = judged(found, accuracy)
+            sure = with_errors(found, accuracy)
             if sure.agrees:
                 more = with_low_harmonics(found.system, found.traced.found)
                 if more == found.system.harmonics:
@@ -92,57 +92,64 @@ def accurate(
         else:
             more = needed(ahead, found.system.harmonics, accuracy, options)
         if keep is not None:
-            keep(sure or found, ahead.change if ahead.told else np.nan, more)
-        then, further, begun = with_more(found, more, ahead.told, progress)
+            keep(sure or found, ahead.change if ahead.is_known else np.nan, more)
+        then, further, begun = with_more(found, more, ahead.is_known, progress)
         if then is None:
             break
         found, sure = then, None
     if sure is None:
-        found = found.whole()
+        found = found.with_levels()
         further, begun = (found.further, found.begun) if found.further else (further, begun)
-        sure = judged(found, accuracy)
+        sure = with_errors(found, accuracy)
     return replace(sure, further=further, begun=begun)
 
 
-def finer(found: Accurate, harmonics: tuple[int, ...], accuracy: float) -> Accurate | None:
+def retraced(found: RefinedResponse, harmonics: tuple[int, ...], accuracy: float) -> RefinedResponse | None:
     """The response traced again with more harmonics; None where no solution is found, or that takes longer
     than is worth it."""
-    if found.seconds_with(harmonics) > AGAIN:
+    if found.seconds_with(harmonics) > MAX_SECONDS_REPEATED:
         return None
     beside = near(found, harmonics)
-    then = outlined(found.system.with_harmonics(harmonics), None, found.traced.found, beside)
-    return judged(then, accuracy) if then.shown else None
+    then = unchecked_response(found.system.with_harmonics(harmonics), None, found.traced.found, beside)
+    return with_errors(then, accuracy) if then.shown else None
 
 
-def given(system: System, progress: Progress | None = None, keep: Keep | None = None) -> Accurate:
+def with_given_harmonics(
+    system: System, progress: Progress | None = None, keep: Keep | None = None
+) -> RefinedResponse:
     """The response with the harmonics that a system has.
 
     Traced with one of them first, then with those that tell how far the level of all is to be followed, then
     with half: what is beside its stable peaks with more is a start, too, as the level of the forces may not
     lead to it. A branch that is isolated with three harmonics may be connected with the others with one.
     """
-    counts = sorted({1, few_of(system), max(len(system.harmonics) // 2, few_of(system))})
+    counts = sorted({1, few_harmonics(system), max(len(system.harmonics) // 2, few_harmonics(system))})
     if not system.scene.contacts:
-        return estimated(system, np.inf, progress)
-    before: Outline | None = None
+        return with_estimated_errors(system, np.inf, progress)
+    before: UncheckedResponse | None = None
     for count in counts:
         if count < len(system.harmonics):
             before = _after(before, system.with_harmonics(system.harmonics[:count]))
             if keep is not None and before.shown:
                 keep(before, np.nan, system.harmonics)
-    return judged(_after(before, system, progress), np.inf)
+    return with_errors(_after(before, system, progress), np.inf)
 
 
-def _after(before: Outline | None, system: System, progress: Progress | None = None) -> Outline:
+def _after(
+    before: UncheckedResponse | None, system: System, progress: Progress | None = None
+) -> UncheckedResponse:
     """The response of a system, after that with fewer harmonics."""
     if before is None:
-        return outlined(system, progress)
-    return outlined(system, progress, before.traced.found, near(before, system.harmonics))
+        return unchecked_response(system, progress)
+    return unchecked_response(system, progress, before.traced.found, near(before, system.harmonics))
 
 
-def judged(
-    outline: Outline, accuracy: float, known: tuple[Errors, ...] = (), options: PairOptions | None = None
-) -> Accurate:
+def with_errors(
+    outline: UncheckedResponse,
+    accuracy: float,
+    known: tuple[Errors, ...] = (),
+    options: PairOptions | None = None,
+) -> RefinedResponse:
     """A response with its errors, of which those of its first branches may be known.
 
     Without an accuracy, which is infinite then, its harmonics are given.
@@ -158,18 +165,20 @@ def judged(
     own = system, response, shown, outline.seconds, errors
     if not paths:
         none = np.full(len(system.scene.modal.dofs), np.nan)
-        return Accurate(*own, none, np.nan, np.nan, accuracy)
+        return RefinedResponse(*own, none, np.nan, np.nan, accuracy)
     heights = np.array([one.amplitude.max(axis=0) for one in shown])
     height, peak = heights.max(axis=0), _peaks(heights, errors)
-    matter = peak[height > REFINEMENT.nothing * height.max()]
+    matter = peak[height > REFINEMENT.min_amplitude * height.max()]
     each = np.concatenate((matter, *(one.fold for one in errors)))
     worst, told = float(each.max(initial=0.0)), float(each[np.isfinite(each)].max(initial=0.0))
-    return Accurate(*own, peak, worst, told, accuracy)
+    return RefinedResponse(*own, peak, worst, told, accuracy)
 
 
-def estimated(system: System, accuracy: float, progress: Progress | None = None) -> Accurate:
+def with_estimated_errors(
+    system: System, accuracy: float, progress: Progress | None = None
+) -> RefinedResponse:
     """The response of a system, with its errors."""
-    return judged(outlined(system, progress), accuracy)
+    return with_errors(unchecked_response(system, progress), accuracy)
 
 
 def _peaks(heights: FloatArray, errors: tuple[Errors, ...]) -> FloatArray:
@@ -184,18 +193,18 @@ def _peaks(heights: FloatArray, errors: tuple[Errors, ...]) -> FloatArray:
     greatest = np.where(np.isnan(theirs), 0.0, theirs).max(axis=0)
     other = greatest > theirs[which, d]
     peak = np.where(other, np.abs(greatest - now) / np.where(now > 0.0, now, 1.0), peak)
-    unknown = (np.isnan(theirs) & (heights > PAIR.rival * now)).any(axis=0)
+    unknown = (np.isnan(theirs) & (heights > PAIR.rival_fraction * now)).any(axis=0)
     return np.where(unknown, np.nan, peak)
 
 
-def enlarged(found: Accurate, accuracy: float, seconds: float = np.inf) -> tuple[int, ...]:
+def enlarged(found: RefinedResponse, accuracy: float, seconds: float = np.inf) -> tuple[int, ...]:
     """The harmonics of a response and those that the spectrum names for the accuracy.
 
     No more are added than can be followed in some seconds.
     """
     has, ahead = found.system.harmonics, required_harmonics(found)
-    if np.isfinite(found.worst):
-        ahead = replace(ahead, change=found.worst, told=True)
+    if np.isfinite(found.max_error):
+        ahead = replace(ahead, change=found.max_error, is_known=True)
     share = ahead.share
     more = sorted(set(needed(ahead, has, accuracy)) - set(has), key=lambda h: -share[h - 1])
     while more and found.seconds_with((*has, *more)) > seconds:

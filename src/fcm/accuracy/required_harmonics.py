@@ -16,10 +16,10 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.options import PAIR, REFINEMENT, PairOptions, RefinementOptions
-from fcm.accuracy.outline import Outline
-from fcm.accuracy.partner import give_back, lifted_of, partner_of
+from fcm.accuracy.outline import UncheckedResponse
+from fcm.accuracy.partner import give_back, partner_of, prolongation_to
 from fcm.continuation import Mark, Path
-from fcm.harmonic_balance.normal_plane_prolongation import Lifted
+from fcm.harmonic_balance.normal_plane_prolongation import Prolongation
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.model.scene import FloatArray
 from fcm.scene.options import LIMITS
@@ -29,18 +29,18 @@ from fcm.scene.options import LIMITS
 class RequiredHarmonics:
     """change: by how much a peak or fold is changed by the partner, relative, at most, as far as it is told.
 
-    told: whether it is of all peaks. share (harmonic,): what each has, or would have, at most. partner: its
-    harmonics.
+    is_known: whether it is of all peaks. share (harmonic,): what each has, or would have, at most. partner:
+    its harmonics.
     """
 
     change: float
-    told: bool
+    is_known: bool
     share: FloatArray
     partner: tuple[int, ...]
 
 
 @dataclass(frozen=True)
-class _Place:
+class _SpecialPoint:
     """A peak or a fold: places of a path where the partner is looked for, one after the other, and
     which of the
     frequency and the amplitudes (1 + dof,) count there."""
@@ -52,18 +52,20 @@ class _Place:
 
 
 def required_harmonics(
-    found: Outline, options: RefinementOptions = REFINEMENT, pair: PairOptions = PAIR
+    found: UncheckedResponse, options: RefinementOptions = REFINEMENT, pair: PairOptions = PAIR
 ) -> RequiredHarmonics:
     """What the partner changes of a response, at its peaks and folds alone."""
     system, amplitudes = found.system, [one.amplitude for one in found.shown]
     height = np.max([one.max(axis=0) for one in amplitudes], axis=0)
-    size = np.where(height > options.nothing * height.max(), height, np.inf)
+    size = np.where(height > options.min_amplitude * height.max(), height, np.inf)
     places = list(_places(found.traced.branches.paths, amplitudes, height, options))
-    share = _most(FurtherHarmonics(system), np.array([one.path.z[one.tries[0]] for one in places]), size)
+    share = _greatest_shares(
+        FurtherHarmonics(system), np.array([one.path.z[one.tries[0]] for one in places]), size
+    )
     more = partner_of(system.harmonics, share, system.layout.ports, pair)
     if not share.any() or more == system.harmonics:
         return RequiredHarmonics(0.0, True, share, system.harmonics)
-    lifted, motions, change, told = lifted_of(system, more), [], 0.0, True
+    lifted, motions, change, told = prolongation_to(system, more), [], 0.0, True
     for place in places:
         values = _displaced(lifted, place)
         if values is None:
@@ -74,7 +76,7 @@ def required_harmonics(
     give_back(lifted, system, more)
     if motions:
         finer = FurtherHarmonics(system.with_harmonics(more))
-        theirs = _most(finer, np.array(motions), size, ())
+        theirs = _greatest_shares(finer, np.array(motions), size, ())
         share = theirs if told else np.maximum(share, theirs)  # where a peak is missed its own spectrum names
     return RequiredHarmonics(change, told, share, more)
 
@@ -91,46 +93,50 @@ def needed(
     order = np.argsort(-share, kind="stable")
     left = share.sum() - np.cumsum(share[order])
     new = [h - 1 for h in ahead.partner if h not in harmonics and h <= LIMITS.harmonics]
-    known = ahead.told and ahead.change > accuracy and share[new].any()
-    gain = max(ahead.change / share[new].sum(), 1.0) if known else options.unknown
-    count = 1 + int(np.count_nonzero(gain * left > options.spare * accuracy))
-    count = min(count, max(options.first, options.times * len(harmonics)), LIMITS.harmonics - len(harmonics))
+    known = ahead.is_known and ahead.change > accuracy and share[new].any()
+    gain = max(ahead.change / share[new].sum(), 1.0) if known else options.feedback_factor
+    count = 1 + int(np.count_nonzero(gain * left > options.safety * accuracy))
+    count = min(
+        count,
+        max(options.max_first_added, options.max_growth * len(harmonics)),
+        LIMITS.harmonics - len(harmonics),
+    )
     chosen = {int(k) + 1 for k in order[:count] if share[k] > 0.0}
-    low = range(1, options.low + 1) if chosen else ()
+    low = range(1, options.complete_harmonics + 1) if chosen else ()
     return tuple(sorted({*harmonics, *chosen, *low}))
 
 
 def _places(
     paths: Sequence[Path], amplitudes: Sequence[FloatArray], height: FloatArray, options: RefinementOptions
-) -> list[_Place]:
+) -> list[_SpecialPoint]:
     """Tops of paths nearly as high as the height (dof,), and folds."""
     found, dofs = [], len(height)
     for path, amplitude in zip(paths, amplitudes, strict=True):
         tops, most = amplitude.argmax(axis=0), amplitude.max(axis=0)
-        rivals = (most > options.rival * height) & (height > options.nothing * height.max())
+        rivals = (most > options.rival_fraction * height) & (height > options.min_amplitude * height.max())
         for top in np.unique(tops[rivals]).tolist():
             counts = np.append(False, rivals & (tops == top))
-            beside = (0, *(way * step for step in options.beside for way in (-1, 1)))
+            beside = (0, *(way * step for step in options.peak_offsets for way in (-1, 1)))
             tries = [top + step for step in beside if 0 <= top + step < len(path.z)]
-            found.append(_Place(path, amplitude, tries, counts))
+            found.append(_SpecialPoint(path, amplitude, tries, counts))
         folds = path.where(Mark.FOLD)
-        for fold in folds[:: -(-len(folds) // options.folds) or 1].tolist():
-            found.append(_Place(path, amplitude, [fold], np.arange(1 + dofs) == 0))
+        for fold in folds[:: -(-len(folds) // options.max_folds) or 1].tolist():
+            found.append(_SpecialPoint(path, amplitude, [fold], np.arange(1 + dofs) == 0))
     return found
 
 
-def _displaced(lifted: Lifted, place: _Place) -> FloatArray | None:
+def _displaced(lifted: Prolongation, place: _SpecialPoint) -> FloatArray | None:
     """By how much the frequency, relative, and the amplitudes (1 + dof,) of the partner differ beside
     a place."""
     for i in place.tries:
-        if lifted.beside(place.path.z[i], place.path.direction[i], True):
+        if lifted.find_normal(place.path.z[i], place.path.direction[i], True):
             found, omega = np.asarray(lifted.found), place.path.parameter[i]
             off: FloatArray = np.abs(np.append(found[0] / omega - 1.0, found[1:] - place.amplitude[i]))
             return off
     return None
 
 
-def _most(
+def _greatest_shares(
     further: FurtherHarmonics, z: FloatArray, size: FloatArray, known: tuple[int, ...] | None = None
 ) -> FloatArray:
     """What each harmonic (harmonic,) but the known ones has at most at motions z (place, unknown + 1)."""

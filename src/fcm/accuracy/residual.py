@@ -18,7 +18,7 @@ from fcm.model.scene import FloatArray
 ComplexArray = npt.NDArray[np.complex128]
 
 
-def left_out(system: System, z: FloatArray, options: PairOptions) -> FloatArray:
+def changes_left_out(system: System, z: FloatArray, options: PairOptions) -> FloatArray:
     """By how much (dof,) the amplitudes of a motion z (unknown + 1,) change by what a balance leaves out.
 
     Zero where no mode is met beyond its harmonics. Of a ring nothing is looked at, and of many modes
@@ -30,7 +30,7 @@ def left_out(system: System, z: FloatArray, options: PairOptions) -> FloatArray:
         return np.zeros(system.linear.dofs.shape[1])
     X = reported_at(system, z[None], np.zeros((1, len(z)))).X[0]
     top = max(last, system.harmonics[-1])
-    spectrum = np.zeros((options.samples * top // 2 + 1, X.shape[1]), dtype=np.complex128)
+    spectrum = np.zeros((options.samples_per_period * top // 2 + 1, X.shape[1]), dtype=np.complex128)
     spectrum[list(system.harmonics)] = X
     without = np.ptp(np.fft.irfft(spectrum, axis=0), axis=0)
     spectrum[list(others)] = -_moved(system, z, others)
@@ -46,8 +46,8 @@ def _reach(system: System, omega: float, options: PairOptions) -> int:
         return 0
     each = linear.natural.size * (linear.ports.shape[1] + linear.dofs.shape[1])
     # the same for many frequencies, so that they share a kernel
-    wide = 2.0 ** np.ceil(np.log2(max(options.past * linear.natural.max() / omega, 1.0)))
-    return int(min(wide, options.farthest, options.products / each))
+    wide = 2.0 ** np.ceil(np.log2(max(options.residual_factor * linear.natural.max() / omega, 1.0)))
+    return int(min(wide, options.max_residual_harmonic, options.max_products / each))
 
 
 def _moved(system: System, z: FloatArray, others: tuple[int, ...]) -> ComplexArray:

@@ -14,11 +14,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fcm.accuracy.options import AT_POINTS, STABILITY_LIMITS
-from fcm.accuracy.partner import give_back, lifted_of, partner_of
+from fcm.accuracy.partner import give_back, partner_of, prolongation_to
 from fcm.accuracy.required_harmonics import RequiredHarmonics, needed
 from fcm.continuation import Path, Segment
-from fcm.continuation.events import Secants
-from fcm.harmonic_balance.normal_plane_prolongation import Lifted
+from fcm.continuation.events import SignChange
+from fcm.harmonic_balance.normal_plane_prolongation import Prolongation
 from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.harmonic_balance.system import System
@@ -29,7 +29,7 @@ from fcm.stability.inserted_points import Crossing
 
 
 @dataclass(frozen=True)
-class Lost:
+class StabilityLimit:
     """A crossing as more harmonics have it: by how much its frequency is another, relative; NaN where that
     cannot be told. harmonics are those that the accuracy takes."""
 
@@ -38,54 +38,60 @@ class Lost:
     harmonics: tuple[int, ...]
 
 
-def lost_along(
+def stability_limits(
     system: System, path: Path, crossings: Sequence[Crossing], accuracy: float = 0.0
-) -> list[Lost]:
+) -> list[StabilityLimit]:
     """Errors of the crossings of a path, which may be as large as accuracy."""
-    known: dict[tuple[int, ...], _Beside] = {}
+    known: dict[tuple[int, ...], _PartnerGrowth] = {}
     found = [_lost(system, path, one, accuracy, known) for one in crossings]
     for more, beside in known.items():
         give_back(beside.lifted, system, more)
     return found
 
 
-def moved(lost: Sequence[Lost], fewer: Sequence[Lost]) -> list[Lost]:
+def distances_from(lost: Sequence[StabilityLimit], fewer: Sequence[StabilityLimit]) -> list[StabilityLimit]:
     """Crossings of a response, and where more harmonics do not tell the error of one, how far it is from
     where fewer have it: of one that is the same in both."""
     return [_moved(one, lost, fewer) if math.isnan(one.error) else one for one in lost]
 
 
-def _moved(one: Lost, lost: Sequence[Lost], fewer: Sequence[Lost]) -> Lost:
+def _moved(
+    one: StabilityLimit, lost: Sequence[StabilityLimit], fewer: Sequence[StabilityLimit]
+) -> StabilityLimit:
     off, *others = sorted([math.inf, math.inf, *(abs(other.frequency - one.frequency) for other in fewer)])
     others += [abs(other.frequency - one.frequency) for other in lost if other is not one]
-    return replace(one, error=off / one.frequency) if off < STABILITY_LIMITS.same * min(others) else one
+    return (
+        replace(one, error=off / one.frequency)
+        if off < STABILITY_LIMITS.crossing_distance * min(others)
+        else one
+    )
 
 
 def _lost(
-    system: System, path: Path, one: Crossing, accuracy: float, known: dict[tuple[int, ...], _Beside]
-) -> Lost:
+    system: System, path: Path, one: Crossing, accuracy: float, known: dict[tuple[int, ...], _PartnerGrowth]
+) -> StabilityLimit:
     """Of one; known are the curves of more harmonics that others have been looked for on."""
     z, direction = one.z[None], one.direction[None]
     amplitude = reported_at(system, z, direction).amplitude[0]
     share = FurtherHarmonics(system).shares(z, amplitude[None])[0]
     more = partner_of(system.harmonics, share, system.layout.ports, AT_POINTS)
     if more == system.harmonics:  # nothing is left out
-        return Lost(one.frequency, 0.0, more)
+        return StabilityLimit(one.frequency, 0.0, more)
     if more not in known:
-        known[more] = _Beside(system.with_harmonics(more), path, lifted_of(system, more), system)
-    found = known[more].crossing(one, STABILITY_LIMITS.part * accuracy)
+        known[more] = _PartnerGrowth(system.with_harmonics(more), path, prolongation_to(system, more), system)
+    found = known[more].crossing(one, STABILITY_LIMITS.relative_tolerance * accuracy)
     error = abs(found / one.frequency - 1.0)
     ahead = RequiredHarmonics(
         0.0 if math.isnan(error) else error, not math.isnan(error), share[: LIMITS.harmonics], more
     )
-    return Lost(one.frequency, error, needed(ahead, system.harmonics, accuracy))
+    return StabilityLimit(one.frequency, error, needed(ahead, system.harmonics, accuracy))
 
 
-class _Beside:
+class _PartnerGrowth:
     """The curve of more harmonics beside a path, at places of this: points, by number, and part of a way."""
 
-    def __init__(self, finer: System, path: Path, lifted: Lifted, system: System) -> None:
-        self.path, self.lifted, self.balance = path, lifted, system.balance()
+    def __init__(self, finer: System, path: Path, lifted: Prolongation, system: System) -> None:
+        self.path, self.lifted, self.balance = path, lifted, system.new_balance()
         self.multipliers = multipliers_of(finer, float(path.parameter.max()))
         self.frequency = math.nan  # of the place that was looked at last
 
@@ -99,51 +105,54 @@ class _Beside:
         z, direction = self.path.z[k], self.path.direction[k]
         if place != k:
             between = Segment(self.balance, self.path, k)
-            if not between.put(place - k):
+            if not between.find(place - k):
                 return math.nan
             z, direction = between.z, between.direction
-        if not self.lifted.beside(np.ascontiguousarray(z), np.ascontiguousarray(direction)):
+        if not self.lifted.find_normal(np.ascontiguousarray(z), np.ascontiguousarray(direction)):
             return math.nan
         self.frequency = float(self.lifted.newton.z[-1])
         z = np.array(self.lifted.newton.z)
         alone = self.multipliers.verdict(z, enough=EITHER).growth
         growth = self.multipliers.verdict(z).growth if math.isnan(alone) else alone
-        return max(growth, STABILITY_LIMITS.least)
+        return max(growth, STABILITY_LIMITS.min_growth)
 
     def crossing(self, one: Crossing, fine: float) -> float:
         """The frequency at which growth changes its sign next to a crossing; NaN where that is not found.
 
-        To within `StabilityLimitOptions.fine`, or until two looks are at frequencies that differ by less than
-        fine, relative, or by less than `StabilityLimitOptions.part` of how far they are from the crossing.
-        """
+        To within `StabilityLimitOptions.tolerance`, or until two looks are at frequencies that differ by
+        less than fine, relative, or by less than `StabilityLimitOptions.relative_tolerance` of how far they
+        are from the crossing."""
         near = self._enclosed(one.place)
         if near is None:
             return math.nan
-        for _ in range(STABILITY_LIMITS.looks):
+        for _ in range(STABILITY_LIMITS.max_evaluations):
             at, before = near.at, self.frequency
             value = self.growth(at)
-            if math.isnan(value) or near.width < STABILITY_LIMITS.fine:
+            if math.isnan(value) or near.width < STABILITY_LIMITS.tolerance:
                 break
-            off = max(fine * one.frequency, STABILITY_LIMITS.part * abs(self.frequency - one.frequency))
+            off = max(
+                fine * one.frequency,
+                STABILITY_LIMITS.relative_tolerance * abs(self.frequency - one.frequency),
+            )
             if abs(self.frequency - before) < off:
                 break
-            near.saw(at, value)
-            if near.known(STABILITY_LIMITS.fine):
+            near.update(at, value)
+            if near.converged(STABILITY_LIMITS.tolerance):
                 break
         return self.frequency if not math.isnan(value) else math.nan
 
-    def _enclosed(self, place: float) -> Secants | None:
+    def _enclosed(self, place: float) -> SignChange | None:
         """The change of sign nearest to a place, of which both sides are looked at further and further away;
         None if there is none up to where the growth is not known, or even that there is not."""
-        now, last, near = self.growth(place), float(len(self.path.z) - 1), STABILITY_LIMITS.first
+        now, last, near = self.growth(place), float(len(self.path.z) - 1), STABILITY_LIMITS.first_distance
         before = {} if math.isnan(now) else {1.0: (place, now), -1.0: (place, now)}
-        while before and near <= STABILITY_LIMITS.far:
+        while before and near <= STABILITY_LIMITS.max_distance:
             for sign, (known, growth) in list(before.items()):
                 at = place + sign * near
                 value = self.growth(at) if 0.0 <= at <= last else math.nan
                 if (value > 0.0) != (growth > 0.0) and not math.isnan(value):
                     (low, one), (high, other) = sorted(((known, growth), (at, value)))
-                    return Secants(low, high, one, other, may_jump=True)
+                    return SignChange(low, high, one, other, may_jump=True)
                 before[sign] = (at, value)
             before = {sign: side for sign, side in before.items() if not math.isnan(side[1])}
             near *= 2.0

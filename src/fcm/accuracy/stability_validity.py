@@ -14,7 +14,7 @@ from fcm.model.scene import FloatArray
 Mask = npt.NDArray[np.bool_]
 
 
-def disbelieved(
+def unreliable_points(
     frequency: FloatArray, truncations: Sequence[FloatArray], stable: FloatArray, fold: Mask
 ) -> Mask:
     """Which points of branches, one after the other, are too far from the motion, or may be.
@@ -27,29 +27,29 @@ def disbelieved(
         Estimated errors of each branch, NaN where there is none.
     """
     truncation = np.concatenate(truncations)
-    lost = np.concatenate([astray(one) for one in truncations])
-    far: Mask = (truncation > VALIDITY.believed) | lost | _untold(frequency, truncation, stable, fold)
+    lost = np.concatenate([on_other_branch(one) for one in truncations])
+    far: Mask = (truncation > VALIDITY.max_error) | lost | _without_error(frequency, truncation, stable, fold)
     return far
 
 
-def astray(truncation: FloatArray) -> Mask:
+def on_other_branch(truncation: FloatArray) -> Mask:
     """Where (point,) a branch has long lost that of more harmonics, and says nothing of the motion."""
     far = np.zeros(len(truncation), dtype=np.bool_)
     for first, end in runs(np.isnan(truncation)):
-        far[first:end] = end - first > VALIDITY.row
+        far[first:end] = end - first > VALIDITY.max_unknown_points
     return far
 
 
-def _untold(frequency: FloatArray, truncation: FloatArray, stable: FloatArray, fold: Mask) -> Mask:
+def _without_error(frequency: FloatArray, truncation: FloatArray, stable: FloatArray, fold: Mask) -> Mask:
     """Stretches (point,) without an error: marches leave many of them.
 
     Of those at a fold, which has no error either, whose stable part is no more than that of a fold, nothing
     is said. A point alone with an error, as one of several at a corner may be, does not part a stretch.
     """
     found, untold = np.zeros(len(truncation), dtype=np.bool_), np.isnan(truncation)
-    untold[1:-1] |= untold[:-2] & untold[2:] & (truncation[1:-1] <= VALIDITY.believed)
+    untold[1:-1] |= untold[:-2] & untold[2:] & (truncation[1:-1] <= VALIDITY.max_error)
     for first, end in runs(untold):
         own = frequency[first:end][stable[first:end] == 1.0]
-        wide = own.size > 0 and np.ptp(own) > VALIDITY.at_fold * own.max()
+        wide = own.size > 0 and np.ptp(own) > VALIDITY.max_fold_error * own.max()
         found[first:end] = wide or not fold[max(first - 1, 0) : end + 1].any()
     return found

@@ -58,11 +58,11 @@ def branch_points(
     for path in paths:
         whole = path
         if tuple(harmonics) != system.harmonics:
-            newton = newton or Newton(system.balance())
+            newton = newton or Newton(system.new_balance())
             whole = _with_all(system, newton, path, tuple(harmonics), options)
         change = whole.orientation[:-1] * whole.orientation[1:] < 0.0
         for i in np.flatnonzero(change).tolist():
-            balance = balance or system.balance()
+            balance = balance or system.new_balance()
             z = _located(Segment(balance, whole, i), whole.orientation[i], options)
             starts = tuple(_leaving(system, z, whole, i, options))
             if starts:
@@ -84,7 +84,7 @@ def _with_all(
         if not newton.take_tangent():
             continue
         off = np.asarray(newton.problem.residual) / np.asarray(newton.scale)[:-1]
-        if np.abs(off).max(initial=0.0) < options.driven:
+        if np.abs(off).max(initial=0.0) < options.min_residual:
             orientation[i] = newton.orientation
     return replace(path, z=z, direction=direction, orientation=orientation)
 
@@ -92,11 +92,11 @@ def _with_all(
 def _located(between: Segment, before: float, options: BranchingOptions) -> FloatArray:
     """The place between two points where the determinant changes its sign."""
     low, high = 0.0, 1.0
-    between.put(low)
+    between.find(low)
     z = between.z
-    while high - low > options.fine:
+    while high - low > options.tolerance:
         middle = 0.5 * (low + high)
-        if not between.put(middle):
+        if not between.find(middle):
             break
         z = between.z
         low, high = (middle, high) if between.orientation == before else (low, middle)
@@ -109,7 +109,7 @@ def _leaving(
     """Solutions on both sides of a branch point that follows point i of a path, off the path, at the least
     distance at which there are any. The path's direction is that of its chord: it has no one tangent there.
     """
-    balance = system.balance()
+    balance = system.new_balance()
     balance.measure(z)
     balance.evaluate(z)
     scale = np.array(balance.scale)
@@ -125,7 +125,7 @@ def _leaving(
         for way in (distance, -distance):
             newton.scale[:], newton.row[:] = scale, singular
             newton.z[:] = z + way * scale * singular
-            if newton.correct(distance) and newton.moved < options.astray * distance:
+            if newton.correct(distance) and newton.moved < options.max_deviation * distance:
                 start = np.array(newton.z)
                 found += [] if contains(path, start, balance) else [start]
         if found:

@@ -80,7 +80,7 @@ def folds_from(
     """
     follower = FoldSteps(surface, span, options, paid)
     for singular in across:
-        ways = follower.ways(start, singular)
+        ways = follower.departures(start, singular)
         if ways:
             break
     else:

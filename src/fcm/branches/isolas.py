@@ -14,16 +14,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from fcm.branches.fold_continuation import Folds, folds_from
-from fcm.branches.force_level import Found, few_of
-from fcm.branches.level_turns import Turn
+from fcm.branches.force_level import LevelSolutions, few_harmonics
+from fcm.branches.level_turns import LevelFold
 from fcm.branches.options import FOLDS, FoldOptions
 from fcm.branches.surface import Surface
 from fcm.continuation import Path
 from fcm.continuation.all_branches import contains
 from fcm.harmonic_balance.cost_model import seconds_of
-from fcm.harmonic_balance.normal_plane_prolongation import Lifted
+from fcm.harmonic_balance.normal_plane_prolongation import Prolongation
 from fcm.harmonic_balance.system import System
-from fcm.harmonic_balance.work_budget import TooLongError
+from fcm.harmonic_balance.work_budget import WorkLimitError
 from fcm.model.scene import FloatArray
 
 
@@ -34,11 +34,11 @@ class Crossings:
     missing."""
 
     solutions: tuple[FloatArray, ...]
-    unsure: tuple[float, ...]
+    uncertain: tuple[float, ...]
 
 
-def crossings(
-    system: System, found: Sequence[Found], paths: tuple[Path, ...], options: FoldOptions = FOLDS
+def level_one_crossings(
+    system: System, found: Sequence[LevelSolutions], paths: tuple[Path, ...], options: FoldOptions = FOLDS
 ) -> Crossings:
     """Those that lie on none of some paths.
 
@@ -52,33 +52,33 @@ def crossings(
     paths : tuple of Path
         The branches that are known.
     """
-    few = system.with_harmonics(system.harmonics[: few_of(system)])
+    few = system.with_harmonics(system.harmonics[: few_harmonics(system)])
     solutions, span = list[FloatArray](), system.scene.frequency_range
-    turns = [turn.extended(few, one.harmonics) for one in found for turn in one.turns]
-    turns = [turn for turn in turns if turn.short and options.within(turn.level)]
+    turns = [turn.extended(few, one.harmonics) for one in found for turn in one.folds]
+    turns = [turn for turn in turns if turn.unfinished and options.covers(turn.level)]
     curves = _Curves(few, turns, options)
-    seconds = max(options.share * system.work.seconds, options.unnoticed)
+    seconds = max(options.work_fraction * system.work.seconds, options.min_seconds)
     try:
-        with system.work.up_to(system.work.seconds + seconds):
+        with system.work.limited_to(system.work.seconds + seconds):
             for curve in curves:
                 for z in _at_level_one(few, system, curve):
-                    known = any(contains(path, z, system.afresh()) for path in paths)
+                    known = any(contains(path, z, system.reset_balance()) for path in paths)
                     if span[0] <= z[-1] <= span[1] and not known:
                         solutions.append(z)
-    except TooLongError:
+    except WorkLimitError:
         pass  # the folds from where none was followed are left
-    return Crossings(tuple(solutions), tuple(dict.fromkeys(curves.unsure)))
+    return Crossings(tuple(solutions), tuple(dict.fromkeys(curves.uncertain)))
 
 
 class _Curves:
     """The curves of folds, each once."""
 
-    def __init__(self, few: System, turns: Sequence[Turn], options: FoldOptions) -> None:
+    def __init__(self, few: System, turns: Sequence[LevelFold], options: FoldOptions) -> None:
         self.few, self.options, self.left = few, options, list(turns)
         self.lost = list[float]()  # frequencies at which curves were lost
 
     @property
-    def unsure(self) -> tuple[float, ...]:
+    def uncertain(self) -> tuple[float, ...]:
         """Frequencies of what was lost, and of what is left to be followed."""
         return *self.lost, *(float(turn.z[-1]) for turn in self.left)
 
@@ -86,17 +86,20 @@ class _Curves:
         if not self.left:
             return
         few, options, span = self.few, self.options, self.few.scene.frequency_range
-        surface, known = Surface(few.balance()), list[Folds]()  # of its own: others are followed meanwhile
+        surface, known = (
+            Surface(few.new_balance()),
+            list[Folds](),
+        )  # of its own: others are followed meanwhile
         paid = 0
 
         def pay() -> None:
             nonlocal paid
             new, paid = surface.evaluations - paid, surface.evaluations
-            few.work.take(seconds_of(few, new, len(few.harmonics)))
+            few.work.add(seconds_of(few, new, len(few.harmonics)))
 
         while self.left:
             turn = self.left[0]
-            if not any(_has(curve, turn, surface, options) for curve in known):
+            if not any(_passes_fold(curve, turn, surface, options) for curve in known):
                 start = np.append(turn.z, turn.level)
                 curve = folds_from(surface, start, turn.directions, span, options, pay)
                 if curve is None:
@@ -108,7 +111,7 @@ class _Curves:
             del self.left[0]
 
 
-def _has(curve: Folds, turn: Turn, surface: Surface, options: FoldOptions) -> bool:
+def _passes_fold(curve: Folds, turn: LevelFold, surface: Surface, options: FoldOptions) -> bool:
     """Whether a curve passes a fold."""
     z = np.append(turn.z, turn.level)
     surface.measure(z)
@@ -117,7 +120,7 @@ def _has(curve: Folds, turn: Turn, surface: Surface, options: FoldOptions) -> bo
     for i in np.flatnonzero(off[:-1] * off[1:] <= 0.0).tolist():
         chord = points[i + 1] - points[i]
         part = off[i] / (off[i] - off[i + 1]) if off[i] != off[i + 1] else 0.0
-        if np.linalg.norm(points[i] + part * chord) < options.near * np.linalg.norm(chord):
+        if np.linalg.norm(points[i] + part * chord) < options.curve_tolerance * np.linalg.norm(chord):
             return True
     return False
 
@@ -129,16 +132,16 @@ def _at_level_one(few: System, system: System, curve: Folds) -> Iterator[FloatAr
         part = off[i] / (off[i] - off[i + 1])
         z = (curve.z[i] + part * (curve.z[i + 1] - curve.z[i]))[:-1]
         way = curve.singular[i if part < 0.5 else i + 1][:-1]
-        there = _in_its_plane(few, z, way)
+        there = _corrected_in_plane(few, z, way)
         if there is not None and few.harmonics != system.harmonics:
             there = _prolongated(few, system, there, way)
         if there is not None:
             yield there
 
 
-def _in_its_plane(system: System, z: FloatArray, way: FloatArray) -> FloatArray | None:
+def _corrected_in_plane(system: System, z: FloatArray, way: FloatArray) -> FloatArray | None:
     """The solution near a guess, in the plane across a direction in the displacements."""
-    balance, newton = system.afresh(), system.stepper.newton
+    balance, newton = system.reset_balance(), system.shared_stepper.newton
     balance.measure(z)
     newton.scale[:], newton.z[:] = balance.scale, z
     row = way / np.asarray(balance.scale)
@@ -148,7 +151,7 @@ def _in_its_plane(system: System, z: FloatArray, way: FloatArray) -> FloatArray 
 
 def _prolongated(few: System, system: System, z: FloatArray, way: FloatArray) -> FloatArray | None:
     """The solution with more harmonics near one with few."""
-    lifted = Lifted(system.balance(), list(few.harmonics), list(system.harmonics), 1e-6)
-    if not lifted.beside(z, way):
+    lifted = Prolongation(system.new_balance(), list(few.harmonics), list(system.harmonics), 1e-6)
+    if not lifted.find_normal(z, way):
         return None
-    return _in_its_plane(system, np.array(lifted.newton.z), system.extended(way, few.harmonics))
+    return _corrected_in_plane(system, np.array(lifted.newton.z), system.extended(way, few.harmonics))

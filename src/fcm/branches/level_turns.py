@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from fcm.harmonic_balance.system import System
 
 
-class Loaded(Protocol):
+class ProblemAtLevel(Protocol):
     """A problem in the frequency, at the level of the forces that is its load."""
 
     load: float
@@ -32,7 +32,7 @@ class Loaded(Protocol):
         """See `Problem`."""
 
 
-class Turn(NamedTuple):
+class LevelFold(NamedTuple):
     """Where the curve of a level turns: z (unknown + 1,), with the frequency; the curve's directions before
     and after, which differ at a corner, (unknown + 2,): displacements, frequency, which does not change, and
     level; short if it turns before it passes the level 1."""
@@ -41,7 +41,7 @@ class Turn(NamedTuple):
     z: FloatArray
     before: FloatArray
     after: FloatArray
-    short: bool
+    unfinished: bool
 
     @property
     def direction(self) -> FloatArray:
@@ -55,18 +55,18 @@ class Turn(NamedTuple):
         return (self.before,) if smooth else (self.before + self.after, self.before, self.after)
 
     @property
-    def may_come(self) -> bool:
+    def may_reach_level_one(self) -> bool:
         """Whether the level may be 1 at a turn like this one within a range."""
-        return self.short and 1.0 / LEVEL_TURNS.reach < self.level < LEVEL_TURNS.reach
+        return self.unfinished and 1.0 / LEVEL_TURNS.max_level < self.level < LEVEL_TURNS.max_level
 
-    def extended(self, system: System, harmonics: tuple[int, ...]) -> Turn:
+    def extended(self, system: System, harmonics: tuple[int, ...]) -> LevelFold:
         """That of a balance with some harmonics as one of a system with more."""
         before, after = (system.extended(one, harmonics) for one in (self.before, self.after))
         after = before if self.before is self.after else after
         return self._replace(z=system.extended(self.z, harmonics), before=before, after=after)
 
 
-def turns_of(path: Path, omega: float, unit: float = 1.0) -> tuple[Turn, ...]:
+def level_folds(path: Path, omega: float, unit: float = 1.0) -> tuple[LevelFold, ...]:
     """Where a curve of levels at a frequency turns; its displacements and levels are multiples of a unit."""
     levels = (unit * path.parameter).tolist()
     rises = [after > before for before, after in pairwise(levels)]
@@ -75,7 +75,7 @@ def turns_of(path: Path, omega: float, unit: float = 1.0) -> tuple[Turn, ...]:
         z, before = np.append(unit * path.z[i, :-1], omega), _direction(path, i, unit)
         corner = path.mark[i] & Mark.CORNER
         after = _direction(path, i + 1, unit) if corner else before
-        found.append(Turn(levels[i], z, before, after, (levels[i] < 1.0) == rises[i - 1]))
+        found.append(LevelFold(levels[i], z, before, after, (levels[i] < 1.0) == rises[i - 1]))
     return tuple(found)
 
 
@@ -84,7 +84,7 @@ def _direction(path: Path, i: int, unit: float) -> FloatArray:
     return unit * np.insert(path.direction[i], -1, 0.0)
 
 
-def came(problem: Loaded, newton: Newton, turn: Turn) -> bool:
+def reaches_level_one(problem: ProblemAtLevel, newton: Newton, turn: LevelFold) -> bool:
     """Whether a turn leads to a solution at the level 1, by shorter stages where one was too long; newton is
     of that problem, and comes to it."""
     problem.load = turn.level
@@ -93,12 +93,12 @@ def came(problem: Loaded, newton: Newton, turn: Turn) -> bool:
     along = turn.direction / np.asarray(problem.scale)
     newton.row[:] = along / np.linalg.norm(along)
     left, known = math.log(turn.level), turn.z
-    stage = left / max(math.ceil(abs(left) / math.log(LEVEL_TURNS.stage)), 1)
-    shortest = stage * LEVEL_TURNS.shortest
+    stage = left / max(math.ceil(abs(left) / math.log(LEVEL_TURNS.stage_factor)), 1)
+    shortest = stage * LEVEL_TURNS.min_stage
     while left != 0.0:
         then = left - stage if abs(left) > 1.5 * abs(stage) else 0.0
         problem.load = math.exp(then)
-        if newton.correct(1.0) and newton.moved < LEVEL_TURNS.far:
+        if newton.correct(1.0) and newton.moved < LEVEL_TURNS.max_change:
             left, known, newton.row[:] = then, np.array(newton.z), newton.tangent
         elif abs(stage) > abs(shortest):
             stage, newton.z[:] = 0.5 * stage, known
@@ -107,11 +107,11 @@ def came(problem: Loaded, newton: Newton, turn: Turn) -> bool:
     return True
 
 
-def beside(newton: Newton) -> list[FloatArray]:
+def solutions_beside(newton: Newton) -> list[FloatArray]:
     """Solutions on both sides of the one that was found last, in its plane or a little along its curve."""
     middle, along = np.array(newton.z), np.array(newton.tangent)
     found = [middle]
-    for way in (sign * aside for aside in LEVEL_TURNS.aside for sign in (-1.0, 1.0)):
+    for way in (sign * aside for aside in LEVEL_TURNS.offsets for sign in (-1.0, 1.0)):
         newton.z[:], newton.row[:] = middle + way * along * np.asarray(newton.scale), along
         if newton.correct(abs(way)):
             found.append(np.array(newton.z))

@@ -20,14 +20,14 @@ from fcm.structure.linear import Linear
 ComplexArray = npt.NDArray[np.complex128]
 
 
-class _Known(threading.local):
+class _ResponseCache(threading.local):
     """The linear responses that each thread found last, by what they are of."""
 
     def __init__(self) -> None:
-        self.of: dict[tuple[object, ...], ComplexArray] = {}
+        self.by_key: dict[tuple[object, ...], ComplexArray] = {}
 
 
-_KNOWN = _Known()
+_RESPONSES = _ResponseCache()
 
 
 def linear_responses(system: System, omega: float, level: float) -> Iterator[FloatArray]:
@@ -38,12 +38,12 @@ def linear_responses(system: System, omega: float, level: float) -> Iterator[Flo
 
 def _on_ports(system: System, omega: float) -> ComplexArray:
     """Of the ports, (3, driven, port), with the contacts as in `linear_responses`; kept in the system."""
-    if omega not in system.on_ports:
-        foresee(system, (omega,))
-    return system.on_ports[omega]
+    if omega not in system.port_responses:
+        precompute(system, (omega,))
+    return system.port_responses[omega]
 
 
-def foresee(system: System, frequencies: Sequence[float]) -> None:
+def precompute(system: System, frequencies: Sequence[float]) -> None:
     """Find the linear responses at all frequencies at which solutions will be asked for, at once.
 
     Those of the last systems are still known: of a sweep most are the same.
@@ -51,12 +51,12 @@ def foresee(system: System, frequencies: Sequence[float]) -> None:
     at_rest = closed_at_rest(system)
     held = system.springs(stuck=True) * np.array([at_rest, np.ones(at_rest.size), np.zeros(at_rest.size)])
     key = (*system.linear.numbers, *frequencies, held.tobytes())
-    known = _KNOWN.of
+    known = _RESPONSES.by_key
     if key not in known or system.scene.ring is not None:
-        if len(known) == LINEAR_LIMITS.kept:
+        if len(known) == LINEAR_LIMITS.max_kept:
             known.clear()
         known[key] = _with_springs(system, frequencies, held)
-    system.on_ports.update(zip(frequencies, known[key], strict=True))
+    system.port_responses.update(zip(frequencies, known[key], strict=True))
 
 
 def _with_springs(system: System, frequencies: Sequence[float], held: FloatArray) -> ComplexArray:
@@ -96,22 +96,22 @@ def _unknowns(system: System, ports: ComplexArray) -> FloatArray:
     return x
 
 
-def highest(system: System, omega: float) -> float:
+def highest_linear_limit(system: System, omega: float) -> float:
     """A level beyond those at which a contact opens, closes or slips, all being stuck or open."""
     levels, loads = [1.0], [abs(load) for load in loads_at_rest(system)]
     for ports in _on_ports(system, omega)[1:]:
         for load, (variation, slip, contact) in zip(loads, _motions(system, ports, max), strict=True):
             levels += [load / variation] if variation > 0.0 else []
             levels += [2.0 * contact.mu * load / sum(slip)] if sum(slip) > 0.0 else []
-    return min(LINEAR_LIMITS.beyond * max(levels), LINEAR_LIMITS.greatest)
+    return min(LINEAR_LIMITS.level_factor * max(levels), LINEAR_LIMITS.max_level)
 
 
-def least(system: System, omega: float) -> float:
+def lowest_linear_limit(system: System, omega: float) -> float:
     """The least level at which a contact is not as it is at rest; 0 where static loads, or laws of one's own,
     have a say in that."""
     if system.scene.loads or system.own_laws:
         return 0.0
-    levels = [LINEAR_LIMITS.greatest]
+    levels = [LINEAR_LIMITS.max_level]
     for variation, slip, contact in _motions(system, _on_ports(system, omega)[0], sum):
         levels += [abs(contact.n_0) / variation] if variation > 0.0 else []
         closed = contact.n_0 > 0.0 and contact.mu > 0.0 and max(slip) > 0.0

@@ -37,7 +37,7 @@ def mirrors(
 ) -> Iterator[Mirror]:
     """Those by which a symmetric solution (unknown + 1,) is its own image, and the image of another one is a
     solution, and not the same."""
-    balance = system.balance()
+    balance = system.new_balance()
     for later in (True, False):
         mirror = _of(system, symmetric, later, options)
         if mirror is None:
@@ -47,7 +47,10 @@ def mirrors(
         scale = np.asarray(balance.scale)
         balance.probe(image)
         off = np.abs(np.asarray(balance.residual) / scale[:-1]).max(initial=0.0)
-        if off < options.alike and np.linalg.norm((image - other) / scale) > options.alike:
+        if (
+            off < options.motion_tolerance
+            and np.linalg.norm((image - other) / scale) > options.motion_tolerance
+        ):
             yield mirror
 
 
@@ -66,7 +69,7 @@ def _of(system: System, z: FloatArray, later: bool, options: BranchingOptions) -
         others = [j for j in range(i + 1, len(contacts)) if partner[j] < 0 and laws[j] == laws[i]]
         for j, sign in ((j, sign) for j in (*others, i) for sign in (-1.0, 1.0)):
             by = turned * np.where(tangential, sign, 1.0)
-            if np.abs(blocks[i] - by * blocks[j]).max() < options.alike * size:
+            if np.abs(blocks[i] - by * blocks[j]).max() < options.motion_tolerance * size:
                 partner[i], partner[j], factor[i], factor[j] = j, i, by, by
                 break
         else:

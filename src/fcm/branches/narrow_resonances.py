@@ -16,21 +16,21 @@ from fcm.structure.linear import Linear
 from fcm.structure.ring import RingLinear
 
 
-def narrow(system: System) -> list[tuple[float, float]]:
+def narrow_resonances(system: System) -> list[tuple[float, float]]:
     """Frequencies within the range, with the width of the peak, both [rad/s]."""
     low, high = system.scene.frequency_range
     found: dict[float, float] = {}
     for stuck in (False, True):
         springs = system.springs(stuck)
         for order in system.harmonics:
-            natural, damping = _met(system.linear, order, springs)
+            natural, damping = _excited_modes(system.linear, order, springs)
             for place, width in zip(natural / order, damping * natural / order, strict=True):
                 if low < place < high and width > 0.0:
                     found.setdefault(float(place), float(width))
-    return sorted(found.items(), key=lambda one: -one[1])[: LINEAR_LIMITS.places]
+    return sorted(found.items(), key=lambda one: -one[1])[: LINEAR_LIMITS.max_resonances]
 
 
-def _met(linear: Linear, order: int, springs: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _excited_modes(linear: Linear, order: int, springs: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Natural frequencies that a harmonic meets, with springs, in order; and the damping of the modes."""
     if isinstance(linear, RingLinear):  # whose harmonics meet other modes each
         wave = linear.wave(order)

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 class SurfaceOptions:
     """How places on the surface of all solutions are found; lengths are in the scaled unknowns."""
 
-    least: float = 0.1  # levels are measured by themselves, and below this by this
-    iterations: int = 8  # of Newton's method, before a place is judged too far away
-    close: float = 1e-4  # a step that ends them: about its square is left
-    flat: float = 1e-7  # a step along which the matrix does not change,
-    share: float = 1e-3  # or this share of the way from the centre
-    far: float = 1e6  # a step that leads nowhere
+    level_floor: float = 0.1  # levels are measured by themselves, and below this by this
+    max_iterations: int = 8  # of Newton's method, before a place is judged too far away
+    tolerance: float = 1e-4  # a step that ends them: about its square is left
+    singular_step: float = 1e-7  # a step along which the matrix does not change,
+    singular_fraction: float = 1e-3  # or this share of the way from the centre
+    diverged_step: float = 1e6  # a step that leads nowhere
 
 
 SURFACE = SurfaceOptions()
@@ -28,30 +28,36 @@ class FoldOptions:
     by itself.
     """
 
-    lowest: float = 0.25  # level at which a curve of folds is left, being too far below 1,
-    highest: float = 4.0  # and above it
-    first: float = 0.01  # step,
-    longest: float = 0.3
-    shortest: float = 1e-4  # with which no fold was found any more
-    thin: float = 3e-3  # strip between two curves of folds that meet
-    turn: float = 0.25  # [rad] by which the chord of a step is to leave the tangent,
-    most_turn: float = 0.9  # and by which it may at most
-    fine: float = 0.02  # [rad] to which the direction of the chord is found
-    upright: float = 100.0  # times the axes: tangents longer than this are of another part of the surface
-    wider: tuple[float, ...] = (1.0, 5.0, 25.0)  # times the first step: circles about a start beside a fold
-    round: float = 0.01  # square of the axes of the ellipse in (frequency, level) that a circle about a fold
+    min_level: float = 0.25  # level at which a curve of folds is left, being too far below 1,
+    max_level: float = 4.0  # and above it
+    initial_step: float = 0.01  # step,
+    max_step: float = 0.3
+    min_step: float = 1e-4  # with which no fold was found any more
+    strip_width: float = 3e-3  # strip between two curves of folds that meet
+    target_turn: float = 0.25  # [rad] by which the chord of a step is to leave the tangent,
+    max_turn: float = 0.9  # and by which it may at most
+    angle_tolerance: float = 0.02  # [rad] to which the direction of the chord is found
+    max_tangent: float = 100.0  # times the axes: tangents longer than this are of another part of the surface
+    start_circles: tuple[float, ...] = (
+        1.0,
+        5.0,
+        25.0,
+    )  # times the first step: circles about a start beside a fold
+    corner_roundness: float = (
+        0.01  # square of the axes of the ellipse in (frequency, level) that a circle about a fold
+    )
     # of a smooth surface is: where it is rounder, the fold is in a corner
-    circle: int = 16  # places on a circle, where folds are looked for at first and where none is ahead
-    most: int = 400  # steps of a curve
-    retreats: int = 4  # of a curve by a step after which no fold was found, to take a shorter one
-    report: int = 16  # steps after which it is told what they took
-    near: float = 0.3  # of a step: a known fold this near to a curve is on it
-    share: float = 0.5  # of the work before, that all curves may take,
-    unnoticed: float = 0.2  # and seconds of work that they may in any case
+    circle_points: int = 16  # places on a circle, where folds are looked for at first and where none is ahead
+    max_steps: int = 400  # steps of a curve
+    max_retreats: int = 4  # of a curve by a step after which no fold was found, to take a shorter one
+    report_interval: int = 16  # steps after which it is told what they took
+    curve_tolerance: float = 0.3  # of a step: a known fold this near to a curve is on it
+    work_fraction: float = 0.5  # of the work before, that all curves may take,
+    min_seconds: float = 0.2  # and seconds of work that they may in any case
 
-    def within(self, level: float) -> bool:
+    def covers(self, level: float) -> bool:
         """Whether folds at a level are looked at."""
-        return self.lowest < level < self.highest
+        return self.min_level < level < self.max_level
 
 
 FOLDS = FoldOptions()
@@ -61,12 +67,12 @@ FOLDS = FoldOptions()
 class LevelOptions:
     """Where the level of the forces is followed besides the resonances and the ends of the range."""
 
-    low: int = 3  # harmonics whose resonances are strong enough to keep themselves up
-    near: float = 0.02  # to a frequency that was looked at: a closed branch is about as wide
-    wide: float = 0.1  # of the range: of a range without a stable motion that is wider, halves as well
-    many: int = 9  # harmonics with which it is followed there: the branches of more are theirs, too
-    share: float = 0.2  # of the work before, that all may take,
-    unnoticed: float = 0.1  # and seconds of work that they may in any case
+    strong_harmonics: int = 3  # harmonics whose resonances are strong enough to keep themselves up
+    distinct_frequency: float = 0.02  # to a frequency that was looked at: a closed branch is about as wide
+    wide_range: float = 0.1  # of the range: of a range without a stable motion that is wider, halves as well
+    max_harmonics: int = 9  # harmonics with which it is followed there: the branches of more are theirs, too
+    work_fraction: float = 0.2  # of the work before, that all may take,
+    min_seconds: float = 0.1  # and seconds of work that they may in any case
 
 
 LEVELS = LevelOptions()
@@ -76,11 +82,11 @@ LEVELS = LevelOptions()
 class ProlongationOptions:
     """Which points of a branch are prolongated to more harmonics."""
 
-    of_a_kind: int = 8  # peaks, and folds
-    even: int = 9  # points along the branch
-    far: float = 0.5  # of a solution's size: what moves further has come to another one
-    times: int = 3  # as many harmonics at once, where all at once lead nowhere
-    enough: float = 1e-6  # of a displacement, from which Newton's method ends at the precision of numbers
+    max_of_a_kind: int = 8  # peaks, and folds
+    spaced_points: int = 9  # points along the branch
+    max_change: float = 0.5  # of a solution's size: what moves further has come to another one
+    harmonics_factor: int = 3  # as many harmonics at once, where all at once lead nowhere
+    tolerance: float = 1e-6  # of a displacement, from which Newton's method ends at the precision of numbers
 
 
 PROLONGATION = ProlongationOptions()
@@ -90,13 +96,15 @@ PROLONGATION = ProlongationOptions()
 class BranchingOptions:
     """How branches are left at branch points; lengths are in the scaled unknowns."""
 
-    fine: float = 1e-4  # of a step, to which a branch point is found
+    tolerance: float = 1e-4  # of a step, to which a branch point is found
     distances: tuple[float, ...] = (0.003, 0.01, 0.03, 0.1)  # from it at which other branches are looked for
-    astray: float = 0.9  # of such a distance: what Newton's method finds further away is no such solution
-    alike: float = 1e-5  # of a displacement: motions that differ by less are the same
-    rounds: int = 4  # branches that leave branches that leave ...
-    most: int = 64  # starts
-    driven: float = 1e-6  # of a displacement: harmonics that a motion would have more of belong to it
+    max_deviation: float = (
+        0.9  # of such a distance: what Newton's method finds further away is no such solution
+    )
+    motion_tolerance: float = 1e-5  # of a displacement: motions that differ by less are the same
+    max_rounds: int = 4  # branches that leave branches that leave ...
+    max_starts: int = 64  # starts
+    min_residual: float = 1e-6  # of a displacement: harmonics that a motion would have more of belong to it
 
 
 BRANCHING = BranchingOptions()
@@ -111,47 +119,47 @@ class LevelCurveOptions:
 
     Attributes
     ----------
-    weak : tuple of float
+    linear_levels : tuple of float
         Levels at which contacts are nearly linear.
-    before : float
+    linear_fraction : float
         Times the least level at which a contact is nonlinear: up to there nothing is to be followed.
-    step : float
+    max_step : float
         Longest step,
-    long : float
+    max_step_stations : float
         and where the passings of the level 1 alone matter.
-    shorter : float
+    stalled_fraction : float
         Part of the longest step, where a curve has stalled,
-    finer : float
+    reversed_fraction : float
         and where it has gone back on itself.
-    few : int
+    few_harmonics : int
         Harmonics whose curve tells those of more how far they are to be followed,
-    unknowns : int
+    few_unknowns : int
         or as many as make this many unknowns.
-    enough : int
+    reliable_harmonics : int
         Harmonics with which a peak that one harmonic has at twice its height is within some per cent.
-    near : float
+    clear_level : float
         Level that a curve has to stay above for that of more harmonics not to come back to 1.
-    further : float
+    reach_factor : float
         Times its greatest level before, up to which that of more harmonics is followed.
-    rounded : float
+    level_tolerance : float
         Relative difference by which two ways to one level may differ.
-    beside : float
+    resonance_offset : float
         Relative distance from a resonance, which an undamped structure has no response at.
     """
 
-    weak: tuple[float, ...] = (1e-3, 1e-6, 1e-9)
-    before: float = 0.9
-    step: float = 0.2
-    long: float = 1.0
-    shorter: float = 0.5
-    finer: float = 0.25
-    few: int = 5
-    unknowns: int = 64
-    enough: int = 3
-    near: float = 3.0
-    further: float = 2.0
-    rounded: float = 1e-9
-    beside: float = 1e-4
+    linear_levels: tuple[float, ...] = (1e-3, 1e-6, 1e-9)
+    linear_fraction: float = 0.9
+    max_step: float = 0.2
+    max_step_stations: float = 1.0
+    stalled_fraction: float = 0.5
+    reversed_fraction: float = 0.25
+    few_harmonics: int = 5
+    few_unknowns: int = 64
+    reliable_harmonics: int = 3
+    clear_level: float = 3.0
+    reach_factor: float = 2.0
+    level_tolerance: float = 1e-9
+    resonance_offset: float = 1e-4
 
 
 LEVEL_CURVE = LevelCurveOptions()
@@ -163,23 +171,23 @@ class LevelTurnOptions:
 
     Attributes
     ----------
-    reach : float
+    max_level : float
         Turns between this level and its reciprocal may come to 1 within a range,
-    stage : float
+    stage_factor : float
         by stages, each of so many times the level,
-    shortest : float
+    min_stage : float
         and this part of that where Newton's method does not lead from one to the next.
-    aside : tuple of float
+    offsets : tuple of float
         Part of a solution's size: from one beside a fold to those on either side of the fold.
-    far : float
+    max_change : float
         Part of a solution's size: what Newton's method finds further away has little to do with the turn.
     """
 
-    reach: float = 4.0
-    stage: float = 1.25
-    shortest: float = 0.5
-    aside: tuple[float, ...] = (0.02, 0.1)
-    far: float = 0.5
+    max_level: float = 4.0
+    stage_factor: float = 1.25
+    min_stage: float = 0.5
+    offsets: tuple[float, ...] = (0.02, 0.1)
+    max_change: float = 0.5
 
 
 LEVEL_TURNS = LevelTurnOptions()
@@ -191,21 +199,21 @@ class LinearLimitOptions:
 
     Attributes
     ----------
-    beyond : float
+    level_factor : float
         Times the level at which the last contact changes what it does, up to which the level is followed,
-    greatest : float
+    max_level : float
         but no further than this level.
-    kept : int
+    max_kept : int
         Systems of which linear responses are kept, as contacts of a sweep are closed at rest, or open.
-    places : int
+    max_resonances : int
         Narrow resonances that are looked at; of more the widest, and so those of the lowest harmonics, as
         each costs a point.
     """
 
-    beyond: float = 3.0
-    greatest: float = 1e4
-    kept: int = 8
-    places: int = 200
+    level_factor: float = 3.0
+    max_level: float = 1e4
+    max_kept: int = 8
+    max_resonances: int = 200
 
 
 LINEAR_LIMITS = LinearLimitOptions()
@@ -217,14 +225,14 @@ class SharedLevelOptions:
 
     Attributes
     ----------
-    kept : int
+    max_kept : int
         Curves that are kept for each thread.
-    outside : float
+    extrapolation : float
         Part of the way from a point to the next, by which a solution between them may lie beyond.
     """
 
-    kept: int = 32
-    outside: float = 1e-3
+    max_kept: int = 32
+    extrapolation: float = 1e-3
 
 
 SHARED_LEVELS = SharedLevelOptions()

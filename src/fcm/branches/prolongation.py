@@ -2,8 +2,8 @@
 
 Each branch is prolongated at several of its points, as the branch of more harmonics may leave that of few
 anywhere. The solution with more is looked for in the plane normal to the curve of few; where Newton's method
-does not lead there at once, by a homotopy from the equations that the point of few solves (`Lifted`); and
-where that does not, by solutions with some of the harmonics on the way.
+does not lead there at once, by a homotopy from the equations that the point of few solves (`Prolongation`);
+and where that does not, by solutions with some of the harmonics on the way.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from fcm.branches.options import PROLONGATION, ProlongationOptions
 from fcm.continuation import Mark, Path
-from fcm.harmonic_balance.normal_plane_prolongation import Lifted
+from fcm.harmonic_balance.normal_plane_prolongation import Prolongation
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
@@ -34,8 +34,8 @@ def prolongated(
     may be another one than elsewhere.
     """
     low, high = system.scene.frequency_range
-    ways = _ways(system, tuple(fewer), options)
-    every = [_Prolonged(path, ways, places(path, options)) for path in paths]
+    ways = _harmonic_stages(system, tuple(fewer), options)
+    every = [_ProlongedPath(path, ways, prolongation_points(path, options)) for path in paths]
     for k in range(max((len(one.places) for one in every), default=0)):
         for one in every:
             z = one.at(one.places[k]) if k < len(one.places) else None
@@ -45,16 +45,16 @@ def prolongated(
         yield from (z for z in one.ends() if low <= z[-1] <= high)
 
 
-class _Prolonged:
+class _ProlongedPath:
     """A path, and what its points lead to."""
 
-    def __init__(self, path: Path, ways: Sequence[Sequence[Lifted]], places: Sequence[int]) -> None:
+    def __init__(self, path: Path, ways: Sequence[Sequence[Prolongation]], places: Sequence[int]) -> None:
         self.path, self.ways, self.places = path, ways, places
         self.leads = dict[int, bool]()
 
     def at(self, i: int) -> FloatArray | None:
         """The solution near a point; None where there is none."""
-        there = (_along(way, self.path.z[i], self.path.direction[i]) for way in self.ways)
+        there = (_prolongated_by_stages(way, self.path.z[i], self.path.direction[i]) for way in self.ways)
         z = next((z for z in there if z is not None), None)
         self.leads[i] = z is not None
         return z
@@ -78,20 +78,22 @@ def at_its_frequency(
     system: System, z: FloatArray, options: ProlongationOptions = PROLONGATION
 ) -> FloatArray | None:
     """The solution that Newton's method finds from z at its frequency, if that is not far."""
-    balance, newton = system.afresh(), system.stepper.newton
+    balance, newton = system.reset_balance(), system.shared_stepper.newton
     newton.z[:], newton.row[:] = z, np.eye(z.size)[-1]
     balance.measure(z)
     newton.scale[:] = balance.scale
-    return np.array(newton.z) if newton.correct(1.0) and newton.moved < options.far else None
+    return np.array(newton.z) if newton.correct(1.0) and newton.moved < options.max_change else None
 
 
-def _ways(system: System, fewer: tuple[int, ...], options: ProlongationOptions) -> list[list[Lifted]]:
+def _harmonic_stages(
+    system: System, fewer: tuple[int, ...], options: ProlongationOptions
+) -> list[list[Prolongation]]:
     """From fewer harmonics to those of a system: at once, and by some of them."""
     more = system.harmonics
-    between, count = list[tuple[int, ...]](), len(fewer) * options.times
+    between, count = list[tuple[int, ...]](), len(fewer) * options.harmonics_factor
     while count < len(more):
         between.append(tuple(sorted({*fewer, *more[:count]})))
-        count *= options.times
+        count *= options.harmonics_factor
     ways = []
     for sets in dict.fromkeys(((more,), tuple(dict.fromkeys((*between, more))))):
         steps = zip((fewer, *sets), sets, strict=False)
@@ -101,29 +103,31 @@ def _ways(system: System, fewer: tuple[int, ...], options: ProlongationOptions) 
 
 def _lifted(
     system: System, fewer: tuple[int, ...], more: tuple[int, ...], options: ProlongationOptions
-) -> Lifted:
-    return Lifted(system.with_harmonics(more).balance(), list(fewer), list(more), options.enough)
+) -> Prolongation:
+    return Prolongation(system.with_harmonics(more).new_balance(), list(fewer), list(more), options.tolerance)
 
 
-def _along(way: Sequence[Lifted], z: FloatArray, direction: FloatArray) -> FloatArray | None:
+def _prolongated_by_stages(
+    way: Sequence[Prolongation], z: FloatArray, direction: FloatArray
+) -> FloatArray | None:
     """The solution near a point of a curve by one step after the other; None where one leads nowhere."""
     for lifted in way:
-        if not (lifted.beside(z, direction) and lifted.newton.correct(1.0)):
+        if not (lifted.find_normal(z, direction) and lifted.newton.correct(1.0)):
             return None
         z, direction = np.array(lifted.newton.z), np.asarray(lifted.newton.tangent) * lifted.newton.scale
     return z
 
 
-def places(path: Path, options: ProlongationOptions = PROLONGATION) -> list[int]:
+def prolongation_points(path: Path, options: ProlongationOptions = PROLONGATION) -> list[int]:
     """The points of a path that are prolongated: its peaks, ends and folds, and some between them."""
     count = len(path.z)
     marked = [path.where(Mark.PEAK), np.array([0, count - 1]), path.where(Mark.FOLD)]
-    marked.append(np.linspace(0, count - 1, min(options.even, count)).astype(np.intp))
-    every = np.concatenate([_some(one, options.of_a_kind) for one in marked])
+    marked.append(np.linspace(0, count - 1, min(options.spaced_points, count)).astype(np.intp))
+    every = np.concatenate([_spaced(one, options.max_of_a_kind) for one in marked])
     return list(dict.fromkeys(every.tolist()))
 
 
-def _some(places: npt.NDArray[np.intp], most: int) -> npt.NDArray[np.intp]:
+def _spaced(places: npt.NDArray[np.intp], most: int) -> npt.NDArray[np.intp]:
     """No more than so many of some places, evenly."""
     if len(places) <= most:
         return places

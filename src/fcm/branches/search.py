@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.branches.branch_points import BranchPoint, all_up_to, branch_points
-from fcm.branches.force_level import few_of
-from fcm.branches.isolas import crossings
+from fcm.branches.force_level import few_harmonics
+from fcm.branches.isolas import level_one_crossings
 from fcm.branches.mirror import mirrors
 from fcm.branches.options import BRANCHING, BranchingOptions
 from fcm.branches.prolongation import prolongated
@@ -21,7 +21,7 @@ from fcm.model.scene import FloatArray
 
 def every_branch(system: System) -> Traced:
     """Trace all branches of the response of a system; of many harmonics from those of a few, too."""
-    few, near = system.with_harmonics(system.harmonics[: few_of(system)]), list[FloatArray]()
+    few, near = system.with_harmonics(system.harmonics[: few_harmonics(system)]), list[FloatArray]()
     if few.harmonics != system.harmonics:
         near += prolongated(system, few.harmonics, traced(few).branches.paths)
     return with_branching(system, with_isolas(system, traced(system, near=near)))
@@ -29,9 +29,9 @@ def every_branch(system: System) -> Traced:
 
 def with_isolas(system: System, found: Traced) -> Traced:
     """With the isolated branches that curves of folds come to, and where these curves were lost."""
-    met = crossings(system, found.found, found.branches.paths)
-    if met.unsure != found.folds_lost:
-        found = replace(found, folds_lost=met.unsure)
+    met = level_one_crossings(system, found.found, found.branches.paths)
+    if met.uncertain != found.folds_lost:
+        found = replace(found, folds_lost=met.uncertain)
     return with_further(system, found, (), met.solutions) if met.solutions else found
 
 
@@ -49,8 +49,8 @@ def with_branching(system: System, found: Traced, options: BranchingOptions = BR
     """With the branches that leave others at branch points, of two mirror images one."""
     if not system.scene.contacts:
         return found
-    known, left = 0, options.most
-    for _ in range(options.rounds):
+    known, left = 0, options.max_starts
+    for _ in range(options.max_rounds):
         paths, known = found.branches.paths[known:], len(found.branches.paths)
         for point in branch_points(system, system.harmonics, paths):
             if left == 0:
@@ -66,20 +66,20 @@ def _with_branches_of(system: System, found: Traced, point: BranchPoint) -> Trac
     """With the branches through the starts at a branch point that are not known, nor images of such."""
     for z in point.starts:
         images = [mirror.image(z) for mirror in mirrors(system, point.z, z)]
-        paths, balance = found.branches.paths, system.afresh()
+        paths, balance = found.branches.paths, system.reset_balance()
         if any(contains(path, one, balance) for path in paths for one in (z, *images)):
             continue
         found = with_further(system, found, (), [z])
         if images and len(found.branches.paths) > len(paths):
-            new, balance = found.branches.paths[-1], system.afresh()
+            new, balance = found.branches.paths[-1], system.reset_balance()
             if any(contains(new, one, balance) for one in images):
-                new = _half(new)
+                new = _symmetric_half(new)
             branches = replace(found.branches, paths=(*found.branches.paths[:-1], new))
             found = replace(found, branches=branches, mirrored=(*found.mirrored, len(paths)))
     return found
 
 
-def _half(path: Path) -> Path:
+def _symmetric_half(path: Path) -> Path:
     """Of a closed path that comes back through its branch points as its own image the way between these; all
     of another one."""
     changes = np.flatnonzero(path.orientation[:-1] * path.orientation[1:] < 0.0)

@@ -22,64 +22,64 @@ from fcm.model.scene import FloatArray
 Followed = Callable[[System, float], Path]
 
 
-class _Kept(threading.local):
+class _CurveCache(threading.local):
     """Curves by what they are of; nothing for those that did not come to their end."""
 
     def __init__(self) -> None:
         self.paths: OrderedDict[tuple[object, ...], Path | None] = OrderedDict()
 
 
-_KEPT = _Kept()
+_CURVES = _CurveCache()
 
 
-def forget() -> None:
+def clear() -> None:
     """Begin another sweep."""
-    _KEPT.paths.clear()
+    _CURVES.paths.clear()
 
 
-def in_common(system: System, omega: float, followed: Followed) -> Path | None:
+def shared_curve(system: System, omega: float, followed: Followed) -> Path | None:
     """The curve of the system with preloads of 1, as it is followed once.
 
     Nothing if that does not come to its end.
     """
-    key = (*_made_of(system), omega)
-    kept = _KEPT.paths
+    key = (*_curve_key(system), omega)
+    kept = _CURVES.paths
     if key in kept:
         kept.move_to_end(key)
         return kept[key]
-    path = followed(system.normal, omega)
+    path = followed(system.normalised, omega)
     kept[key] = path if path.status is Status.COMPLETE else None
-    if len(kept) > SHARED_LEVELS.kept:
+    if len(kept) > SHARED_LEVELS.max_kept:
         kept.popitem(last=False)
     return kept[key]
 
 
-def _made_of(system: System) -> tuple[object, ...]:
+def _curve_key(system: System) -> tuple[object, ...]:
     """What the curve is of, besides the frequency."""
-    laws = tuple((c.mu, c.k_u, c.k_v, c.n_0) for c in system.normal.scene.contacts)
+    laws = tuple((c.mu, c.k_u, c.k_v, c.n_0) for c in system.normalised.scene.contacts)
     return *system.linear.numbers, laws, system.harmonics
 
 
-def passings(system: System, path: Path, omega: float) -> list[FloatArray] | None:
+def solutions_at_level_one(system: System, path: Path, omega: float) -> list[FloatArray] | None:
     """Solutions (unknown + 1,) of the system at the level 1, from the curve in common.
 
     Nothing if one that has to be there is not found between the points that enclose it.
     """
-    unit = system.unit
+    unit = system.preload_unit
     off = path.parameter - 1.0 / unit
     found = []
     for i in np.flatnonzero((off[:-1] * off[1:] < 0.0) | (off[:-1] == 0.0)):
         ends = unit * path.z[i : i + 2, :-1]
-        x = _between(system, omega, ends, off[i] / (off[i] - off[i + 1]))
+        x = _solution_between(system, omega, ends, off[i] / (off[i] - off[i + 1]))
         if x is None:
             return None
         found.append(np.append(x, omega))
     return found
 
 
-def _between(system: System, omega: float, ends: FloatArray, part: float) -> FloatArray | None:
+def _solution_between(system: System, omega: float, ends: FloatArray, part: float) -> FloatArray | None:
     """The solution near a part of the way between two of other levels, if it lies between them."""
-    level, stepper = system.raised
+    level, stepper = system.level_problem
     level.begin(omega)
     newton, chord = stepper.newton, ends[1] - ends[0]
     newton.z[:] = np.append(ends[0] + part * chord, 1.0)
@@ -93,4 +93,4 @@ def _between(system: System, omega: float, ends: FloatArray, part: float) -> Flo
         return None
     x = np.array(newton.z)[:-1]
     along = float(((x - ends[0]) / unit) @ way) / length**2
-    return x if -SHARED_LEVELS.outside <= along <= 1.0 + SHARED_LEVELS.outside else None
+    return x if -SHARED_LEVELS.extrapolation <= along <= 1.0 + SHARED_LEVELS.extrapolation else None

@@ -12,17 +12,17 @@ cdef class Surface:
     cdef public double value
     cdef public int evaluations
     cdef Solver solver
-    cdef int iterations
-    cdef double least
-    cdef double close
-    cdef double flat
-    cdef double share
-    cdef double far
-    cdef double[::1] at
+    cdef int max_iterations
+    cdef double level_floor
+    cdef double tolerance
+    cdef double singular_step
+    cdef double singular_fraction
+    cdef double diverged_step
+    cdef double[::1] balance_point
     cdef double[::1] right
-    cpdef bint put(self, double ahead, double aside) except -1
+    cpdef bint find(self, double ahead, double aside) except -1
     cdef bint factor(self) except -1
     cdef double correct(self, double ahead, double aside) except -2
-    cdef bint take_tangents(self) except -1
+    cdef bint compute_tangents(self) except -1
 
 

@@ -36,18 +36,26 @@ from fcm.model.scene import FloatArray
 
 @cython.cclass
 class Surface:
-    """`begin` at a place, then `put`: z is a place near it, value its test function g.
+    """`begin` at a place, then `find`: z is a place near it, value its test function g.
 
     z, centre, scale (n + 2,): displacements, frequency [rad/s], level; axes, tangents (2, n + 2), scaled.
     """
 
     def __init__(self, balance: Balance, options: SurfaceOptions = SURFACE) -> None:
         n: cython.int = balance.unknowns
-        self.least, self.far, self.iterations = options.least, options.far, options.iterations
-        self.close, self.flat, self.share = options.close, options.flat, options.share
+        self.level_floor, self.diverged_step, self.max_iterations = (
+            options.level_floor,
+            options.diverged_step,
+            options.max_iterations,
+        )
+        self.tolerance, self.singular_step, self.singular_fraction = (
+            options.tolerance,
+            options.singular_step,
+            options.singular_fraction,
+        )
         self.balance, self.n, self.evaluations, self.value = balance, n, 0, 0.0
         self.z, self.centre, self.right = np.zeros(n + 2), np.zeros(n + 2), np.zeros(n + 2)
-        self.scale, self.at = np.ones(n + 2), np.zeros(n + 1)
+        self.scale, self.balance_point = np.ones(n + 2), np.zeros(n + 1)
         self.axes, self.tangents = np.zeros((2, n + 2)), np.zeros((2, n + 2))
         self.solver = Solver(n + 2)
 
@@ -56,7 +64,7 @@ class Surface:
         false where there is none. The first axis is then the tangent nearest to the first of them.
         """
         self.z[:] = z
-        if not (self.recentre(across, along) and self.put(0.0, 0.0)):
+        if not (self.recentre(across, along) and self.find(0.0, 0.0)):
             return False
         return self.recentre(np.asarray(self.tangents)[1] * self.scale, across)
 
@@ -67,19 +75,19 @@ class Surface:
         self.measure(self.z)
         for i in range(self.n + 2):
             self.axes[0, i], self.axes[1, i] = along[i] / self.scale[i], across[i] / self.scale[i]
-        return bool(self.upright())
+        return bool(self.orthonormalise())
 
     def measure(self, z: cython.double[::1]) -> None:
         """Units of lengths at a place: those of the balance, and the level by itself."""
         i: cython.Py_ssize_t
         for i in range(self.n + 1):
-            self.at[i] = z[i]
-        self.balance.measure(self.at)
+            self.balance_point[i] = z[i]
+        self.balance.measure(self.balance_point)
         for i in range(self.n + 1):
             self.scale[i] = self.balance.scale[i]
-        self.scale[self.n + 1] = max(fabs(z[self.n + 1]), self.least)
+        self.scale[self.n + 1] = max(fabs(z[self.n + 1]), self.level_floor)
 
-    def upright(self) -> bool:
+    def orthonormalise(self) -> bool:
         """Make the axes unit vectors at right angles; false if they are none."""
         axes = np.asarray(self.axes)
         first = float(np.linalg.norm(axes[0]))
@@ -93,7 +101,7 @@ class Surface:
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def put(self, ahead: cython.double, aside: cython.double) -> cython.bint:
+    def find(self, ahead: cython.double, aside: cython.double) -> cython.bint:
         """Whether there is a place at these lengths along the axes, from where z was put last."""
         i: cython.Py_ssize_t
         count: cython.int
@@ -105,15 +113,15 @@ class Surface:
             other -= self.axes[1, i] * (self.z[i] - self.centre[i]) / self.scale[i]
         for i in range(self.n + 2):
             self.z[i] += self.scale[i] * (one * self.axes[0, i] + other * self.axes[1, i])
-        for count in range(self.iterations):  # noqa: B007
+        for count in range(self.max_iterations):  # noqa: B007
             if not self.factor():
                 return False
             step = self.correct(ahead, aside)
-            if not step < self.far:
+            if not step < self.diverged_step:
                 return False
-            if step < self.close:
-                length: cython.double = self.share * sqrt(ahead * ahead + aside * aside)
-                return (step < max(self.flat, length) or self.factor()) and self.take_tangents()
+            if step < self.tolerance:
+                length: cython.double = self.singular_fraction * sqrt(ahead * ahead + aside * aside)
+                return (step < max(self.singular_step, length) or self.factor()) and self.compute_tangents()
         return False
 
     @cython.cfunc
@@ -129,9 +137,9 @@ class Surface:
         unit: cython.double
         b: Balance = self.balance
         for i in range(n + 1):
-            self.at[i] = self.z[i]
+            self.balance_point[i] = self.z[i]
         b.load = self.z[n + 1]
-        b.evaluate(self.at)
+        b.evaluate(self.balance_point)
         self.evaluations += 1
         jacobian: cython.double[:, ::1] = jacobian_of(b) if b.rank else b.jacobian
         for i in range(n):
@@ -168,11 +176,11 @@ class Surface:
         for i in range(n + 2):
             self.z[i] += self.scale[i] * self.solver.right[i]
             total += self.solver.right[i] * self.solver.right[i]
-        return sqrt(total) if isfinite(total) else 2.0 * self.far
+        return sqrt(total) if isfinite(total) else 2.0 * self.diverged_step
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def take_tangents(self) -> cython.bint:
+    def compute_tangents(self) -> cython.bint:
         """The tangents and the test function, from the equations as they are factored."""
         n: cython.Py_ssize_t = self.n
         i: cython.Py_ssize_t
@@ -219,7 +227,7 @@ class Side:
 
 
 @cython.cclass
-class Way:
+class Departure:
     """From the centre to a place of the curve: length, angle; directions (n + 2,), in the units of z, to
     there and across, in the middle of both sides of the curve; the sign of the test function on its left."""
 
@@ -243,66 +251,70 @@ class Way:
 
 @cython.cclass
 class FoldSteps:
-    """`ways` of a start, then `run` by each of them."""
+    """`departures` of a start, then `run` by each of them."""
 
     surface: Surface
     options: FoldOptions
     low: cython.double  # of the frequency [rad/s]
     high: cython.double
-    paid: Callable[[], None]
+    charge_work: Callable[[], None]
     n: cython.int
-    fine: cython.double  # of the options, here for speed
-    upright: cython.double
-    turn: cython.double
-    most_turn: cython.double
-    rounder: cython.double
+    angle_tolerance: cython.double  # of the options, here for speed
+    max_tangent: cython.double
+    target_turn: cython.double
+    max_turn: cython.double
+    corner_roundness: cython.double
 
     def __init__(
         self,
         surface: Surface,
         span: tuple[float, float],
         options: FoldOptions,
-        paid: Callable[[], None],
+        charge_work: Callable[[], None],
     ) -> None:
-        self.surface, self.options, self.paid = surface, options, paid
+        self.surface, self.options, self.charge_work = surface, options, charge_work
         self.low, self.high, self.n = span[0], span[1], surface.n + 2
-        self.fine, self.upright = options.fine, options.upright
-        self.turn, self.most_turn, self.rounder = options.turn, options.most_turn, options.round
+        self.angle_tolerance, self.max_tangent = options.angle_tolerance, options.max_tangent
+        self.target_turn, self.max_turn, self.corner_roundness = (
+            options.target_turn,
+            options.max_turn,
+            options.corner_roundness,
+        )
 
-    def ways(self, start: FloatArray, singular: FloatArray) -> list[Way]:
+    def departures(self, start: FloatArray, singular: FloatArray) -> list[Departure]:
         """The two ways of the curve from its start."""
         if not self.begin(start, singular):
             return []
-        for wider in self.options.wider:
-            found = self.around(self.options.first * wider, 0.0)
+        for wider in self.options.start_circles:
+            found = self.around(self.options.initial_step * wider, 0.0)
             pairs = [(a, b) for i, a in enumerate(found) for b in found[i + 1 :]]
             if pairs:
                 opposite = np.argmin([np.cos(one.angle - other.angle) for one, other in pairs])
                 return list(pairs[opposite])
         return []
 
-    def run(self, start: FloatArray, singular: FloatArray, way: Way) -> tuple[list[Point], Ending]:
+    def run(self, start: FloatArray, singular: FloatArray, way: Departure) -> tuple[list[Point], Ending]:
         """From the start on by one of its ways."""
         options, surface, side = self.options, self.surface, Side(self.n)
         self.begin(start, singular)
-        self.put(side, way.radius, way.angle)
+        self.test_value(side, way.radius, way.angle)
         if not surface.recentre(way.along, way.across):
             return [], Ending.STALLED
         points = [(np.array(surface.centre), np.array(way.across))]
-        first, turned, retreats = np.array(surface.centre), False, options.retreats
+        first, turned, retreats = np.array(surface.centre), False, options.max_retreats
         before, taken = first, way
-        step: cython.double = options.first
+        step: cython.double = options.initial_step
         bend: cython.double = 0.0
-        for count in range(options.most):
-            found = self.ahead(step, bend, way.left)
-            off: cython.double = 2.0 * self.fine * way.radius
-            while found is None and step > options.shortest:
+        for count in range(options.max_steps):
+            found = self.next_departure(step, bend, way.left)
+            off: cython.double = 2.0 * self.angle_tolerance * way.radius
+            while found is None and step > options.min_step:
                 step, bend = 0.3 * step, 0.0
-                if step < 10.0 * off and self.onto(off, way.left):
-                    off *= self.fine
-                if step < options.thin and not turned and self.over(options.thin):
-                    turned, step = True, options.thin
-                found = self.ahead(step, bend, way.left) or self.round(step, way.left)
+                if step < 10.0 * off and self.correct_centre(off, way.left):
+                    off *= self.angle_tolerance
+                if step < options.strip_width and not turned and self.cross_strip(options.strip_width):
+                    turned, step = True, options.strip_width
+                found = self.next_departure(step, bend, way.left) or self.around_corner(step, way.left)
             if found is None and retreats and len(points) > 1:  # the last step led to another part
                 retreats, way, step, bend = retreats - 1, taken, 0.3 * way.radius, 0.0
                 points.pop()
@@ -317,16 +329,16 @@ class FoldSteps:
                 return points, Ending.STALLED
             z = np.array(surface.z)
             points.append((z, self.singular(way.across)))
-            if count % options.report == 0:
-                self.paid()
+            if count % options.report_interval == 0:
+                self.charge_work()
             if not self.low <= surface.z[self.n - 2] <= self.high:
                 return points, Ending.RANGE
-            if not options.within(surface.z[self.n - 1]):
+            if not options.covers(surface.z[self.n - 1]):
                 return points, Ending.LEVEL
             if count > 2 and self.passes(first, before, z):
                 return [*points, points[0]], Ending.CLOSED
-            longer: cython.double = min(max(self.turn / max(fabs(way.angle), 1e-3), 0.4), 2.0) * step
-            longer = min(longer, options.longest)
+            longer: cython.double = min(max(self.target_turn / max(fabs(way.angle), 1e-3), 0.4), 2.0) * step
+            longer = min(longer, options.max_step)
             bend, step = 0.5 * way.angle * (1.0 + longer / step), longer
         return points, Ending.LONG
 
@@ -338,7 +350,7 @@ class FoldSteps:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def put(self, side: Side, radius: cython.double, angle: cython.double) -> cython.int:
+    def test_value(self, side: Side, radius: cython.double, angle: cython.double) -> cython.int:
         """A place on a circle about the centre; its value is NaN where there is none on this part."""
         surface: Surface = self.surface
         c: cython.double = cos(angle)
@@ -346,7 +358,7 @@ class FoldSteps:
         length: cython.double = 0.0
         i: cython.Py_ssize_t
         side.angle, side.value = angle, np.nan
-        if not surface.put(radius * c, radius * s):
+        if not surface.find(radius * c, radius * s):
             surface.z[:] = surface.centre
             return 0
         for i in range(self.n):
@@ -355,17 +367,17 @@ class FoldSteps:
         length = sqrt(length)
         for i in range(self.n):
             side.across[i] /= length
-        if length < self.upright:
+        if length < self.max_tangent:
             side.value = surface.value
         return 0
 
-    def around(self, radius: float, left: float) -> list[Way]:
+    def around(self, radius: float, left: float) -> list[Departure]:
         """Ways to where the sign changes on a circle, with that sign on the left if one is given."""
         self.surface.z[:] = self.surface.centre
-        circle, sides, found = self.options.circle, list[Side](), list[Way]()
+        circle, sides, found = self.options.circle_points, list[Side](), list[Departure]()
         for k in range(circle + 1):
             side = Side(self.n)
-            self.put(side, radius, 2.0 * PI * k / circle - PI)
+            self.test_value(side, radius, 2.0 * PI * k / circle - PI)
             sides.append(side)
         for low, high in pairwise(sides):
             a: Side = low
@@ -373,27 +385,27 @@ class FoldSteps:
             if a.value * b.value < 0.0 and (left == 0.0 or left * b.value > 0.0):
                 angle: cython.double = a.angle
                 again = Side(self.n)
-                self.put(again, radius, angle)
-                way = self.root(radius, again, b)
+                self.test_value(again, radius, angle)
+                way = self.sign_change(radius, again, b)
                 if way is not None:
                     found.append(way)
         return found
 
     @cython.cfunc
-    def root(self, radius: cython.double, low: Side, high: Side) -> object:
+    def sign_change(self, radius: cython.double, low: Side, high: Side) -> object:
         """The way between two sides, at whose end z is left; None where there is no place on the way."""
         at: cython.double = high.angle
         of_low: cython.double = 1.0  # weights of the method of Illinois
         of_high: cython.double = 1.0
         now: Side = Side(self.n)
-        while high.angle - low.angle > self.fine:
+        while high.angle - low.angle > self.angle_tolerance:
             before: cython.double = of_low * low.value
             after: cython.double = of_high * high.value
             width: cython.double = high.angle - low.angle
             slope: cython.double = fabs(high.value - low.value)
             at = low.angle - before * width / (after - before)
             at = min(max(at, low.angle + 0.05 * width), high.angle - 0.05 * width)
-            self.put(now, radius, at)
+            self.test_value(now, radius, at)
             if not isfinite(now.value):
                 return None
             value: cython.double = now.value
@@ -401,7 +413,7 @@ class FoldSteps:
                 low, now, of_low, of_high = now, Side(self.n), 1.0, 0.5 * of_high
             else:
                 high, now, of_low, of_high = now, Side(self.n), 0.5 * of_low, 1.0
-            if fabs(value) * width < self.fine * slope:
+            if fabs(value) * width < self.angle_tolerance * slope:
                 break
         surface: Surface = self.surface
         along, across = np.empty(self.n), np.empty(self.n)
@@ -411,81 +423,83 @@ class FoldSteps:
         for i in range(self.n):
             to[i] = surface.z[i] - surface.centre[i]
             aside[i] = surface.scale[i] * (low.across[i] + high.across[i])
-        return Way(radius, at, along, across, 1.0 if high.value > 0.0 else -1.0)
+        return Departure(radius, at, along, across, 1.0 if high.value > 0.0 else -1.0)
 
     @cython.cfunc
-    def ahead(self, step: cython.double, bend: cython.double, left: cython.double) -> object:
+    def next_departure(self, step: cython.double, bend: cython.double, left: cython.double) -> object:
         """The way to the next place, near the angle of a bend; None where it is not found."""
-        most: cython.double = self.most_turn
+        most: cython.double = self.max_turn
         one: Side = Side(self.n)
         other: Side = Side(self.n)
         self.surface.z[:] = self.surface.centre
-        self.put(one, step, min(max(bend, -most), most))
-        width: cython.double = max(0.5 * fabs(one.angle), self.turn)
+        self.test_value(one, step, min(max(bend, -most), most))
+        width: cython.double = max(0.5 * fabs(one.angle), self.target_turn)
         while isfinite(one.value):
             sign: cython.double = one.value * left
             then: cython.double = one.angle - (width if sign > 0.0 else -width if sign < 0.0 else 0.0)
             if fabs(then) > most:
                 return None
-            self.put(other, step, then)
+            self.test_value(other, step, then)
             if one.value * other.value <= 0.0:
                 return (
-                    self.root(step, one, other) if one.angle <= other.angle else self.root(step, other, one)
+                    self.sign_change(step, one, other)
+                    if one.angle <= other.angle
+                    else self.sign_change(step, other, one)
                 )
             one, other, width = other, one, 2.0 * width
         return None
 
-    def onto(self, off: float, left: float) -> bool:
+    def correct_centre(self, off: float, left: float) -> bool:
         """Take for the centre the place on the curve that is no further than that across it; whether it is
         there. A short step needs a centre that is nearer to the curve than the last step left it."""
         surface: Surface = self.surface
         axes = np.array(surface.axes) * np.asarray(surface.scale)
         side: Side = Side(self.n)
         surface.z[:] = surface.centre
-        self.put(side, 0.0, 0.0)
+        self.test_value(side, 0.0, 0.0)
         here: cython.double = side.value
         angle: cython.double = -0.5 * PI * float(np.sign(here * left))
-        self.put(side, off, angle)
+        self.test_value(side, off, angle)
         if not here * side.value < 0.0:
             return False
         low: cython.double = 0.0
         high: cython.double = off
-        while high - low > self.fine * off:
+        while high - low > self.angle_tolerance * off:
             middle: cython.double = 0.5 * (low + high)
-            self.put(side, middle, angle)
+            self.test_value(side, middle, angle)
             if side.value * here > 0.0:
                 low = middle
             else:
                 high = middle
         return bool(surface.recentre(axes[0], axes[1]))
 
-    def over(self, thin: float) -> bool:
+    def cross_strip(self, thin: float) -> bool:
         """Cross the strip beside the curve if it is as thin as that: take for the centre the place of the
         curve on its other side, with the way back ahead. Whether it is that thin."""
         surface: Surface = self.surface
         axes = np.array(surface.axes) * np.asarray(surface.scale)
         side: Side = Side(self.n)
         surface.z[:] = surface.centre
-        self.put(side, thin, 0.5 * PI)
+        self.test_value(side, thin, 0.5 * PI)
         here: cython.double = side.value
-        self.put(side, thin, -0.5 * PI)
+        self.test_value(side, thin, -0.5 * PI)
         if not here * side.value > 0.0:
             return False
         for angle in (0.5 * PI, -0.5 * PI):
             surface.z[:] = surface.centre
             high: cython.double = thin
             low: cython.double = thin
-            while low > self.fine * self.fine * thin:
+            while low > self.angle_tolerance * self.angle_tolerance * thin:
                 low *= 0.7
-                self.put(side, low, angle)
+                self.test_value(side, low, angle)
                 if side.value * here < 0.0:
                     break
                 high = low
             else:
                 continue
-            while high - low > self.fine * low:
+            while high - low > self.angle_tolerance * low:
                 middle: cython.double = 0.5 * (low + high)
-                self.put(side, middle, angle)
+                self.test_value(side, middle, angle)
                 if side.value * here < 0.0:
                     low = middle
                 else:
@@ -493,13 +507,13 @@ class FoldSteps:
             return bool(surface.recentre(-axes[0], axes[1]))
         return False
 
-    def round(self, step: float, left: float) -> Way | None:
+    def around_corner(self, step: float, left: float) -> Departure | None:
         """The way nearest ahead with the same sign on its left, on all of a circle but the way back."""
         ways = [way for way in self.around(step, left) if abs(way.angle) < 0.8 * PI]
         if not ways:
             return None
         nearest = min(ways, key=lambda way: abs(way.angle))
-        self.put(Side(self.n), step, nearest.angle)
+        self.test_value(Side(self.n), step, nearest.angle)
         return nearest
 
     @cython.cfunc
@@ -514,7 +528,7 @@ class FoldSteps:
         c: cython.double = t[1, self.n - 2] ** 2 + t[1, self.n - 1] ** 2
         # what each direction cos(angle) t_0 + sin(angle) t_1 changes of both is an ellipse
         spread: cython.double = sqrt(0.25 * (a - c) ** 2 + b * b)
-        if 0.5 * (a + c) - spread > self.rounder * (0.5 * (a + c) + spread):
+        if 0.5 * (a + c) - spread > self.corner_roundness * (0.5 * (a + c) + spread):
             return np.array(across)
         angle: cython.double = 0.5 * (atan2(2.0 * b, a - c) + PI)
         way = np.empty(self.n)

@@ -8,13 +8,13 @@ from functools import partial
 
 import numpy as np
 
-from fcm.branches.force_level import Found, found_at, looked_at
-from fcm.branches.narrow_resonances import narrow
+from fcm.branches.force_level import LevelSolutions, level_frequencies, solutions_at
+from fcm.branches.narrow_resonances import narrow_resonances
 from fcm.continuation import Branches, Events, FollowOptions, Path, all_branches, follow
 from fcm.continuation.all_branches import Follow
 from fcm.continuation.follow import Progress
 from fcm.continuation.problem import Problem
-from fcm.harmonic_balance.cost_model import paid
+from fcm.harmonic_balance.cost_model import charged_to_work
 from fcm.harmonic_balance.response_quantities import recorded
 from fcm.harmonic_balance.system import System
 from fcm.harmonic_balance.well_posedness import undetermined
@@ -31,7 +31,7 @@ class Traced:
     """
 
     branches: Branches
-    found: tuple[Found, ...]
+    found: tuple[LevelSolutions, ...]
     work: float = 0.0
     mirrored: tuple[int, ...] = ()
     folds_lost: tuple[float, ...] = ()
@@ -41,7 +41,7 @@ class Traced:
 def traced(
     system: System,
     progress: Progress | None = None,
-    fewer: tuple[Found, ...] = (),
+    fewer: tuple[LevelSolutions, ...] = (),
     near: Sequence[FloatArray] = (),
 ) -> Traced:
     """Trace the branches through all solutions at the frequencies at which the level is followed.
@@ -51,9 +51,9 @@ def traced(
     elsewhere, whose branches are traced too if they are within the range.
     """
     before = system.work.seconds
-    found, passed = _passed(system, fewer)
+    found, passed = _level_solutions(system, fewer)
     work = system.work.seconds - before
-    return Traced(_through(system, [*passed, *near], progress), found, work)
+    return Traced(_branches_through(system, [*passed, *near], progress), found, work)
 
 
 def traced_from(
@@ -61,48 +61,52 @@ def traced_from(
 ) -> Traced | None:
     """The branches through solutions near those of fewer harmonics; None if there is no such. No level is
     followed: what was found is as before."""
-    return replace(before, branches=_through(system, near, progress)) if near else None
+    return replace(before, branches=_branches_through(system, near, progress)) if near else None
 
 
 def with_levels(system: System, before: Traced) -> Traced:
     """With what the levels of the forces lead to, and the branches through what is on none that is known."""
     begin = system.work.seconds
-    found, passed = _passed(system, before.found)
+    found, passed = _level_solutions(system, before.found)
     work, span = system.work.seconds - begin, system.scene.frequency_range
     inside = [z for z in passed if span[0] <= z[-1] <= span[1]]
     return replace(with_further(system, replace(before, found=()), found, inside), work=work)
 
 
-def _passed(system: System, fewer: Sequence[Found]) -> tuple[tuple[Found, ...], list[FloatArray]]:
+def _level_solutions(
+    system: System, fewer: Sequence[LevelSolutions]
+) -> tuple[tuple[LevelSolutions, ...], list[FloatArray]]:
     """What is found where the levels are followed, with all solutions that this leads to."""
-    found = found_at(system, looked_at(system), fewer)
+    found = solutions_at(system, level_frequencies(system), fewer)
     return found, [z for one in found for z in one.solutions]
 
 
-def _through(system: System, starts: Sequence[FloatArray], progress: Progress | None) -> Branches:
+def _branches_through(system: System, starts: Sequence[FloatArray], progress: Progress | None) -> Branches:
     """The branches through solutions, of which those outside the range do not count."""
     span = system.scene.frequency_range
     inside = [z for z in starts if span[0] <= z[-1] <= span[1]]
-    step, along = system.scene.max_step, _along(system)
-    return _steady(system, all_branches(system.afresh, inside, span, FollowOptions(step), progress, along))
+    step, along = system.scene.max_step, _follow_shared(system)
+    return _without_unsteady(
+        system, all_branches(system.reset_balance, inside, span, FollowOptions(step), progress, along)
+    )
 
 
 def with_further(
-    system: System, before: Traced, found: Sequence[Found], starts: Sequence[FloatArray]
+    system: System, before: Traced, found: Sequence[LevelSolutions], starts: Sequence[FloatArray]
 ) -> Traced:
     """With what was found at further frequencies, and the branches through further solutions, after those
     that were traced before."""
     span, known = system.scene.frequency_range, before.branches
-    step, along = system.scene.max_step, _along(system)
-    branches = all_branches(system.afresh, starts, span, FollowOptions(step), None, along, known.paths)
-    further = (path for path in branches.paths[len(known.paths) :] if not _nowhere(system, path))
+    step, along = system.scene.max_step, _follow_shared(system)
+    branches = all_branches(system.reset_balance, starts, span, FollowOptions(step), None, along, known.paths)
+    further = (path for path in branches.paths[len(known.paths) :] if not _is_unsteady(system, path))
     branches = Branches((*known.paths, *further), (*known.lost, *branches.lost))
     return replace(before, branches=branches, found=(*before.found, *found))
 
 
-def _along(system: System) -> Follow:
+def _follow_shared(system: System) -> Follow:
     """Follows the balance that a system looks with, on the one stepper that it has for that."""
-    stepper, places = system.stepper, narrow(system)
+    stepper, places = system.shared_stepper, narrow_resonances(system)
 
     def along(
         problem: Problem,
@@ -116,12 +120,12 @@ def _along(system: System) -> Follow:
     ) -> Path:
         landed = replace(wanted, narrow=places)
         one = partial(follow, problem, start, span, landed, options, forward=forward, stepper=stepper)
-        return paid(system, stepper, progress, lambda report: one(progress=report))
+        return charged_to_work(system, stepper, progress, lambda report: one(progress=report))
 
     return along
 
 
-def _steady(system: System, branches: Branches) -> Branches:
+def _without_unsteady(system: System, branches: Branches) -> Branches:
     """Without the branches that are none, beside one that is.
 
     The mean of a rigid-body mode that nothing holds is not among the equations: a branch on all of which
@@ -130,11 +134,11 @@ def _steady(system: System, branches: Branches) -> Branches:
     paths = branches.paths
     if len(paths) < 2:
         return branches
-    kept = tuple(path for path in paths if not _nowhere(system, path))
+    kept = tuple(path for path in paths if not _is_unsteady(system, path))
     return replace(branches, paths=kept) if kept else branches
 
 
-def _nowhere(system: System, path: Path) -> bool:
+def _is_unsteady(system: System, path: Path) -> bool:
     """Whether it is such a branch."""
     if system.linear.natural.min(initial=1.0) > 0.0:
         return False

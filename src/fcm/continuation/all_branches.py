@@ -62,7 +62,7 @@ def all_branches(
         problem = new_problem() if paths else None
         if problem is not None and any(contains(path, z, problem) for path in paths):
             continue
-        path = through(new_problem, z, span, events, options, progress, along)
+        path = branch_through(new_problem, z, span, events, options, progress, along)
         if not path.z.shape[0]:
             lost.append(z)
         elif problem is None or not _known(path, paths, problem):
@@ -93,7 +93,7 @@ def contains(path: Path, z: FloatArray, problem: Problem, options: PathOptions =
     if float((points * points).sum(axis=1).min()) < options.same**2:
         return True
     newton = Newton(problem)
-    for i, part in _beside(points, options):
+    for i, part in _nearest_chords(points, options):
         row = points[i + 1] - points[i]
         newton.scale[:], newton.row[:] = scale, row / np.linalg.norm(row)
         newton.z[:] = path.z[i] + part * (path.z[i + 1] - path.z[i])
@@ -102,7 +102,7 @@ def contains(path: Path, z: FloatArray, problem: Problem, options: PathOptions =
     return False
 
 
-def _beside(points: FloatArray, options: PathOptions) -> list[tuple[int, float]]:
+def _nearest_chords(points: FloatArray, options: PathOptions) -> list[tuple[int, float]]:
     """The chords between points next to which the origin lies, the nearest first, and where on them."""
     chord = np.diff(points, axis=0)
     square = np.maximum((chord * chord).sum(axis=1), np.finfo(float).tiny)  # of two points that are one
@@ -116,7 +116,7 @@ def _beside(points: FloatArray, options: PathOptions) -> list[tuple[int, float]]
     ]
 
 
-def through(
+def branch_through(
     new_problem: Callable[[], Problem],
     z: FloatArray,
     span: tuple[float, float],

@@ -2,7 +2,7 @@ from fcm.continuation.dense_solver cimport Solver
 from fcm.continuation.options cimport NewtonOptions
 from fcm.continuation.problem cimport Problem
 
-cdef double FAR
+cdef double DIVERGED
 
 cdef class BorderedSystem:
     cdef public Problem problem
@@ -21,5 +21,5 @@ cdef class BorderedSystem:
     cdef bint factor(self) except -1
     cdef int solve(self) except -1
     cdef double step(self) except -1
-    cdef bint direct(self) except -1
+    cdef bint compute_tangent(self) except -1
     cdef double rounding(self, NewtonOptions options) except -1

@@ -16,7 +16,9 @@ from fcm.continuation.options import NewtonOptions
 from fcm.continuation.problem import Problem
 
 EPS = cython.declare(cython.double, 2.220446049250313e-16)
-FAR = cython.declare(cython.double, 1e30)  # a step of this length, in the curve's own size, leads nowhere
+DIVERGED = cython.declare(
+    cython.double, 1e30
+)  # a step of this length, in the curve's own size, leads nowhere
 
 
 @cython.cclass
@@ -91,11 +93,11 @@ class BorderedSystem:
         self.solve()
         for i in range(n + 1):
             total += self.delta[i] * self.delta[i]
-        return sqrt(total) if isfinite(total) else 2.0 * FAR
+        return sqrt(total) if isfinite(total) else 2.0 * DIVERGED
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def direct(self) -> cython.bint:
+    def compute_tangent(self) -> cython.bint:
         """Tangent and orientation from the system as it is factored, and how far z is from the guess."""
         i: cython.Py_ssize_t
         size: cython.Py_ssize_t = self.problem.unknowns + 1
@@ -130,7 +132,7 @@ class BorderedSystem:
         step: cython.double = 0.0
         error: cython.double[::1] = self.weights
         if self.problem.rank:
-            return options.roundings * EPS * sqrt(n + 1)
+            return options.rounding_multiple * EPS * sqrt(n + 1)
         for i in range(n + 1):
             unit: cython.double = EPS / self.scale[i] if i < n else EPS
             error[i] = 0.0
@@ -144,6 +146,6 @@ class BorderedSystem:
         for i in range(n + 1):
             least += self.solver.right[i] * self.solver.right[i]
             step += self.delta[i] * self.delta[i]
-        if sqrt(step) < options.roundings * sqrt(least):
+        if sqrt(step) < options.rounding_multiple * sqrt(least):
             return sqrt(least)
         return float(np.linalg.norm(np.abs(self.solver.inverse()) @ np.asarray(error)))

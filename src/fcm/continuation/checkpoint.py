@@ -40,19 +40,19 @@ class Checkpoint(NamedTuple):
         return store.path(status, self.evaluations)
 
 
-_OF_PLACE = ("z", "tangent", "margin", "output", "growth")
+_POINT_FIELDS = ("z", "tangent", "margin", "output", "growth")
 
 
-def state_of(stepper: Stepper) -> dict[str, Any]:
+def stepper_state(stepper: Stepper) -> dict[str, Any]:
     """What of a checkpoint the stepper knows."""
-    copies = {name: np.array(getattr(stepper.here, name)) for name in _OF_PLACE}
+    copies = {name: np.array(getattr(stepper.here, name)) for name in _POINT_FIELDS}
     way = stepper.predictor
     more = {
         "scale": np.array(stepper.newton.scale),
-        "bend": np.array(way.bend),
-        "aside": np.array(stepper.aside),
+        "bend": np.array(way.curvature),
+        "aside": np.array(stepper.offset),
     }
-    cubic = np.array(way.second), np.array(way.third), bool(way.known), bool(way.cubic)
+    cubic = np.array(way.second), np.array(way.third), bool(way.has_cubic), bool(way.cubic)
     return {
         **copies,
         **more,
@@ -62,14 +62,14 @@ def state_of(stepper: Stepper) -> dict[str, Any]:
     }
 
 
-def put_back(stepper: Stepper, checkpoint: Checkpoint) -> None:
+def restore_stepper(stepper: Stepper, checkpoint: Checkpoint) -> None:
     """Bring the stepper to where it was."""
-    for name in _OF_PLACE:
+    for name in _POINT_FIELDS:
         np.asarray(getattr(stepper.here, name))[:] = getattr(checkpoint, name)
     stepper.here.orientation = checkpoint.orientation
     np.asarray(stepper.newton.scale)[:] = checkpoint.scale
     way = stepper.predictor
-    np.asarray(way.bend)[:] = checkpoint.bend
-    np.asarray(stepper.aside)[:] = checkpoint.aside
-    np.asarray(way.second)[:], np.asarray(way.third)[:], way.known, way.cubic = checkpoint.cubic
+    np.asarray(way.curvature)[:] = checkpoint.bend
+    np.asarray(stepper.offset)[:] = checkpoint.aside
+    np.asarray(way.second)[:], np.asarray(way.third)[:], way.has_cubic, way.cubic = checkpoint.cubic
     stepper.newton.evaluations = checkpoint.evaluations

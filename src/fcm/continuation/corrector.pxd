@@ -3,14 +3,14 @@ from fcm.continuation.options cimport NewtonOptions
 
 cdef class Newton(BorderedSystem):
     cdef public NewtonOptions options
-    cdef public double close
-    cdef public double unsure
+    cdef public double tolerance
+    cdef public double rounding_step
     cpdef bint correct(self, double reach, double most=*) except -1
-    cdef bint chords(self, double before) except -1
-    cpdef bint once(self) except -1
-    cpdef bint halve(self, double reach) except -1
+    cdef bint chord_steps(self, double before) except -1
+    cpdef bint single_step(self) except -1
+    cpdef bint correct_by_half_steps(self, double reach) except -1
     cdef bint converges(self, double reach, double most) except -1
     cpdef bint take_tangent(self) except -1
-    cdef bint settled(self, double step, double ratio, int count) except -1
+    cdef bint at_rounding(self, double step, double ratio, int count) except -1
     cdef bint too_far(self, double step, double before, double most, int count) except -1
-    cdef bint noise(self, double step, int count) except -1
+    cdef bint is_rounding(self, double step, int count) except -1

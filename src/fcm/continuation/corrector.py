@@ -17,27 +17,27 @@ from fcm.continuation.path import FloatArray
 from fcm.continuation.problem import Problem
 
 if cython.compiled:
-    from cython.cimports.fcm.continuation.bordered_system import FAR
+    from cython.cimports.fcm.continuation.bordered_system import DIVERGED
 else:
-    from fcm.continuation.bordered_system import FAR
+    from fcm.continuation.bordered_system import DIVERGED
 
 
 @cython.cclass
 class Newton(BorderedSystem):
     """Fill z, scale and row; `correct` moves z to the curve and leaves its tangent and orientation.
 
-    close: the error that a point may have, estimated from the convergence.
+    tolerance: the error that a point may have, estimated from the convergence.
     """
 
     def __init__(self, problem: Problem, options: NewtonOptions = NEWTON) -> None:
         BorderedSystem.__init__(self, problem)
         self.options = options
-        self.close = self.options.close
-        self.unsure = 0.0  # length of the last step of `correct`, if rounding made it
+        self.tolerance = self.options.tolerance
+        self.rounding_step = 0.0  # length of the last step of `correct`, if rounding made it
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def correct(self, reach: cython.double, most: cython.double = FAR) -> cython.bint:
+    def correct(self, reach: cython.double, most: cython.double = DIVERGED) -> cython.bint:
         """Whether z came to the curve; moved is then how far, and tangent and orientation are those there.
 
         reach is the length, in scaled coordinates, that stands before the first step. Where that is longer
@@ -50,21 +50,21 @@ class Newton(BorderedSystem):
             self.guess[i] = self.z[i]
         if self.converges(reach, most):
             return True
-        return self.problem.rooted and most == FAR and self.halve(reach)
+        return self.problem.rooted and most == DIVERGED and self.correct_by_half_steps(reach)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def once(self) -> cython.bint:
+    def single_step(self) -> cython.bint:
         """Take one step from z; whether there is one."""
         self.guess[:] = self.z
-        if not self.factor() or not self.step() < FAR:
+        if not self.factor() or not self.step() < DIVERGED:
             return False
         _move(self)
         return True
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def halve(self, reach: cython.double) -> cython.bint:
+    def correct_by_half_steps(self, reach: cython.double) -> cython.bint:
         """`correct`, from the guess once more, by half steps first; false also where these grow.
 
         Where the equations begin as the root of a distance d > 0, as where a circle begins to slip, a whole
@@ -76,16 +76,16 @@ class Newton(BorderedSystem):
         step: cython.double
         before: cython.double = reach
         self.z[:] = self.guess
-        for count in range(self.options.halves):
+        for count in range(self.options.half_steps):
             if not self.factor():
                 return False
             step = self.step()
-            if not step < FAR or (count > 1 and step > before):
+            if not step < DIVERGED or (count > 1 and step > before):
                 return False
             for i in range(self.z.shape[0]):
                 self.z[i] += 0.5 * self.scale[i] * self.delta[i]
             before = step
-        return self.converges(reach, FAR)
+        return self.converges(reach, DIVERGED)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -95,37 +95,37 @@ class Newton(BorderedSystem):
         step: cython.double
         ratio: cython.double
         before: cython.double = reach
-        self.unsure = 0.0
-        for count in range(self.options.iterations):
+        self.rounding_step = 0.0
+        for count in range(self.options.max_iterations):
             if not self.factor():
                 return False
             step = self.step()
-            if most < FAR and self.too_far(step, before, most, count):
+            if most < DIVERGED and self.too_far(step, before, most, count):
                 return False
-            if self.problem.labelled and self.settled(step, step / before, count):
-                return self.direct()
-            noise: cython.bint = count > 0 and step > 0.25 * before and self.noise(step, count)
+            if self.problem.labelled and self.at_rounding(step, step / before, count):
+                return self.compute_tangent()
+            noise: cython.bint = count > 0 and step > 0.25 * before and self.is_rounding(step, count)
             hasten: cython.bint = self.problem.labelled or self.problem.costly
-            worse: cython.double = self.options.hopeless if hasten else 2.0
-            if not step < FAR or (count > 2 and step > worse * before and not noise):
+            worse: cython.double = self.options.divergence_ratio if hasten else 2.0
+            if not step < DIVERGED or (count > 2 and step > worse * before and not noise):
                 return False
             _move(self)
             ratio = step / before
             # the first step says nothing of the convergence yet; that to a corner that is not seen never
             if self.problem.labelled:
-                if count > 0 and step * ratio < self.options.chord and self.chords(step):
-                    return self.direct()
+                if count > 0 and step * ratio < self.options.chord_step and self.chord_steps(step):
+                    return self.compute_tangent()
                 before = step
                 continue
-            if (count > 0 and step * ratio * sqrt(ratio) < self.close) or step < self.options.small:
-                return self.direct()
+            if (count > 0 and step * ratio * sqrt(ratio) < self.tolerance) or step < self.options.final_step:
+                return self.compute_tangent()
             if noise:
-                self.unsure = step
-                return self.direct()
+                self.rounding_step = step
+                return self.compute_tangent()
             # the Jacobian hardly changes along a step that is shorter than the square of the one before
             steady: cython.bint = count > 0 and (self.problem.costly or step < before * before)
-            if steady and step < self.options.brief and _again(self, step):
-                return self.direct()
+            if steady and step < self.options.last_chord_step and _last_chord_step(self, step):
+                return self.compute_tangent()
             before = step
         return False
 
@@ -139,87 +139,93 @@ class Newton(BorderedSystem):
             self.moved = step
             return not step < most
         if count == 1:  # of short steps the first may be rounding, in a stiff direction
-            return not step < max(0.5 * before, self.options.slight * most)
-        return not step < FAR
+            return not step < max(0.5 * before, self.options.small_second_step * most)
+        return not step < DIVERGED
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def noise(self, step: cython.double, count: cython.int) -> cython.bint:
+    def is_rounding(self, step: cython.double, count: cython.int) -> cython.bint:
         """Whether a step that has not shrunk is one that rounding makes.
 
         Of what the equations lose to cancellation within them their derivatives know nothing.
         """
         if self.problem.labelled:
             return False
-        if count > 2 and step < self.options.rough:
+        if count > 2 and step < self.options.stalled_rounding:
             return True
-        return step < self.options.coarsest and step < self.options.roundings * self.rounding(self.options)
-
-    @cython.cfunc
-    @cython.exceptval(-1, check=False)
-    def settled(self, step: cython.double, ratio: cython.double, count: cython.int) -> cython.bint:
-        """Whether z, from which a step would lead on, is as near to the curve as rounding lets it be.
-
-        Of the steps that rounding makes the next one may be longer.
-        """
-        if step < self.options.exact and ratio < 1.0:
-            return True
-        return (
-            count > 0 and ratio > 0.25 and step < (self.options.rough if ratio < 1.0 else self.options.left)
+        return step < self.options.max_rounding and step < self.options.rounding_multiple * self.rounding(
+            self.options
         )
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def chords(self, before: cython.double) -> cython.bint:
+    def at_rounding(self, step: cython.double, ratio: cython.double, count: cython.int) -> cython.bint:
+        """Whether z, from which a step would lead on, is as near to the curve as rounding lets it be.
+
+        Of the steps that rounding makes the next one may be longer.
+        """
+        if step < self.options.negligible_step and ratio < 1.0:
+            return True
+        return (
+            count > 0
+            and ratio > 0.25
+            and step < (self.options.stalled_rounding if ratio < 1.0 else self.options.growing_rounding)
+        )
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def chord_steps(self, before: cython.double) -> cython.bint:
         """Whether z, to which a step has led, is on the curve; else it is moved on with the same Jacobian."""
-        return _chords(self, before, self.options.chords, 0.1)
+        return _chord_steps(self, before, self.options.max_chord_steps, 0.1)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def take_tangent(self) -> cython.bint:
         """Tangent and orientation at z as it stands; false if they are not determined there."""
         self.guess[:] = self.z
-        return self.factor() and self.direct()
+        return self.factor() and self.compute_tangent()
 
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def _again(newton: Newton, before: cython.double) -> cython.bint:
+def _last_chord_step(newton: Newton, before: cython.double) -> cython.bint:
     """Whether a step with the Jacobian from before the last, of a length, leads to the curve; else it is not
     taken. What it leaves is less by as much again."""
     newton.problem.probe(newton.z)
     step: cython.double = newton.step()
-    if not step * step < newton.close * before:
+    if not step * step < newton.tolerance * before:
         return False
     _move(newton)
     return True
 
 
-def settle(newton: Newton, most: float) -> bool:
+def correct_with_kept_jacobian(newton: Newton, most: float) -> bool:
     """As `correct` from a length of 1, where the direction does not matter: a Jacobian is kept as long as
     steps with it shrink."""
     count: cython.int
     step: cython.double
     before: cython.double = 1.0
     newton.guess[:] = newton.z
-    for count in range(newton.options.iterations):
+    for count in range(newton.options.max_iterations):
         if not newton.factor():
             return False
         step = newton.step()
         if newton.too_far(step, before, most, count):
             return False
         _move(newton)
-        if step < newton.options.small or _chords(
-            newton, step, newton.options.kept, newton.options.shrinking
+        if step < newton.options.final_step or _chord_steps(
+            newton, step, newton.options.max_cheap_chord_steps, newton.options.chord_contraction
         ):
-            return bool(newton.direct())
+            return bool(newton.compute_tangent())
         before = step
     return False
 
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def _chords(newton: Newton, before: cython.double, most: cython.int, ratio: cython.double) -> cython.bint:
+def _chord_steps(
+    newton: Newton, before: cython.double, most: cython.int, ratio: cython.double
+) -> cython.bint:
     """Whether at most so many steps with the same Jacobian, each shorter than the one before by a ratio, lead
     from z, to which a step has led, to the curve."""
     count: cython.int
@@ -227,7 +233,7 @@ def _chords(newton: Newton, before: cython.double, most: cython.int, ratio: cyth
     for count in range(most):  # noqa: B007
         newton.problem.probe(newton.z)
         step = newton.step()
-        if step < newton.options.exact:
+        if step < newton.options.negligible_step:
             return True
         if not step < ratio * before:
             return False
@@ -267,7 +273,7 @@ def _fill(
             total += newton.row[k] * newton.row[k]
         for k in range(z.shape[1]):
             newton.row[k] /= sqrt(total)
-        if newton.once():
+        if newton.single_step():
             total = 0.0
             for k in range(z.shape[1]):
                 total += ((newton.z[k] - z[i, k]) / newton.scale[k]) ** 2

@@ -16,8 +16,8 @@ import numpy as np
 import numpy.typing as npt
 from cython.cimports.libc.math import fabs
 
-LARGE = cython.declare(cython.int, 400 if cython.compiled else 40)  # from here on LAPACK
-WIDE = cython.declare(cython.int, 40)  # rows from which on four of them are taken together
+LAPACK_SIZE = cython.declare(cython.int, 400 if cython.compiled else 40)  # from here on LAPACK
+BLOCKED_ROWS = cython.declare(cython.int, 40)  # rows from which on four of them are taken together
 
 
 @cython.cclass
@@ -39,7 +39,7 @@ class Solver:
     @cython.exceptval(-1, check=False)
     def factor(self) -> cython.bint:
         """Factor the matrix, in place; false if it is singular or not finite."""
-        if self.size < LARGE:
+        if self.size < LAPACK_SIZE:
             self.orientation = eliminate(self.matrix, self.swapped)
             return self.orientation != 0.0
         from scipy.linalg import lapack
@@ -58,7 +58,7 @@ class Solver:
     @cython.exceptval(-1, check=False)
     def solve(self) -> cython.int:
         """Replace right by the solution."""
-        if self.size < LARGE:
+        if self.size < LAPACK_SIZE:
             substitute(self.matrix, self.swapped, self.right)
             return 0
         from scipy.linalg import lapack
@@ -69,7 +69,7 @@ class Solver:
 
     def inverse(self) -> npt.NDArray[np.float64]:
         """Of the matrix that was factored; right is lost."""
-        if self.size >= LARGE:
+        if self.size >= LAPACK_SIZE:
             from scipy.linalg import lapack
 
             # all columns at once, which is far faster than one after the other
@@ -102,7 +102,7 @@ def eliminate(a: cython.double[:, ::1], swapped: cython.int[::1]) -> cython.doub
     sign: cython.double = 1.0
     for i in range(n):
         k = 0
-        if cython.compiled and n >= WIDE:
+        if cython.compiled and n >= BLOCKED_ROWS:
             k = i - i % 4 if i - i % 4 + 4 <= n else 0
             if 0 < k == i:
                 _four_rows(a, i)
@@ -234,7 +234,7 @@ def _greatest(a: cython.double[:, ::1], i: cython.Py_ssize_t) -> cython.double:
     q: cython.double = 0.0
     r: cython.double = 0.0
     s: cython.double = 0.0
-    while n >= WIDE and j + 4 <= n:
+    while n >= BLOCKED_ROWS and j + 4 <= n:
         p = max(p, fabs(a[i, j]))
         q = max(q, fabs(a[i, j + 1]))
         r = max(r, fabs(a[i, j + 2]))

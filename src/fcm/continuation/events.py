@@ -1,7 +1,7 @@
 """What happens within a step: roots of functions along it, each found on the curve itself.
 
 Between two points that enclose a sign change it is found by the secant through the last two points
-(`Secants`); halfway between the sides where that leads out of them, or three looks have not halved their
+(`SignChange`); halfway between the sides where that leads out of them, or three looks have not halved their
 distance. So it is too where the function jumps, if it may: between sides that are much nearer than they were
 a smooth function differs by much less. Values of the parameter are landed on where a curve may have a peak
 that no point away from them tells of (`Landing`).
@@ -24,20 +24,20 @@ from fcm.continuation.point import Point
 from fcm.continuation.stepper import Stepper
 
 if cython.compiled:
-    from cython.cimports.fcm.continuation.predictor import along
-    from cython.cimports.fcm.continuation.problem import DEAR
+    from cython.cimports.fcm.continuation.predictor import dot
+    from cython.cimports.fcm.continuation.problem import COSTLY_SIZE
 else:
-    from fcm.continuation.predictor import along
-    from fcm.continuation.problem import DEAR
+    from fcm.continuation.predictor import dot
+    from fcm.continuation.problem import COSTLY_SIZE
 
 # of the first distance of its sides, at which a function that does not jump
-CLOSER = cython.declare(cython.double, 0.25)
-LESS = cython.declare(cython.double, 0.5)  # differs by less than this part of what it did
-IN_TURN = cython.declare(cython.int, 3)  # looks that are to halve the distance
+JUMP_WIDTH = cython.declare(cython.double, 0.25)
+JUMP_DIFFERENCE = cython.declare(cython.double, 0.5)  # differs by less than this part of what it did
+HALVING_INTERVAL = cython.declare(cython.int, 3)  # looks that are to halve the distance
 
 
 @cython.cclass
-class Secants:
+class SignChange:
     """The two sides of a change of sign, low and high, which looks at `at` bring nearer to one another.
 
     width: their distance; secant: where the secant leads.
@@ -56,32 +56,35 @@ class Secants:
         # the last two points and their values
         self.last, self.last_value, self.now, self.now_value = low, before, high, after
         self.first_width, self.first_difference = high - low, fabs(after - before)
-        self.looks, self.width_in_turn = 0, high - low
-        self.aim()
+        self.evaluations, self.width_in_turn = 0, high - low
+        self.choose_next()
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def aim(self) -> cython.void:
+    def choose_next(self) -> cython.void:
         """The point to be looked at next."""
         self.width, self.secant = self.high - self.low, self.low
         if self.now_value != self.last_value:
             rise: cython.double = self.now_value - self.last_value
             self.secant = self.now - self.now_value * (self.now - self.last) / rise
-        slow: cython.bint = self.looks % IN_TURN == IN_TURN - 1 and self.width > 0.5 * self.width_in_turn
-        halved: cython.bint = slow or self.jumps() or not self.low < self.secant < self.high
+        slow: cython.bint = (
+            self.evaluations % HALVING_INTERVAL == HALVING_INTERVAL - 1
+            and self.width > 0.5 * self.width_in_turn
+        )
+        halved: cython.bint = slow or self.seems_discontinuous() or not self.low < self.secant < self.high
         self.at = 0.5 * (self.low + self.high) if halved else self.secant
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def jumps(self) -> cython.bint:
+    def seems_discontinuous(self) -> cython.bint:
         """Whether the function seems to."""
         difference: cython.double = fabs(self.after - self.before)
-        near: cython.bint = self.width < CLOSER * self.first_width
-        return self.may_jump and near and difference > LESS * self.first_difference
+        near: cython.bint = self.width < JUMP_WIDTH * self.first_width
+        return self.may_jump and near and difference > JUMP_DIFFERENCE * self.first_difference
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def known(self, fine: cython.double, after_next: cython.bint = False) -> cython.bint:
+    def converged(self, fine: cython.double, after_next: cython.bint = False) -> cython.bint:
         """Whether another look would move by no more than this; or the one after next.
 
         That is shorter than the next by at least as much as the next is than the last.
@@ -93,30 +96,30 @@ class Secants:
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def saw(self, at: cython.double, value: cython.double) -> cython.int:
+    def update(self, at: cython.double, value: cython.double) -> cython.int:
         """Take the value there for that of one side."""
-        if self.looks % IN_TURN == IN_TURN - 1:
+        if self.evaluations % HALVING_INTERVAL == HALVING_INTERVAL - 1:
             self.width_in_turn = self.width
-        self.looks += 1
+        self.evaluations += 1
         self.last, self.last_value, self.now, self.now_value = self.now, self.now_value, at, value
         if (value > 0.0) != (self.before > 0.0):
             self.high, self.after = at, value
         else:
             self.low, self.before = at, value
-        self.aim()
+        self.choose_next()
         return 0
 
 
 @cython.cclass
 class Landing:
-    """`value` (k, 2), of the parameter with a width; `met`: whether the step was cut to end at one."""
+    """`value` (k, 2), of the parameter with a width; `shortened`: whether the step was cut to end at one."""
 
     def __init__(self, values: Sequence[tuple[float, float]]) -> None:
-        self.value, self.met = np.array(values, dtype=np.float64).reshape(-1, 2), False
+        self.value, self.shortened = np.array(values, dtype=np.float64).reshape(-1, 2), False
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def up_to(self, stepper: Stepper, step: cython.double) -> cython.double:
+    def limit_step(self, stepper: Stepper, step: cython.double) -> cython.double:
         """The step, or the length at which it comes to the first value."""
         k: cython.Py_ssize_t
         n: cython.Py_ssize_t = stepper.problem.unknowns
@@ -126,16 +129,16 @@ class Landing:
         for k in range(self.value.shape[0]):
             way = self.value[k, 0] - stepper.here.z[n]
             nearer: cython.bint = (
-                way * unit > 0.0 and fabs(way) > stepper.options.events.landing * self.value[k, 1]
+                way * unit > 0.0 and fabs(way) > stepper.options.events.landing_tolerance * self.value[k, 1]
             )
             if nearer and fabs(way) < first * fabs(unit):
                 first = way / unit
-        self.met = stepper.options.step.shortest < first < step
-        return first if self.met else step
+        self.shortened = stepper.options.step.min_step < first < step
+        return first if self.shortened else step
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def across(self, stepper: Stepper, step: cython.double) -> cython.double:
+    def first_crossed(self, stepper: Stepper, step: cython.double) -> cython.double:
         """Length at which a step comes to the first value that it leads across; 0 if there is none."""
         k: cython.Py_ssize_t
         n: cython.Py_ssize_t = stepper.problem.unknowns
@@ -147,10 +150,11 @@ class Landing:
             within: cython.bint = way * gone > 0.0 and fabs(way) < fabs(gone)
             if (
                 within
-                and min(fabs(way), fabs(gone - way)) > stepper.options.events.landing * self.value[k, 1]
+                and min(fabs(way), fabs(gone - way))
+                > stepper.options.events.landing_tolerance * self.value[k, 1]
             ):
                 first = min(first, step * way / gone)
-        return first if stepper.options.step.shortest < first < step else 0.0
+        return first if stepper.options.step.min_step < first < step else 0.0
 
 
 class End(NamedTuple):
@@ -188,12 +192,12 @@ class Events:
         return [one for one in self.narrow if one[1] < length]
 
 
-NO_MORE = Events()  # than those of every curve
-LOST = cython.declare(cython.double, -1.0)  # a root that is none
+NO_EVENTS = Events()  # than those of every curve
+NOT_FOUND = cython.declare(cython.double, -1.0)  # a root that is none
 MARGIN = cython.declare(cython.int, 0)  # the functions along a step
 FOLD = cython.declare(cython.int, 1)
 PEAK = cython.declare(cython.int, 2)
-PASSING = cython.declare(cython.int, 3)
+STATION = cython.declare(cython.int, 3)
 
 
 @cython.cclass
@@ -214,7 +218,7 @@ def value(stepper: Stepper, point: Point, function: TestFunction) -> cython.doub
             stepper.here.margin[k] if point is stepper.here else stepper.here.margin_at(k, point)
         )
         return margin if margin != 0.0 else stepper.here.margin[k]
-    if function.kind == PASSING:
+    if function.kind == STATION:
         return point.z[point.z.shape[0] - 1] - function.value
     return point.tangent[point.tangent.shape[0] - 1] if function.kind == FOLD else point.growth[k]
 
@@ -238,27 +242,27 @@ def root(
     """Length at which a function changes sign between two lengths, before and after which it is known.
 
     Where the curve cannot be found, that length is the root of a growth; of a margin it is LOST, as what is
-    there may be another part of a curve that goes back in the corner; of a fold, too: see `enclosed`.
+    there may be another part of a curve that goes back in the corner; of a fold, too: see `bracketed_fold`.
     """
     at: cython.double
     now: cython.double
     count: cython.int
     turning: cython.bint = function.kind == FOLD or function.kind == PEAK
-    sides: Secants = Secants(low, high, before, after)
-    for count in range(stepper.options.events.most):  # noqa: B007
-        if sides.known(stepper.options.events.fine * stepper.step, function.kind == MARGIN):
+    sides: SignChange = SignChange(low, high, before, after)
+    for count in range(stepper.options.events.max_evaluations):  # noqa: B007
+        if sides.converged(stepper.options.events.tolerance * stepper.step, function.kind == MARGIN):
             return min(max(sides.secant, sides.low), sides.high)
         at = sides.at
-        if not stepper.put(at, function.kind == MARGIN, False):
-            return sides.high if function.kind == PEAK else LOST
+        if not stepper.find_between(at, function.kind == MARGIN, False):
+            return sides.high if function.kind == PEAK else NOT_FOUND
         if function.kind == FOLD and stepper.newton.moved > stepper.step:
-            return LOST
+            return NOT_FOUND
         if turning and not stepper.sharpen(False, function.kind == PEAK):
-            return LOST if function.kind == FOLD else sides.high
+            return NOT_FOUND if function.kind == FOLD else sides.high
         now = value(stepper, stepper.between, function)
         if now == 0.0:
             return at
-        sides.saw(at, now)
+        sides.update(at, now)
     return sides.high
 
 
@@ -272,13 +276,13 @@ class Event(NamedTuple):
     orientation: float
 
 
-def found(stepper: Stepper, length: float, mark: int, point: Point) -> Event:
+def event_at_point(stepper: Stepper, length: float, mark: int, point: Point) -> Event:
     """A point to keep."""
     direction = np.asarray(stepper.newton.scale) * np.asarray(point.tangent)
     return Event(length, mark, np.array(point.z), direction, point.orientation)
 
 
-def seen(stepper: Stepper, poll: Sample, mark: int) -> Event:
+def event_at_sample(stepper: Stepper, poll: Sample, mark: int) -> Event:
     """A look to keep."""
     scale = np.asarray(stepper.newton.scale)
     return Event(poll.at, mark, scale * poll.z, scale * poll.tangent, poll.orientation)
@@ -293,7 +297,7 @@ def first_margin(stepper: Stepper) -> float:
     for k in _changing(stepper):
         if stepper.here.margin[k] * stepper.here.margin_at(k, last) < 0.0:
             first = min(first, root_within(stepper, TestFunction(MARGIN, k)))
-            if first == LOST:
+            if first == NOT_FOUND:
                 break
             last = stepper.between
     return first
@@ -311,7 +315,7 @@ def _changing(stepper: Stepper) -> list[int]:
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def quiet(stepper: Stepper, values: cython.double[::1], greatest: cython.double[::1]) -> cython.bint:
+def without_events(stepper: Stepper, values: cython.double[::1], greatest: cython.double[::1]) -> cython.bint:
     """Whether there is nothing within the step."""
     n: cython.Py_ssize_t = stepper.problem.unknowns
     k: cython.Py_ssize_t
@@ -323,22 +327,22 @@ def quiet(stepper: Stepper, values: cython.double[::1], greatest: cython.double[
     if here.tangent[n] * there.tangent[n] < 0.0:
         return False
     for k in range(stepper.problem.outputs):
-        if turns(here, there, k, greatest[k], stepper.options.events):
+        if has_peak(here, there, k, greatest[k], stepper.options.events):
             return False
     return True
 
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def turns(
+def has_peak(
     here: Point, there: Point, k: cython.Py_ssize_t, greatest: cython.double, options: EventOptions
 ) -> cython.bint:
     """Whether an output has a peak that matters between two places."""
     size: cython.double = max(here.output[k], there.output[k])
-    least: cython.double = options.rise * size
+    least: cython.double = options.min_growth * size
     if not (here.growth[k] > least and there.growth[k] < -least):
         return False
-    return size >= options.nearly_greatest * greatest
+    return size >= options.peak_threshold * greatest
 
 
 @cython.cfunc
@@ -351,13 +355,13 @@ def may_exceed(stepper: Stepper, k: cython.Py_ssize_t, greatest: cython.double) 
     """
     here: Point = stepper.here
     there: Point = stepper.there
-    slope: cython.double = max(here.growth[k], -there.growth[k] / stepper.spread())
+    slope: cython.double = max(here.growth[k], -there.growth[k] / stepper.clipped_cosine())
     return max(here.output[k], there.output[k]) + stepper.step * slope >= greatest
 
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def closes(stepper: Stepper, first: cython.double[::1], head: cython.double[::1]) -> cython.bint:
+def closes_curve(stepper: Stepper, first: cython.double[::1], head: cython.double[::1]) -> cython.bint:
     """Whether the step passes the point where the curve began, in the direction that it had there."""
     i: cython.Py_ssize_t
     before: cython.double = 0.0
@@ -373,10 +377,10 @@ def closes(stepper: Stepper, first: cython.double[::1], head: cython.double[::1]
         after += other * head[i]
     if sqrt(min(far, farther)) > stepper.step:
         return False
-    return before < 0.0 <= after and along(stepper.here.tangent, head) > stepper.options.events.same_way
+    return before < 0.0 <= after and dot(stepper.here.tangent, head) > stepper.options.events.closing_cosine
 
 
-def within(stepper: Stepper, limit: float, values: list[float], greatest: FloatArray) -> list[Event]:
+def events_within(stepper: Stepper, limit: float, values: list[float], greatest: FloatArray) -> list[Event]:
     """Folds, peaks and values of the parameter before a limit, a length of the step, in order."""
     n: cython.Py_ssize_t = stepper.problem.unknowns
     k: cython.Py_ssize_t
@@ -385,40 +389,40 @@ def within(stepper: Stepper, limit: float, values: list[float], greatest: FloatA
     there: Point = stepper.there
     events = []
     costly: cython.bint = (
-        stepper.problem.labelled or stepper.problem.unknowns >= DEAR
+        stepper.problem.labelled or stepper.problem.unknowns >= COSTLY_SIZE
     )  # what lies between helps
     folds: cython.bint = here.tangent[n] * there.tangent[n] < 0.0
     peaks = [
-        k for k in range(stepper.problem.outputs) if turns(here, there, k, most[k], stepper.options.events)
+        k for k in range(stepper.problem.outputs) if has_peak(here, there, k, most[k], stepper.options.events)
     ]
     looks = ExtremumSearch(stepper) if costly and (folds or peaks) else None
     if folds:
-        events += located(stepper, FOLD, 0, limit, Mark.FOLD, looks)
+        events += located_root(stepper, FOLD, 0, limit, Mark.FOLD, looks)
     fold = events[0] if events else None
     for value in values:
-        events += passings(stepper, value, fold)
+        events += station_crossings(stepper, value, fold)
     for k in peaks:
         if not costly or may_exceed(stepper, k, most[k]):
-            events += located(stepper, PEAK, k, limit, Mark.PEAK, looks)
+            events += located_root(stepper, PEAK, k, limit, Mark.PEAK, looks)
     # several outputs may be greatest at the same point
     distinct = {(event.length, event.mark): event for event in events if event.length <= limit}
     return sorted(distinct.values(), key=lambda event: event.length)
 
 
-def located(
+def located_root(
     stepper: Stepper, kind: int, k: int, limit: float, mark: int, looks: ExtremumSearch | None
 ) -> list[Event]:
     """The root of a function along the step, as a list of one point, or none if the curve is not found."""
     if looks is not None:
         poll = looks.extreme(None if kind == FOLD else k)
-        return [seen(stepper, poll, mark)] if poll.at <= limit else []
+        return [event_at_sample(stepper, poll, mark)] if poll.at <= limit else []
     at = root_within(stepper, TestFunction(kind, k))
-    if at == LOST:
-        event = enclosed(stepper)
+    if at == NOT_FOUND:
+        event = bracketed_fold(stepper)
         return [event] if event.length <= limit else []
-    if at > limit or not stepper.put(at, False, False):
+    if at > limit or not stepper.find_between(at, False, False):
         return []
-    return [found(stepper, at, mark, stepper.between)]
+    return [event_at_point(stepper, at, mark, stepper.between)]
 
 
 class _Side(NamedTuple):
@@ -429,7 +433,7 @@ class _Side(NamedTuple):
     tangent: FloatArray
 
 
-def enclosed(stepper: Stepper) -> Event:
+def bracketed_fold(stepper: Stepper) -> Event:
     """A fold that is no regular point of the curve, between points on both sides, up to the cube of their
     distance."""
     scale = np.array(stepper.newton.scale)
@@ -437,14 +441,14 @@ def enclosed(stepper: Stepper) -> Event:
         _Side(at, np.array(point.z) / scale, np.array(point.tangent))
         for at, point in ((0.0, stepper.here), (stepper.step, stepper.there))
     )
-    for _ in range(stepper.options.events.most):
+    for _ in range(stepper.options.events.max_evaluations):
         width = high.at - low.at
-        if width < stepper.options.events.enclosed:
+        if width < stepper.options.events.fold_bracket:
             break
         middle = low.at + width * low.tangent[-1] / (low.tangent[-1] - high.tangent[-1])
         nearer = low.at, high.at
         for at in (middle - 0.1 * width, middle + 0.1 * width):
-            if not (low.at < at < high.at and stepper.put(at, False, False)):
+            if not (low.at < at < high.at and stepper.find_between(at, False, False)):
                 continue
             if stepper.newton.moved < stepper.step and stepper.sharpen(False, False):
                 side = _Side(at, np.array(stepper.between.z) / scale, np.array(stepper.between.tangent))
@@ -460,7 +464,7 @@ def enclosed(stepper: Stepper) -> Event:
     return Event(at, Mark.FOLD, scale * z, scale * tangent, here.orientation)
 
 
-def passings(stepper: Stepper, value: float, fold: Event | None) -> list[Event]:
+def station_crossings(stepper: Stepper, value: float, fold: Event | None) -> list[Event]:
     """Where the parameter passes a value: once on the way, or on either side of a fold.
 
     At a value next to a fold the equations have two solutions close together, either of which may be found,
@@ -471,25 +475,29 @@ def passings(stepper: Stepper, value: float, fold: Event | None) -> list[Event]:
     end: float = stepper.there.z[n] - value
     if fold is not None:
         top = float(fold.z[n]) - value
-        return passing(stepper, value, 0.0, fold.length, begin, top) + passing(
+        return station_crossing(stepper, value, 0.0, fold.length, begin, top) + station_crossing(
             stepper, value, fold.length, stepper.step, top, end
         )
-    if begin * end < 0.0 and stepper.land(value) and 0.0 <= stepper.length(stepper.between) <= stepper.step:
-        return [found(stepper, stepper.length(stepper.between), Mark.STATION, stepper.between)]
-    return passing(stepper, value, 0.0, stepper.step, begin, end)
+    if (
+        begin * end < 0.0
+        and stepper.find_at_parameter(value)
+        and 0.0 <= stepper.length(stepper.between) <= stepper.step
+    ):
+        return [event_at_point(stepper, stepper.length(stepper.between), Mark.STATION, stepper.between)]
+    return station_crossing(stepper, value, 0.0, stepper.step, begin, end)
 
 
-def passing(
+def station_crossing(
     stepper: Stepper, value: float, low: float, high: float, before: float, after: float
 ) -> list[Event]:
     """Where the parameter passes a value between two lengths, at which it is greater by before and after."""
     if not before * after < 0.0:
         return []
-    at = root(stepper, TestFunction(PASSING, 0, value), low, high, before, after)
-    if at == LOST or not stepper.put(at, False, False):
+    at = root(stepper, TestFunction(STATION, 0, value), low, high, before, after)
+    if at == NOT_FOUND or not stepper.find_between(at, False, False):
         return []
     stepper.between.z[stepper.problem.unknowns] = value
-    return [found(stepper, at, Mark.STATION, stepper.between)]
+    return [event_at_point(stepper, at, Mark.STATION, stepper.between)]
 
 
 def first_end(stepper: Stepper, ends: Sequence[End]) -> tuple[int, float] | None:
@@ -509,15 +517,15 @@ def first_end(stepper: Stepper, ends: Sequence[End]) -> tuple[int, float] | None
     if after >= 0.0:
         return None
     before, which = least(stepper.here), first(np.array(stepper.there.z))
-    sides, at = Secants(0.0, stepper.step, before, after, True), 0.0
-    for _ in range(stepper.options.events.most if before > 0.0 else 0):
-        if sides.width <= max(stepper.options.events.fine * stepper.step, ends[which].within):
+    sides, at = SignChange(0.0, stepper.step, before, after, True), 0.0
+    for _ in range(stepper.options.events.max_evaluations if before > 0.0 else 0):
+        if sides.width <= max(stepper.options.events.tolerance * stepper.step, ends[which].within):
             break
-        known = stepper.put(sides.at, False, False)
+        known = stepper.find_between(sides.at, False, False)
         now = least(stepper.between) if known else after
         if now >= 0.0:
             at = sides.at
         elif known:
             which = first(np.array(stepper.between.z))
-        sides.saw(sides.at, now)
+        sides.update(sides.at, now)
     return which, at

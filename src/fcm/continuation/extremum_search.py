@@ -24,27 +24,27 @@ class ExtremumOptions:
 
     Attributes
     ----------
-    turned, corner : float
+    fold_tolerance, corner_tolerance : float
         Of the parameter, to which a fold is known; and to which one in a corner is.
-    better : float
+    min_reduction : float
         Part of a slope, to which the next look has to reduce it: otherwise there is no cubic.
-    sharper : float
+    corner_curvature : float
         Times the bend of the step: from there on there is a corner.
-    aside : float
+    corner_offset : float
         Part of the square of an interval over the step: how far from a corner, which they are to enclose.
-    coarse : float
+    min_length : float
         Length below which values are too nearly the same to tell more than their slopes.
-    flat : float
+    min_cosine : float
         Cosine of a turn, below which a length is no measure of the way.
     """
 
-    turned: float = 1e-15
-    corner: float = 1e-13
-    better: float = 0.25
-    sharper: float = 4.0
-    aside: float = 0.1
-    coarse: float = 1e-5
-    flat: float = 0.1
+    fold_tolerance: float = 1e-15
+    corner_tolerance: float = 1e-13
+    min_reduction: float = 0.25
+    corner_curvature: float = 4.0
+    corner_offset: float = 0.1
+    min_length: float = 1e-5
+    min_cosine: float = 0.1
 
 
 EXTREMUM = ExtremumOptions()  # where nothing else is said
@@ -68,7 +68,11 @@ class ExtremumSearch:
     def __init__(self, stepper: Stepper, options: ExtremumOptions = EXTREMUM) -> None:
         self.options = options
         events = stepper.options.events
-        self.high = events.high_of_many if stepper.problem.outputs >= events.outputs else events.high
+        self.high = (
+            events.peak_tolerance_of_many
+            if stepper.problem.outputs >= events.many_outputs
+            else events.peak_tolerance
+        )
         self.stepper, self.scale = stepper, np.array(stepper.newton.scale)
         self.known = [self._sample(0.0, stepper.here), self._sample(stepper.step, stepper.there)]
 
@@ -77,15 +81,15 @@ class ExtremumSearch:
         low, high = self._between(output)
         sense, steep = self._slope(low, output), self._bend(low, high, output)
         upper, again, better = False, 0, True
-        for _ in range(self.stepper.options.events.most):
+        for _ in range(self.stepper.options.events.max_evaluations):
             for end in (high, low):
                 if self._is_root(end, low, high, output):
                     return end
-            if high.at - low.at <= self.stepper.options.events.fine * self.stepper.step:
+            if high.at - low.at <= self.stepper.options.events.tolerance * self.stepper.step:
                 return high
             if better:
-                guess = _cubic(low, high, output, self.options.coarse)
-            elif self._bend(low, high, output) > self.options.sharper * steep:
+                guess = _cubic(low, high, output, self.options.min_length)
+            elif self._bend(low, high, output) > self.options.corner_curvature * steep:
                 guess = self._corner(low, high, upper, again)
             else:
                 guess = _middle(low, high)
@@ -93,7 +97,7 @@ class ExtremumSearch:
             if sample is None:
                 return high
             side = self._slope(sample, output) * sense <= 0.0
-            better = abs(self._slope(sample, output)) < self.options.better * abs(
+            better = abs(self._slope(sample, output)) < self.options.min_reduction * abs(
                 self._slope(high if side else low, output)
             )
             again = again + 1 if side == upper else 0
@@ -114,7 +118,7 @@ class ExtremumSearch:
     def _is_root(self, sample: Sample, low: Sample, high: Sample, output: int | None) -> bool:
         """Whether the extreme is higher than this by no more than rounding."""
         now, size = abs(self._slope(sample, output)), abs(float(sample.z[-1]))
-        smooth, corner = self.options.turned, self.options.corner
+        smooth, corner = self.options.fold_tolerance, self.options.corner_tolerance
         if output is not None:
             size, smooth, corner = float(sample.output[output]), self.high, self.high
         if now * (high.at - low.at) < corner * size:
@@ -132,8 +136,8 @@ class ExtremumSearch:
         """
         width, bend = high.at - low.at, low.slope - high.slope
         meet = low.at + float((high.z - high.slope * width - low.z) @ bend) / max(float(bend @ bend), 1e-300)
-        least = 0.25 * self.stepper.options.events.fine * self.stepper.step
-        aside = max(self.options.aside * width * width / self.stepper.step, least) * 10.0**again
+        least = 0.25 * self.stepper.options.events.tolerance * self.stepper.step
+        aside = max(self.options.corner_offset * width * width / self.stepper.step, least) * 10.0**again
         at = meet - aside if upper else meet + aside
         if not low.at < at < high.at or aside > 0.5 * width:
             at = meet = 0.5 * (low.at + high.at)
@@ -143,7 +147,7 @@ class ExtremumSearch:
     def _put(self, at: float, guess: FloatArray) -> Sample | None:
         """The point at a length, found from a guess; it is known from now on."""
         stepper = self.stepper
-        if not stepper.near(at, self.scale * guess):
+        if not stepper.find_from_guess(at, self.scale * guess):
             return None
         sample = self._sample(at, stepper.between)
         self.known = sorted((*self.known, sample), key=lambda one: one.at)
@@ -151,7 +155,7 @@ class ExtremumSearch:
 
     def _sample(self, at: float, point: Point) -> Sample:
         tangent = np.array(point.tangent)
-        along = max(float(tangent @ np.asarray(self.stepper.here.tangent)), self.options.flat)
+        along = max(float(tangent @ np.asarray(self.stepper.here.tangent)), self.options.min_cosine)
         growth = np.array(point.growth) / along
         return Sample(
             at, np.array(point.z) / self.scale, tangent, tangent / along, np.array(point.output), growth,

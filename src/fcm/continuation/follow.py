@@ -19,40 +19,45 @@ from collections.abc import Callable, Sequence
 import cython
 import numpy as np
 
-from fcm.continuation.checkpoint import Checkpoint, put_back, state_of
-from fcm.continuation.events import NO_MORE, End, Events, Landing, first_end
+from fcm.continuation.checkpoint import Checkpoint, restore_stepper, stepper_state
+from fcm.continuation.events import NO_EVENTS, End, Events, Landing, first_end
 from fcm.continuation.labelled_switching import LabelledSwitching
 from fcm.continuation.nonsmooth_points import NonsmoothPoints
 from fcm.continuation.options import FOLLOW, FollowOptions, StepOptions, SwitchingOptions
 from fcm.continuation.path import FloatArray, Mark, Path, Status
 from fcm.continuation.point import Point, PointStore
 from fcm.continuation.problem import Problem
-from fcm.continuation.recorder import Recorder, earlier
+from fcm.continuation.recorder import Recorder, step_back
 from fcm.continuation.stepper import Stepper
 
 if cython.compiled:
     from cython.cimports.fcm.continuation.nonsmooth_points import before_corner
-    from cython.cimports.fcm.continuation.step_control import clear, extent, good, next_step
+    from cython.cimports.fcm.continuation.step_control import (
+        acceptable,
+        next_step,
+        smooth_step,
+        solution_size,
+    )
     from cython.cimports.fcm.continuation.switching_functions import (
-        ahead,
-        crosses,
-        detour,
-        dip,
-        even,
-        straight_ahead,
-        turning,
+        changes_sign,
+        hidden_reversal,
+        hidden_sign_change,
+        next_corner,
+        next_extrapolated_root,
+        parameter_is_even,
+        parameter_reversal,
     )
 else:
     from fcm.continuation.nonsmooth_points import before_corner
-    from fcm.continuation.step_control import clear, extent, good, next_step
+    from fcm.continuation.step_control import acceptable, next_step, smooth_step, solution_size
     from fcm.continuation.switching_functions import (
-        ahead,
-        crosses,
-        detour,
-        dip,
-        even,
-        straight_ahead,
-        turning,
+        changes_sign,
+        hidden_reversal,
+        hidden_sign_change,
+        next_corner,
+        next_extrapolated_root,
+        parameter_is_even,
+        parameter_reversal,
     )
 
 __all__ = ["Progress", "Watch", "follow"]
@@ -77,7 +82,7 @@ class Follower:
     nonsmooth: NonsmoothPoints
     step: cython.double
     size: cython.double  # of the solution at the start
-    near: cython.double  # a corner no further away is gone to at once
+    approach_distance: cython.double  # a corner no further away is gone to at once
     attempts: int  # to go back from where no step leads on
     labelled: LabelledSwitching | None
     progress: Progress | None
@@ -86,15 +91,19 @@ class Follower:
         self,
         problem: Problem,
         span: tuple[float, float],
-        events: Events = NO_MORE,
+        events: Events = NO_EVENTS,
         options: FollowOptions = FOLLOW,
         progress: Progress | None = None,
         stepper: Stepper | None = None,
     ) -> None:
         self.problem, self.options, self.progress = problem, options, progress
         self.stepper = stepper or Stepper(problem, options)
-        self.stepper.ready(options)
-        self.near = options.max_step if options.hasty or problem.costly else options.switching.near
+        self.stepper.reset(options)
+        self.approach_distance = (
+            options.max_step
+            if options.stations_only or problem.costly
+            else options.switching.approach_distance
+        )
         self.recorder, self.ends = Recorder(self.stepper, span, events), events.ends
         self.landing = Landing(events.within(options.max_step * (span[1] - span[0])))
         self.nonsmooth, self.attempts = NonsmoothPoints(self.recorder, problem.labelled), 0
@@ -112,32 +121,34 @@ class Follower:
             row /= np.linalg.norm(row)
         if not self.stepper.begin(np.array(start, dtype=np.float64), row):
             return False
-        self.recorder.begins(start[n] if direction is None else float(self.stepper.here.z[n]))
-        self.size = extent(self.stepper)
-        self.step = min(self.options.step.first, self.options.max_step)
+        self.recorder.start(start[n] if direction is None else float(self.stepper.here.z[n]))
+        self.size = solution_size(self.stepper)
+        self.step = min(self.options.step.initial_step, self.options.max_step)
         return True
 
     def resume(self, checkpoint: Checkpoint) -> None:
         """Go where the curve had come to."""
-        put_back(self.stepper, checkpoint)
-        self.recorder.resumes(checkpoint)
+        restore_stepper(self.stepper, checkpoint)
+        self.recorder.restore(checkpoint)
         self.step, self.size = checkpoint.step, checkpoint.size
 
     def checkpoint(self) -> Checkpoint:
         """Where it is."""
-        return Checkpoint(step=self.step, size=self.size, **self.recorder.state(), **state_of(self.stepper))
+        return Checkpoint(
+            step=self.step, size=self.size, **self.recorder.state(), **stepper_state(self.stepper)
+        )
 
     def run(self, watch: Watch | None) -> Path:
         """Step by step to where the curve ends."""
         count: cython.int
-        for count in range(self.options.step.most):
-            if watch is not None and self.labelled is not None and self.labelled.repeated == 0:
+        for count in range(self.options.step.max_steps):
+            if watch is not None and self.labelled is not None and self.labelled.departures == 0:
                 watch(self.checkpoint())
             status = self.advance()
             if status is None:
                 if self.progress is not None and count % 16 == 0:
                     self.progress(self.recorder.covered())
-            elif status is not Status.STALLED or not self.taken_back():
+            elif status is not Status.STALLED or not self.retreat():
                 return self.path(status)
         return self.path(Status.TOO_LONG)
 
@@ -145,13 +156,13 @@ class Follower:
         """The points kept so far."""
         return self.recorder.path(status)
 
-    def taken_back(self) -> bool:
+    def retreat(self) -> bool:
         """Whether the curve can be gone on with from an earlier point, by other steps."""
-        if self.labelled is not None or self.attempts == len(self.options.step.back):
+        if self.labelled is not None or self.attempts == len(self.options.step.retreats):
             return False
         self.attempts += 1
-        self.step = min(self.options.step.first, self.options.max_step)
-        return earlier(self.stepper, self.recorder.store, self.options.step.back[self.attempts - 1])
+        self.step = min(self.options.step.initial_step, self.options.max_step)
+        return step_back(self.stepper, self.recorder.store, self.options.step.retreats[self.attempts - 1])
 
     @cython.cfunc
     def advance(self) -> object:
@@ -162,99 +173,113 @@ class Follower:
         step: cython.double = self.step
         if self.labelled is not None:
             return self.labelled.advance(self, step)
-        step = self.landing.up_to(stepper, step)
-        many: cython.bint = self.problem.unknowns >= switching.many
-        if self.problem.costly and (self.over(step) or self.over(control.shortened * step)):
-            return self.smooth()
-        while step > control.shortest:
-            known: cython.bint = step <= stepper.past  # the last corner and all that is nearer are one
-            reach: cython.double = ahead(stepper, step)
-            if reach < step and step > self.near and many and self.over(step):
-                return self.smooth()
-            if reach < min(step, switching.touched):
-                stepper.drift(reach)
-                return self.leave(stepper.here, 0.0)
+        step = self.landing.limit_step(stepper, step)
+        many: cython.bint = self.problem.unknowns >= switching.many_unknowns
+        if self.problem.costly and (
+            self.steps_over_corners(step) or self.steps_over_corners(control.retry_fraction * step)
+        ):
+            return self.accept_step()
+        while step > control.min_step:
+            known: cython.bint = (
+                step <= stepper.known_length
+            )  # the last corner and all that is nearer are one
+            reach: cython.double = next_corner(stepper, step)
+            if reach < step and step > self.approach_distance and many and self.steps_over_corners(step):
+                return self.accept_step()
+            if reach < min(step, switching.reached_distance):
+                stepper.move_short(reach)
+                return self.leave_corner(stepper.here, 0.0)
             # curves bend more and more towards a corner, and may hide a pair of folds there
-            if self.near < reach < step and clear(stepper, switching.nearer * reach) and self.hidden() == 0.0:
-                return self.smooth()
-            if stepper.go(reach * (1.0 + switching.past) + control.shortest if reach < step else step):
-                if crosses(stepper) and not known:
-                    if stepper.past > 0.0 and before_corner(stepper) < stepper.past:
-                        step = stepper.past  # to the value of the parameter that is nearer
+            if (
+                self.approach_distance < reach < step
+                and smooth_step(stepper, switching.approach_fraction * reach)
+                and self.hidden_event() == 0.0
+            ):
+                return self.accept_step()
+            if stepper.try_step(
+                reach * (1.0 + switching.overshoot) + control.min_step if reach < step else step
+            ):
+                if changes_sign(stepper) and not known:
+                    if stepper.known_length > 0.0 and before_corner(stepper) < stepper.known_length:
+                        step = stepper.known_length  # to the value of the parameter that is nearer
                         continue
-                    status = self.corner() if stepper.missed < 1.0 else Status.STALLED
+                    status = self.reach_corner() if stepper.miss < 1.0 else Status.STALLED
                     if status is not Status.STALLED:
                         return status
-                elif reach >= step and good(stepper):
-                    hidden: cython.double = self.hidden() or self.landing.across(stepper, step)
+                elif reach >= step and acceptable(stepper):
+                    hidden: cython.double = self.hidden_event() or self.landing.first_crossed(stepper, step)
                     if hidden == 0.0:
-                        return self.smooth()
+                        return self.accept_step()
                     step = hidden
                     continue
             if self.problem.rooted:
-                status = self.straight(step, reach)
+                status = self.pass_straight_corner(step, reach)
                 if status is not Status.STALLED:
                     return status
             # the curve may turn back in a corner, so that nothing is to be found beyond
-            if reach < step and clear(stepper, reach * (1.0 - switching.past)):
-                return self.smooth()
+            if reach < step and smooth_step(stepper, reach * (1.0 - switching.overshoot)):
+                return self.accept_step()
             step = 0.25 * min(step, reach)
         return Status.STALLED
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def over(self, step: cython.double) -> cython.bint:
+    def steps_over_corners(self, step: cython.double) -> cython.bint:
         """Whether a step goes on past all margins as if there were none: where they are many, most corners
         are slight. Only if none can hide a pair of folds, which a hasty curve may miss."""
         stepper: Stepper = self.stepper
-        if not stepper.go(step) or not good(stepper) or self.landing.across(stepper, step) > 0.0:
+        if (
+            not stepper.try_step(step)
+            or not acceptable(stepper)
+            or self.landing.first_crossed(stepper, step) > 0.0
+        ):
             return False
-        if detour(stepper, self.recorder.most) != 0.0:
+        if hidden_reversal(stepper, self.recorder.most) != 0.0:
             return False
-        return self.options.hasty or not crosses(stepper) or even(stepper)
+        return self.options.stations_only or not changes_sign(stepper) or parameter_is_even(stepper)
 
     @cython.cfunc
-    def straight(self, step: cython.double, reach: cython.double) -> object:
+    def pass_straight_corner(self, step: cython.double, reach: cython.double) -> object:
         """Go on from the corner where a margin vanishes that goes on as it does here.
 
         STALLED if none does, or that is where the prediction comes to it, too.
         """
         stepper: Stepper = self.stepper
         switching: SwitchingOptions = self.options.switching
-        at: cython.double = straight_ahead(stepper)
+        at: cython.double = next_extrapolated_root(stepper)
         store: PointStore = self.recorder.store
         if store.ends_at(stepper.here) and store.mark[store.count - 1] & CORNER:
             return Status.STALLED  # nothing was found beyond
-        if reach < step and reach > switching.met * at:
+        if reach < step and reach > switching.root_fraction * at:
             return Status.STALLED
-        past: cython.double = switching.across * at
-        if 0.0 < past < step and stepper.go(past) and stepper.missed < 1.0 and crosses(stepper):
-            status = self.corner()
+        past: cython.double = switching.crossing_factor * at
+        if 0.0 < past < step and stepper.try_step(past) and stepper.miss < 1.0 and changes_sign(stepper):
+            status = self.reach_corner()
             if status is not Status.STALLED:
                 return status
-        if 0.0 < at < switching.touched_root:  # the curve may turn back there
-            stepper.drift(at)
-            return self.leave(stepper.here, 0.0)
+        if 0.0 < at < switching.reached_distance_root:  # the curve may turn back there
+            stepper.move_short(at)
+            return self.leave_corner(stepper.here, 0.0)
         return Status.STALLED
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def hidden(self) -> cython.double:
+    def hidden_event(self) -> cython.double:
         """Length at which the step passes by something that both its ends tell of; 0 if they do not."""
-        self.stepper.incline()
-        at: cython.double = dip(self.stepper)
-        return at if at > 0.0 else detour(self.stepper, self.recorder.most)
+        self.stepper.differentiate_margins()
+        at: cython.double = hidden_sign_change(self.stepper)
+        return at if at > 0.0 else hidden_reversal(self.stepper, self.recorder.most)
 
-    def good(self) -> bool:
+    def acceptable(self) -> bool:
         """Whether the curve was where it was predicted, and went on as it did."""
-        return bool(good(self.stepper))
+        return bool(acceptable(self.stepper))
 
-    def turning(self) -> float:
+    def fold_pair(self) -> float:
         """Length at which the step passes by two folds that its ends tell of; 0 if they do not."""
-        return float(turning(self.stepper) * self.stepper.step)
+        return float(parameter_reversal(self.stepper) * self.stepper.step)
 
     @cython.ccall
-    def smooth(self) -> object:
+    def accept_step(self) -> object:
         """Go on to the point there."""
         stepper: Stepper = self.stepper
         count: cython.int = self.recorder.store.count
@@ -262,45 +287,49 @@ class Follower:
             ended = first_end(stepper, self.ends)
             if ended is not None:
                 return self.recorder.stop_at(ended[1], ended[0])
-        if self.recorder.keep(stepper.step):
-            return self.recorder.end()
+        if self.recorder.keep_events(stepper.step):
+            return self.recorder.end_status()
         if not self.recorder.inside():
             self.recorder.store.cut(count)  # beyond an end that was not landed on
             self.step = 0.25 * stepper.step
-            return Status.STALLED if self.step < self.options.step.after else None
+            return Status.STALLED if self.step < self.options.step.step_after_corner else None
         if self.recorder.closed():
             return Status.CLOSED
         turned: cython.bint = stepper.there.orientation != stepper.here.orientation
         self.recorder.add(BRANCH if turned else 0)
         wanted: cython.double = self.step
         self.step = next_step(stepper)
-        if self.landing.met and self.step >= stepper.step:  # nothing was there: on with the steps before
+        if (
+            self.landing.shortened and self.step >= stepper.step
+        ):  # nothing was there: on with the steps before
             self.step = max(self.step, wanted)
         stepper.accept(stepper.there, stepper.step)
-        self.recorder.rise()
-        return Status.UNBOUNDED if extent(stepper) > self.problem.unbounded * self.size else None
+        self.recorder.update_greatest()
+        return Status.UNBOUNDED if solution_size(stepper) > self.problem.unbounded * self.size else None
 
     @cython.cfunc
-    def corner(self) -> object:
+    def reach_corner(self) -> object:
         """Go on from the first corner of the step; STALLED where the curve is not found up to there."""
         stepper: Stepper = self.stepper
         at: cython.double = before_corner(stepper)
         if at < 0.0:
             return Status.STALLED
-        if self.recorder.keep(stepper.step):
-            return self.recorder.end()
-        point: Point = stepper.between if stepper.put(at, True, True) else stepper.there
-        return self.leave(point, at)
+        if self.recorder.keep_events(stepper.step):
+            return self.recorder.end_status()
+        point: Point = stepper.between if stepper.find_between(at, True, True) else stepper.there
+        return self.leave_corner(point, at)
 
     @cython.ccall
-    def leave(self, point: Point, at: cython.double, past: cython.double = 0.0) -> object:
+    def leave_corner(self, point: Point, at: cython.double, past: cython.double = 0.0) -> object:
         """Go on from a corner, a point at a length from here; past: where to look if it is labelled."""
-        self.nonsmooth.at(point, at, past or self.options.switching.beyond)
-        resumed: cython.double = self.options.step.resumed * self.step if self.problem.costly else 0.0
-        self.step = max(self.options.step.after, resumed)
+        self.nonsmooth.pass_corner(point, at, past or self.options.switching.departure_length)
+        resumed: cython.double = (
+            self.options.step.resumed_fraction * self.step if self.problem.costly else 0.0
+        )
+        self.step = max(self.options.step.step_after_corner, resumed)
         return None
 
-    def aim(self, step: float, longer: bool) -> None:
+    def limit_step(self, step: float, longer: bool) -> None:
         """Make the next step at most that long, or at least."""
         self.step = min(max(self.step, step), self.options.max_step) if longer else min(self.step, step)
 
@@ -309,7 +338,7 @@ def follow(
     problem: Problem,
     start: FloatArray,
     span: tuple[float, float],
-    events: Events = NO_MORE,
+    events: Events = NO_EVENTS,
     options: FollowOptions = FOLLOW,
     *,
     forward: bool = True,

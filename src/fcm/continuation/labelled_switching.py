@@ -18,29 +18,29 @@ from fcm.continuation.options import LabelOptions
 from fcm.continuation.path import FloatArray, Mark, Status
 from fcm.continuation.point import Point, PointStore
 from fcm.continuation.stepper import Stepper
-from fcm.continuation.switching_functions import ahead
+from fcm.continuation.switching_functions import next_corner
 
 
 class Follower(Protocol):
     """What a step needs of the one that follows the curve."""
 
-    def good(self) -> bool:
+    def acceptable(self) -> bool:
         """Whether the curve was where it was predicted, and went on as it did."""
 
-    def turning(self) -> float:
+    def fold_pair(self) -> float:
         """Length at which the step passes by two folds; 0 if it does not."""
 
-    def smooth(self) -> object:
+    def accept_step(self) -> object:
         """Go on to the point there; a status where the curve ends."""
 
-    def leave(self, point: Point, at: float, past: float) -> object:
+    def leave_corner(self, point: Point, at: float, past: float) -> object:
         """Keep the corner, a point at a length from here, and take the direction beyond it."""
 
-    def aim(self, step: float, longer: bool) -> None:
+    def limit_step(self, step: float, longer: bool) -> None:
         """Make the next step at most that long, or at least."""
 
 
-def growth(aim: float, error: float, cubic: bool = False) -> float:
+def step_factor(aim: float, error: float, cubic: bool = False) -> float:
     """Of a step that has missed the curve by an error, to one that misses it by what is aimed at.
 
     The prediction is a parabola, and what it misses grows as the third power; or a cubic: as the fourth.
@@ -48,7 +48,7 @@ def growth(aim: float, error: float, cubic: bool = False) -> float:
     return float(0.9 * (aim / max(error, 1e-12)) ** (0.25 if cubic else 1.0 / 3.0))
 
 
-def within(value: float, low: float, high: float) -> float:
+def clipped(value: float, low: float, high: float) -> float:
     """The value, or the limit that is nearest to it."""
     return min(max(value, low), high)
 
@@ -59,98 +59,129 @@ class LabelledSwitching:
     def __init__(self, stepper: Stepper, store: PointStore) -> None:
         self.stepper, self.store, self.options = stepper, store, stepper.options.labels
         self.control, self.switching = stepper.options.step, stepper.options.switching
-        self.repeated = 0  # corners at one point
-        self.past = 0.0  # length beyond the last of them at which the direction was found
-        self.came: FloatArray = np.zeros(0)  # direction in which the curve came there,
-        self.label: FloatArray = np.zeros(0)  # and its labels before
+        self.departures = 0  # corners at one point
+        self.departure = 0.0  # length beyond the last of them at which the direction was found
+        self.incoming: FloatArray = np.zeros(0)  # direction in which the curve came there,
+        self.incoming_label: FloatArray = np.zeros(0)  # and its labels before
 
     def advance(self, follower: Follower, step: float) -> object:
         """One step; a status where the curve ends. Close to a change there may be no curve to be found."""
         stepper = self.stepper
         # what led to a corner may have been shorter
-        step = asked = max(step, self.control.after, self.options.away * self.past)
+        step = asked = max(
+            step, self.control.step_after_corner, self.options.departure_factor * self.departure
+        )
         # a step that ends short of there is in the corner yet
-        while step > max(self.control.shortest, self.past):
-            if stepper.go(step) and self.good(follower):
-                at = follower.turning() if step > self.control.sharp else 0.0
+        while step > max(self.control.min_step, self.departure):
+            if stepper.try_step(step) and self.acceptable(follower):
+                at = follower.fold_pair() if step > self.control.any_turn_step else 0.0
                 if at == 0.0:
-                    return self.smooth(follower, self.options.wary if step < asked else self.options.longer)
+                    return self.accept_step(
+                        follower,
+                        self.options.max_factor_after_rejection if step < asked else self.options.max_factor,
+                    )
                 step = at
                 continue
-            if step > self.control.sharp:
-                shorter = growth(self.options.error, stepper.newton.moved, stepper.predictor.cubic)
-                step = max(self.control.sharp, step * within(shorter, *self.options.refused))
+            if step > self.control.any_turn_step:
+                shorter = step_factor(
+                    self.options.target_error, stepper.newton.moved, stepper.predictor.cubic
+                )
+                step = max(
+                    self.control.any_turn_step, step * clipped(shorter, *self.options.rejection_factors)
+                )
                 continue
-            reach = ahead(stepper, step)
-            if reach < min(step, max(self.switching.touched, self.past)):
-                return self.leave(follower, min(reach, self.switching.touched))
-            if reach < step and stepper.go(reach * (1.0 - self.options.short_of)) and self.good(follower):
-                status = self.smooth(follower, self.options.longer)
-                follower.aim(self.control.sharp, False)
+            reach = next_corner(stepper, step)
+            if reach < min(step, max(self.switching.reached_distance, self.departure)):
+                return self.search_beyond(follower, min(reach, self.switching.reached_distance))
+            if (
+                reach < step
+                and stepper.try_step(reach * (1.0 - self.options.margin_fraction))
+                and self.acceptable(follower)
+            ):
+                status = self.accept_step(follower, self.options.max_factor)
+                follower.limit_step(self.control.any_turn_step, False)
                 return status
             step = 0.25 * min(step, reach)
-        return self.leave(follower, 0.0 if self.past else ahead(stepper, self.options.met))
+        return self.search_beyond(
+            follower, 0.0 if self.departure else next_corner(stepper, self.options.reached_distance)
+        )
 
-    def good(self, follower: Follower) -> bool:
+    def acceptable(self, follower: Follower) -> bool:
         """Whether a step was, and does not go back: there is no margin to tell that of a corner."""
         stepper = self.stepper
         same = stepper.there.orientation == stepper.here.orientation
-        near = stepper.missed * stepper.step < self.options.most * self.options.error
-        if stepper.step <= self.control.sharp:
-            passes = same or (self.straight() and np.array_equal(stepper.there.margin, stepper.here.margin))
-            return passes and (near or self.turned()) and self.went_on() and follower.good()
-        if self.turned_twice() or self.strayed():
+        near = stepper.miss * stepper.step < self.options.max_error_ratio * self.options.target_error
+        if stepper.step <= self.control.any_turn_step:
+            passes = same or (
+                self.goes_straight() and np.array_equal(stepper.there.margin, stepper.here.margin)
+            )
+            return (
+                passes
+                and (near or self.turned_at_corner())
+                and self.stays_on_branch()
+                and follower.acceptable()
+            )
+        if self.hides_fold_pair() or self.misses_parameter():
             return False
-        gently = stepper.missed < self.options.astray and stepper.cosine > self.options.gently
-        return follower.good() or (same and near and gently)
+        gently = stepper.miss < self.options.max_miss and stepper.cosine > self.options.min_cosine
+        return follower.acceptable() or (same and near and gently)
 
-    def went_on(self) -> bool:
+    def stays_on_branch(self) -> bool:
         """Whether a short step led no further aside than its turn explains, and so not to another branch."""
-        return bool(np.linalg.norm(self.way()) * self.stepper.cosine < self.options.aside * self.stepper.step)
+        return bool(
+            np.linalg.norm(self.step_vector()) * self.stepper.cosine
+            < self.options.max_length_ratio * self.stepper.step
+        )
 
-    def turned(self) -> bool:
+    def turned_at_corner(self) -> bool:
         """Whether it went as the curve does there: it turned at a corner ahead, which is not a fold."""
-        way, here, there = self.way(), self.stepper.here, np.asarray(self.stepper.there.tangent)
-        straight = way @ there > self.options.straight * np.linalg.norm(way)
+        way, here, there = self.step_vector(), self.stepper.here, np.asarray(self.stepper.there.tangent)
+        straight = way @ there > self.options.straight_cosine * np.linalg.norm(way)
         return bool(here.tangent[-1] * there[-1] > 0.0 and straight)
 
-    def way(self) -> FloatArray:
+    def step_vector(self) -> FloatArray:
         """Of a step, from here to there, in the curve's own size."""
         return np.array((np.array(self.stepper.there.z) - self.stepper.here.z) / self.stepper.newton.scale)
 
-    def straight(self) -> bool:
+    def goes_straight(self) -> bool:
         """Whether a step went straight on; what it misses by more than the turn explains is beside it."""
-        beside = (2.0 * (1.0 - self.options.straight)) ** 0.5  # by which a step that turns as much misses it
-        return self.stepper.cosine > self.options.straight and self.stepper.missed < beside
+        beside = (
+            2.0 * (1.0 - self.options.straight_cosine)
+        ) ** 0.5  # by which a step that turns as much misses it
+        return self.stepper.cosine > self.options.straight_cosine and self.stepper.miss < beside
 
-    def turned_twice(self) -> bool:
+    def hides_fold_pair(self) -> bool:
         """Whether the parameter went against the direction at both ends: there are two folds between."""
         here, there = self.stepper.here, self.stepper.there
         went = there.z[-1] - here.z[-1]
         return bool(went * here.tangent[-1] < 0.0 and went * there.tangent[-1] < 0.0)
 
-    def strayed(self) -> bool:
+    def misses_parameter(self) -> bool:
         """Whether the parameter was missed by much of what it changes along the step."""
         rise = max(abs(self.stepper.here.tangent[-1]), abs(self.stepper.there.tangent[-1]))
-        return bool(self.stepper.strayed > self.options.strayed * rise)
+        return bool(self.stepper.parameter_miss > self.options.max_parameter_miss * rise)
 
-    def smooth(self, follower: Follower, longer: float) -> object:
+    def accept_step(self, follower: Follower, longer: float) -> object:
         """Go on to the point there; the next step may be so many times as long."""
         count = self.store.count
         step, cubic = self.stepper.step, self.stepper.predictor.cubic
-        error = self.stepper.missed * step
-        status = follower.smooth()
-        if status is None and self.goes_round(count):
+        error = self.stepper.miss * step
+        status = follower.accept_step()
+        if status is None and self.repeats_fold(count):
             return Status.STALLED
         if self.store.count > count:
-            follower.aim(
-                step * within(growth(self.options.error, error, cubic), self.options.shorter, longer), True
+            follower.limit_step(
+                step
+                * clipped(
+                    step_factor(self.options.target_error, error, cubic), self.options.min_factor, longer
+                ),
+                True,
             )
-            follower.aim(step * longer, False)
-            self.repeated, self.past = 0, 0.0
+            follower.limit_step(step * longer, False)
+            self.departures, self.departure = 0, 0.0
         return status
 
-    def goes_round(self, count: int) -> bool:
+    def repeats_fold(self, count: int) -> bool:
         """Whether a fold beyond the first so many points is an old one: a step has led to a closed curve."""
         if self.store.count < count + 2:  # nothing within the step
             return False
@@ -159,72 +190,72 @@ class LabelledSwitching:
         new = folds[folds >= count]
         if not new.size:
             return False
-        old = folds[folds < count - self.options.loop]
+        old = folds[folds < count - self.options.min_loop_points]
         away = (kept.z[old] - kept.z[new[-1]]) / np.asarray(self.stepper.newton.scale)
-        return bool((np.abs(away).max(axis=1, initial=0.0) < self.options.same).any())
+        return bool((np.abs(away).max(axis=1, initial=0.0) < self.options.fold_tolerance).any())
 
-    def leave(self, follower: Follower, reach: float) -> object:
+    def search_beyond(self, follower: Follower, reach: float) -> object:
         """Leave a corner, a change of label this near; if nothing new leads on, look further beyond it."""
         stepper = self.stepper
-        if self.repeated > self.options.looks:
+        if self.departures > self.options.max_departures:
             return Status.STALLED
-        if self.repeated == 0:
-            self.came = np.array(stepper.here.tangent)
-            self.label = np.array(stepper.here.margin)
-            self.came_so = self.store.tail()
-        while self.repeated < self.options.looks:
-            np.asarray(stepper.here.tangent)[:] = self.came
-            stepper.predictor.straighten()
+        if self.departures == 0:
+            self.incoming = np.array(stepper.here.tangent)
+            self.incoming_label = np.array(stepper.here.margin)
+            self.incoming_point = self.store.tail()
+        while self.departures < self.options.max_departures:
+            np.asarray(stepper.here.tangent)[:] = self.incoming
+            stepper.predictor.reset()
             self.store.drop()
-            self.store.put(*self.came_so)
-            past = max(self.switching.beyond, 3.0 * reach) * 10.0**self.repeated
-            self.repeated += 1
-            follower.leave(stepper.here, 0.0, past)
+            self.store.put(*self.incoming_point)
+            past = max(self.switching.departure_length, 3.0 * reach) * 10.0**self.departures
+            self.departures += 1
+            follower.leave_corner(stepper.here, 0.0, past)
             new = np.array(stepper.here.tangent)
             stepper.problem.bound(np.asarray(stepper.here.z) + past * np.asarray(stepper.newton.scale) * new)
-            cosine = float(new @ self.came)
-            turned = cosine < self.options.straight
-            if self.leads_on(cosine) and (turned or self.repeated == self.options.looks):
-                self.past = past if turned else 0.0
-                if cosine > self.options.back:  # it is found from here
-                    np.asarray(stepper.aside)[:] = 0.0
+            cosine = float(new @ self.incoming)
+            turned = cosine < self.options.straight_cosine
+            if self.is_new_direction(cosine) and (turned or self.departures == self.options.max_departures):
+                self.departure = past if turned else 0.0
+                if cosine > self.options.reversal_cosine:  # it is found from here
+                    np.asarray(stepper.offset)[:] = 0.0
                 return None
-        np.asarray(stepper.aside)[:] = 0.0
-        return None if self.leave_corner(follower) else Status.STALLED
+        np.asarray(stepper.offset)[:] = 0.0
+        return None if self.search_around(follower) else Status.STALLED
 
-    def leads_on(self, cosine: float) -> bool:
+    def is_new_direction(self, cosine: float) -> bool:
         """Whether a direction at that angle to the old one is another, the problem being bound on the way."""
-        new = not np.array_equal(np.asarray(self.stepper.problem.margin), self.label)
-        return cosine > (self.options.spike if new else self.options.back)
+        new = not np.array_equal(np.asarray(self.stepper.problem.margin), self.incoming_label)
+        return cosine > (self.options.spike_cosine if new else self.options.reversal_cosine)
 
-    def leave_corner(self, follower: Follower) -> bool:
+    def search_around(self, follower: Follower) -> bool:
         """Whether the curve leaves a corner by any way that is tried around it: then it is left there."""
         stepper = self.stepper
-        if self.repeated > self.options.looks:
+        if self.departures > self.options.max_departures:
             return False
-        self.repeated += 1
-        way = direction_beyond(stepper, self.came, self.leads_on)
+        self.departures += 1
+        way = direction_beyond(stepper, self.incoming, self.is_new_direction)
         if way is None:
             return False
         np.asarray(stepper.here.tangent)[:] = way.direction
         np.asarray(stepper.here.margin)[:] = stepper.problem.margin
-        stepper.predictor.straighten()
-        np.asarray(stepper.aside)[:] = way.aside
-        self.past = 0.0
-        follower.aim(way.reach, True)
+        stepper.predictor.reset()
+        np.asarray(stepper.offset)[:] = way.offset
+        self.departure = 0.0
+        follower.limit_step(way.length, True)
         return True
 
 
 class DirectionBeyond(NamedTuple):
     """To a point of the curve that is about a reach from the corner."""
 
-    reach: float
+    length: float
     direction: FloatArray  # (unknown + 1,) scaled, that of the piece in which it is
-    aside: FloatArray  # (unknown + 1,) scaled, from where that direction leads to the point's guess
+    offset: FloatArray  # (unknown + 1,) scaled, from where that direction leads to the point's guess
 
 
 def direction_beyond(
-    stepper: Stepper, came: FloatArray, leads_on: Callable[[float], bool]
+    stepper: Stepper, incoming: FloatArray, is_new_direction: Callable[[float], bool]
 ) -> DirectionBeyond | None:
     """The first that is found from the corner that is here; None without any.
 
@@ -235,48 +266,51 @@ def direction_beyond(
     leads_on : callable
         Whether a way at an angle of that cosine to it is another, the problem being bound there.
     """
-    for reach in stepper.options.labels.reaches:
-        for poll, aside in _guesses(stepper.options.labels, reach, came):
-            direction = _direction(stepper, poll)
+    for length in stepper.options.labels.departure_lengths:
+        for probe, offset in _guesses(stepper.options.labels, length, incoming):
+            direction = _direction(stepper, probe)
             if direction is not None and _found(
-                stepper, came, DirectionBeyond(reach, direction, aside), leads_on
+                stepper, incoming, DirectionBeyond(length, direction, offset), is_new_direction
             ):
-                return DirectionBeyond(reach, direction, aside)
+                return DirectionBeyond(length, direction, offset)
     return None
 
 
 def _guesses(
-    options: LabelOptions, reach: float, came: FloatArray
+    options: LabelOptions, length: float, incoming: FloatArray
 ) -> Iterator[tuple[FloatArray, FloatArray]]:
     """Where a direction is looked for, and from where it is taken, both from the corner."""
-    for poll, aside in product(options.parts, options.parts):
-        yield poll * reach * came, aside * reach * came
-    around = np.random.default_rng(0).normal(size=(options.around, came.size))
-    for way in around / np.linalg.norm(around, axis=1, keepdims=True):
-        yield reach * way, np.zeros(came.size)
+    for probe, offset in product(options.departure_fractions, options.departure_fractions):
+        yield probe * length * incoming, offset * length * incoming
+    around = np.random.default_rng(0).normal(size=(options.random_directions, incoming.size))
+    for direction in around / np.linalg.norm(around, axis=1, keepdims=True):
+        yield length * direction, np.zeros(incoming.size)
 
 
-def _direction(stepper: Stepper, poll: FloatArray) -> FloatArray | None:
+def _direction(stepper: Stepper, probe: FloatArray) -> FloatArray | None:
     """That which the equations have there, with the orientation of here."""
     newton = stepper.newton
-    np.asarray(newton.row)[:] = poll / np.linalg.norm(poll)
-    np.asarray(newton.z)[:] = np.asarray(stepper.here.z) + np.asarray(newton.scale) * poll
+    np.asarray(newton.row)[:] = probe / np.linalg.norm(probe)
+    np.asarray(newton.z)[:] = np.asarray(stepper.here.z) + np.asarray(newton.scale) * probe
     if not newton.take_tangent():
         return None
     return np.array(newton.tangent) * (1.0 if newton.orientation == stepper.here.orientation else -1.0)
 
 
 def _found(
-    stepper: Stepper, came: FloatArray, way: DirectionBeyond, leads_on: Callable[[float], bool]
+    stepper: Stepper,
+    incoming: FloatArray,
+    departure: DirectionBeyond,
+    is_new_direction: Callable[[float], bool],
 ) -> bool:
     """Whether a way leads to a point at which the curve goes on from here; the problem is bound there."""
     newton, here, scale = stepper.newton, np.asarray(stepper.here.z), np.asarray(stepper.newton.scale)
-    np.asarray(newton.row)[:] = way.direction
-    np.asarray(newton.z)[:] = here + scale * (way.reach * way.direction + way.aside)
-    if not newton.correct(2.0 * way.reach) or newton.orientation != stepper.here.orientation:
+    np.asarray(newton.row)[:] = departure.direction
+    np.asarray(newton.z)[:] = here + scale * (departure.length * departure.direction + departure.offset)
+    if not newton.correct(2.0 * departure.length) or newton.orientation != stepper.here.orientation:
         return False
     step = (np.asarray(newton.z) - here) / scale
     length = float(np.linalg.norm(step))
     stepper.problem.bound(newton.z)
     forward = bool(np.asarray(newton.tangent) @ step > 0.5 * length)
-    return forward and leads_on(float(came @ step) / length)
+    return forward and is_new_direction(float(incoming @ step) / length)

@@ -16,9 +16,9 @@ from fcm.continuation.recorder import Recorder
 from fcm.continuation.stepper import Stepper
 
 if cython.compiled:
-    from cython.cimports.fcm.continuation.step_control import good, kept
+    from cython.cimports.fcm.continuation.step_control import acceptable, keeps_orientation
 else:
-    from fcm.continuation.step_control import good, kept
+    from fcm.continuation.step_control import acceptable, keeps_orientation
 
 FOLD = cython.declare(cython.long, int(Mark.FOLD))
 PEAK = cython.declare(cython.long, int(Mark.PEAK))
@@ -31,12 +31,14 @@ def before_corner(stepper: Stepper) -> cython.double:
 
     That is where the curve is not found up to there, or not where it was predicted.
     """
-    if not kept(stepper):  # what is there is another part of a curve that goes back in the corner
+    if not keeps_orientation(
+        stepper
+    ):  # what is there is another part of a curve that goes back in the corner
         return -1.0
     at: cython.double = events.first_margin(stepper)
-    if at < 0.0 or not stepper.shorten((1.0 - stepper.options.switching.before) * at):
+    if at < 0.0 or not stepper.shorten((1.0 - stepper.options.switching.smooth_fraction) * at):
         return -1.0
-    if not kept(stepper) or not good(stepper):
+    if not keeps_orientation(stepper) or not acceptable(stepper):
         return -1.0
     return at
 
@@ -47,46 +49,46 @@ class NonsmoothPoints:
 
     def __init__(self, recorder: Recorder, labelled: bool) -> None:
         self.recorder, self.labelled = recorder, labelled
-        self.grew = np.zeros(recorder.stepper.problem.outputs)  # growth before a corner
+        self.growth_before = np.zeros(recorder.stepper.problem.outputs)  # growth before a corner
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def at(self, point: Point, length: cython.double, past: cython.double) -> cython.int:
+    def pass_corner(self, point: Point, length: cython.double, past: cython.double) -> cython.int:
         """Keep the corner, a point at a length from here, and take the direction beyond it.
 
         past: the length at which that is looked for where the corner is a change of label.
         """
         recorder: Recorder = self.recorder
         stepper: Stepper = recorder.stepper
-        recorder.note(point)
+        recorder.add_corner(point)
         if point is not stepper.here:
-            come(stepper, point, length)
+            go_to_corner(stepper, point, length)
         rise: cython.double = stepper.here.tangent[recorder.n]
-        self.grew[:] = stepper.here.growth
+        self.growth_before[:] = stepper.here.growth
         if self.labelled:
             cross_label(stepper, past)
         else:
-            cross(stepper, recorder.stops)
+            cross_corner(stepper, recorder.stops)
         fold: cython.long = FOLD if rise * stepper.here.tangent[recorder.n] < 0.0 else 0
-        recorder.store.mark_last(fold | (PEAK if self.peaked() else 0))
-        recorder.rise()
+        recorder.store.mark_last(fold | (PEAK if self.is_peak() else 0))
+        recorder.update_greatest()
         return 0
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def peaked(self) -> cython.bint:
+    def is_peak(self) -> cython.bint:
         """Whether an output grew before the corner that is here, and falls beyond it."""
         k: cython.Py_ssize_t
         growth: cython.double[::1] = self.recorder.stepper.here.growth
-        for k in range(self.grew.shape[0]):  # noqa: SIM110 - a loop in C
-            if self.grew[k] > 0.0 and growth[k] < 0.0:
+        for k in range(self.growth_before.shape[0]):
+            if self.growth_before[k] > 0.0 and growth[k] < 0.0:
                 return True
         return False
 
 
 @cython.ccall
 @cython.exceptval(-1, check=False)
-def come(stepper: Stepper, point: Point, at: cython.double) -> cython.int:
+def go_to_corner(stepper: Stepper, point: Point, at: cython.double) -> cython.int:
     """Go to a corner, a point at a length from here, as from before it."""
     point.tangent[:] = stepper.there.tangent  # that before the corner, on whichever side it was put
     point.growth[:] = stepper.there.growth
@@ -97,7 +99,7 @@ def come(stepper: Stepper, point: Point, at: cython.double) -> cython.int:
 
 @cython.ccall
 @cython.exceptval(-1, check=False)
-def cross(stepper: Stepper, stops: cython.double[::1]) -> cython.bint:
+def cross_corner(stepper: Stepper, stops: cython.double[::1]) -> cython.bint:
     """Go on, from a corner that is here, to the nearest point that the curve is found to have beyond.
 
     Several margins may be zero here or very near, so that more than two smooth pieces meet; all that is
@@ -106,28 +108,28 @@ def cross(stepper: Stepper, stops: cython.double[::1]) -> cython.bint:
     remains.
     """
     count: cython.int
-    length: cython.double = stepper.options.switching.beyond
+    length: cython.double = stepper.options.switching.departure_length
     first: cython.double = 0.0  # the nearest, though another corner is as near
-    for count in range(stepper.options.switching.further):  # noqa: B007
-        if leaves(stepper, length):
-            if not stepper.problem.rooted or free(stepper, 10.0 * length):
-                take(stepper, length, not passes(stepper, stops))
+    for count in range(stepper.options.switching.departure_tries):  # noqa: B007
+        if point_beyond(stepper, length):
+            if not stepper.problem.rooted or without_sign_change(stepper, 10.0 * length):
+                accept_beyond(stepper, length, not passes_station(stepper, stops))
                 return True
             first = first or length
         length *= 10.0
-    if first > 0.0 and leaves(stepper, first):
-        take(stepper, first, not passes(stepper, stops))
+    if first > 0.0 and point_beyond(stepper, first):
+        accept_beyond(stepper, first, not passes_station(stepper, stops))
         return True
-    aim(stepper, stepper.options.switching.beyond)
-    if not onwards(stepper, stepper.options.switching.beyond):
+    predict_past_label(stepper, stepper.options.switching.departure_length)
+    if not predict_beyond(stepper, stepper.options.switching.departure_length):
         return False
-    take(stepper, stepper.options.switching.beyond, False)
+    accept_beyond(stepper, stepper.options.switching.departure_length, False)
     return True
 
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def leaves(stepper: Stepper, length: cython.double) -> cython.bint:
+def point_beyond(stepper: Stepper, length: cython.double) -> cython.bint:
     """Whether the corrector comes to a point of the curve that is a length past the corner that is here.
 
     It is looked for in the direction of the piece into which the curve comes, then in that of the piece into
@@ -135,35 +137,39 @@ def leaves(stepper: Stepper, length: cython.double) -> cython.bint:
     which it was looked for; one on the way to the corner has the other.
     """
     count: cython.int
-    aim(stepper, length)
-    for count in range(stepper.options.switching.pieces):  # noqa: B007
-        if not onwards(stepper, length):
+    predict_past_label(stepper, length)
+    for count in range(stepper.options.switching.max_pieces):  # noqa: B007
+        if not predict_beyond(stepper, length):
             return False
         stepper.between.z[:] = stepper.newton.z
-        if stepper.newton.correct(length) and near(stepper, length):
+        if stepper.newton.correct(length) and close_to_prediction(stepper, length):
             return True
         # whole steps may have led to another part of the curve
-        if stepper.problem.rooted and stepper.newton.halve(length) and near(stepper, length):
+        if (
+            stepper.problem.rooted
+            and stepper.newton.correct_by_half_steps(length)
+            and close_to_prediction(stepper, length)
+        ):
             return True
         stepper.newton.z[:] = stepper.between.z
         # along the edge of a piece, as where a circle ceases to slip, only the equations lead across it
-        if stepper.problem.rooted and not stepper.newton.once():
+        if stepper.problem.rooted and not stepper.newton.single_step():
             return False
     return False
 
 
 @cython.cfunc
 @cython.exceptval(check=False)
-def near(stepper: Stepper, length: cython.double) -> cython.bint:
+def close_to_prediction(stepper: Stepper, length: cython.double) -> cython.bint:
     """Whether the corrector has come to a point beyond a corner that is where it was looked for."""
-    if not stepper.newton.moved < stepper.options.switching.astray * length:
+    if not stepper.newton.moved < stepper.options.switching.max_deviation * length:
         return False
     return stepper.newton.orientation == stepper.here.orientation
 
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def free(stepper: Stepper, length: cython.double) -> cython.bint:
+def without_sign_change(stepper: Stepper, length: cython.double) -> cython.bint:
     """Whether no margin changes its sign within a length from where the corrector is.
 
     A circle that starts to slip leaves its limit as the square of the length: what is found first may be
@@ -177,14 +183,14 @@ def free(stepper: Stepper, length: cython.double) -> cython.bint:
         stepper.guess[i] = there.z[i] + length * stepper.newton.scale[i] * there.tangent[i]
     stepper.problem.bound(stepper.guess)
     for k in range(stepper.problem.margins):
-        if there.margin[k] * there.asked(k, stepper.problem) < 0.0:
+        if there.margin[k] * there.margin_of_problem(k, stepper.problem) < 0.0:
             return False
     return True
 
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def onwards(stepper: Stepper, length: cython.double) -> cython.bint:
+def predict_beyond(stepper: Stepper, length: cython.double) -> cython.bint:
     """Put the corrector a length along the direction that the curve has in the piece where it is now.
 
     With the orientation that it has here, which is the same in all pieces of a piecewise smooth curve.
@@ -204,7 +210,7 @@ def onwards(stepper: Stepper, length: cython.double) -> cython.bint:
 
 @cython.cfunc
 @cython.exceptval(check=False)
-def passes(stepper: Stepper, stops: cython.double[::1]) -> cython.bint:
+def passes_station(stepper: Stepper, stops: cython.double[::1]) -> cython.bint:
     """Whether a value of the parameter lies between here and where the corrector is."""
     n: cython.Py_ssize_t = stepper.here.z.shape[0] - 1
     k: cython.Py_ssize_t
@@ -216,16 +222,16 @@ def passes(stepper: Stepper, stops: cython.double[::1]) -> cython.bint:
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def take(stepper: Stepper, length: cython.double, go: cython.bint) -> cython.int:
+def accept_beyond(stepper: Stepper, length: cython.double, go: cython.bint) -> cython.int:
     """Go to where the corrector is, a length from here, or take only the direction and the margins there."""
     there: Point = stepper.between
     stepper.record(there, True, True)
-    there.incline(stepper.problem, stepper.newton.scale, stepper.guess)
+    there.differentiate_margins(stepper.problem, stepper.newton.scale, stepper.guess)
     if not go:
         there.z[:] = stepper.here.z
         there.output[:] = stepper.here.output
     stepper.accept(there, 0.0)
-    stepper.past = 0.0 if go else length
+    stepper.known_length = 0.0 if go else length
     return 0
 
 
@@ -238,14 +244,14 @@ def cross_label(stepper: Stepper, past: cython.double) -> cython.bint:
     a curve that nearly goes back is else found on the side that it came from.
     """
     i: cython.Py_ssize_t
-    aim(stepper, past)
+    predict_past_label(stepper, past)
     stepper.problem.bound(stepper.newton.z)
     stepper.here.margin[:] = stepper.problem.margin
-    stepper.aside[:] = 0.0
-    if not onwards(stepper, past):
+    stepper.offset[:] = 0.0
+    if not predict_beyond(stepper, past):
         return False
     for i in range(stepper.guess.shape[0]):
-        stepper.aside[i] = past * stepper.here.tangent[i]
+        stepper.offset[i] = past * stepper.here.tangent[i]
     stepper.here.tangent[:] = stepper.newton.tangent
     for i in range(stepper.guess.shape[0]):
         stepper.guess[i] = stepper.newton.scale[i] * stepper.here.tangent[i]
@@ -257,7 +263,7 @@ def cross_label(stepper: Stepper, past: cython.double) -> cython.bint:
 
 @cython.cfunc
 @cython.exceptval(check=False)
-def aim(stepper: Stepper, past: cython.double) -> cython.void:
+def predict_past_label(stepper: Stepper, past: cython.double) -> cython.void:
     """Put the corrector a length along the tangent of here."""
     i: cython.Py_ssize_t
     for i in range(stepper.here.z.shape[0]):

@@ -2,27 +2,27 @@ cdef class Options:
     pass
 
 cdef class NewtonOptions(Options):
-    cdef readonly int iterations, chords, kept, halves
-    cdef readonly double close, preliminary, small, exact, rough, left, chord, shrinking, brief, hopeless
-    cdef readonly double slight, coarsest, roundings
+    cdef readonly int max_iterations, max_chord_steps, max_cheap_chord_steps, half_steps
+    cdef readonly double tolerance, preliminary_tolerance, final_step, negligible_step, stalled_rounding, growing_rounding, chord_step, chord_contraction, last_chord_step, divergence_ratio
+    cdef readonly double small_second_step, max_rounding, rounding_multiple
 
 cdef class StepOptions(Options):
-    cdef readonly double first, shortest, cosine, sharp, far, turn, miss, uneven, uneven_times, shrink, grow
-    cdef readonly double haste, share, after, resumed, shortened
-    cdef readonly int most
-    cdef readonly tuple back
+    cdef readonly double initial_step, min_step, min_cosine, any_turn_step, max_miss, target_turn, target_miss, target_output_error, max_output_error_ratio, min_factor, max_factor
+    cdef readonly double max_factor_hasty, safety, step_after_corner, resumed_fraction, retry_fraction
+    cdef readonly int max_steps
+    cdef readonly tuple retreats
 
 cdef class EventOptions(Options):
-    cdef readonly int most, outputs
-    cdef readonly double high, high_of_many, fine, enclosed, rise, nearly_greatest, even, doubtful, blurred, same, same_way, landing
+    cdef readonly int max_evaluations, many_outputs
+    cdef readonly double peak_tolerance, peak_tolerance_of_many, tolerance, fold_bracket, min_growth, peak_threshold, max_slope_change, doubtful_slope, rounding_step, point_tolerance, closing_cosine, landing_tolerance
 
 cdef class SwitchingOptions(Options):
-    cdef readonly int most, further, pieces, many
-    cdef readonly double known, known_label, past, across, met, touched_root, before, touched, near, nearer, beyond, astray
+    cdef readonly int max_predictions, departure_tries, max_pieces, many_unknowns
+    cdef readonly double distance_tolerance, label_tolerance, overshoot, crossing_factor, root_fraction, reached_distance_root, smooth_fraction, reached_distance, approach_distance, approach_fraction, departure_length, max_deviation
 
 cdef class FollowOptions(Options):
     cdef readonly double max_step
-    cdef readonly bint hasty
+    cdef readonly bint stations_only
     cdef readonly NewtonOptions newton
     cdef readonly StepOptions step
     cdef readonly EventOptions events

@@ -46,57 +46,57 @@ class NewtonOptions(Options):
 
     Attributes
     ----------
-    iterations : int
+    max_iterations : int
         Steps before a guess is judged too far away.
-    close : float
+    tolerance : float
         Error that a point may have, estimated from the convergence.
-    preliminary : float
+    preliminary_tolerance : float
         The same of a point from which the next is looked for and nothing else.
-    small : float
+    final_step : float
         A step after which there is no further one.
-    exact : float
+    negligible_step : float
         A step that is not worth another evaluation.
-    halves : int
+    half_steps : int
         Half steps where the equations begin as a root, before whole ones are tried again.
-    rough : float
+    stalled_rounding : float
         A step that does not shrink, and is taken for rounding though the way was long.
-    left : float
+    growing_rounding : float
         A step that grows, and is taken for rounding; longer ones have met a corner.
-    chord : float
+    chord_step : float
         A step after which the Jacobian from before it will do.
-    chords, kept : int
+    max_chord_steps, max_cheap_chord_steps : int
         Steps with one Jacobian; and where to solve takes far less than to factor.
-    shrinking : float
+    chord_contraction : float
         Part of the step before, that each of those may be.
-    brief : float
+    last_chord_step : float
         A step after which a last one takes the Jacobian from before it.
-    hopeless : float
+    divergence_ratio : float
         Part of the step before, above which the fourth and later steps of a costly problem lead nowhere.
-    slight : float
+    small_second_step : float
         Part of the greatest first step: a second step this short is no sign of failure.
-    coarsest : float
+    max_rounding : float
         A longer step is none that rounding makes.
-    roundings : float
+    rounding_multiple : float
         A step no longer than so many of rounding may be one.
     """
 
-    iterations: cython.int = 8
-    close: cython.double = 1e-13
-    preliminary: cython.double = 1e-9
-    small: cython.double = 1e-12
-    exact: cython.double = 1e-11
-    halves: cython.int = 8
-    rough: cython.double = 1e-9
-    left: cython.double = 1e-10
-    chord: cython.double = 1e-6
-    chords: cython.int = 3
-    kept: cython.int = 16
-    shrinking: cython.double = 0.3
-    brief: cython.double = 1e-5
-    hopeless: cython.double = 0.5
-    slight: cython.double = 0.02
-    coarsest: cython.double = 1e-6
-    roundings: cython.double = 8.0
+    max_iterations: cython.int = 8
+    tolerance: cython.double = 1e-13
+    preliminary_tolerance: cython.double = 1e-9
+    final_step: cython.double = 1e-12
+    negligible_step: cython.double = 1e-11
+    half_steps: cython.int = 8
+    stalled_rounding: cython.double = 1e-9
+    growing_rounding: cython.double = 1e-10
+    chord_step: cython.double = 1e-6
+    max_chord_steps: cython.int = 3
+    max_cheap_chord_steps: cython.int = 16
+    chord_contraction: cython.double = 0.3
+    last_chord_step: cython.double = 1e-5
+    divergence_ratio: cython.double = 0.5
+    small_second_step: cython.double = 0.02
+    max_rounding: cython.double = 1e-6
+    rounding_multiple: cython.double = 8.0
 
 
 @cython.cclass
@@ -106,55 +106,55 @@ class StepOptions(Options):
 
     Attributes
     ----------
-    first, shortest : float
+    initial_step, min_step : float
         The first step; one that is still too long then leads nowhere.
-    most : int
+    max_steps : int
         Steps of a curve.
-    cosine : float
+    min_cosine : float
         Of the angle by which the curve may turn in a step: 20 degrees.
-    sharp : float
+    any_turn_step : float
         A shorter step may turn by any angle below a right angle: there is a corner that nothing tells of.
-    far : float
+    max_miss : float
         Part of its length, by which a step may miss the curve.
-    turn : float
+    target_turn : float
         [rad] The turn that a step aims at.
-    miss : float
+    target_miss : float
         Part of its length, by which a step aims to miss the curve.
-    uneven : float
+    target_output_error : float
         Change of an output over its size, that a step aims not to have foreseen;
-    uneven_times : float
+    max_output_error_ratio : float
         so many times as much it may have.
-    shrink, grow, haste : float
+    min_factor, max_factor, max_factor_hasty : float
         Part of a step that the next is at least, and at most; and at most where nothing but values of the
         parameter is asked for.
-    share : float
+    safety : float
         Part of the next step that all aims allow.
-    after, resumed : float
+    step_after_corner, resumed_fraction : float
         The first step beyond a corner; or this part of that before it, where each point is costly.
-    shortened : float
+    retry_fraction : float
         Part of a step that is tried next where it does not lead over all corners.
-    back : tuple of int
+    retreats : tuple of int
         Points by which a curve is taken back where no step leads on: one attempt each.
     """
 
-    first: cython.double = 1e-3
-    shortest: cython.double = 1e-9
-    most: cython.int = 20_000
-    cosine: cython.double = 0.94
-    sharp: cython.double = 1e-4
-    far: cython.double = 0.5
-    turn: cython.double = 0.2
-    miss: cython.double = 0.03
-    uneven: cython.double = 0.15
-    uneven_times: cython.double = 4.0
-    shrink: cython.double = 0.4
-    grow: cython.double = 2.5
-    haste: cython.double = 10.0
-    share: cython.double = 0.9
-    after: cython.double = 1e-5
-    resumed: cython.double = 0.1
-    shortened: cython.double = 0.25
-    back: tuple[int, ...] = (1, 8, 64)
+    initial_step: cython.double = 1e-3
+    min_step: cython.double = 1e-9
+    max_steps: cython.int = 20_000
+    min_cosine: cython.double = 0.94
+    any_turn_step: cython.double = 1e-4
+    max_miss: cython.double = 0.5
+    target_turn: cython.double = 0.2
+    target_miss: cython.double = 0.03
+    target_output_error: cython.double = 0.15
+    max_output_error_ratio: cython.double = 4.0
+    min_factor: cython.double = 0.4
+    max_factor: cython.double = 2.5
+    max_factor_hasty: cython.double = 10.0
+    safety: cython.double = 0.9
+    step_after_corner: cython.double = 1e-5
+    resumed_fraction: cython.double = 0.1
+    retry_fraction: cython.double = 0.25
+    retreats: tuple[int, ...] = (1, 8, 64)
 
 
 @cython.cclass
@@ -164,49 +164,49 @@ class EventOptions(Options):
 
     Attributes
     ----------
-    most : int
+    max_evaluations : int
         Points of the curve that are computed to find one.
-    fine : float
+    tolerance : float
         Part of a step, to which an event is known.
-    enclosed : float
+    fold_bracket : float
         Distance of two points about a fold that is no regular point of the curve.
-    rise : float
+    min_growth : float
         Growth of an output over its size, along a unit of length, that is not rounding.
-    nearly_greatest : float
+    peak_threshold : float
         Part of the greatest output so far, below which no peak is looked for.
-    even : float
+    max_slope_change : float
         Part of the lesser slope at the ends: a parameter whose slope changes by less goes on evenly.
-    doubtful : float
+    doubtful_slope : float
         Part of the lesser slope at the ends: a cubic less steep between them may hide a way back.
-    blurred : float
+    rounding_step : float
         A step this short tells more of rounding than of a way back.
-    high, high_of_many : float
+    peak_tolerance, peak_tolerance_of_many : float
         Part of an output, to which a peak is known where points are costly; and where each of many outputs
         has its own, at a point each.
-    outputs : int
+    many_outputs : int
         So many are many.
-    same : float
+    point_tolerance : float
         Part of the greatest unknown: points closer than this are one.
-    same_way : float
+    closing_cosine : float
         Cosine beyond which a curve closes, and does not cross itself.
-    landing : float
+    landing_tolerance : float
         Part of the width of a value of the parameter that is to be landed on, within which a step ends there.
     """
 
-    most: cython.int = 40
-    fine: cython.double = 1e-11
-    enclosed: cython.double = 1e-4
-    rise: cython.double = 1e-7
-    nearly_greatest: cython.double = 0.9
-    even: cython.double = 0.2
-    doubtful: cython.double = 0.25
-    blurred: cython.double = 1e-4
-    high: cython.double = 1e-11
-    high_of_many: cython.double = 5e-7
-    outputs: cython.int = 24
-    same: cython.double = 1e-6
-    same_way: cython.double = 0.5
-    landing: cython.double = 0.25
+    max_evaluations: cython.int = 40
+    tolerance: cython.double = 1e-11
+    fold_bracket: cython.double = 1e-4
+    min_growth: cython.double = 1e-7
+    peak_threshold: cython.double = 0.9
+    max_slope_change: cython.double = 0.2
+    doubtful_slope: cython.double = 0.25
+    rounding_step: cython.double = 1e-4
+    peak_tolerance: cython.double = 1e-11
+    peak_tolerance_of_many: cython.double = 5e-7
+    many_outputs: cython.int = 24
+    point_tolerance: cython.double = 1e-6
+    closing_cosine: cython.double = 0.5
+    landing_tolerance: cython.double = 0.25
 
 
 @cython.cclass
@@ -216,52 +216,52 @@ class SwitchingOptions(Options):
 
     Attributes
     ----------
-    most : int
+    max_predictions : int
         Predictions that are looked at to find how far ahead a corner is.
-    known, known_label : float
+    distance_tolerance, label_tolerance : float
         Part of the length to there, to which that is found; and where a label changes.
-    past : float
+    overshoot : float
         Part of a step that ends at a corner, by which it goes past.
-    across : float
+    crossing_factor : float
         Times as long as the way to where a margin vanishes that goes on as it does, is a step across that.
-    met : float
+    root_fraction : float
         Part of that way, within which the prediction comes to a margin that is a root: half of it.
-    before : float
+    smooth_fraction : float
         Part of the way to a corner: up to here the curve is smooth.
-    touched : float
-        A corner this near is met: less than `beyond`.
-    touched_root : float
+    reached_distance : float
+        A corner this near is met: less than `departure_length`.
+    reached_distance_root : float
         The same where a margin is the root of the distance, which rounding hides.
-    near, nearer : float
+    approach_distance, approach_fraction : float
         A corner further away is gone to by steps, each this part of the way.
-    beyond : float
+    departure_length : float
         Length past a corner at which the curve's new direction is looked for first,
-    further : int
+    departure_tries : int
         at so many lengths, each ten times the last,
-    pieces : int
+    max_pieces : int
         in so many of the smooth pieces that meet in the corner.
-    astray : float
+    max_deviation : float
         Part of that length: a point this far from its prediction is another.
-    many : int
+    many_unknowns : int
         Unknowns from which on slight corners are stepped over where the parameter goes on evenly.
     """
 
-    most: cython.int = 50
-    known: cython.double = 1e-4
-    known_label: cython.double = 2e-3
-    past: cython.double = 1e-3
-    across: cython.double = 1.1
-    met: cython.double = 0.75
-    before: cython.double = 1e-6
-    touched: cython.double = 1e-8
-    touched_root: cython.double = 1e-4
-    near: cython.double = 1e-4
-    nearer: cython.double = 0.9
-    beyond: cython.double = 1e-7
-    further: cython.int = 3
-    pieces: cython.int = 3
-    astray: cython.double = 0.5
-    many: cython.int = 64
+    max_predictions: cython.int = 50
+    distance_tolerance: cython.double = 1e-4
+    label_tolerance: cython.double = 2e-3
+    overshoot: cython.double = 1e-3
+    crossing_factor: cython.double = 1.1
+    root_fraction: cython.double = 0.75
+    smooth_fraction: cython.double = 1e-6
+    reached_distance: cython.double = 1e-8
+    reached_distance_root: cython.double = 1e-4
+    approach_distance: cython.double = 1e-4
+    approach_fraction: cython.double = 0.9
+    departure_length: cython.double = 1e-7
+    departure_tries: cython.int = 3
+    max_pieces: cython.int = 3
+    max_deviation: cython.double = 0.5
+    many_unknowns: cython.int = 64
 
 
 @dataclasses.dataclass(frozen=True)  # of no kernel
@@ -270,67 +270,68 @@ class LabelOptions:
 
     Attributes
     ----------
-    error, most : float
+    target_error, max_error_ratio : float
         Distance of the curve from where it is predicted that a step aims at, and times as much it may have.
-    strayed : float
+    max_parameter_miss : float
         Part of the parameter's change, by which a step may miss it: more may be the way past two folds.
-    gently : float
+    min_cosine : float
         Cosine of the turn of a step.
-    astray, misled : float
+    max_miss, max_newton_step : float
         Parts of its length, by which a step may miss the curve; and by which the first step of Newton's
         method may.
-    shorter, refused, longer, wary : float, (float, float), float, float
+    min_factor, rejection_factors, max_factor, max_factor_after_rejection : float, (float, float), float,
+    float
         Parts of a step that the next is at least; that one in its point is between; that the next is at
         most; and after a shortened one.
-    straight : float
+    straight_cosine : float
         Cosine beyond which a change of orientation is a branch point and no way back.
-    aside : float
+    max_length_ratio : float
         Times as long as its turn alone makes it, a short step may be.
-    short_of : float
+    margin_fraction : float
         Part of the way to where a label changes, by which a step ends before it.
-    met : float
+    reached_distance : float
         A change of label this near is met where no curve is found up to there.
-    looks : int
+    max_departures : int
         ExtremumSearch beyond one corner, each ten times as far.
-    away : float
+    departure_factor : float
         Times as far from the corner is the next point, at least.
-    back, spike : float
+    reversal_cosine, spike_cosine : float
         Cosines below which a curve goes back on the way that it came; the second where its label is new.
-    same : float
+    fold_tolerance : float
         Distance of two folds that are one;
-    loop : int
+    min_loop_points : int
         points that a closed curve has at least.
-    reaches : tuple of float
+    departure_lengths : tuple of float
         Lengths beyond a corner at which the curve is looked for,
-    parts : tuple of float
+    departure_fractions : tuple of float
         of these, by which a direction is looked for beyond, and a guess is aside.
-    around : int
+    random_directions : int
         Directions into other pieces.
     """
 
-    error: float = 5e-4
-    most: float = 4.0
-    strayed: float = 0.5
-    gently: float = 0.5
-    astray: float = 0.5
-    misled: float = 0.5
-    shorter: float = 0.3
-    refused: tuple[float, float] = (0.1, 0.5)
-    longer: float = 3.0
-    wary: float = 1.0
-    straight: float = 0.999
-    aside: float = 2.0
-    short_of: float = 3e-3
-    met: float = 1e-6
-    looks: int = 5
-    away: float = 10.0
-    back: float = -0.99
-    spike: float = -1.0 + 1e-6
-    same: float = 1e-8
-    loop: int = 20
-    reaches: tuple[float, ...] = (1e-5, 1e-4, 1e-3, 1e-6)
-    parts: tuple[float, ...] = (1.0, 0.1, 1e-2, 1e-3)
-    around: int = 16
+    target_error: float = 5e-4
+    max_error_ratio: float = 4.0
+    max_parameter_miss: float = 0.5
+    min_cosine: float = 0.5
+    max_miss: float = 0.5
+    max_newton_step: float = 0.5
+    min_factor: float = 0.3
+    rejection_factors: tuple[float, float] = (0.1, 0.5)
+    max_factor: float = 3.0
+    max_factor_after_rejection: float = 1.0
+    straight_cosine: float = 0.999
+    max_length_ratio: float = 2.0
+    margin_fraction: float = 3e-3
+    reached_distance: float = 1e-6
+    max_departures: int = 5
+    departure_factor: float = 10.0
+    reversal_cosine: float = -0.99
+    spike_cosine: float = -1.0 + 1e-6
+    fold_tolerance: float = 1e-8
+    min_loop_points: int = 20
+    departure_lengths: tuple[float, ...] = (1e-5, 1e-4, 1e-3, 1e-6)
+    departure_fractions: tuple[float, ...] = (1.0, 0.1, 1e-2, 1e-3)
+    random_directions: int = 16
 
 
 @cython.cclass
@@ -342,7 +343,7 @@ class FollowOptions(Options):
     ----------
     max_step : float
         Longest step.
-    hasty : bool
+    stations_only : bool
         Whether only the passings of values of the parameter matter. Corners are then gone to, and left, by
         longer steps.
     newton, step, events, switching, labels : NewtonOptions, StepOptions, EventOptions, SwitchingOptions,\
@@ -357,7 +358,7 @@ class FollowOptions(Options):
     """
 
     max_step: cython.double = 0.05
-    hasty: cython.bint = False
+    stations_only: cython.bint = False
     newton: NewtonOptions = field(default_factory=NewtonOptions)
     step: StepOptions = field(default_factory=StepOptions)
     events: EventOptions = field(default_factory=EventOptions)

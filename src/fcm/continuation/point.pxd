@@ -1,6 +1,6 @@
 from fcm.continuation.problem cimport Problem
 
-cdef double AHEAD
+cdef double DIFFERENCE_LENGTH
 
 cdef class Point:
     cdef public double[::1] z
@@ -13,13 +13,13 @@ cdef class Point:
     cdef public double[::1] output
     cdef public double[::1] growth
     cdef public double orientation
-    cdef bint inclined
-    cdef int bounded(self, Problem problem) except -1
-    cdef int like(self, Point other, double unit) except -1
+    cdef bint has_margin_slopes
+    cdef int set_margins(self, Problem problem) except -1
+    cdef int copy_from(self, Point other, double unit) except -1
     cpdef Py_ssize_t partner(self, Py_ssize_t k, int[::1] kind, double[::1] angle) except -2
     cpdef double margin_at(self, Py_ssize_t k, Point other) except -1e300
-    cdef double asked(self, Py_ssize_t k, Problem problem) except -1e300
-    cdef int incline(self, Problem problem, double[::1] scale, double[::1] beside) except -1
+    cdef double margin_of_problem(self, Py_ssize_t k, Problem problem) except -1e300
+    cdef int differentiate_margins(self, Problem problem, double[::1] scale, double[::1] beside) except -1
 
 cdef Py_ssize_t nearest(
     int wanted, double at, int[::1] kind, double[::1] angle, Py_ssize_t first, Py_ssize_t end

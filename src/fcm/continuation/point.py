@@ -17,8 +17,8 @@ else:
     from fcm.continuation.problem import NONE, Problem
 
 PI = cython.declare(cython.double, 3.141592653589793)
-AHEAD = cython.declare(cython.double, 1e-6)  # length over which margins have their slopes
-APART = cython.declare(cython.double, 1.0)  # [rad] margins this far from one another are not the same
+DIFFERENCE_LENGTH = cython.declare(cython.double, 1e-6)  # length over which margins have their slopes
+MAX_ANGLE = cython.declare(cython.double, 1.0)  # [rad] margins this far from one another are not the same
 ROOM = 256  # points of a store for which there is room at first
 
 
@@ -34,11 +34,11 @@ class Point:
         self.slope = np.zeros(problem.margins)  # of the margins, along a unit of length
         self.output, self.growth = np.zeros(problem.outputs), np.zeros(problem.outputs)
         self.orientation, self.group = 0.0, problem.group
-        self.inclined = False  # whether the slopes are those there
+        self.has_margin_slopes = False  # whether the slopes are those there
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def bounded(self, problem: Problem) -> cython.int:
+    def set_margins(self, problem: Problem) -> cython.int:
         """Take the margins that a problem was last asked for."""
         k: cython.Py_ssize_t
         for k in range(problem.margins):
@@ -47,10 +47,10 @@ class Point:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def like(self, other: Point, unit: cython.double) -> cython.int:
+    def copy_from(self, other: Point, unit: cython.double) -> cython.int:
         """Take everything from another point, whose unit of length is so many of the new."""
         i: cython.Py_ssize_t
-        self.orientation, self.inclined = other.orientation, other.inclined
+        self.orientation, self.has_margin_slopes = other.orientation, other.has_margin_slopes
         for i in range(other.z.shape[0]):
             self.z[i], self.tangent[i] = other.z[i], other.tangent[i]
         for i in range(other.slope.shape[0]):
@@ -88,28 +88,30 @@ class Point:
 
     @cython.cfunc
     @cython.exceptval(-1e300, check=False)
-    def asked(self, k: cython.Py_ssize_t, problem: Problem) -> cython.double:
+    def margin_of_problem(self, k: cython.Py_ssize_t, problem: Problem) -> cython.double:
         """The margin that a problem was last asked for and is the one with number k here; 0 if none is."""
         i: cython.Py_ssize_t = self.partner(k, problem.kind, problem.angle)
         return problem.margin[i] if i >= 0 else 0.0
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def incline(self, problem: Problem, scale: cython.double[::1], beside: cython.double[::1]) -> cython.int:
+    def differentiate_margins(
+        self, problem: Problem, scale: cython.double[::1], probe: cython.double[::1]
+    ) -> cython.int:
         """The slopes of the margins along the tangent, from differences to a point that is put beside."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
-        self.inclined = True
+        self.has_margin_slopes = True
         if problem.margins == 0 or problem.labelled:
             return 0
-        for i in range(beside.shape[0]):
-            beside[i] = self.z[i] + AHEAD * scale[i] * self.tangent[i]
-        problem.bound(beside)
+        for i in range(probe.shape[0]):
+            probe[i] = self.z[i] + DIFFERENCE_LENGTH * scale[i] * self.tangent[i]
+        problem.bound(probe)
         for k in range(problem.margins):
             self.slope[k] = 0.0
             i = self.partner(k, problem.kind, problem.angle)
             if i >= 0:
-                self.slope[k] = (problem.margin[i] - self.margin[k]) / AHEAD
+                self.slope[k] = (problem.margin[i] - self.margin[k]) / DIFFERENCE_LENGTH
         return 0
 
 
@@ -129,7 +131,7 @@ def nearest(
     """
     i: cython.Py_ssize_t
     best: cython.Py_ssize_t = -1
-    least: cython.double = APART
+    least: cython.double = MAX_ANGLE
     for i in range(first, end):
         if kind[i] == wanted:
             off: cython.double = fabs(at - angle[i])

@@ -13,7 +13,7 @@ from cython.cimports.libc.math import sqrt
 
 from fcm.continuation.point import Point
 
-FLAT = cython.declare(cython.double, 0.1)  # cosine of a turn, below which a step is no cubic any more
+MIN_COSINE = cython.declare(cython.double, 0.1)  # cosine of a turn, below which a step is no cubic any more
 
 
 @cython.cclass
@@ -25,21 +25,21 @@ class Predictor:
     """
 
     def __init__(self, size: cython.Py_ssize_t) -> None:
-        self.bend, self.second, self.third = np.zeros(size), np.zeros(size), np.zeros(size)
-        self.way = np.zeros(size)
-        self.known, self.cubic = False, False
+        self.curvature, self.second, self.third = np.zeros(size), np.zeros(size), np.zeros(size)
+        self.direction = np.zeros(size)
+        self.has_cubic, self.cubic = False, False
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def straighten(self) -> cython.int:
+    def reset(self) -> cython.int:
         """Predict by the tangent alone: nothing is known of the way here."""
-        self.bend[:] = 0.0
-        self.known, self.cubic = False, False
+        self.curvature[:] = 0.0
+        self.has_cubic, self.cubic = False, False
         return 0
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def put(
+    def predict(
         self, here: Point, scale: cython.double[::1], step: cython.double, guess: cython.double[::1]
     ) -> cython.void:
         """Fill a guess of the point that is a step from here."""
@@ -47,7 +47,7 @@ class Predictor:
         second: cython.double
         third: cython.double
         for i in range(guess.shape[0]):
-            second = self.second[i] if self.cubic else self.bend[i]
+            second = self.second[i] if self.cubic else self.curvature[i]
             third = self.third[i] if self.cubic else 0.0
             guess[i] = here.z[i] + scale[i] * step * (
                 here.tangent[i] + step * (0.5 * second + step * third / 6.0)
@@ -70,21 +70,21 @@ class Predictor:
         i: cython.Py_ssize_t
         unit: cython.double
         ratio: cython.double
-        for i in range(self.bend.shape[0]):
+        for i in range(self.curvature.shape[0]):
             ratio = scale[i] / new[i]
-            self.bend[i] = (point.tangent[i] - here.tangent[i]) / length * ratio if length > 0.0 else 0.0
+            self.curvature[i] = (point.tangent[i] - here.tangent[i]) / length * ratio if length > 0.0 else 0.0
             point.tangent[i] *= ratio
-        unit = sqrt(along(point.tangent, point.tangent))
-        for i in range(self.bend.shape[0]):
+        unit = sqrt(dot(point.tangent, point.tangent))
+        for i in range(self.curvature.shape[0]):
             point.tangent[i] /= unit
-        outwards: cython.double = along(point.tangent, self.bend)
-        for i in range(self.bend.shape[0]):
-            self.bend[i] = (self.bend[i] - outwards * point.tangent[i]) / unit
+        outwards: cython.double = dot(point.tangent, self.curvature)
+        for i in range(self.curvature.shape[0]):
+            self.curvature[i] = (self.curvature[i] - outwards * point.tangent[i]) / unit
         return unit
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def learn(
+    def update(
         self,
         here: Point,
         point: Point,
@@ -97,46 +97,46 @@ class Predictor:
         off: cython.double
         parabola: cython.double = 0.0
         cubic: cython.double = 0.0
-        if not (length > 0.0 and along(here.tangent, point.tangent) > FLAT):
-            self.known, self.cubic = False, False
+        if not (length > 0.0 and dot(here.tangent, point.tangent) > MIN_COSINE):
+            self.has_cubic, self.cubic = False, False
             return
-        for i in range(self.bend.shape[0]):
+        for i in range(self.curvature.shape[0]):
             off = (point.z[i] - here.z[i]) / scale[i] - length * here.tangent[i]
-            parabola += (off - 0.5 * length * length * self.bend[i]) ** 2
+            parabola += (off - 0.5 * length * length * self.curvature[i]) ** 2
             cubic += (off - length * length * (0.5 * self.second[i] + length * self.third[i] / 6.0)) ** 2
-        self.cubic = self.known and cubic < parabola
-        self.known = True
-        self.curve(here, point, scale, new)
+        self.cubic = self.has_cubic and cubic < parabola
+        self.has_cubic = True
+        self.fit_cubic(here, point, scale, new)
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def curve(
+    def fit_cubic(
         self, here: Point, point: Point, scale: cython.double[::1], new: cython.double[::1]
     ) -> cython.void:
         """The derivatives of the cubic back from a point through here, by its tangent, in a new scale."""
         i: cython.Py_ssize_t
-        size: cython.Py_ssize_t = self.bend.shape[0]
+        size: cython.Py_ssize_t = self.curvature.shape[0]
         back: cython.double = 0.0
         slope: cython.double = 0.0
         aside: cython.double
         rate: cython.double
         for i in range(size):
-            self.way[i] = point.tangent[i] * scale[i] / new[i]
-        unit: cython.double = sqrt(along(self.way, self.way))
+            self.direction[i] = point.tangent[i] * scale[i] / new[i]
+        unit: cython.double = sqrt(dot(self.direction, self.direction))
         for i in range(size):
-            self.way[i] /= unit
-            back += self.way[i] * (here.z[i] - point.z[i]) / new[i]
-            slope += self.way[i] * here.tangent[i] * scale[i] / new[i]
+            self.direction[i] /= unit
+            back += self.direction[i] * (here.z[i] - point.z[i]) / new[i]
+            slope += self.direction[i] * here.tangent[i] * scale[i] / new[i]
         for i in range(size):
-            aside = (here.z[i] - point.z[i]) / new[i] - back * self.way[i]
-            rate = here.tangent[i] * scale[i] / (new[i] * slope) - self.way[i]
+            aside = (here.z[i] - point.z[i]) / new[i] - back * self.direction[i]
+            rate = here.tangent[i] * scale[i] / (new[i] * slope) - self.direction[i]
             self.second[i] = 2.0 * (3.0 * aside - back * rate) / (back * back)
             self.third[i] = 6.0 * (back * rate - 2.0 * aside) / (back * back * back)
 
 
 @cython.cfunc
 @cython.exceptval(check=False)
-def along(a: cython.double[::1], b: cython.double[::1]) -> cython.double:
+def dot(a: cython.double[::1], b: cython.double[::1]) -> cython.double:
     """The product of two vectors."""
     i: cython.Py_ssize_t
     total: cython.double = 0.0

@@ -1,4 +1,4 @@
-cdef int DEAR
+cdef int COSTLY_SIZE
 cdef int NONE
 
 cdef class Problem:

@@ -11,7 +11,7 @@ import cython
 import numpy as np
 
 BOUNDLESS = cython.declare(cython.double, 1e9)  # `unbounded` where a problem says nothing else
-DEAR = cython.declare(cython.int, 100)  # unknowns, from which on most of the work is to solve for them
+COSTLY_SIZE = cython.declare(cython.int, 100)  # unknowns, from which on most of the work is to solve for them
 NONE = cython.declare(cython.int, -1)  # kind of a margin that is none
 
 
@@ -39,7 +39,7 @@ class Problem:
         self.unknowns, self.margins, self.outputs, self.rank = unknowns, margins, outputs, rank
         self.labelled, self.unbounded = False, BOUNDLESS
         self.rooted = False
-        self.group, self.costly = margins, unknowns >= DEAR
+        self.group, self.costly = margins, unknowns >= COSTLY_SIZE
         self.residual = np.zeros(unknowns)
         self.jacobian = np.zeros((unknowns, 1 if rank else unknowns + 1))
         self.scale = np.ones(unknowns + 1)

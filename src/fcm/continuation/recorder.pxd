@@ -7,17 +7,17 @@ cdef class Recorder:
     cdef readonly PointStore store
     cdef readonly Py_ssize_t n
     cdef readonly double low, high, same
-    cdef readonly bint interior, around, stopped
+    cdef readonly bint interior, came_around, stopped
     cdef long last
     cdef int ended_by
     cdef readonly list values
     cdef readonly object greatest
     cdef double[::1] stops, most
-    cdef double[::1] first, head
-    cdef bint keep(self, double limit) except -1
-    cdef bint been(self) except -1
+    cdef double[::1] first, initial_direction
+    cdef bint keep_events(self, double limit) except -1
+    cdef bint revisits_station(self) except -1
     cdef int add(self, long mark) except -1
-    cdef int note(self, Point point) except -1
-    cdef void rise(self) noexcept
+    cdef int add_corner(self, Point point) except -1
+    cdef void update_greatest(self) noexcept
     cdef bint closed(self) except -1
     cdef bint inside(self) noexcept

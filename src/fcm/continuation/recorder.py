@@ -16,9 +16,9 @@ from fcm.continuation.point import Point, PointStore
 from fcm.continuation.stepper import Stepper
 
 if cython.compiled:
-    from cython.cimports.fcm.continuation.events import closes, quiet
+    from cython.cimports.fcm.continuation.events import closes_curve, without_events
 else:
-    from fcm.continuation.events import closes, quiet
+    from fcm.continuation.events import closes_curve, without_events
 
 
 END = cython.declare(cython.long, int(Mark.END))
@@ -28,7 +28,7 @@ STATION = cython.declare(cython.long, int(Mark.STATION))
 
 @cython.cclass
 class Recorder:
-    """Points are kept in `store`; `first` is where the curve began, `head` its direction there.
+    """Points are kept in `store`; `first` is where the curve began, `initial_direction` its direction there.
 
     `values`, the same as `stops`, are those of the parameter that are landed on: stations, then the ends of
     the range. `greatest`, the same as `most`, are the outputs so far.
@@ -44,24 +44,30 @@ class Recorder:
         ]
         self.stops, self.store = np.array(self.values), PointStore(self.n + 1)
         self.greatest = np.zeros(stepper.problem.outputs)
-        self.most, self.first, self.head = self.greatest, np.zeros(self.n + 1), np.zeros(self.n + 1)
-        self.interior = self.around = self.stopped = False
+        self.most, self.first, self.initial_direction = (
+            self.greatest,
+            np.zeros(self.n + 1),
+            np.zeros(self.n + 1),
+        )
+        self.interior = self.came_around = self.stopped = False
         self.last, self.ended_by = wanted.last, -1
-        self.same = stepper.options.events.same  # of the greatest unknown: points closer than this are one
+        self.same = (
+            stepper.options.events.point_tolerance
+        )  # of the greatest unknown: points closer than this are one
 
-    def begins(self, parameter: float) -> None:
+    def start(self, parameter: float) -> None:
         """Begin where the stepper is, which is to be that value of the parameter."""
         here: Point = self.stepper.here
         here.z[self.n] = parameter
         self.interior = self.low < parameter < self.high
-        self.first, self.head = np.array(here.z), np.array(here.tangent)
+        self.first, self.initial_direction = np.array(here.z), np.array(here.tangent)
         self.store.add(here, self.stepper.newton.scale, 0 if self.interior else END)
 
-    def resumes(self, checkpoint: Checkpoint) -> None:
+    def restore(self, checkpoint: Checkpoint) -> None:
         """Have the points that were kept, and no others."""
         self.store.restore(checkpoint.kept)
         self.interior, self.greatest[:] = checkpoint.interior, checkpoint.greatest
-        self.first, self.head = checkpoint.start.copy(), checkpoint.heading.copy()
+        self.first, self.initial_direction = checkpoint.start.copy(), checkpoint.heading.copy()
 
     def state(self) -> dict[str, Any]:
         """What of a checkpoint the recorder knows."""
@@ -69,43 +75,43 @@ class Recorder:
             "kept": self.store.state(),
             "greatest": self.greatest.copy(),
             "start": np.array(self.first),
-            "heading": np.array(self.head),
+            "heading": np.array(self.initial_direction),
             "interior": bool(self.interior),
         }
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def keep(self, limit: cython.double) -> cython.bint:
+    def keep_events(self, limit: cython.double) -> cython.bint:
         """Keep what happens within the step up to a limit; true if the curve leaves its range there, or comes
         around to where it was though it did not begin there."""
-        if quiet(self.stepper, self.stops, self.most):
+        if without_events(self.stepper, self.stops, self.most):
             return False
-        for event in events.within(self.stepper, limit, self.values, self.greatest):
+        for event in events.events_within(self.stepper, limit, self.values, self.greatest):
             mark: cython.long = event.mark
             ends: cython.bint = mark & STATION and event.z[self.n] in (self.low, self.high)
             mark = END if ends else mark
             self.store.put(event.z, event.direction, mark, event.orientation)
-            if mark & STATION and self.been():
-                self.around = True
+            if mark & STATION and self.revisits_station():
+                self.came_around = True
             self.stopped = self.stopped or bool(mark & self.last)
-            if ends or self.around or self.stopped:
+            if ends or self.came_around or self.stopped:
                 return True
         return False
 
     def stop_at(self, length: float, number: int) -> Status:
         """Keep the point at a length of the step, where a function that is to end the curve does."""
         stepper = self.stepper
-        if self.keep(length):
-            return self.end()
-        far = length > stepper.options.step.shortest
-        if far and stepper.put(length, False, False) and stepper.sharpen(False, False):
+        if self.keep_events(length):
+            return self.end_status()
+        far = length > stepper.options.step.min_step
+        if far and stepper.find_between(length, False, False) and stepper.sharpen(False, False):
             self.store.add(stepper.between, stepper.newton.scale, 0)
         self.stopped, self.ended_by = True, number
         return Status.EVENT
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def been(self) -> cython.bint:
+    def revisits_station(self) -> cython.bint:
         """Whether the last point, at a station, was passed before in its direction, or the curve began there,
         with folds in between: a step that ends there may keep it, and the next one once more."""
         store: PointStore = self.store
@@ -131,7 +137,7 @@ class Recorder:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def note(self, point: Point) -> cython.int:
+    def add_corner(self, point: Point) -> cython.int:
         """Keep a point as a corner; the step before may have come to it already."""
         mark: cython.long = CORNER
         if self.store.ends_at(point):
@@ -140,7 +146,7 @@ class Recorder:
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def rise(self) -> cython.void:
+    def update_greatest(self) -> cython.void:
         """The greatest outputs so far."""
         k: cython.Py_ssize_t
         for k in range(self.most.shape[0]):
@@ -150,7 +156,7 @@ class Recorder:
     @cython.exceptval(-1, check=False)
     def closed(self) -> cython.bint:
         """Whether the step comes to where the curve began; the curve is kept as a closed one then."""
-        if not self.interior or not closes(self.stepper, self.first, self.head):
+        if not self.interior or not closes_curve(self.stepper, self.first, self.initial_direction):
             return False
         self.store.close()
         return True
@@ -165,15 +171,15 @@ class Recorder:
         """Fraction of the range between where the curve began and here."""
         return float(abs(self.stepper.here.z[self.n] - self.first[self.n]) / (self.high - self.low))
 
-    def end(self) -> Status:
+    def end_status(self) -> Status:
         """The status of a curve that has left its range, or comes around."""
         if self.stopped:
             return Status.EVENT
-        if self.around and self.interior and self.store.same(0, self.store.count - 1, self.same):
+        if self.came_around and self.interior and self.store.same(0, self.store.count - 1, self.same):
             self.store.drop()
             self.store.close()
             return Status.CLOSED
-        if self.around:
+        if self.came_around:
             return Status.AROUND
         back = not self.interior and self.store.last()[self.n] == self.first[self.n]
         return Status.RETURNED if back else Status.COMPLETE
@@ -184,7 +190,7 @@ class Recorder:
         return replace(path, ended_by=self.ended_by) if self.ended_by >= 0 else path
 
 
-def earlier(stepper: Stepper, store: PointStore, points: int) -> bool:
+def step_back(stepper: Stepper, store: PointStore, points: int) -> bool:
     """Whether there is a plain point so many points back or more: the curve then ends there."""
     kept = store.points()
     plain = np.flatnonzero(kept.mark[: max(store.count - points, 0)] == 0)

@@ -21,7 +21,7 @@ class _Known(NamedTuple):
 
 
 class Segment:
-    """The curve from a point of a path to the next; `put` finds the point at a fraction of the way.
+    """The curve from a point of a path to the next; `find` finds the point at a fraction of the way.
 
     Guesses are corrected across the chord. The first lies on the cubic through both points with their
     directions, another as far along the chord on that through the nearest points that have been found.
@@ -39,7 +39,7 @@ class Segment:
         self._tangents = direction / np.where(size > 0.0, size, 1.0)
         self._found = list[_Known]()
 
-    def put(self, part: float) -> bool:
+    def find(self, part: float) -> bool:
         """Whether there is a point at the part of the way, in [0, 1]; it is then z."""
         if self.length == 0.0:
             return False

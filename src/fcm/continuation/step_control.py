@@ -14,37 +14,46 @@ from fcm.continuation.options import StepOptions
 from fcm.continuation.stepper import Stepper
 
 if cython.compiled:
-    from cython.cimports.fcm.continuation.switching_functions import crosses
+    from cython.cimports.fcm.continuation.switching_functions import changes_sign
 else:
-    from fcm.continuation.switching_functions import crosses
+    from fcm.continuation.switching_functions import changes_sign
 
 
 @cython.ccall
 @cython.exceptval(-1, check=False)
-def good(stepper: Stepper) -> cython.bint:
+def acceptable(stepper: Stepper) -> cython.bint:
     """Whether the curve was where it was predicted, and went on as it did."""
     options: StepOptions = stepper.options.step
-    if stepper.step <= options.sharp:
+    if stepper.step <= options.any_turn_step:
         # beyond a corner that turns by more than a right angle the way back is as near
-        back: cython.bint = stepper.problem.rooted and not kept(stepper) and stepper.cosine < options.cosine
+        back: cython.bint = (
+            stepper.problem.rooted and not keeps_orientation(stepper) and stepper.cosine < options.min_cosine
+        )
         return stepper.cosine > 0.0 and not back
-    if not (kept(stepper) and stepper.missed < options.far and stepper.cosine > options.cosine):
+    if not (
+        keeps_orientation(stepper) and stepper.miss < options.max_miss and stepper.cosine > options.min_cosine
+    ):
         return False
-    return unforeseen(stepper) < options.uneven_times * options.uneven
+    return output_error(stepper) < options.max_output_error_ratio * options.target_output_error
 
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def kept(stepper: Stepper) -> cython.bint:
+def keeps_orientation(stepper: Stepper) -> cython.bint:
     """Whether the orientation is the same here and there: otherwise there may be the far side of a corner."""
     return stepper.there.orientation == stepper.here.orientation
 
 
 @cython.ccall
 @cython.exceptval(-1, check=False)
-def clear(stepper: Stepper, step: cython.double) -> cython.bint:
+def smooth_step(stepper: Stepper, step: cython.double) -> cython.bint:
     """Whether there is a good step of a length before a corner, and no margin changes its sign on it."""
-    return stepper.go(step) and kept(stepper) and good(stepper) and not crosses(stepper)
+    return (
+        stepper.try_step(step)
+        and keeps_orientation(stepper)
+        and acceptable(stepper)
+        and not changes_sign(stepper)
+    )
 
 
 @cython.ccall
@@ -52,18 +61,18 @@ def clear(stepper: Stepper, step: cython.double) -> cython.bint:
 def next_step(stepper: Stepper) -> cython.double:
     """Length of the step that follows a good one."""
     options: StepOptions = stepper.options.step
-    growth: cython.double = options.turn / max(acos(min(stepper.cosine, 1.0)), 1e-9)
-    growth = min(growth, sqrt(options.miss / max(stepper.missed, 1e-9)))
-    growth = min(growth, options.uneven / max(unforeseen(stepper), 1e-9))
-    most: cython.double = options.haste if stepper.options.hasty else options.grow
+    growth: cython.double = options.target_turn / max(acos(min(stepper.cosine, 1.0)), 1e-9)
+    growth = min(growth, sqrt(options.target_miss / max(stepper.miss, 1e-9)))
+    growth = min(growth, options.target_output_error / max(output_error(stepper), 1e-9))
+    most: cython.double = options.max_factor_hasty if stepper.options.stations_only else options.max_factor
     return min(
-        stepper.step * min(max(options.share * growth, options.shrink), most), stepper.options.max_step
+        stepper.step * min(max(options.safety * growth, options.min_factor), most), stepper.options.max_step
     )
 
 
 @cython.ccall
 @cython.exceptval(-1, check=False)
-def unforeseen(stepper: Stepper) -> cython.double:
+def output_error(stepper: Stepper) -> cython.double:
     """Greatest change of the growth of an output over the step, as a change of the output over its
     size."""
     k: cython.Py_ssize_t
@@ -78,7 +87,7 @@ def unforeseen(stepper: Stepper) -> cython.double:
 
 @cython.ccall
 @cython.exceptval(-1, check=False)
-def extent(stepper: Stepper) -> cython.double:
+def solution_size(stepper: Stepper) -> cython.double:
     """Greatest unit of the unknowns: the size of the solution."""
     i: cython.Py_ssize_t
     most: cython.double = 0.0

@@ -14,27 +14,27 @@ cdef class Stepper:
     cdef public Point between
     cdef public double step
     cdef public double cosine
-    cdef public double missed, strayed
-    cdef public int which
-    cdef public double[::1] aside
+    cdef public double miss, parameter_miss
+    cdef public int next_margin
+    cdef public double[::1] offset
     cdef double[::1] guess
-    cdef double past
-    cdef double close
-    cdef double misled
+    cdef double known_length
+    cdef double tolerance
+    cdef double max_newton_step
     cpdef int begin(self, double[::1] z, double[::1] row) except -1
-    cpdef bint go(self, double step) except -1
+    cpdef bint try_step(self, double step) except -1
     cpdef int accept(self, Point point, double length) except -1
-    cpdef int drift(self, double step) except -1
-    cdef int incline(self) except -1
-    cdef bint exactly(self) except -1
-    cdef bint found(self, double step) except -1
-    cdef bint roughly(self, double step, double close) except -1
-    cpdef bint put(self, double at, bint margins, bint outputs) except -1
-    cpdef bint near(self, double at, double[::1] guess) except -1
-    cpdef bint land(self, double parameter) except -1
+    cpdef int move_short(self, double step) except -1
+    cdef int differentiate_margins(self) except -1
+    cdef bint update_tangent(self) except -1
+    cdef bint correct_step(self, double step) except -1
+    cdef bint correct_to(self, double step, double tolerance) except -1
+    cpdef bint find_between(self, double at, bint margins, bint outputs) except -1
+    cpdef bint find_from_guess(self, double at, double[::1] guess) except -1
+    cpdef bint find_at_parameter(self, double parameter) except -1
     cpdef bint sharpen(self, bint margins, bint outputs) except -1
     cpdef bint shorten(self, double at) except -1
     cpdef double length(self, Point point) except -1e300
     cdef int record(self, Point point, bint margins, bint outputs) except -1
-    cdef double spread(self) noexcept
+    cdef double clipped_cosine(self) noexcept
     cdef void interpolate(self, double at) noexcept

@@ -11,14 +11,14 @@ from cython.cimports.libc.math import fabs, sqrt
 from fcm.continuation.stepper import Stepper
 
 if cython.compiled:
-    from cython.cimports.fcm.continuation.point import AHEAD
+    from cython.cimports.fcm.continuation.point import DIFFERENCE_LENGTH
 else:
-    from fcm.continuation.point import AHEAD
+    from fcm.continuation.point import DIFFERENCE_LENGTH
 
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def dip(stepper: Stepper) -> cython.double:
+def hidden_sign_change(stepper: Stepper) -> cython.double:
     """Length at which a margin of one sign here and there has the other between them; 0 if none has.
 
     As far as the cubic through both ends, with their slopes, tells.
@@ -30,11 +30,11 @@ def dip(stepper: Stepper) -> cython.double:
     for k in range(stepper.problem.margins):
         i = stepper.here.partner(k, stepper.there.kind, stepper.there.angle)
         if i >= 0 and stepper.here.margin[k] * stepper.there.margin[i] > 0.0:
-            at = lowest(
+            at = cubic_beyond_zero(
                 stepper.here.margin[k],
                 stepper.here.slope[k] * stepper.step,
                 stepper.there.margin[i],
-                stepper.there.slope[i] * stepper.step / stepper.spread(),
+                stepper.there.slope[i] * stepper.step / stepper.clipped_cosine(),
             )
             if 0.0 < at * stepper.step < first:
                 first = at * stepper.step
@@ -43,7 +43,7 @@ def dip(stepper: Stepper) -> cython.double:
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def detour(stepper: Stepper, greatest: cython.double[::1]) -> cython.double:
+def hidden_reversal(stepper: Stepper, greatest: cython.double[::1]) -> cython.double:
     """Length at which the parameter, or an output, may go the other way than here and there; 0 if none does.
 
     There are two folds, or a peak and the least value after it, between then. As far as the cubics through
@@ -52,41 +52,41 @@ def detour(stepper: Stepper, greatest: cython.double[::1]) -> cython.double:
     k: cython.Py_ssize_t
     size: cython.double
     step: cython.double = stepper.step
-    along: cython.double = step / stepper.spread()
-    if step <= stepper.options.events.blurred:
+    along: cython.double = step / stepper.clipped_cosine()
+    if step <= stepper.options.events.rounding_step:
         return 0.0
-    at: cython.double = turning(stepper)
+    at: cython.double = parameter_reversal(stepper)
     for k in range(stepper.problem.outputs):
         size = max(stepper.here.output[k], stepper.there.output[k])
-        if at == 0.0 and size >= stepper.options.events.nearly_greatest * greatest[k]:
-            at = opposite(
+        if at == 0.0 and size >= stepper.options.events.peak_threshold * greatest[k]:
+            at = cubic_reversal(
                 stepper.there.output[k] - stepper.here.output[k],
                 stepper.here.growth[k] * step,
                 stepper.there.growth[k] * along,
-                stepper.options.events.rise * size * step,
-                stepper.options.events.doubtful,
+                stepper.options.events.min_growth * size * step,
+                stepper.options.events.doubtful_slope,
             )
     return at * step
 
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def turning(stepper: Stepper) -> cython.double:
+def parameter_reversal(stepper: Stepper) -> cython.double:
     """The part of the step where the parameter may go the other way than here and there; 0 if nowhere."""
     n: cython.Py_ssize_t = stepper.problem.unknowns
     unit: cython.double = stepper.step * stepper.newton.scale[n]
-    return opposite(
+    return cubic_reversal(
         stepper.there.z[n] - stepper.here.z[n],
         stepper.here.tangent[n] * unit,
-        stepper.there.tangent[n] * unit / stepper.spread(),
+        stepper.there.tangent[n] * unit / stepper.clipped_cosine(),
         0.0,
-        stepper.options.events.doubtful,
+        stepper.options.events.doubtful_slope,
     )
 
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def even(stepper: Stepper) -> cython.bint:
+def parameter_is_even(stepper: Stepper) -> cython.bint:
     """Whether the parameter goes on so evenly that corners within the step hide no pair of folds.
 
     Beyond a corner its slope may change as a root, and back at the next one: the slope at the ends then
@@ -95,9 +95,9 @@ def even(stepper: Stepper) -> cython.bint:
     n: cython.Py_ssize_t = stepper.problem.unknowns
     unit: cython.double = stepper.step * stepper.newton.scale[n]
     begin: cython.double = stepper.here.tangent[n] * unit
-    end: cython.double = stepper.there.tangent[n] * unit / stepper.spread()
+    end: cython.double = stepper.there.tangent[n] * unit / stepper.clipped_cosine()
     off: cython.double = fabs(2.0 * (stepper.there.z[n] - stepper.here.z[n]) - (begin + end))
-    return begin * end > 0.0 and max(off, fabs(end - begin)) < stepper.options.events.even * min(
+    return begin * end > 0.0 and max(off, fabs(end - begin)) < stepper.options.events.max_slope_change * min(
         fabs(begin), fabs(end)
     )
 
@@ -105,7 +105,7 @@ def even(stepper: Stepper) -> cython.bint:
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
-def opposite(
+def cubic_reversal(
     rise: cython.double,
     begin: cython.double,
     end: cython.double,
@@ -129,7 +129,7 @@ def opposite(
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def crosses(stepper: Stepper) -> cython.bint:
+def changes_sign(stepper: Stepper) -> cython.bint:
     """Whether a margin changes sign from here to there."""
     k: cython.Py_ssize_t
     for k in range(stepper.problem.margins):
@@ -141,7 +141,7 @@ def crosses(stepper: Stepper) -> cython.bint:
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
-def lowest(
+def cubic_beyond_zero(
     before: cython.double, begin: cython.double, after: cython.double, end: cython.double
 ) -> cython.double:
     """Where in (0, 1) the cubic with values of one sign and slopes at 0 and 1 is furthest beyond 0; 0 if it
@@ -159,42 +159,49 @@ def lowest(
 
 @cython.ccall
 @cython.exceptval(-1, check=False)
-def ahead(stepper: Stepper, step: cython.double) -> cython.double:
+def next_corner(stepper: Stepper, step: cython.double) -> cython.double:
     """The step, or where on it the prediction comes to the first change of sign of a margin: of which."""
     count: cython.int
     at: cython.double
     before: cython.double
     after: cython.double
-    low: cython.double = stepper.past
+    low: cython.double = stepper.known_length
     high: cython.double = step
     width: cython.double = 2.0 * step
-    known: cython.double = stepper.options.switching.known
+    known: cython.double = stepper.options.switching.distance_tolerance
     aside: cython.double = known / 3.0  # of the root, to come to either side of it
     if stepper.problem.labelled:
-        return label_ahead(stepper, step)
-    if stepper.problem.margins == 0 or step <= low or not crossed(stepper, step):
+        return next_label_change(stepper, step)
+    if stepper.problem.margins == 0 or step <= low or not prediction_changes_sign(stepper, step):
         return step
-    before, after = stepper.here.margin[stepper.which], stepper.here.asked(stepper.which, stepper.problem)
-    for count in range(stepper.options.switching.most):
+    before, after = (
+        stepper.here.margin[stepper.next_margin],
+        stepper.here.margin_of_problem(stepper.next_margin, stepper.problem),
+    )
+    for count in range(stepper.options.switching.max_predictions):
         if high - low < known * high:
             break
         at = (low * after - high * before) / (after - before) + aside * high
         if not low < at < high or (count % 3 == 2 and high - low > 0.5 * width):
             at = 0.5 * (low + high)
         width = high - low if count % 3 == 0 else width
-        which: cython.Py_ssize_t = stepper.which
-        if crossed(stepper, at):
-            high, after, aside = at, stepper.here.asked(stepper.which, stepper.problem), -known / 3.0
-            before = before if which == stepper.which else -after  # of another: by halves at first
+        which: cython.Py_ssize_t = stepper.next_margin
+        if prediction_changes_sign(stepper, at):
+            high, after, aside = (
+                at,
+                stepper.here.margin_of_problem(stepper.next_margin, stepper.problem),
+                -known / 3.0,
+            )
+            before = before if which == stepper.next_margin else -after  # of another: by halves at first
         else:
             low, aside = at, known / 3.0
-            before = stepper.here.asked(which, stepper.problem) or before
+            before = stepper.here.margin_of_problem(which, stepper.problem) or before
     return high
 
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def straight_ahead(stepper: Stepper) -> cython.double:
+def next_extrapolated_root(stepper: Stepper) -> cython.double:
     """Length at which the first margin vanishes that goes on as it does here; 0 if none approaches zero.
 
     A margin that is the root of the distance from a corner is as straight as the curve; the prediction,
@@ -202,14 +209,14 @@ def straight_ahead(stepper: Stepper) -> cython.double:
     """
     k: cython.Py_ssize_t
     first: cython.double = 0.0
-    if not stepper.here.inclined:
-        stepper.here.incline(stepper.problem, stepper.newton.scale, stepper.guess)
+    if not stepper.here.has_margin_slopes:
+        stepper.here.differentiate_margins(stepper.problem, stepper.newton.scale, stepper.guess)
     for k in range(stepper.problem.margins):
         if stepper.here.margin[k] * stepper.here.slope[k] < 0.0:
             here: cython.double = stepper.here.margin[k]
-            beside: cython.double = here + AHEAD * stepper.here.slope[k]
+            beside: cython.double = here + DIFFERENCE_LENGTH * stepper.here.slope[k]
             # the square of such a root falls half as fast along the tangent as it does along the curve
-            at: cython.double = 2.0 * AHEAD * here * here / (here * here - beside * beside)
+            at: cython.double = 2.0 * DIFFERENCE_LENGTH * here * here / (here * here - beside * beside)
             if here * beside > 0.0 and (first == 0.0 or at < first):
                 first = at
     return first
@@ -217,17 +224,17 @@ def straight_ahead(stepper: Stepper) -> cython.double:
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def label_ahead(stepper: Stepper, step: cython.double) -> cython.double:
+def next_label_change(stepper: Stepper, step: cython.double) -> cython.double:
     """The step, or where on it a label of the prediction changes: a label has no root, but halves."""
     count: cython.int
     low: cython.double = 0.0
     high: cython.double = step
-    if stepper.problem.margins == 0 or not crossed(stepper, step):
+    if stepper.problem.margins == 0 or not prediction_changes_sign(stepper, step):
         return step
-    for count in range(stepper.options.switching.most):  # noqa: B007
-        if high - low < stepper.options.switching.known_label * high:
+    for count in range(stepper.options.switching.max_predictions):  # noqa: B007
+        if high - low < stepper.options.switching.label_tolerance * high:
             break
-        if crossed(stepper, 0.5 * (low + high)):
+        if prediction_changes_sign(stepper, 0.5 * (low + high)):
             high = 0.5 * (low + high)
         else:
             low = 0.5 * (low + high)
@@ -236,18 +243,18 @@ def label_ahead(stepper: Stepper, step: cython.double) -> cython.double:
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def crossed(stepper: Stepper, step: cython.double) -> cython.bint:
+def prediction_changes_sign(stepper: Stepper, step: cython.double) -> cython.bint:
     """Whether the prediction a step ahead has a margin of the other sign than here, or a label of
     another value; which is then one of those."""
     k: cython.Py_ssize_t
-    stepper.predictor.put(stepper.here, stepper.newton.scale, step, stepper.guess)
+    stepper.predictor.predict(stepper.here, stepper.newton.scale, step, stepper.guess)
     stepper.problem.bound(stepper.guess)
     for k in range(stepper.problem.margins):
         if stepper.problem.labelled:
             changed: cython.bint = stepper.problem.margin[k] != stepper.here.margin[k]
         else:
-            changed = stepper.here.asked(k, stepper.problem) * stepper.here.margin[k] < 0.0
+            changed = stepper.here.margin_of_problem(k, stepper.problem) * stepper.here.margin[k] < 0.0
         if changed:
-            stepper.which = k
+            stepper.next_margin = k
             return True
     return False

@@ -85,7 +85,7 @@ class _Solver:
     def of(scene: Scene, curve: Curve) -> _Solver:
         system = System(scene, curve.harmonics)
         modal = None if scene.ring is not None else System(scene_in_modes(scene), curve.harmonics)
-        return _Solver(scene, curve, Newton(system.balance()), system, modal)
+        return _Solver(scene, curve, Newton(system.new_balance()), system, modal)
 
     def peaks(self, number: int, reported: Sequence[bool], options: ExportOptions) -> Iterator[Motion]:
         """The motion of each peak; one that several degrees of freedom share is there once."""

@@ -18,7 +18,7 @@ from fcm.fit.rows import Rows
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Measured, Scene
 from fcm.nonlinear_modes.backbone import Mode, linear_modes, nonlinear_mode
-from fcm.nonlinear_modes.extended_periodic_motion import Autonomous
+from fcm.nonlinear_modes.extended_periodic_motion import AutonomousProblem
 from fcm.scene.draft import Number
 from fcm.sensitivity.peak import STENCIL
 
@@ -80,7 +80,7 @@ class _Followed:
         )
         if not len(self.mode.path.z):
             raise NoMotionError
-        self.problem: Autonomous = self.mode.problem
+        self.problem: AutonomousProblem = self.mode.problem
         self.newton = Newton(self.problem, self.problem.precision)
         sizes = (
             self.mode.amplitude if self.dof is None else np.array([self._size(z) for z in self.mode.path.z])
@@ -94,7 +94,7 @@ class _Followed:
             raise NoMotionError
         return low / shape, high / shape
 
-    def _size(self, z: FloatArray, problem: Autonomous | None = None) -> float:
+    def _size(self, z: FloatArray, problem: AutonomousProblem | None = None) -> float:
         """The amplitude that was measured: modal, or the fundamental of a displacement."""
         if self.dof is None:
             return self.problem.modal_amplitude(z)
@@ -157,7 +157,7 @@ class _Followed:
 class Moved:
     """A mode with other values of a number: weights of a derivative, with the problems."""
 
-    terms: list[tuple[float, Autonomous]]
+    terms: list[tuple[float, AutonomousProblem]]
 
     def rate(self, z: FloatArray) -> FloatArray:
         """Of the residual by the number, at the same unknowns."""
@@ -168,7 +168,7 @@ class Moved:
         return total
 
 
-def _moved(scene: Scene, number: Number, harmonics: tuple[int, ...], problem: Autonomous) -> Moved:
+def _moved(scene: Scene, number: Number, harmonics: tuple[int, ...], problem: AutonomousProblem) -> Moved:
     """With the values of a number on both sides; the structure's modes are the same in their order."""
     value = number.value(scene)
     step = BACKBONE.difference * (abs(value) or 1.0)
@@ -176,5 +176,5 @@ def _moved(scene: Scene, number: Number, harmonics: tuple[int, ...], problem: Au
     for k, weight in STENCIL:
         for sign in (1.0, -1.0):
             system = System(number.put(scene, value + sign * k * step), harmonics)
-            terms.append((sign * weight / step, Autonomous(system, problem.guess, problem.options)))
+            terms.append((sign * weight / step, AutonomousProblem(system, problem.guess, problem.options)))
     return Moved(terms)

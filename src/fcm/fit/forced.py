@@ -67,7 +67,7 @@ class Observed:
     """What was measured, of a solution of the balance: (omega, A) or (omega, Re A, Im A), and its rates."""
 
     def __init__(self, data: Measured, system: System) -> None:
-        self.balance = system.balance()
+        self.balance = system.new_balance()
         self.dof = list(system.scene.modal.dofs).index(data.dof)
         self.first = system.harmonics.index(1)
         self.power = QUANTITIES[data.quantity]

@@ -8,7 +8,7 @@ cdef class Law:
     cdef public double k_u
     cdef public double k_v
     cdef public double n_0
-    cdef public bint mixed
+    cdef public bint nonlinear
     cdef public double[::1] force
     cdef public double[:, ::1] tangent
     cdef public double[:, ::1] resistance
@@ -21,5 +21,10 @@ cdef class Law:
     cpdef int evaluate(self, double[::1] x, Py_ssize_t first) except -1
     cpdef int probe(self, double[::1] x, Py_ssize_t first) except -1
     cpdef int bound(self, double[::1] x, Py_ssize_t first) except -1
-    cpdef int resist(self) except -1
+    cpdef int compute_resistance(self) except -1
     cpdef int cycle(self, double[::1] x, Py_ssize_t first) except -1
+
+cdef class KernelLaw(Law):
+    cdef int forces(self, double[::1] x, Py_ssize_t first, bint tangent) except -1
+    cdef void take_forces(self, double[::1] forces) noexcept
+    cdef int take_margins(self, int count, int[::1] kind, double[::1] value, double[::1] angle) except -1

@@ -11,6 +11,8 @@ to say; nothing else knows.
 
 from __future__ import annotations
 
+from typing import Any
+
 import cython
 import numpy as np
 
@@ -30,13 +32,13 @@ class Law:
     ----------
     force (equation,), tangent (equation, width)
         By `evaluate`.
-    mixed
+    nonlinear
         By `evaluate`: whether it slips or separates within the cycle, so that its forces have harmonics that
         its motion has not.
     margin, kind, angle (margins,)
         By `bound`, as those of a `Problem`, with kinds from 0 to KINDS - 1.
     resistance (direction, direction)
-        By `resist`: derivatives of the forces by the displacements, in the mean over the cycle.
+        By `compute_resistance`: derivatives of the forces by the displacements, in the mean over the cycle.
     pieces, state (piece,)
         By `cycle`: the states that follow one another, 0 stick, 1 slip, -1 slip the other way, 2 separation.
     borne (4,)
@@ -55,14 +57,14 @@ class Law:
         n_0: cython.double,
     ) -> None:
         self.width, self.directions, self.margins = width, directions, margins
-        self.mu, self.k_u, self.k_v, self.n_0, self.mixed = mu, k_u, k_v, n_0, False
+        self.mu, self.k_u, self.k_v, self.n_0, self.nonlinear = mu, k_u, k_v, n_0, False
         self.force, self.tangent = np.zeros(width), np.zeros((width, width))
         self.margin, self.angle = np.ones(margins), np.zeros(margins)
         self.kind = np.arange(margins, dtype=np.intc)
         self.resistance, self.borne = np.zeros((directions, directions)), np.zeros(4)
         self.pieces, self.state = 0, np.zeros(0, dtype=np.intc)
 
-    def put(self, mu: float, k_u: float, k_v: float, n_0: float) -> None:
+    def set_parameters(self, mu: float, k_u: float, k_v: float, n_0: float) -> None:
         """Take other numbers."""
         self.mu, self.k_u, self.k_v, self.n_0 = mu, k_u, k_v, n_0
 
@@ -90,7 +92,7 @@ class Law:
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def resist(self) -> cython.int:
+    def compute_resistance(self) -> cython.int:
         """Fill `resistance`, of the motion that was evaluated last."""
         return 0
 
@@ -98,6 +100,62 @@ class Law:
     @cython.exceptval(-1, check=False)
     def cycle(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
         """Go through the cycle of a motion, for its states and what it bears."""
+        return 0
+
+
+@cython.cclass
+class KernelLaw(Law):
+    """A law with the forces of a kernel, exact for a motion of any harmonics; contacts may share it."""
+
+    def __init__(
+        self,
+        kernel: Any,
+        directions: cython.int,
+        margins: cython.int,
+        mu: cython.double,
+        k_u: cython.double,
+        k_v: cython.double,
+        n_0: cython.double,
+    ) -> None:
+        Law.__init__(self, kernel.unknowns, directions, margins, mu, k_u, k_v, n_0)
+        self.force, self.tangent = np.zeros(kernel.equations), kernel.jacobian
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def evaluate(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+        return self.forces(x, first, True)
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def probe(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+        return self.forces(x, first, False)
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
+        """And their tangent, if that is wanted."""
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def take_forces(self, forces: cython.double[::1]) -> cython.void:
+        """Those of the kernel, less the preload that the structure at rest balances."""
+        i: cython.Py_ssize_t
+        for i in range(self.force.shape[0]):
+            self.force[i] = forces[i]
+        self.force[self.directions - 1] -= max(self.n_0, 0.0)
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def take_margins(
+        self, count: cython.int, kind: cython.int[::1], value: cython.double[::1], angle: cython.double[::1]
+    ) -> cython.int:
+        """So many that were found; the others are none."""
+        i: cython.Py_ssize_t
+        for i in range(self.margins):
+            self.kind[i] = kind[i] if i < count else NONE
+        self.margin[:] = value
+        self.angle[:] = angle
         return 0
 
 

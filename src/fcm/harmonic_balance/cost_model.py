@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from fcm.continuation import Path
 from fcm.continuation.follow import Progress
 from fcm.continuation.stepper import Stepper
-from fcm.harmonic_balance.modal_condensation import OPTIONS, condensed_size
+from fcm.harmonic_balance.modal_condensation import CONDENSATION, condensed_size
 from fcm.harmonic_balance.options import HARMONIC_BALANCE, EvaluationCost
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Scene
@@ -20,8 +20,9 @@ from fcm.scene.options import LIMITS
 from fcm.scene.rules import harmonics_up_to
 from fcm.structure.layout import Layout, layout_of
 
-PATIENCE = 30.0  # seconds that all rounds of more and more harmonics may take: levels, branches, errors
-AGAIN = 3.0  # where they are followed a dozen times, as in a search, or with one harmonic more each time
+MAX_SECONDS = 30.0  # seconds that all rounds of more and more harmonics may take: levels, branches, errors
+# where they are followed a dozen times, as in a search, or with one harmonic more each time
+MAX_SECONDS_REPEATED = 3.0
 
 
 def seconds_of(system: System, evaluations: int, harmonics: int) -> float:
@@ -30,7 +31,7 @@ def seconds_of(system: System, evaluations: int, harmonics: int) -> float:
     A condensed matrix is formed first, see `condensed`, by 2 multiplications for each mode and entry.
     """
     layout = layout_of(len(system.scene.contacts), system.scene.directions_of_contact, harmonics)
-    rank = condensed_size(system.yields, layout.ports, harmonics, system.condensing)
+    rank = condensed_size(system.modal_compliance, layout.ports, harmonics, system.condensation)
     return evaluations * _evaluation(layout, rank, system.options.cost)
 
 
@@ -47,16 +48,16 @@ def _evaluation(layout: Layout, rank: int, cost: EvaluationCost) -> float:
 class CurveCost:
     """What the curves of a scene take that were measured, of 50 to 200 contacts with one harmonic.
 
-    evaluations: of a curve, see `each`. of_point: of each point that it has by its longest step, where these
-    are more. beside: seconds for each of them, contact and coefficient of its motion, of all that comes
-    beside the solution: levels, stability, errors. far: times the highest frequency of the harmonics, from
-    where on few modes can do for all that are above.
+    evaluations: of a curve, see `each`. evaluations_per_point: of each point that it has by its longest
+    step, where these are more. overhead: seconds for each of them, contact and coefficient of its motion,
+    of all that comes beside the solution: levels, stability, errors. high_frequency: times the highest
+    frequency of the harmonics, from where on few modes can do for all that are above.
     """
 
     evaluations: float = 1500.0
-    of_point: float = 7.0
-    beside: float = 2.5e-5
-    far: float = 2.0
+    evaluations_per_point: float = 7.0
+    overhead: float = 2.5e-5
+    high_frequency: float = 2.0
     each: EvaluationCost = HARMONIC_BALANCE.cost
 
 
@@ -72,12 +73,12 @@ def seconds_of_curve(scene: Scene, harmonics: int, cost: CurveCost | None = None
     """
     cost = cost or CurveCost()
     layout = layout_of(len(scene.contacts), scene.directions_of_contact, harmonics)
-    highest = cost.far * harmonics * scene.frequency_range[1]
-    modes, many = int((scene.modal.frequency <= highest).sum()), layout.unknowns >= OPTIONS.fewest
-    few = many and scene.ring is None and modes < OPTIONS.share * layout.ports
+    highest = cost.high_frequency * harmonics * scene.frequency_range[1]
+    modes, many = int((scene.modal.frequency <= highest).sum()), layout.unknowns >= CONDENSATION.min_unknowns
+    few = many and scene.ring is None and modes < CONDENSATION.max_fraction * layout.ports
     each = _evaluation(layout, modes * (1 + 2 * harmonics) if few else 0, cost.each)
-    beside = cost.beside * layout.contacts * (1 + harmonics)
-    return max(cost.evaluations, cost.of_point / scene.max_step) * (each + beside)
+    beside = cost.overhead * layout.contacts * (1 + harmonics)
+    return max(cost.evaluations, cost.evaluations_per_point / scene.max_step) * (each + beside)
 
 
 def seconds_with(system: System, evaluations: int, harmonics: int) -> float:
@@ -96,12 +97,12 @@ def with_twice_as_many(system: System, evaluations: int) -> System | None:
     """
     highest = system.harmonics[-1]
     more = min(2 * highest + 1, LIMITS.harmonics)
-    if more == highest or seconds_with(system, evaluations, more) > AGAIN:
+    if more == highest or seconds_with(system, evaluations, more) > MAX_SECONDS_REPEATED:
         return None
     return system.with_harmonics(harmonics_up_to(more))
 
 
-def paid(
+def charged_to_work(
     system: System, stepper: Stepper, progress: Progress | None, follow: Callable[[Progress], Path]
 ) -> Path:
     """What follow returns with a progress that adds what it takes to the work of a system, as it goes on."""
@@ -110,14 +111,14 @@ def paid(
     def add(evaluations: int) -> None:
         nonlocal known
         new, known = evaluations - known, evaluations
-        system.work.take(new * each)
+        system.work.add(new * each)
 
     def report(share: float) -> None:
         add(stepper.newton.evaluations)
         if progress is not None:
             progress(share)
 
-    with system.alone():
+    with system.exclusive_balance():
         path = follow(report)
     add(path.evaluations)
     return path

@@ -21,20 +21,20 @@ def jacobian_of(balance: Balance) -> FloatArray:
     for c in range(balance.contacts):
         columns = np.zeros((n, w))
         columns[c * w : (c + 1) * w] = tangent[c]
-        found[:, c * w : (c + 1) * w] = answer(balance, columns)
+        found[:, c * w : (c + 1) * w] = apply_compliance(balance, columns)
     found[range(n), range(n)] += 1.0
     found[:, n] = np.asarray(balance.jacobian)[:, 0]
     return found
 
 
-def answer(balance: Balance, force: FloatArray) -> FloatArray:
+def apply_compliance(balance: Balance, force: FloatArray) -> FloatArray:
     """G F: the displacements (unknown, ...) that forces (unknown, ...) of the contacts take away."""
-    seen, (mean, first) = balance.seen, places(balance)
+    seen, (mean, first) = balance.seen, unknown_positions(balance)
     if balance.condensed is not None:
         columns = np.ascontiguousarray(force.reshape(len(force), -1).T)
         found = np.empty_like(columns)
         for column, moved in zip(columns, found, strict=True):
-            balance.condensed.answer.to(column, moved)
+            balance.condensed.answer.displace(column, moved)
         return found.T.reshape(force.shape)
     out = np.empty_like(force)
     out[mean] = np.asarray(seen.static) @ force[mean]
@@ -45,7 +45,7 @@ def answer(balance: Balance, force: FloatArray) -> FloatArray:
     return out
 
 
-def places(balance: Balance) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+def unknown_positions(balance: Balance) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
     """Where the mean (port,) and the real part of each harmonic (harmonic, port) are among the unknowns."""
     return balance.layout.mean_at, balance.layout.waves_at
 
@@ -77,7 +77,7 @@ class Amplitude:
         direction[-1] = 1.0
         balance.report(z, direction)
         self.value, self.slopes[n] = balance.output[d], balance.growth[d]
-        shown, seen, rows = balance.shown, balance.seen, places(balance)[1]
+        shown, seen, rows = balance.shown, balance.seen, unknown_positions(balance)[1]
         X = np.asarray(shown.re)[:, d] + 1j * np.asarray(shown.im)[:, d]
         h, self.angles = np.asarray(seen.harmonics), np.array(shown.angles)[:, d]
         if near is not None and h.size > 1:
@@ -91,7 +91,7 @@ class Amplitude:
             self.value, self.slopes[n] = float((W @ X).real), (W @ by_omega).real
         if not balance.contacts:
             return
-        if not shown.apart[d]:  # of the contacts' own displacements
+        if not shown.without_modes[d]:  # of the contacts' own displacements
             of_ports = W[:, None] * np.asarray(shown.attached)[:, d]
             self.slopes[rows], self.slopes[rows + 1] = of_ports.real, -of_ports.imag
             return

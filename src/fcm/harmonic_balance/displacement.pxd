@@ -1,6 +1,6 @@
 from fcm.structure.receptance cimport Receptance
 
-cdef int MANY
+cdef int MANY_DOFS
 
 cdef class Extremes:
     cdef public double[::1] harmonics
@@ -38,7 +38,7 @@ cdef class Displacements(Extremes):
     cdef public double[:, ::1] shapes
     cdef public double[:, ::1] static
     cdef public double[:, ::1] attached
-    cdef public int[::1] apart
+    cdef public int[::1] without_modes
     cdef double[:, ::1] of_modes
     cdef double q_re, q_im, r_re, r_im
     cdef public double[::1] mean

@@ -15,11 +15,13 @@ from fcm.harmonic_balance.angle_samples import waves
 from fcm.structure.linear import Linear
 from fcm.structure.receptance import Receptance, TravellingReceptance
 
-REFINED = cython.declare(cython.int, 4)  # Newton steps from a sample to the extreme, at most
+EXTREMUM_STEPS = cython.declare(cython.int, 4)  # Newton steps from a sample to the extreme, at most
 # [rad] the last of them, after which the angle errs by its square
-CLOSE = cython.declare(cython.double, 1e-6)
+EXTREMUM_TOLERANCE = cython.declare(cython.double, 1e-6)
 BLOCK = cython.declare(cython.int, 256)  # degrees of freedom whose samples lie in the processor's cache
-MANY = cython.declare(cython.int, 50)  # degrees of freedom from which on sums over modes and waves are BLAS's
+MANY_DOFS = cython.declare(
+    cython.int, 50
+)  # degrees of freedom from which on sums over modes and waves are BLAS's
 
 
 @cython.cclass
@@ -51,7 +53,7 @@ class Extremes:
         if self.count == 1:
             for d in range(self.dofs):
                 self.single(d)
-        elif self.dofs > MANY:
+        elif self.dofs > MANY_DOFS:
             self.many()
         else:
             for d in range(self.dofs):
@@ -149,7 +151,7 @@ class Extremes:
         theta: cython.double = k * step
         slope: cython.double
         curvature: cython.double
-        for _ in range(REFINED):
+        for _ in range(EXTREMUM_STEPS):
             self.waves_at(theta)
             slope = curvature = 0.0
             for j in range(self.count):
@@ -160,7 +162,7 @@ class Extremes:
                 theta = k * step
                 break
             theta -= slope / curvature
-            if fabs(slope) < fabs(curvature) * CLOSE:
+            if fabs(slope) < fabs(curvature) * EXTREMUM_TOLERANCE:
                 break
         self.waves_at(theta)
         self.angle = theta
@@ -199,7 +201,7 @@ class Displacements(Extremes):
         self.shapes, self.static = linear.dofs, linear.static_of_dofs
         self.of_modes = np.zeros((4 * count, seen.modes))
         self.mean, self.rest = np.zeros(dofs), np.zeros(dofs)
-        self.attached, self.apart = linear.attached
+        self.attached, self.without_modes = linear.attached
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -228,7 +230,7 @@ class Displacements(Extremes):
             self.harmonic(j, load, force, d_force, direction[direction.shape[0] - 1])
         self.sum_modes()
         for d in range(self.dofs):
-            if not self.apart[d]:
+            if not self.without_modes[d]:
                 self.from_ports(d, z, direction)
         self.fill()
         return 0
@@ -274,7 +276,7 @@ class Displacements(Extremes):
         k: cython.Py_ssize_t
         i: cython.Py_ssize_t
         d: cython.Py_ssize_t
-        if self.dofs > MANY:
+        if self.dofs > MANY_DOFS:
             np.matmul(np.asarray(self.of_modes), np.asarray(self.shapes), out=np.asarray(self.parts))
             return 0
         for k in range(self.parts.shape[0]):

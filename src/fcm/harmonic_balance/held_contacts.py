@@ -24,32 +24,39 @@ from dataclasses import dataclass
 import numpy as np
 
 from fcm.continuation.dense_solver import Solver
-from fcm.harmonic_balance.modal_equations import ModalAnswer, as_springs
+from fcm.harmonic_balance.modal_equations import ModalCompliance, linear_contacts
 from fcm.model.scene import FloatArray
 from fcm.structure.receptance import Receptance
 
 
 @dataclass(frozen=True)
-class HeldOptions:
+class LinearContactOptions:
     """Which contacts are linear.
 
-    slight: part of a contact's springs, by which its tangent may differ from them. others: so many contacts
-    that are stuck or open and were taken for the other before the modes on the springs are found again.
-    undamped: least damping ratio, of a mode that has none exactly at its own frequency. lost: part of a
-    displacement that rounding of the modes on the springs may be; springs so stiff that it is more are not
-    taken for such.
+    Attributes
+    ----------
+    tangent_tolerance : float
+        Part of a contact's springs, by which its tangent may differ from them.
+    max_changed : int
+        So many contacts that are stuck or open and were taken for the other before the modes on the
+        springs are found again.
+    min_damping : float
+        Least damping ratio, of a mode that has none exactly at its own frequency.
+    max_rounding : float
+        Part of a displacement that rounding of the modes on the springs may be; springs so stiff that it
+        is more are not taken for such.
     """
 
-    slight: float = 1e-3
-    others: int = 4
-    undamped: float = 1e-9
-    lost: float = 0.1
+    tangent_tolerance: float = 1e-3
+    max_changed: int = 4
+    min_damping: float = 1e-9
+    max_rounding: float = 0.1
 
 
-HELD = HeldOptions()  # where nothing else is said
+LINEAR_CONTACTS = LinearContactOptions()  # where nothing else is said
 
 
-class HeldContacts:
+class LinearContacts:
     """`choose` at the tangents first, then `factor` and `solve` the system condensed to `size - 1` forces.
 
     springs (port,): of all contacts stuck; counted (contact,): what of their normal springs is counted to
@@ -59,11 +66,11 @@ class HeldContacts:
 
     def __init__(
         self,
-        answer: ModalAnswer,
+        answer: ModalCompliance,
         flexibility: FloatArray,
         springs: FloatArray,
         counted: FloatArray,
-        options: HeldOptions = HELD,
+        options: LinearContactOptions = LINEAR_CONTACTS,
     ) -> None:
         self.seen: Receptance = answer.seen
         self.place, self.flexibility, self.options = answer.place, flexibility, options
@@ -71,7 +78,7 @@ class HeldContacts:
         self.each = springs.size // counted.size
         self.order = answer.place[:, : self.each].ravel()  # of a contact's unknowns: part by part
         self.springs = springs.reshape(self.contacts, self.each)
-        self.slight = options.slight * self.springs.max(axis=1)
+        self.tangent_tolerance = options.tangent_tolerance * self.springs.max(axis=1)
         self.is_stuck, self.is_open = np.zeros((2, self.contacts), dtype=np.uint8)
         counts = np.zeros_like(self.springs)
         counts[:, -1] = counted
@@ -80,7 +87,7 @@ class HeldContacts:
         self.open[:, 0] = -counts
         self.stuck = self.open + self.springs[:, None]
         self.closed: np.ndarray[tuple[int], np.dtype[np.bool_]] | None = None  # (contact,) of the modes
-        self.ports, self.size, self.lost = np.zeros(0, dtype=np.intp), 0, 0.0
+        self.ports, self.size, self.max_rounding = np.zeros(0, dtype=np.intp), 0, 0.0
         self.solver = Solver(0)
 
     def choose(self, tangent: FloatArray, most: int) -> bool:
@@ -88,14 +95,14 @@ class HeldContacts:
         then."""
         stuck, apart = self.is_stuck.view(np.bool_), self.is_open.view(np.bool_)
         for linear, states in ((self.stuck, self.is_stuck), (self.open, self.is_open)):
-            as_springs(tangent, self.order, linear, self.slight, states)
+            linear_contacts(tangent, self.order, linear, self.tangent_tolerance, states)
         if self.closed is None:
-            self._on_springs(~apart | stuck)
-        elif int((np.where(self.closed, apart, stuck) & (stuck != apart)).sum()) > self.options.others:
-            self._on_springs(np.where(stuck | apart, stuck, self.closed))
+            self._find_modes(~apart | stuck)
+        elif int((np.where(self.closed, apart, stuck) & (stuck != apart)).sum()) > self.options.max_changed:
+            self._find_modes(np.where(stuck | apart, stuck, self.closed))
         assert self.closed is not None
         others = np.flatnonzero(~np.where(self.closed, stuck, apart))
-        if self.parts * others.size >= most or not self.lost < self.options.lost:
+        if self.parts * others.size >= most or not self.max_rounding < self.options.max_rounding:
             return False
         ordered = tangent[others[:, None, None], self.order[:, None], self.order]
         D = ordered.reshape(others.size, self.parts, self.each, self.parts, self.each)
@@ -103,13 +110,13 @@ class HeldContacts:
         linear = np.where(self.closed[others, None, None], self.stuck[others], self.open[others])
         D[:, part, port, part, port] -= linear
         which, port = np.nonzero(
-            (np.abs(D) > self.slight[others, None, None, None, None]).any(axis=(1, 3, 4))
+            (np.abs(D) > self.tangent_tolerance[others, None, None, None, None]).any(axis=(1, 3, 4))
         )
         self.ports, self.D = others[which] * self.each + port, D[which, :, port]
         self.size = self.parts * self.ports.size + 1
         return self.size <= most
 
-    def _on_springs(self, closed: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> None:
+    def _find_modes(self, closed: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> None:
         """Find the modes with the springs of some contacts."""
         self.closed, seen = closed, self.seen
         P, natural, rate = (np.asarray(a) for a in (seen.shapes, seen.natural, seen.rate))
@@ -119,8 +126,8 @@ class HeldContacts:
         self.square, self.shapes = np.maximum(square, 0.0), np.ascontiguousarray(V.T @ P)
         pushed, soft = np.square(P) @ self.K, self.square[self.square > 0.0].min(initial=np.inf)
         stiffest = float((pushed[natural > 0.0] / natural[natural > 0.0] ** 2).max(initial=0.0))
-        self.lost = float(np.finfo(float).eps * self.square.max(initial=0.0) / soft * stiffest)
-        least = 2.0 * self.options.undamped * np.sqrt(self.square)
+        self.max_rounding = float(np.finfo(float).eps * self.square.max(initial=0.0) / soft * stiffest)
+        least = 2.0 * self.options.min_damping * np.sqrt(self.square)
         self.rate = np.maximum(np.square(V.T) @ rate, least)
         F = self.flexibility
         held = np.linalg.solve(np.eye(natural.size) + F @ (P * self.K_mean) @ P.T, F)
@@ -137,9 +144,9 @@ class HeldContacts:
         self.on_forces = np.ascontiguousarray(self.shapes[:, self.ports])
         which = self.ports // self.each
         contacts, number = np.unique(which, return_inverse=True)
-        self.beside = contacts[:, None] * self.each + np.arange(self.each)
+        self.other_stiffness = contacts[:, None] * self.each + np.arange(self.each)
         self.number = number
-        around = self.shapes[:, self.beside.ravel()]
+        around = self.shapes[:, self.other_stiffness.ravel()]
         if self.solver.size != self.size:
             self.solver = Solver(self.size)
         M = np.zeros((forces, parts, parts, forces))
@@ -163,44 +170,44 @@ class HeldContacts:
         matrix[:size, :size] = M.transpose(1, 0, 2, 3).reshape(size, size)
         matrix[np.arange(size), np.arange(size)] += 1.0
         self.row = row
-        self.by = self._held(by[self.place])
-        matrix[:size, size] = self._other(self.by)
+        self.by = self._with_springs(by[self.place])
+        matrix[:size, size] = self._other_forces(self.by)
         across = row[:-1][self.place]
-        matrix[size, :size] = -self._answered(across, self.shapes, self.on_forces, -1.0).ravel()
+        matrix[size, :size] = -self._displaced(across, self.shapes, self.on_forces, -1.0).ravel()
         matrix[size, size] = row[-1] - np.vdot(across, self.by)
         return self.solver.orientation if self.solver.factor() else 0.0
 
     @np.errstate(invalid="ignore", over="ignore")
     def solve(self, right: FloatArray) -> FloatArray:
         """The solution for a right side (unknown + 1,)."""
-        alone = self._held(right[:-1][self.place])
+        alone = self._with_springs(right[:-1][self.place])
         reduced = np.asarray(self.solver.right)
-        reduced[:-1] = self._other(alone)
+        reduced[:-1] = self._other_forces(alone)
         reduced[-1] = right[-1] - np.vdot(self.row[:-1][self.place], alone)
         self.solver.solve()
         y = reduced[:-1].reshape(self.parts, self.ports.size)
         found = np.empty_like(right)
-        x = alone - self._answered(y, self.on_forces, self.shapes) - reduced[-1] * self.by
+        x = alone - self._displaced(y, self.on_forces, self.shapes) - reduced[-1] * self.by
         found[self.place], found[-1] = x, reduced[-1]
         return found
 
-    def _held(self, x: FloatArray) -> FloatArray:
+    def _with_springs(self, x: FloatArray) -> FloatArray:
         """What displacements (part, port) become where the springs act against them."""
         force = x * self.K
         force[0] = x[0] * self.K_mean
-        held: FloatArray = x - self._answered(force, self.shapes, self.shapes)
+        held: FloatArray = x - self._displaced(force, self.shapes, self.shapes)
         return held
 
-    def _other(self, x: FloatArray) -> FloatArray:
+    def _other_forces(self, x: FloatArray) -> FloatArray:
         """The forces (part force,) that displacements (part, port) cause beside those of the springs."""
-        around = x[:, self.beside].transpose(1, 0, 2)[self.number]  # (force, part, port)
+        around = x[:, self.other_stiffness].transpose(1, 0, 2)[self.number]  # (force, part, port)
         y = np.matmul(
             self.D.reshape(self.ports.size, self.parts, self.parts * self.each),
             around.reshape(self.ports.size, self.parts * self.each, 1),
         )
         return np.ascontiguousarray(y[:, :, 0].T).ravel()
 
-    def _answered(self, force: FloatArray, on: FloatArray, at: FloatArray, way: float = 1.0) -> FloatArray:
+    def _displaced(self, force: FloatArray, on: FloatArray, at: FloatArray, way: float = 1.0) -> FloatArray:
         """Displacements (part, port) at shapes (mode, port) under forces on others; with the way -1 of the
         transposed system."""
         q = force @ on.T

@@ -1,7 +1,7 @@
 from fcm.continuation.problem cimport Problem
 from fcm.harmonic_balance.residual cimport Balance
 
-cdef class Level(Problem):
+cdef class ForceLevelProblem(Problem):
     cdef public Balance balance
     cdef public double omega
     cdef bint many
@@ -10,5 +10,5 @@ cdef class Level(Problem):
 
 cdef class Homotopy(Problem):
     cdef public Problem inner
-    cdef public double taken
-    cdef public double[::1] removed
+    cdef public double subtracted_part
+    cdef public double[::1] initial_residual

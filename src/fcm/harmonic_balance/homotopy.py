@@ -12,11 +12,11 @@ import numpy as np
 from fcm.continuation.problem import Problem
 from fcm.harmonic_balance.residual import Balance
 
-LEAST = cython.declare(cython.double, 0.1)  # levels are measured by themselves, and below this by this
+LEVEL_FLOOR = cython.declare(cython.double, 0.1)  # levels are measured by themselves, and below this by this
 
 
 @cython.cclass
-class Level(Problem):
+class ForceLevelProblem(Problem):
     """A balance at omega, followed in the level of its forces."""
 
     def __init__(self, balance: Balance, omega: cython.double = 0.0) -> None:
@@ -68,7 +68,7 @@ class Level(Problem):
         self.place(z)
         self.balance.measure(self.z)
         self.scale[:] = self.balance.scale
-        self.scale[self.unknowns] = max(abs(z[self.unknowns]), LEAST)
+        self.scale[self.unknowns] = max(abs(z[self.unknowns]), LEVEL_FLOOR)
         return 0
 
     @cython.ccall
@@ -99,12 +99,13 @@ class Level(Problem):
 
 @cython.cclass
 class Homotopy(Problem):
-    """A problem of which the part `taken` of the residual at a guess, `removed`, is taken away."""
+    """A problem of which the part `subtracted_part` of the residual at a guess, `initial_residual`, is
+    taken away."""
 
     def __init__(self, inner: Problem) -> None:
         Problem.__init__(self, inner.unknowns, 0, 0, inner.rank)
         self.rooted = inner.rooted
-        self.inner, self.taken, self.removed = inner, 0.0, np.zeros(inner.unknowns)
+        self.inner, self.subtracted_part, self.initial_residual = inner, 0.0, np.zeros(inner.unknowns)
         self.jacobian = inner.jacobian
 
     @cython.ccall
@@ -113,7 +114,7 @@ class Homotopy(Problem):
         i: cython.Py_ssize_t
         self.inner.evaluate(z)
         for i in range(self.unknowns):
-            self.residual[i] = self.inner.residual[i] - self.taken * self.removed[i]
+            self.residual[i] = self.inner.residual[i] - self.subtracted_part * self.initial_residual[i]
         return 0
 
     @cython.ccall
@@ -122,7 +123,7 @@ class Homotopy(Problem):
         i: cython.Py_ssize_t
         self.inner.probe(z)
         for i in range(self.unknowns):
-            self.residual[i] = self.inner.residual[i] - self.taken * self.removed[i]
+            self.residual[i] = self.inner.residual[i] - self.subtracted_part * self.initial_residual[i]
         return 0
 
     @cython.ccall

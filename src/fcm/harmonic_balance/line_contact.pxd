@@ -1,9 +1,8 @@
 from fcm.contact.periodic.forces cimport PeriodicContact
 from fcm.contact.periodic.margins cimport Margins, Measures
-from fcm.harmonic_balance.contact_law cimport Law
+from fcm.harmonic_balance.contact_law cimport KernelLaw
 
-cdef class Periodic(Law):
+cdef class LineLaw(KernelLaw):
     cdef public PeriodicContact kernel
     cdef public Margins bounds
     cdef Measures measures
-    cdef int forces(self, double[::1] x, Py_ssize_t first, bint tangent) except -1

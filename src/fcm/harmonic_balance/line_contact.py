@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 import cython
-import numpy as np
 
 from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.periodic.margins import Margins, Measures
-from fcm.harmonic_balance.contact_law import Law
+from fcm.harmonic_balance.contact_law import KernelLaw
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
     from cython.cimports.fcm.contact.periodic.motion import MIXED
-    from cython.cimports.fcm.continuation.problem import NONE
 else:
     from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
     from fcm.contact.periodic.motion import MIXED
-    from fcm.continuation.problem import NONE
 
 
 @cython.cclass
-class Periodic(Law):
-    """Forces of a periodic motion with their derivatives; contacts may share the kernel, a workspace, whose
-    array the tangent is."""
+class LineLaw(KernelLaw):
+    """Forces of a periodic motion with their derivatives; the kernel is a workspace, whose array the tangent
+    is."""
 
     def __init__(
         self,
@@ -33,47 +30,28 @@ class Periodic(Law):
         n_0: cython.double,
     ) -> None:
         self.kernel, self.bounds = kernel, Margins(kernel.cycle)
-        Law.__init__(self, kernel.unknowns, 2, self.bounds.most, mu, k_u, k_v, n_0)
-        self.force, self.tangent = np.zeros(kernel.equations), kernel.jacobian
+        KernelLaw.__init__(self, kernel, 2, self.bounds.most, mu, k_u, k_v, n_0)
         self.state = kernel.cycle.state
         self.measures: Measures | None = None  # made when it is asked for
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def evaluate(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        return self.forces(x, first, True)
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def probe(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        return self.forces(x, first, False)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
         """And their tangent, if that is wanted."""
-        i: cython.Py_ssize_t
         self.kernel.evaluate(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0, tangent)
-        for i in range(self.force.shape[0]):
-            self.force[i] = self.kernel.forces[i]
-        self.force[1] -= max(self.n_0, 0.0)
-        self.mixed = self.kernel.kind == MIXED
+        self.take_forces(self.kernel.forces)
+        self.nonlinear = self.kernel.kind == MIXED
         return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def bound(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        i: cython.Py_ssize_t
         self.bounds.find(x, first, self.mu, self.k_u, self.k_v, self.n_0)
-        for i in range(self.margins):
-            self.kind[i] = self.bounds.kind[i] if i < self.bounds.count else NONE
-        self.margin[:] = self.bounds.value
-        self.angle[:] = self.bounds.angle
-        return 0
+        return self.take_margins(self.bounds.count, self.bounds.kind, self.bounds.value, self.bounds.angle)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def resist(self) -> cython.int:
+    def compute_resistance(self) -> cython.int:
         p: cython.int
         stick: cython.double = 0.0
         closed: cython.double = 0.0

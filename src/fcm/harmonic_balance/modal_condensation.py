@@ -24,42 +24,53 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fcm.harmonic_balance.held_contacts import HeldContacts
-from fcm.harmonic_balance.modal_equations import ModalAnswer, ModalEquations
+from fcm.harmonic_balance.held_contacts import LinearContacts
+from fcm.harmonic_balance.modal_equations import ModalCompliance, ModalEquations
 from fcm.model.scene import FloatArray
 from fcm.structure.receptance import Receptance
 
 
 @dataclass(frozen=True)
-class CondensedOptions:
+class CondensationOptions:
     """What of a balance is condensed, and how well it is solved.
 
-    fewest: unknowns from which on that is faster. share: of the unknowns, how large the condensed system
-    may be. stiff: how much a mode that is left out may yield beside the contacts. accurate: of the last
-    correction of a solution, relative to it. inexact: the same of a step of Newton's method, over its length
-    in units of scale: what the step itself leaves is a part of its square. least: a step, to a shorter one of
-    which what is left is not relative. corrections: after so many that do
-    not come to that, twice as many modes are taken.
+    Attributes
+    ----------
+    min_unknowns : int
+        Unknowns from which on that is faster.
+    max_fraction : float
+        Of the unknowns, how large the condensed system may be.
+    compliance_limits : tuple of float
+        How much a mode that is left out may yield beside the contacts.
+    tolerance : float
+        Of the last correction of a solution, relative to it.
+    newton_tolerance : float
+        The same of a step of Newton's method, over its length in units of scale: what the step itself
+        leaves is a part of its square.
+    min_step : float
+        A step, to a shorter one of which what is left is not relative.
+    max_corrections : int
+        After so many that do not come to that, twice as many modes are taken.
     """
 
-    fewest: int = 200
-    share: float = 0.5
-    stiff: tuple[float, ...] = (0.03, 0.3, 1.0)
-    accurate: float = 1e-9
-    inexact: float = 0.1
-    least: float = 1e-3
-    corrections: int = 20
+    min_unknowns: int = 200
+    max_fraction: float = 0.5
+    compliance_limits: tuple[float, ...] = (0.03, 0.3, 1.0)
+    tolerance: float = 1e-9
+    newton_tolerance: float = 0.1
+    min_step: float = 1e-3
+    max_corrections: int = 20
 
 
-OPTIONS = CondensedOptions()  # where nothing else is said
+CONDENSATION = CondensationOptions()  # where nothing else is said
 
 
-def yielding(
+def modal_compliance(
     natural: FloatArray, shapes: FloatArray, flexibility: FloatArray, springs: FloatArray, highest: float
 ) -> FloatArray:
     """How much each mode (mode,) yields up to a frequency, beside springs (port,); inf if it resonates.
 
-    >>> yielding(np.array([1.0, 10.0]), np.ones((2, 1)), np.diag([1.0, 0.01]), np.array([3.0]), 5.0)
+    >>> modal_compliance(np.array([1.0, 10.0]), np.ones((2, 1)), np.diag([1.0, 0.01]), np.array([3.0]), 5.0)
     array([ inf, 0.04])
     """
     apart = natural**2 - highest**2
@@ -69,25 +80,25 @@ def yielding(
     return np.where(share > 0.0, size, 0.0) * np.where(share > 0.0, share, 1.0)
 
 
-def modes_taken(yields: FloatArray, ports: int, options: CondensedOptions = OPTIONS) -> int:
+def retained_modes(yields: FloatArray, ports: int, options: CondensationOptions = CONDENSATION) -> int:
     """To how many modes many contacts are condensed; 0 where these are not much fewer than the ports."""
-    for stiff in options.stiff:
+    for stiff in options.compliance_limits:
         modes = int((yields > stiff).sum())
-        if modes < options.share * ports:
+        if modes < options.max_fraction * ports:
             return max(modes, 1)
     return 0
 
 
 def condensed_size(
-    yields: FloatArray, ports: int, harmonics: int, options: CondensedOptions = OPTIONS
+    yields: FloatArray, ports: int, harmonics: int, options: CondensationOptions = CONDENSATION
 ) -> int:
     """Size of the condensed system; 0 where the system itself is to be solved."""
     parts = 1 + 2 * harmonics
-    many = yields.size > 0 and ports * parts >= options.fewest
-    return modes_taken(yields, ports, options) * parts if many else 0
+    many = yields.size > 0 and ports * parts >= options.min_unknowns
+    return retained_modes(yields, ports, options) * parts if many else 0
 
 
-class Condensed:
+class CondensedSystem:
     """A balance as it was evaluated last, closed by a row: `factor`, then `solve`.
 
     Unknowns are sorted into parts (part, port): the mean, and real and imaginary part of each harmonic;
@@ -102,24 +113,24 @@ class Condensed:
         yields: FloatArray,
         springs: FloatArray,
         counted: FloatArray,
-        options: CondensedOptions = OPTIONS,
+        options: CondensationOptions = CONDENSATION,
     ) -> None:
-        self.answer, self.tangent, self.options = ModalAnswer(seen, flexibility), tangent, options
-        self.equations = ModalEquations(self.answer, tangent, options.corrections)
+        self.answer, self.tangent, self.options = ModalCompliance(seen, flexibility), tangent, options
+        self.equations = ModalEquations(self.answer, tangent, options.max_corrections)
         self.ranking = np.argsort(-yields, kind="stable")
-        self.take(modes_taken(yields, seen.ports, options))
-        self.held = HeldContacts(self.answer, flexibility, springs, counted)
+        self.choose_modes(retained_modes(yields, seen.ports, options))
+        self.linear_contacts = LinearContacts(self.answer, flexibility, springs, counted)
         self.row, self.scale = np.zeros((2, tangent.shape[0] * tangent.shape[1] + 1))
 
     @property
-    def holds(self) -> bool:
+    def by_contacts(self) -> bool:
         """Whether the system is condensed to the forces of contacts."""
         return self.equations.held is not None
 
-    def take(self, modes: int) -> None:
+    def choose_modes(self, modes: int) -> None:
         """Condense to so many modes."""
         self.modes = min(max(modes, 1), self.ranking.size)
-        self.equations.take(np.sort(self.ranking[: self.modes]))
+        self.equations.choose_modes(np.sort(self.ranking[: self.modes]))
 
     @np.errstate(invalid="ignore", over="ignore")  # where Newton's method has gone astray
     def factor(self, row: FloatArray, by: FloatArray, scale: FloatArray) -> float:
@@ -129,10 +140,10 @@ class Condensed:
         """
         np.divide(row, scale, out=self.row)
         self.scale[:] = scale
-        self.equations.close(row, by, scale)
-        if self.held.choose(self.tangent, self.equations.rank):
-            self.equations.held = self.held
-            return self.held.factor(self.row, by)
+        self.equations.set_closing_row(row, by, scale)
+        if self.linear_contacts.choose(self.tangent, self.equations.rank):
+            self.equations.held = self.linear_contacts
+            return self.linear_contacts.factor(self.row, by)
         self.equations.held = None
         return float(self.equations.factor())
 
@@ -142,24 +153,24 @@ class Condensed:
         whole, found, options = right * self.scale, np.empty_like(right), self.options
         whole[-1] = right[-1]
         self.equations.condensed(whole, found)
-        enough = self._enough(whole, found)
-        while (self.holds or self.modes < self.ranking.size) and np.isfinite(found).all():
-            if self.equations.correct(whole, found, enough, options.corrections) <= enough:
+        enough = self._tolerance(whole, found)
+        while (self.by_contacts or self.modes < self.ranking.size) and np.isfinite(found).all():
+            if self.equations.correct(whole, found, enough, options.max_corrections) <= enough:
                 break
-            if not self.holds:
-                self.take(2 * self.modes)
+            if not self.by_contacts:
+                self.choose_modes(2 * self.modes)
             self.equations.held = None
             self.equations.factor()
             if self.modes == self.ranking.size:  # that is the system itself
                 left, change = np.empty((2, right.size))
-                self.equations.image(found, left)
+                self.equations.multiply(found, left)
                 self.equations.condensed(whole - left, change)
                 found += change
         np.divide(found, self.scale, out=right)
 
-    def _enough(self, right: FloatArray, found: FloatArray) -> float:
+    def _tolerance(self, right: FloatArray, found: FloatArray) -> float:
         """What a correction of a solution may leave, in units of scale; of a direction, which is no step,
         little."""
         size, options = float(np.linalg.norm(found / self.scale)), self.options
         step = min(size, 1.0) if right[:-1].any() else 0.0
-        return max(options.accurate * max(size, options.least), options.inexact * step * step)
+        return max(options.tolerance * max(size, options.min_step), options.newton_tolerance * step * step)

@@ -39,7 +39,7 @@ cdef extern from *:
 
 cdef void sum_of_rows(double[::1] by, double[:, ::1] matrix, double[::1] out) noexcept
 
-cdef class ModalAnswer:
+cdef class ModalCompliance:
     cdef public Receptance seen
     cdef public object place
     cdef public double[:, ::1] flexibility
@@ -52,19 +52,19 @@ cdef class ModalAnswer:
     cdef double[:, ::1] on_modes
     cdef double[:, ::1] moved
     cdef double[::1] mean
-    cpdef int to(self, double[::1] force, double[::1] out) except -1
+    cpdef int displace(self, double[::1] force, double[::1] out) except -1
     cpdef int rate(self, double[::1] force, double[::1] out) except -1
     cdef void collect(self, double[::1] force) noexcept
     cdef void means(self) noexcept
-    cdef void turn(self, double[:, ::1] re, double[:, ::1] im) noexcept
+    cdef void apply_compliance(self, double[:, ::1] re, double[:, ::1] im) noexcept
     cdef void spread(self, double[::1] out) noexcept
 
-cpdef int as_springs(
+cpdef int linear_contacts(
     double[:, :, ::1] tangent, Py_ssize_t[::1] order, double[:, :, ::1] linear, double[::1] slight,
     unsigned char[::1] found) except -1
 
 cdef class ModalEquations:
-    cdef public ModalAnswer answer
+    cdef public ModalCompliance answer
     cdef public object held
     cdef public int modes
     cdef public int rank
@@ -97,13 +97,13 @@ cdef class ModalEquations:
     cdef double[::1] cosine
     cdef double[::1] sine
     cdef double[::1] reduced
-    cpdef int close(self, double[::1] row, double[::1] by, double[::1] scale) except -1
+    cpdef int set_closing_row(self, double[::1] row, double[::1] by, double[::1] scale) except -1
     cpdef double factor(self) except -2.0
     cpdef int condensed(self, double[::1] right, double[::1] out) except -1
-    cpdef int image(self, double[::1] x, double[::1] out) except -1
+    cpdef int multiply(self, double[::1] x, double[::1] out) except -1
     cpdef double correct(self, double[::1] right, double[::1] found, double enough, int most) except -1.0
     cdef int by_modes(self) except -1
     cdef void forces(self, double[::1] x) noexcept
-    cdef void push(self) noexcept
+    cdef void forces_on_modes(self) noexcept
     cdef void respond(self, double[::1] out) noexcept
     cdef double krylov(self, int k) except -1.0

@@ -23,7 +23,7 @@ from fcm.structure.receptance import Receptance
 if cython.compiled:
     from cython.cimports.fcm.harmonic_balance.modal_equations import add_rows
 
-FAR = cython.declare(cython.double, 1e300)  # what is longer is no number
+DIVERGED = cython.declare(cython.double, 1e300)  # what is longer is no number
 
 
 @cython.cfunc
@@ -43,7 +43,7 @@ def sum_of_rows(
 
 
 @cython.cclass
-class ModalAnswer:
+class ModalCompliance:
     """Of a receptance at the frequency that it was put to last; forces are laid out as unknowns.
 
     flexibility (mode, mode): displacements under mean forces. place (part, port): where the mean and the real
@@ -64,11 +64,11 @@ class ModalAnswer:
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def to(self, force: cython.double[::1], out: cython.double[::1]) -> cython.int:
+    def displace(self, force: cython.double[::1], out: cython.double[::1]) -> cython.int:
         """Fill out (unknown,) with the displacements that forces (unknown,) take away."""
         self.collect(force)
         self.means()
-        self.turn(self.seen.c_re, self.seen.c_im)
+        self.apply_compliance(self.seen.c_re, self.seen.c_im)
         self.spread(out)
         return 0
 
@@ -78,7 +78,7 @@ class ModalAnswer:
         """The same with their derivatives by the frequency; the means have none."""
         self.collect(force)
         self.on_modes[0, :] = 0.0
-        self.turn(self.seen.s_re, self.seen.s_im)
+        self.apply_compliance(self.seen.s_re, self.seen.s_im)
         self.spread(out)
         return 0
 
@@ -106,7 +106,7 @@ class ModalAnswer:
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def turn(self, re: cython.double[:, ::1], im: cython.double[:, ::1]) -> cython.void:
+    def apply_compliance(self, re: cython.double[:, ::1], im: cython.double[:, ::1]) -> cython.void:
         """What modes of compliances (harmonic, mode) answer, in the place of the forces on them."""
         j: cython.Py_ssize_t
         i: cython.Py_ssize_t
@@ -131,12 +131,13 @@ class ModalAnswer:
 
 @cython.cclass
 class ModalEquations:
-    """`take` modes, `close` the system, `factor` it; tangent (contact, width, width) of the contacts' forces.
+    """`choose_modes` modes, `set_closing_row` the system, `factor` it; tangent (contact, width, width) of
+    the contacts' forces.
 
     held: None, or what solves in the place of `condensed`; most: corrections of a solution at most.
     """
 
-    def __init__(self, answer: ModalAnswer, tangent: npt.NDArray[np.float64], most: int) -> None:
+    def __init__(self, answer: ModalCompliance, tangent: npt.NDArray[np.float64], most: int) -> None:
         contacts, width = tangent.shape[:2]
         unknowns, ports = contacts * width, contacts * (width // answer.parts)
         self.answer, self.tangent = answer, tangent
@@ -152,7 +153,7 @@ class ModalEquations:
         self.cosine, self.sine, self.reduced = np.zeros((3, most + 1))
         self.modes, self.rank = 0, 0
 
-    def take(self, chosen: npt.NDArray[np.intp]) -> None:
+    def choose_modes(self, chosen: npt.NDArray[np.intp]) -> None:
         """Condense to some of the modes."""
         answer, modes, ports = self.answer, chosen.size, self.on_ports.shape[1]
         self.modes, self.rank, self.which = modes, self.parts * modes, chosen
@@ -172,7 +173,9 @@ class ModalEquations:
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def close(self, row: cython.double[::1], by: cython.double[::1], scale: cython.double[::1]) -> cython.int:
+    def set_closing_row(
+        self, row: cython.double[::1], by: cython.double[::1], scale: cython.double[::1]
+    ) -> cython.int:
         """By a row (unknown + 1,) in units of scale; by (unknown,) is the derivative by the parameter."""
         i: cython.Py_ssize_t
         for i in range(self.by.shape[0]):
@@ -216,7 +219,7 @@ class ModalEquations:
         for i in range(rank):
             matrix[i, i] += 1.0
         self.forces(self.by)
-        self.push()
+        self.forces_on_modes()
         self.respond(self.solver.right)
         last: cython.double = self.row[n]
         for i in range(rank):
@@ -273,7 +276,7 @@ class ModalEquations:
             return 0
         reduced: cython.double[::1] = self.solver.right
         self.forces(right)
-        self.push()
+        self.forces_on_modes()
         self.respond(reduced)
         last: cython.double = right[n]
         for i in range(n):
@@ -294,13 +297,13 @@ class ModalEquations:
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def image(self, x: cython.double[::1], out: cython.double[::1]) -> cython.int:
+    def multiply(self, x: cython.double[::1], out: cython.double[::1]) -> cython.int:
         """Fill out (unknown + 1,) with what the whole system makes of x (unknown + 1,)."""
         i: cython.Py_ssize_t
         n: cython.Py_ssize_t = self.by.shape[0]
         across: cython.double = 0.0
         self.forces(x)
-        self.answer.to(self.force, out)
+        self.answer.displace(self.force, out)
         for i in range(n + 1):
             across += self.row[i] * x[i]
         for i in range(n):
@@ -325,7 +328,7 @@ class ModalEquations:
         n: cython.Py_ssize_t = self.scale.shape[0]
         taken: cython.int = 0
         size: cython.double = 0.0
-        self.image(found, self.whole)
+        self.multiply(found, self.whole)
         for i in range(n):
             self.whole[i] = right[i] - self.whole[i]
         self.condensed(self.whole, self.basis[0])
@@ -333,8 +336,8 @@ class ModalEquations:
             self.basis[0, i] /= self.scale[i]
             size += self.basis[0, i] * self.basis[0, i]
         size = sqrt(size)
-        if not size < FAR:
-            return 2.0 * FAR
+        if not size < DIVERGED:
+            return 2.0 * DIVERGED
         if size <= enough:
             for i in range(n):
                 found[i] += self.basis[0, i] * self.scale[i]
@@ -345,7 +348,7 @@ class ModalEquations:
         for k in range(most):
             further: cython.double = self.krylov(k)
             long: cython.double = hypot(self.R[k, k], further)
-            if not (0.0 < long < FAR):
+            if not (0.0 < long < DIVERGED):
                 break
             c: cython.double = self.R[k, k] / long
             s: cython.double = further / long
@@ -378,7 +381,7 @@ class ModalEquations:
         new: cython.double[::1] = self.basis[k + 1]
         for i in range(n):
             new[i] = self.basis[k, i] * self.scale[i]
-        self.image(new, self.whole)
+        self.multiply(new, self.whole)
         self.condensed(self.whole, new)
         for i in range(n):
             new[i] /= self.scale[i]
@@ -395,7 +398,7 @@ class ModalEquations:
         if total > 0.0:
             for i in range(n):
                 new[i] /= total
-        return total if isfinite(total) else 2.0 * FAR
+        return total if isfinite(total) else 2.0 * DIVERGED
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -414,7 +417,7 @@ class ModalEquations:
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def push(self) -> cython.void:
+    def forces_on_modes(self) -> cython.void:
         """Those on the modes (part, mode)."""
         j: cython.Py_ssize_t
         p: cython.Py_ssize_t
@@ -448,7 +451,7 @@ class ModalEquations:
 
 @cython.ccall
 @cython.exceptval(-1, check=False)
-def as_springs(
+def linear_contacts(
     tangent: cython.double[:, :, ::1],
     order: cython.Py_ssize_t[::1],
     linear: cython.double[:, :, ::1],

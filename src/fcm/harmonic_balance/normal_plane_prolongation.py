@@ -3,8 +3,8 @@
 Of many contacts Newton's method is damped: where they stick and slip at once its steps from a motion without
 the further harmonics lead too far. A step is shortened until the next one, with the same Jacobian, would be
 shorter by a part of it (the natural monotonicity test; Deuflhard, Newton Methods for Nonlinear Problems,
-2004, section 3.3). A point that was found may be given for the one beside it, see `Lifted.lead`.
-"""
+2004, section 3.3). A point that was found may be given for the one beside it, see
+`Prolongation.predict_from`."""
 
 from __future__ import annotations
 
@@ -19,48 +19,63 @@ from fcm.harmonic_balance.contact_law import Law
 from fcm.harmonic_balance.homotopy import Homotopy
 from fcm.harmonic_balance.residual import Balance
 
-ITERATIONS = cython.declare(cython.int, 8)  # Newton steps before a guess is judged too far away
-SMALL = cython.declare(cython.double, 1e-12)  # a step after which there is no further one
-FAR = cython.declare(cython.double, 0.5)  # a displacement of this part of the solution's size is not believed
-TURNED = cython.declare(cython.double, 0.7)  # nor a curve that goes another way, by the cosine of the angle
-GRADUAL = (0.1, 0.25, 0.45, 0.7, 1.0)  # parts of the equations' change, where at once is too much
+MAX_ITERATIONS = cython.declare(cython.int, 8)  # Newton steps before a guess is judged too far away
+FINAL_STEP = cython.declare(cython.double, 1e-12)  # a step after which there is no further one
+MAX_CHANGE = cython.declare(
+    cython.double, 0.5
+)  # a displacement of this part of the solution's size is not believed
+MIN_COSINE = cython.declare(
+    cython.double, 0.7
+)  # nor a curve that goes another way, by the cosine of the angle
+HOMOTOPY_PARTS = (0.1, 0.25, 0.45, 0.7, 1.0)  # parts of the equations' change, where at once is too much
 # unknowns from which on what is not found at once is given up: there it is dear, and hundreds of such ways by
 # parts have led nowhere
-DEAR = cython.declare(cython.int, 240)
+COSTLY_SIZE = cython.declare(cython.int, 240)
 # unknowns from which on a Jacobian takes far longer than the residual: those of several contacts
-MANY = cython.declare(cython.int, 100)
-SLIGHT = cython.declare(cython.double, 0.02)  # a step so short that the Jacobian hardly changes along it
-CHORDS = cython.declare(cython.int, 4)  # steps with a Jacobian then,
-SHRINKING = cython.declare(cython.double, 0.4)  # each at most this part of the one before
-TWICE = cython.declare(cython.double, 2.0)  # times the farthest, beyond which a first step leads nowhere then
+CHORD_SIZE = cython.declare(cython.int, 100)
+CHORD_STEP = cython.declare(cython.double, 0.02)  # a step so short that the Jacobian hardly changes along it
+MAX_CHORD_STEPS = cython.declare(cython.int, 4)  # steps with a Jacobian then,
+CHORD_CONTRACTION = cython.declare(cython.double, 0.4)  # each at most this part of the one before
+FIRST_STEP_RATIO = cython.declare(
+    cython.double, 2.0
+)  # times the farthest, beyond which a first step leads nowhere then
 
 
 @dataclass(frozen=True)
 class DampedOptions:
     """Of Newton's method of many contacts.
 
-    contacts: from so many on. steps: after so many a guess is judged too far away. least: a step that is
-    shortened to this part leads nowhere. shorter, longer: by this a step is shortened at most at once, and
-    longer than the one before. last: after one that is no longer, relative to the motion, there is none.
+    Attributes
+    ----------
+    min_contacts : int
+        From so many on.
+    max_steps : int
+        After so many a guess is judged too far away.
+    min_damping : float
+        A step that is shortened to this part leads nowhere.
+    min_factor, max_factor : float
+        By this a step is shortened at most at once, and longer than the one before.
+    final_step : float
+        After one that is no longer, relative to the motion, there is none.
     """
 
-    contacts: int = 12
-    steps: int = 16
-    least: float = 1e-3
-    shorter: float = 0.1
-    longer: float = 4.0
-    last: float = 1e-9
+    min_contacts: int = 12
+    max_steps: int = 16
+    min_damping: float = 1e-3
+    min_factor: float = 0.1
+    max_factor: float = 4.0
+    final_step: float = 1e-9
 
 
 DAMPED = DampedOptions()  # where nothing else is said
 
 
 @cython.cclass
-class Lifted:
-    """`beside` a point of the balance of fewer harmonics finds one of the balance of more.
+class Prolongation:
+    """`find_normal` a point of the balance of fewer harmonics finds one of the balance of more.
 
     That is then newton.z, the direction of its curve newton.tangent; found (1 + dof,) its frequency and
-    amplitudes. A displacement is known when a Newton step changes it by less than the part `enough`.
+    amplitudes. A displacement is known when a Newton step changes it by less than the part `tolerance`.
     """
 
     def __init__(
@@ -71,23 +86,27 @@ class Lifted:
         enough: cython.double,
         options: DampedOptions = DAMPED,
     ) -> None:
-        self.balance, self.enough, self.dear = balance, enough, balance.unknowns >= DEAR
-        self.many, self.brief = balance.unknowns >= MANY, self.dear
-        self.damps = balance.contacts >= options.contacts
-        self.steps, self.least = options.steps, options.least
-        self.shorter, self.longer, self.last = options.shorter, options.longer, options.last
+        self.balance, self.tolerance, self.costly_size = balance, enough, balance.unknowns >= COSTLY_SIZE
+        self.many, self.brief = balance.unknowns >= CHORD_SIZE, self.costly_size
+        self.damps = balance.contacts >= options.min_contacts
+        self.max_steps, self.min_damping = options.max_steps, options.min_damping
+        self.min_factor, self.max_factor, self.final_step = (
+            options.min_factor,
+            options.max_factor,
+            options.final_step,
+        )
         self.homotopy = Homotopy(balance)
         self.newton = Newton(self.homotopy)
         self.guess, self.row = np.zeros(balance.unknowns + 1), np.zeros(balance.unknowns + 1)
         self.normal = balance.layout.of_normal.astype(np.uint8)
-        self.still, self.ahead = np.zeros((2, balance.unknowns + 1))
+        self.still, self.prediction = np.zeros((2, balance.unknowns + 1))
         self.begin, self.way = np.zeros((2, balance.unknowns + 1))
         self.found = np.zeros(1 + balance.outputs)
         self.more = more
         self.fewer: list[int] = []
-        self.put(fewer)
+        self.set_harmonics(fewer)
 
-    def put(self, fewer: list[int]) -> None:
+    def set_harmonics(self, fewer: list[int]) -> None:
         """Points are of a balance of those harmonics; the others are nothing where they are looked from."""
         if fewer == self.fewer:
             return
@@ -96,32 +115,32 @@ class Lifted:
         block = np.flatnonzero(np.isin(layout.harmonic_of(self.more), [0, *fewer]))
         place = np.arange(0, layout.unknowns, layout.width)[:, None] + block
         self.place = np.append(place, self.balance.unknowns).astype(np.intc)
-        self.guess[:], self.row[:], self.ahead[:] = 0.0, 0.0, 0.0
+        self.guess[:], self.row[:], self.prediction[:] = 0.0, 0.0, 0.0
 
-    def take(self, fewer: list[int], contacts: list[tuple[float, float, float, float]]) -> None:
+    def reset(self, fewer: list[int], contacts: list[tuple[float, float, float, float]]) -> None:
         """Points of those harmonics, contacts with other mu, k_u, k_v, n_0, as if nothing were known yet."""
-        self.put(fewer)
+        self.set_harmonics(fewer)
         for law, numbers in zip(self.balance.laws, contacts, strict=True):
-            law.put(*numbers)
+            law.set_parameters(*numbers)
         self.balance.largest[:] = 0.0
-        self.ahead[:] = 0.0
+        self.prediction[:] = 0.0
         self.newton.evaluations = 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def lead(self, z: cython.double[::1], there: cython.double[::1]) -> cython.int:
+    def predict_from(self, z: cython.double[::1], there: cython.double[::1]) -> cython.int:
         """Of many contacts: seek the next point as far from its guess as there (unknown + 1,) is from z
         (fewer unknowns + 1,), and only then from the guess."""
         i: cython.Py_ssize_t
         if self.damps:
-            self.ahead[:] = there
+            self.prediction[:] = there
             for i in range(self.place.shape[0]):
-                self.ahead[self.place[i]] -= z[i]
+                self.prediction[self.place[i]] -= z[i]
         return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def beside(
+    def find_normal(
         self, z: cython.double[::1], direction: cython.double[::1], briefly: cython.bint = False
     ) -> cython.bint:
         """Whether there is a point near z (fewer unknowns + 1,), normal to the direction of the curve.
@@ -130,7 +149,7 @@ class Lifted:
         """
         i: cython.Py_ssize_t
         total: cython.double = 0.0
-        self.brief = self.dear or (self.many and briefly)
+        self.brief = self.costly_size or (self.many and briefly)
         for i in range(self.place.shape[0]):
             self.guess[self.place[i]] = z[i]
         self.balance.measure(self.guess)
@@ -142,32 +161,32 @@ class Lifted:
         for i in range(self.guess.shape[0]):
             self.newton.scale[i] = self.balance.scale[i]
             self.newton.row[i] = self.row[i] / sqrt(total)
-        return self.corrected() and self.report()
+        return self.correct() and self.report()
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def normal_point(self, z: cython.double[::1], gradually: cython.bint) -> cython.bint:
+    def find_at_frequency(self, z: cython.double[::1], gradually: cython.bint) -> cython.bint:
         """Whether there is a point near z (unknown + 1,) at the same frequency; by parts if not at once."""
-        self.ahead[:] = 0.0
+        self.prediction[:] = 0.0
         self.hold(z)
-        return (self.at_once(z) or (gradually and self.by_parts(z))) and self.report()
+        return (self.correct_at_once(z) or (gradually and self.correct_by_homotopy(z))) and self.report()
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def rebalance(self, z: cython.double[::1], lack: cython.double[::1]) -> cython.bint:
         """Whether there is a point near z (unknown + 1,) at the same frequency at which so much (unknown,) is
         lacking in the equations; it is left in newton.z."""
-        self.ahead[:] = 0.0
+        self.prediction[:] = 0.0
         self.hold(z)
-        self.homotopy.removed[:] = lack
-        return self.at_once(z, 1.0)
+        self.homotopy.initial_residual[:] = lack
+        return self.correct_at_once(z, 1.0)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def hold(self, z: cython.double[::1]) -> cython.int:
         """Seek points at the frequency of z (unknown + 1,)."""
         i: cython.Py_ssize_t
-        self.brief = self.dear
+        self.brief = self.costly_size
         self.balance.measure(z)
         for i in range(z.shape[0]):
             self.newton.scale[i], self.newton.row[i] = self.balance.scale[i], 0.0
@@ -187,51 +206,51 @@ class Lifted:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def corrected(self) -> cython.bint:
+    def correct(self) -> cython.bint:
         """Move the guess to the curve: at once, or by parts."""
-        if self.at_once(self.guess) and self.onward():
+        if self.correct_at_once(self.guess) and self.keeps_direction():
             return True
-        return not self.brief and self.by_parts(self.guess) and self.onward()
+        return not self.brief and self.correct_by_homotopy(self.guess) and self.keeps_direction()
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def at_once(self, guess: cython.double[::1], taken: cython.double = 0.0) -> cython.bint:
+    def correct_at_once(self, guess: cython.double[::1], taken: cython.double = 0.0) -> cython.bint:
         """Whether Newton's method leads from a guess to a point near it; of what was removed from the
         equations a part may be taken."""
         i: cython.Py_ssize_t
         leads: cython.bint = False
-        self.homotopy.taken = taken
+        self.homotopy.subtracted_part = taken
         self.newton.guess[:] = guess
         if self.damps:
             for i in range(guess.shape[0]):
-                self.newton.z[i] = guess[i] + self.ahead[i]
-                leads = leads or self.ahead[i] != 0.0
-            if leads and self.damped() and self.strained(guess) <= FAR:
+                self.newton.z[i] = guess[i] + self.prediction[i]
+                leads = leads or self.prediction[i] != 0.0
+            if leads and self.damped_newton() and self.strain_from(guess) <= MAX_CHANGE:
                 return True
             self.newton.z[:] = guess
-            return self.damped() and self.strained(guess) <= FAR
+            return self.damped_newton() and self.strain_from(guess) <= MAX_CHANGE
         self.newton.z[:] = guess
-        return self.nearly() and self.newton.moved <= FAR
+        return self.newton_to_tolerance() and self.newton.moved <= MAX_CHANGE
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def by_parts(self, guess: cython.double[::1]) -> cython.bint:
+    def correct_by_homotopy(self, guess: cython.double[::1]) -> cython.bint:
         """The same where the equations change gradually from those that the guess solves; not of many
         contacts, of which that leads nowhere that damped steps do not."""
         if self.damps:
             return False
         self.newton.z[:] = guess
         self.homotopy.evaluate(guess)
-        self.homotopy.removed[:] = self.homotopy.residual
-        for part in GRADUAL:
-            self.homotopy.taken = 1.0 - part
-            if not self.newton.correct(1.0) or self.newton.moved > FAR:
+        self.homotopy.initial_residual[:] = self.homotopy.residual
+        for part in HOMOTOPY_PARTS:
+            self.homotopy.subtracted_part = 1.0 - part
+            if not self.newton.correct(1.0) or self.newton.moved > MAX_CHANGE:
                 return False
-        return self.away(guess) <= FAR
+        return self.distance_from(guess) <= MAX_CHANGE
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def onward(self) -> cython.bint:
+    def keeps_direction(self) -> cython.bint:
         """Whether the curve there goes the same way; of many contacts by what both ways strain the springs in
         the harmonics that both have."""
         i: cython.Py_ssize_t
@@ -244,7 +263,7 @@ class Lifted:
         if not self.damps:
             for i in range(self.guess.shape[0]):
                 along += newton.tangent[i] * newton.row[i]
-            return along >= TURNED
+            return along >= MIN_COSINE
         size: cython.double = self.strain(self.guess)
         for j in range(self.place.shape[0]):
             i = self.place[j]
@@ -254,39 +273,41 @@ class Lifted:
             along += weight * newton.tangent[i] * newton.row[i]
             way += weight * newton.tangent[i] ** 2
             row += weight * newton.row[i] ** 2
-        return along >= TURNED * sqrt(way * row)
+        return along >= MIN_COSINE * sqrt(way * row)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def nearly(self) -> cython.bint:
+    def newton_to_tolerance(self) -> cython.bint:
         """As `Newton.correct`, up to the precision that a displacement needs."""
         count: cython.int
         step: cython.double
         first: cython.double = 0.0
         before: cython.double = 1.0
         newton: Newton = self.newton
-        for count in range(ITERATIONS):
+        for count in range(MAX_ITERATIONS):
             if not newton.factor():
                 return False
             step = newton.step()
-            if count > 0 and step > 0.25 * before and newton.noise(step, count):
-                return newton.direct()
+            if count > 0 and step > 0.25 * before and newton.is_rounding(step, count):
+                return newton.compute_tangent()
             if not step < 1e30 or (count > 1 and step > 2.0 * before):
                 return False
-            if self.brief and (step > TWICE * FAR if count == 0 else step > min(2.0 * before, FAR)):
+            if self.brief and (
+                step > FIRST_STEP_RATIO * MAX_CHANGE if count == 0 else step > min(2.0 * before, MAX_CHANGE)
+            ):
                 return False
             self.move()
             first = step if count == 0 else first
-            if step < SMALL or (count > 0 and step < self.enough * first):
-                return newton.direct()
-            if (self.many or step < SLIGHT) and self.again(self.enough * first, step):
-                return newton.direct()
+            if step < FINAL_STEP or (count > 0 and step < self.tolerance * first):
+                return newton.compute_tangent()
+            if (self.many or step < CHORD_STEP) and self.chord_steps_converge(self.tolerance * first, step):
+                return newton.compute_tangent()
             before = step
         return False
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def damped(self) -> cython.bint:
+    def damped_newton(self) -> cython.bint:
         """The same of many contacts: no step is longer than the natural monotonicity test allows."""
         i: cython.Py_ssize_t
         count: cython.int
@@ -295,7 +316,7 @@ class Lifted:
         bend: cython.double
         part: cython.double = 1.0
         newton: Newton = self.newton
-        for count in range(self.steps):
+        for count in range(self.max_steps):
             if not newton.factor():
                 return False
             step = newton.step()
@@ -303,43 +324,47 @@ class Lifted:
                 return False
             for i in range(self.guess.shape[0]):
                 self.begin[i], self.way[i] = newton.z[i], newton.delta[i]
-            part = min(1.0, self.longer * part) if count > 0 else 1.0
+            part = min(1.0, self.max_factor * part) if count > 0 else 1.0
             while True:
                 for i in range(self.guess.shape[0]):
                     newton.z[i] = self.begin[i] + part * newton.scale[i] * self.way[i]
                 # what is left is less than the last step by far
-                if part == 1.0 and (step < self.last or step < self.enough * self.away(newton.guess)):
-                    return newton.direct()
+                if part == 1.0 and (
+                    step < self.final_step or step < self.tolerance * self.distance_from(newton.guess)
+                ):
+                    return newton.compute_tangent()
                 newton.problem.probe(newton.z)
                 then = newton.step()
                 if then < (1.0 - 0.25 * part) * step:
                     break
-                if part <= self.least:
+                if part <= self.min_damping:
                     return False
                 bend = 0.0
                 if then < 1e30:
                     for i in range(self.guess.shape[0]):
                         bend += (newton.delta[i] - (1.0 - part) * self.way[i]) ** 2
                     bend = 0.5 * part * part * step / sqrt(bend)  # a part that bends by half of the step
-                part = max(self.shorter * part, min(0.5 * part, bend))
-            if part == 1.0 and then < SHRINKING * step:
+                part = max(self.min_factor * part, min(0.5 * part, bend))
+            if part == 1.0 and then < CHORD_CONTRACTION * step:
                 self.move()
-                if then < self.last or self.again(self.enough * self.away(newton.guess), then):
-                    return newton.direct()
+                if then < self.final_step or self.chord_steps_converge(
+                    self.tolerance * self.distance_from(newton.guess), then
+                ):
+                    return newton.compute_tangent()
         return False
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def again(self, enough: cython.double, before: cython.double) -> cython.bint:
+    def chord_steps_converge(self, enough: cython.double, before: cython.double) -> cython.bint:
         """Whether steps with the Jacobian from before the last, which was so long, come to one so short that
         it is the last; one that does not shrink as fast is not taken."""
         count: cython.int
         step: cython.double
         newton: Newton = self.newton
-        for count in range(CHORDS):  # noqa: B007
+        for count in range(MAX_CHORD_STEPS):  # noqa: B007
             newton.problem.probe(newton.z)
             step = newton.step()
-            if not step < SHRINKING * before:
+            if not step < CHORD_CONTRACTION * before:
                 return False
             self.move()
             if step < enough:
@@ -357,7 +382,7 @@ class Lifted:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def away(self, guess: cython.double[::1]) -> cython.double:
+    def distance_from(self, guess: cython.double[::1]) -> cython.double:
         """Distance of the point from a guess."""
         i: cython.Py_ssize_t
         total: cython.double = 0.0
@@ -367,7 +392,7 @@ class Lifted:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def strained(self, guess: cython.double[::1]) -> cython.double:
+    def strain_from(self, guess: cython.double[::1]) -> cython.double:
         """Distance of the point from a guess by what that strains the contacts' springs, relative to what the
         point and the guess do.
 

@@ -6,31 +6,28 @@ One on a line is one in a plane in whose second direction nothing moves.
 from __future__ import annotations
 
 import cython
-import numpy as np
 
 from fcm.contact.plane.forces import PlanarContact
 from fcm.contact.plane.margins import PlanarMargins
 from fcm.contact.plane.measures import PlanarMeasures
-from fcm.harmonic_balance.contact_law import Law
+from fcm.harmonic_balance.contact_law import KernelLaw
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.motion import CLOSED, MIXED
     from cython.cimports.fcm.contact.plane.cycle import STUCK
     from cython.cimports.fcm.contact.plane.sums import CONTACT, SLIPS_X, SLIPS_Y, STICKS
-    from cython.cimports.fcm.continuation.problem import NONE
 else:
     from fcm.contact.periodic.motion import CLOSED, MIXED
     from fcm.contact.plane.cycle import STUCK
     from fcm.contact.plane.sums import CONTACT, SLIPS_X, SLIPS_Y, STICKS
-    from fcm.continuation.problem import NONE
 
 TWO_PI = cython.declare(cython.double, 6.283185307179586)
 
 
 @cython.cclass
-class Planar(Law):
-    """Forces of a periodic motion with their derivatives; contacts may share the kernel, a workspace, whose
-    array the tangent is."""
+class PlanarLaw(KernelLaw):
+    """Forces of a periodic motion with their derivatives; the kernel is a workspace, whose array the tangent
+    is."""
 
     def __init__(
         self,
@@ -41,49 +38,30 @@ class Planar(Law):
         n_0: cython.double,
     ) -> None:
         self.kernel, self.bounds = kernel, PlanarMargins(kernel.cycle)
-        Law.__init__(self, kernel.unknowns, 3, self.bounds.most, mu, k_u, k_v, n_0)
-        self.force, self.tangent = np.zeros(kernel.equations), kernel.jacobian
+        KernelLaw.__init__(self, kernel, 3, self.bounds.most, mu, k_u, k_v, n_0)
         self.measures = PlanarMeasures(kernel.cycle)
         self.state = self.measures.state
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def evaluate(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        return self.forces(x, first, True)
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def probe(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        return self.forces(x, first, False)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
         """And their tangent, if that is wanted."""
-        i: cython.Py_ssize_t
         self.kernel.evaluate(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0, 0.0, tangent)
-        for i in range(self.force.shape[0]):
-            self.force[i] = self.kernel.forces[i]
-        self.force[2] -= max(self.n_0, 0.0)
+        self.take_forces(self.kernel.forces)
         # without friction it slides to and fro, and its forces have no further harmonics if it stays closed
         smooth: cython.bint = self.kernel.cycle.behaviour == CLOSED and not self.mu * self.k_u > 0.0
-        self.mixed = self.kernel.kind == MIXED and not smooth
+        self.nonlinear = self.kernel.kind == MIXED and not smooth
         return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def bound(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        i: cython.Py_ssize_t
         self.bounds.find(x, first, self.mu, self.k_u, self.k_v, self.n_0)
-        for i in range(self.margins):
-            self.kind[i] = self.bounds.kind[i] if i < self.bounds.count else NONE
-        self.margin[:] = self.bounds.value
-        self.angle[:] = self.bounds.angle
-        return 0
+        return self.take_margins(self.bounds.count, self.bounds.kind, self.bounds.value, self.bounds.angle)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def resist(self) -> cython.int:
+    def compute_resistance(self) -> cython.int:
         """While it sticks k_u, while it slips mu k_v along its direction by the normal displacement."""
         sums = self.kernel.sums
         rubs: cython.bint = self.mu * self.k_u > 0.0

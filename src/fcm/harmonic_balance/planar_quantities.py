@@ -12,21 +12,21 @@ from fcm.model.scene import FloatArray
 
 
 @dataclass(frozen=True)
-class InPlane:
+class PlanarQuantities:
     """Of every point; x(theta) = Re sum_h X_h exp(i h theta), the mean first."""
 
     motion: npt.NDArray[np.complex128]  # (point, contact, direction, 1 + harmonic) across the contacts
     friction: FloatArray  # (point, contact, 2) amplitude of the fundamental of the friction force
     law: FloatArray  # (contact, 4) mu, k_u, k_v, n_0
 
-    def at(self, rows: npt.NDArray[np.intp]) -> InPlane:
+    def at(self, rows: npt.NDArray[np.intp]) -> PlanarQuantities:
         """Of some points, with a gap where an index is -1."""
         motion, friction = self.motion[rows], self.friction[rows]
         motion[rows < 0], friction[rows < 0] = np.nan, np.nan
-        return InPlane(motion, friction, self.law)
+        return PlanarQuantities(motion, friction, self.law)
 
 
-def in_plane(system: System, z: FloatArray) -> InPlane | None:
+def planar_quantities(system: System, z: FloatArray) -> PlanarQuantities | None:
     """Motions across contacts, and their friction forces, where one of them slides in a plane."""
     scene, layout, z = system.scene, system.layout, np.ascontiguousarray(z)
     if not scene.planar:
@@ -38,4 +38,4 @@ def in_plane(system: System, z: FloatArray) -> InPlane | None:
             law.probe(one, i * layout.width)
             force = np.asarray(law.force)[3 * (2 * j - 1) :][:4]
             friction[k, i] = np.hypot(force[::2], force[1::2])
-    return InPlane(motion, friction, np.array([(c.mu, c.k_u, c.k_v, c.n_0) for c in scene.contacts]))
+    return PlanarQuantities(motion, friction, np.array([(c.mu, c.k_u, c.k_v, c.n_0) for c in scene.contacts]))

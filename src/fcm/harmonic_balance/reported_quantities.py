@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Path
-from fcm.harmonic_balance.residual import Points
+from fcm.harmonic_balance.residual import PointQuantities
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
@@ -16,7 +16,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
-class Reported:
+class ReportedQuantities:
     """What is reported along a path, as of a `Record`; growth (point, dof) of the amplitude along the path's
     direction; linear (point,) where no contact slips or separates."""
 
@@ -27,28 +27,28 @@ class Reported:
     growth: FloatArray
     linear: npt.NDArray[np.bool_]
 
-    def with_rows(self, after: npt.NDArray[np.intp], other: Reported) -> Reported:
+    def with_rows(self, after: npt.NDArray[np.intp], other: ReportedQuantities) -> ReportedQuantities:
         """With the points of another inserted after some points."""
         rows = zip(vars(self).values(), vars(other).values(), strict=True)
-        return Reported(*(np.insert(mine, after + 1, its, axis=0) for mine, its in rows))
+        return ReportedQuantities(*(np.insert(mine, after + 1, its, axis=0) for mine, its in rows))
 
-    def part(self, rows: slice) -> Reported:
+    def part(self, rows: slice) -> ReportedQuantities:
         """Of some points."""
-        return Reported(*(mine[rows] for mine in vars(self).values()))
+        return ReportedQuantities(*(mine[rows] for mine in vars(self).values()))
 
 
-def reported(system: System, path: Path) -> Reported:
+def reported_quantities(system: System, path: Path) -> ReportedQuantities:
     """What is reported along a path."""
     return reported_at(system, path.z, path.direction)
 
 
-def reported_at(system: System, z: FloatArray, direction: FloatArray) -> Reported:
+def reported_at(system: System, z: FloatArray, direction: FloatArray) -> ReportedQuantities:
     """The same of points z with directions there, both (point, unknown + 1)."""
-    points = Points(system.looking, len(z))
-    points.take(z, direction, np.ones(len(z)))
+    points = PointQuantities(system.shared_balance, len(z))
+    points.evaluate(z, direction, np.ones(len(z)))
     X = np.empty(np.shape(points.re), dtype=np.complex128)
     X.real, X.imag = points.re, points.im
-    return Reported(
+    return ReportedQuantities(
         X=X,
         mean=np.asarray(points.mean),
         amplitude=np.asarray(points.amplitude),

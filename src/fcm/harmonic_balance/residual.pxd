@@ -1,21 +1,21 @@
 from fcm.continuation.problem cimport Problem
 from fcm.harmonic_balance.contact_law cimport Law
 from fcm.harmonic_balance.displacement cimport Displacements
-from fcm.harmonic_balance.modal_equations cimport ModalAnswer
+from fcm.harmonic_balance.modal_equations cimport ModalCompliance
 from fcm.structure.receptance cimport Receptance
 
-cdef void times_forces(Receptance seen, double[::1] force, double[::1] out) noexcept
-cdef void times_tangents(Receptance seen, double[:, :, ::1] tangent, double[:, ::1] out) noexcept
+cdef void apply_to_forces(Receptance seen, double[::1] force, double[::1] out) noexcept
+cdef void apply_to_tangents(Receptance seen, double[:, :, ::1] tangent, double[:, ::1] out) noexcept
 cdef void slope(Receptance seen, double[::1] force, double load, double[::1] out) noexcept
-cdef void less_external(Receptance seen, double load, double[::1] out) noexcept
-cdef void less_external_slopes(Receptance seen, double load, double[::1] out) noexcept
+cdef void subtract_external(Receptance seen, double load, double[::1] out) noexcept
+cdef void subtract_external_slopes(Receptance seen, double load, double[::1] out) noexcept
 
 cdef class Balance(Problem):
     cdef public Receptance seen
     cdef public Displacements shown
     cdef public list laws
     cdef public object condensed
-    cdef ModalAnswer answer
+    cdef ModalCompliance answer
     cdef public object layout
     cdef public int contacts
     cdef public int directions
@@ -38,12 +38,12 @@ cdef class Balance(Problem):
     cdef double[::1] rate
     cdef double[::1] by_frequency
     cdef int forces_at(self, double[::1] z, double[::1] direction) except -1
-    cdef int pushed(self, double[::1] z, bint tangents) except -1
+    cdef int evaluate_contacts(self, double[::1] z, bint tangents) except -1
     cdef int slopes(self) except -1
     cdef int together(self) except -1
     cdef int contact_forces(self, double[::1] z, bint tangents) except -1
 
-cdef class Points:
+cdef class PointQuantities:
     cdef readonly Balance balance
     cdef readonly double[:, :, ::1] re
     cdef readonly double[:, :, ::1] im

@@ -20,7 +20,7 @@ import numpy.typing as npt
 from cython.cimports.libc.math import sqrt
 
 from fcm.harmonic_balance.displacement import Displacements
-from fcm.harmonic_balance.modal_condensation import Condensed
+from fcm.harmonic_balance.modal_condensation import CondensedSystem
 from fcm.harmonic_balance.options import HARMONIC_BALANCE, UnitOptions
 from fcm.structure.layout import Layout
 from fcm.structure.receptance import Receptance
@@ -28,16 +28,16 @@ from fcm.structure.receptance import Receptance
 if cython.compiled:
     from cython.cimports.fcm.continuation.problem import NONE, Problem
     from cython.cimports.fcm.harmonic_balance.contact_law import KINDS, Law
-    from cython.cimports.fcm.harmonic_balance.modal_equations import ModalAnswer
+    from cython.cimports.fcm.harmonic_balance.modal_equations import ModalCompliance
 else:
     from fcm.continuation.problem import NONE, Problem
     from fcm.harmonic_balance.contact_law import KINDS, Law
-    from fcm.harmonic_balance.modal_equations import ModalAnswer
+    from fcm.harmonic_balance.modal_equations import ModalCompliance
 
 
 @cython.cfunc
 @cython.exceptval(check=False)
-def times_forces(seen: Receptance, force: cython.double[::1], out: cython.double[::1]) -> cython.void:
+def apply_to_forces(seen: Receptance, force: cython.double[::1], out: cython.double[::1]) -> cython.void:
     """Fill out (unknown,) with the answer to forces (unknown,)."""
     row: cython.Py_ssize_t
     f: cython.Py_ssize_t
@@ -62,7 +62,7 @@ def times_forces(seen: Receptance, force: cython.double[::1], out: cython.double
 
 @cython.cfunc
 @cython.exceptval(check=False)
-def times_tangents(
+def apply_to_tangents(
     seen: Receptance, tangent: cython.double[:, :, ::1], out: cython.double[:, ::1]
 ) -> cython.void:
     """Fill out (unknown, unknown) with the answers to the changes of forces by tangents (contact, w, w)."""
@@ -126,12 +126,12 @@ def slope(
                 re += seen.dG_re[j, p, q] * force[f] - seen.dG_im[j, p, q] * force[f + 1]
                 im += seen.dG_im[j, p, q] * force[f] + seen.dG_re[j, p, q] * force[f + 1]
             out[row], out[row + 1] = re, im
-    less_external_slopes(seen, load, out)
+    subtract_external_slopes(seen, load, out)
 
 
 @cython.cfunc
 @cython.exceptval(check=False)
-def less_external(seen: Receptance, load: cython.double, out: cython.double[::1]) -> cython.void:
+def subtract_external(seen: Receptance, load: cython.double, out: cython.double[::1]) -> cython.void:
     """Take from out (unknown,) the answer to a level of the external forces."""
     j: cython.int
     p: cython.Py_ssize_t
@@ -146,7 +146,7 @@ def less_external(seen: Receptance, load: cython.double, out: cython.double[::1]
 
 @cython.cfunc
 @cython.exceptval(check=False)
-def less_external_slopes(seen: Receptance, load: cython.double, out: cython.double[::1]) -> cython.void:
+def subtract_external_slopes(seen: Receptance, load: cython.double, out: cython.double[::1]) -> cython.void:
     """Take from out (unknown,) the derivative of that by the frequency."""
     j: cython.int
     p: cython.Py_ssize_t
@@ -185,12 +185,12 @@ class Balance(Problem):
         self.force, self.now, self.rate, self.by_frequency = np.zeros((4, self.unknowns))
         self.evaluated = np.zeros(self.unknowns + 1)
         self.tangent = np.zeros((len(laws), width, width))
-        self.condensed: Condensed | None = None  # of the rank, see `condense`
-        self.answer: ModalAnswer | None = None  # then
+        self.condensed: CondensedSystem | None = None  # of the rank, see `condense`
+        self.answer: ModalCompliance | None = None  # then
         self.largest, self.size = np.zeros(layout.ports), np.zeros(layout.ports)
         self.own, self.greatest, self.alike = units.own, units.greatest, len(laws) >= units.contacts
 
-    def condense(self, condensed: Condensed) -> None:
+    def condense(self, condensed: CondensedSystem) -> None:
         """Solve the systems of Newton's method, of which there is a rank, by this."""
         self.condensed, self.answer = condensed, condensed.answer
 
@@ -198,12 +198,12 @@ class Balance(Problem):
     @cython.exceptval(-1, check=False)
     def evaluate(self, z: cython.double[::1]) -> cython.int:
         i: cython.Py_ssize_t
-        self.pushed(z, True)
+        self.evaluate_contacts(z, True)
         self.slopes()
         for i in range(self.unknowns):
             self.jacobian[i, 0 if self.rank else self.unknowns] = self.by_frequency[i]
         if not self.rank:
-            times_tangents(self.seen, self.tangent, self.jacobian)
+            apply_to_tangents(self.seen, self.tangent, self.jacobian)
             for i in range(self.unknowns):
                 self.jacobian[i, i] += 1.0
         return 0
@@ -211,24 +211,24 @@ class Balance(Problem):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def probe(self, z: cython.double[::1]) -> cython.int:
-        return self.pushed(z, False)
+        return self.evaluate_contacts(z, False)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def pushed(self, z: cython.double[::1], tangents: cython.bint) -> cython.int:
+    def evaluate_contacts(self, z: cython.double[::1], tangents: cython.bint) -> cython.int:
         """The residual and the contacts' forces at z, and their tangents; which else stay as they were."""
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t
         self.seen.at(z[self.unknowns])
         self.contact_forces(z, tangents)
         if self.condensed is None:
-            times_forces(self.seen, self.force, self.residual)
+            apply_to_forces(self.seen, self.force, self.residual)
         else:
             assert self.answer is not None
-            self.answer.to(self.force, self.residual)
+            self.answer.displace(self.force, self.residual)
         for p in range(self.ports):
             self.residual[self.seen.mean_at[p]] -= self.share * self.rest[p]
-        less_external(self.seen, self.load, self.residual)
+        subtract_external(self.seen, self.load, self.residual)
         for i in range(self.unknowns):
             self.residual[i] += z[i]
         for i in range(self.unknowns + 1):
@@ -244,7 +244,7 @@ class Balance(Problem):
             return 0
         assert self.answer is not None
         self.answer.rate(self.force, self.by_frequency)
-        less_external_slopes(self.seen, self.load, self.by_frequency)
+        subtract_external_slopes(self.seen, self.load, self.by_frequency)
         return 0
 
     @cython.cfunc
@@ -384,8 +384,8 @@ class Balance(Problem):
 
 
 @cython.cclass
-class Points:
-    """`take` points (point, unknown + 1) and directions there, and have what the balance says of each.
+class PointQuantities:
+    """`evaluate` points (point, unknown + 1) and directions there, and have what the balance says of each.
 
     re, im (point, harmonic, dof), mean, amplitude, growth (point, dof), force (point, unknown): see
     `Displacements`; the growth is that along the direction. linear (point,): 1 where no contact slips or
@@ -400,12 +400,12 @@ class Points:
         self.mean, self.amplitude, self.growth = np.zeros((3, count, dofs))
         self.force, self.linear = np.zeros((count, balance.unknowns)), np.ones(count, dtype=np.intc)
 
-    def take(
+    def evaluate(
         self,
         z: cython.double[:, ::1],
         direction: cython.double[:, ::1],
         level: cython.double[::1],
-    ) -> Points:
+    ) -> PointQuantities:
         """With the forces times level (point,)."""
         b: Balance = self.balance
         i: cython.Py_ssize_t
@@ -413,7 +413,7 @@ class Points:
         j: cython.Py_ssize_t
         for i in range(z.shape[0]):
             b.load = level[i]
-            b.pushed(z[i], True)
+            b.evaluate_contacts(z[i], True)
             b.report(z[i], direction[i])
             for d in range(b.shown.dofs):
                 self.mean[i, d], self.amplitude[i, d] = b.shown.mean[d], b.shown.amplitude[d]
@@ -424,7 +424,7 @@ class Points:
                 self.force[i, j] = b.force[j]
             for j in range(b.contacts):
                 law: Law = b.laws[j]
-                if law.mixed:
+                if law.nonlinear:
                     self.linear[i] = 0
         return self
 

@@ -11,6 +11,6 @@ cdef class FurtherHarmonics:
     cdef double least, leading
     cdef double[:, :, ::1] force
     cdef double[::1] size
-    cpdef int at(self, double[::1] z, double[::1] amplitude) except -1
-    cdef int of_many(self, double omega) except -1
-    cdef bint leads(self, double[::1] z, double[::1] amplitude, Py_ssize_t h) except -1
+    cpdef int shares_at(self, double[::1] z, double[::1] amplitude) except -1
+    cdef int shares_of_many(self, double omega) except -1
+    cdef bint is_leading(self, double[::1] z, double[::1] amplitude, Py_ssize_t h) except -1

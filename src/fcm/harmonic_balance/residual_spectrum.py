@@ -24,7 +24,7 @@ from fcm.scene.options import LIMITS
 from fcm.structure.receptance import ForcedModes
 
 
-def highest(system: System) -> int:
+def highest_harmonic(system: System) -> int:
     """Harmonic up to which the forces of a system's motions are looked at."""
     return max(LIMITS.harmonics, int(system.options.spectrum.ahead * max(system.harmonics)))
 
@@ -34,7 +34,7 @@ class FurtherHarmonics:
     """The harmonics of the exact forces of motions of a system's balance."""
 
     def __init__(self, system: System) -> None:
-        linear, self.highest = system.linear, highest(system)
+        linear, self.highest = system.linear, highest_harmonic(system)
         self.contacts, self.width = len(system.scene.contacts), system.layout.width
         self.directions = system.layout.directions
         few = system.scene.ring is None and linear.ports.size <= system.options.spectrum.few
@@ -45,9 +45,9 @@ class FurtherHarmonics:
         self.leading = system.options.spectrum.leads
         self.force = np.zeros((self.highest, system.layout.ports, 2))
         self.share, self.size = np.zeros(self.highest), np.zeros(linear.dofs.shape[1])
-        self.take(system)
+        self.reset(system)
 
-    def take(self, system: System) -> None:
+    def reset(self, system: System) -> None:
         """A system with the same structure and harmonics, whose contacts may be others."""
         self.system = system
         self.laws = system.exact_laws(tuple(range(1, self.highest + 1)))
@@ -69,17 +69,17 @@ class FurtherHarmonics:
         if known is not None:
             self.others = self._without(known)
         for i in range(len(z)):
-            self.at(z[i], amplitude[i])
+            self.shares_at(z[i], amplitude[i])
             found[i] = self.share
         self.others = own
         self.share[:] = 0.0
         return found
 
-    def meetings(self, z: cython.double[:, ::1], amplitude: cython.double[:, ::1]) -> npt.NDArray[np.intp]:
+    def resonances(self, z: cython.double[:, ::1], amplitude: cython.double[:, ::1]) -> npt.NDArray[np.intp]:
         """Points of a curve z (point, unknown + 1) where a harmonic that is left out meets a mode and leads
         there, each with those beside it."""
         if self.modes is None and self.system.scene.ring is None:
-            return self.meetings_of_many(np.asarray(z), np.asarray(amplitude))
+            return self.resonances_of_many(np.asarray(z), np.asarray(amplitude))
         m: cython.Py_ssize_t
         i: cython.Py_ssize_t
         n: cython.Py_ssize_t = z.shape[1] - 1
@@ -93,11 +93,11 @@ class FurtherHarmonics:
                 if h == floor(min(before, after)) or h > self.highest:
                     continue
                 at: cython.Py_ssize_t = i + 1 if fabs(after - h) < fabs(before - h) else i
-                if self.leads(z[at], amplitude[at], cython.cast(cython.Py_ssize_t, h) - 1):
+                if self.is_leading(z[at], amplitude[at], cython.cast(cython.Py_ssize_t, h) - 1):
                     flags[at - 1] = flags[at] = flags[at + 1] = 1
         return np.flatnonzero(met)
 
-    def meetings_of_many(
+    def resonances_of_many(
         self, z: npt.NDArray[np.float64], amplitude: npt.NDArray[np.float64]
     ) -> npt.NDArray[np.intp]:
         """The same of many modes or contacts.
@@ -109,7 +109,7 @@ class FurtherHarmonics:
         every = np.arange(min(count // 2, len(z) - 1), len(z), count)
         most, force = np.zeros(len(every)), np.empty((len(every), *np.asarray(self.force).shape))
         for k, i in enumerate(every.tolist()):
-            self.at(z[i], amplitude[i])
+            self.shares_at(z[i], amplitude[i])
             most[k], force[k] = np.max(self.share), self.force
         near = np.minimum(np.arange(len(z)) // count, len(every) - 1)
         least = self.least * amplitude.max(axis=1, keepdims=True)
@@ -134,13 +134,13 @@ class FurtherHarmonics:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def leads(
+    def is_leading(
         self, z: cython.double[::1], amplitude: cython.double[::1], h: cython.Py_ssize_t
     ) -> cython.bint:
         """Whether one of the shares at a point is nearly the greatest."""
         k: cython.Py_ssize_t
         most: cython.double = 0.0
-        self.at(z, amplitude)
+        self.shares_at(z, amplitude)
         for k in range(self.highest):
             most = max(most, self.share[k])
         return self.share[h] > self.leading * most
@@ -151,12 +151,12 @@ class FurtherHarmonics:
         for i in range(len(z)):
             for c, law in enumerate(self.laws):
                 law.probe(z[i], c * self.width)
-                linear[i] &= not law.mixed
+                linear[i] &= not law.nonlinear
         return linear
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def at(self, z: cython.double[::1], amplitude: cython.double[::1]) -> cython.int:
+    def shares_at(self, z: cython.double[::1], amplitude: cython.double[::1]) -> cython.int:
         """Fill share (harmonic,), as one row of `shares`."""
         c: cython.Py_ssize_t
         h: cython.Py_ssize_t
@@ -177,13 +177,13 @@ class FurtherHarmonics:
         for k in range(self.size.shape[0]):
             self.size[k] = max(amplitude[k], self.least * most)
         if self.modes is None:
-            return self.of_many(z[self.contacts * self.width])
+            return self.shares_of_many(z[self.contacts * self.width])
         self.modes.shares(self.others, z[self.contacts * self.width], self.force, self.size, self.share)
         return 0
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def of_many(self, omega: cython.double) -> cython.int:
+    def shares_of_many(self, omega: cython.double) -> cython.int:
         """Of many modes, by BLAS, or of a ring."""
         others, size = np.asarray(self.others), np.asarray(self.size)
         force = np.asarray(self.force).view(np.complex128)[others - 1, :, 0][None]

@@ -22,9 +22,9 @@ import numpy.typing as npt
 
 from fcm.continuation.corrector import Newton
 from fcm.harmonic_balance.contact_law import Law
-from fcm.harmonic_balance.dense_jacobian import answer, jacobian_of
-from fcm.harmonic_balance.line_contact import Periodic
-from fcm.harmonic_balance.planar_contact import Planar
+from fcm.harmonic_balance.dense_jacobian import apply_compliance, jacobian_of
+from fcm.harmonic_balance.line_contact import LineLaw
+from fcm.harmonic_balance.planar_contact import PlanarLaw
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
@@ -37,54 +37,54 @@ _End = tuple[float, float, FloatArray]  # of a stretch of a curve: length, slope
 class TractionOptions:
     """How the members of a family are come to.
 
-    far : float
+    start_distance : float
         Where the slider begins that comes to rest at its limit, in the size of its motion and its limits.
-    felt : float
+    min_change : float
         Part of the peak, below which what a contact's traction changes of it is nothing.
-    shorter, longer, shortest : float
+    min_factor, max_factor, min_step : float
         Times a step that the next is, where it led to no motion, and where it did, along the curve and on the
         way to the limits; and the part of that way below which none does.
-    rounds : int
+    max_rounds : int
         Times that the limits are sought, of the motion and along the derivatives at the member found last.
-    settled : float
+    traction_tolerance : float
         Part of the greatest traction, by which one may miss its limit.
-    sticks : float
+    stick_tolerance : float
         Part of its springs' forces, by which those of a contact that always sticks may differ from them.
-    step, looks, height : float, int, float
+    initial_step, max_points, peak_tolerance : float, int, float
         First length along the curve, points at most, and relative accuracy of the height, of a peak.
-    beside : float
+    peak_threshold : float
         A peak counts to that of another degree of freedom where the amplitude is at least this part of it.
-    most : int
+    max_peaks : int
         Peaks of a curve that are looked at one by one.
     """
 
-    far: float = 10.0
-    felt: float = 1e-9
-    shorter: float = 0.25
-    longer: float = 2.0
-    shortest: float = 1e-4
-    rounds: int = 6
-    settled: float = 1e-2
-    sticks: float = 1e-9
-    step: float = 1e-2
-    looks: int = 40
-    height: float = 1e-6
-    beside: float = 0.9
-    most: int = 4
+    start_distance: float = 10.0
+    min_change: float = 1e-9
+    min_factor: float = 0.25
+    max_factor: float = 2.0
+    min_step: float = 1e-4
+    max_rounds: int = 6
+    traction_tolerance: float = 1e-2
+    stick_tolerance: float = 1e-9
+    initial_step: float = 1e-2
+    max_points: int = 40
+    peak_tolerance: float = 1e-6
+    peak_threshold: float = 0.9
+    max_peaks: int = 4
 
 
 TRACTION = TractionOptions()
 
 
-class Holding(Law):
+class FixedTractionContact(Law):
     """A contact; one that is held always sticks, with a mean friction force that is given.
 
     held, mean (direction,): whether it is, and that force.
     """
 
-    def __init__(self, law: Periodic | Planar) -> None:
+    def __init__(self, law: LineLaw | PlanarLaw) -> None:
         super().__init__(law.width, law.directions, law.margins, law.mu, law.k_u, law.k_v, law.n_0)
-        self.kernel, self.held, self.mean = law.kernel, False, np.zeros(law.directions - 1)
+        self.kernel, self.is_fixed, self.mean = law.kernel, False, np.zeros(law.directions - 1)
         self.force, self.tangent = np.zeros(law.width), np.zeros((law.width, law.width))
         springs = np.append(np.full(law.directions - 1, law.k_u), law.k_v)
         waves = np.tile(np.repeat(springs, 2), (law.width - law.directions) // (2 * law.directions))
@@ -94,7 +94,7 @@ class Holding(Law):
     def evaluate(self, x: FloatArray, first: int) -> int:
         """Forces and tangent."""
         block = np.ascontiguousarray(np.asarray(x)[first : first + self.width])
-        if self.held:
+        if self.is_fixed:
             self.force[:] = self.springs * block
             self.force[: self.directions - 1] = self.mean
             self.force[self.directions - 1] += self.n_0 - max(self.n_0, 0.0)
@@ -110,26 +110,26 @@ class Holding(Law):
         self.kernel.at(block, self.mu, self.k_u, self.k_v, self.n_0, *start.tolist())
         force, spring = np.array(self.kernel.forces), (self.springs * block)[self.directions :]
         off = np.abs(force[self.directions :] - spring).max()
-        return force[: start.size] if off <= TRACTION.sticks * np.abs(spring).max() else None
+        return force[: start.size] if off <= TRACTION.stick_tolerance * np.abs(spring).max() else None
 
 
-class _Members:
+class _FixedTractionBalance:
     """A balance some of whose contacts are held by given forces, and its peaks from a given one on."""
 
     def __init__(self, system: System, options: TractionOptions) -> None:
         self.system, self.options = system, options
-        self.balance: Balance = system.balance()
-        self.laws = [Holding(law) for law in system.exact_laws(system.harmonics)]  # type: ignore[arg-type]
+        self.balance: Balance = system.new_balance()
+        self.laws = [FixedTractionContact(law) for law in system.exact_laws(system.harmonics)]  # type: ignore[arg-type]
         self.balance.laws = list(self.laws)
         self.newton = Newton(self.balance)
         self.scale = np.ones(self.balance.unknowns + 1)
 
-    def hold(self, contacts: npt.NDArray[np.intp], mean: FloatArray) -> None:
+    def fix(self, contacts: npt.NDArray[np.intp], mean: FloatArray) -> None:
         """Hold some contacts, and no others, by mean friction forces (contact, direction)."""
         for law in self.laws:
-            law.held = False
+            law.is_fixed = False
         for i, one in zip(contacts.tolist(), mean, strict=True):
-            self.laws[i].held, self.laws[i].mean = True, np.array(one)
+            self.laws[i].is_fixed, self.laws[i].mean = True, np.array(one)
 
     def solved(self, guess: FloatArray, row: FloatArray) -> FloatArray | None:
         """The point in the plane across a row, in scaled coordinates; the tangent is then that there."""
@@ -141,7 +141,7 @@ class _Members:
         point = np.array(newton.z)
         return point if newton.take_tangent() else None
 
-    def heights(self, z: FloatArray, direction: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def amplitudes(self, z: FloatArray, direction: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Amplitudes (dof,) at a point, and their growth along a direction in scaled coordinates."""
         self.balance.evaluate(z)
         self.balance.report(z, np.ascontiguousarray(direction * self.scale))
@@ -154,50 +154,50 @@ class _Members:
         row = np.eye(z.size)[-1]
         return row if self.solved(z, row) is None or edge else np.array(self.newton.tangent)
 
-    def top(self, z: FloatArray, row: FloatArray, dof: int) -> FloatArray | None:
+    def peak(self, z: FloatArray, row: FloatArray, dof: int) -> FloatArray | None:
         """The peak of a degree of freedom next to a point, uphill on the curve as far as the range goes."""
         low, high = self.system.scene.frequency_range
         options, here = self.options, self.solved(z, row)
         if here is None:
             return None
-        ahead, length = np.array(self.newton.tangent), options.step
-        up = self.heights(here, ahead)[1][dof]
+        ahead, length = np.array(self.newton.tangent), options.initial_step
+        up = self.amplitudes(here, ahead)[1][dof]
         if up < 0.0:
             ahead, up = -ahead, -up
-        for _ in range(options.looks):
+        for _ in range(options.max_points):
             point = self.solved(here + length * self.scale * ahead, ahead)
             if point is None:
-                length *= options.shorter
+                length *= options.min_factor
                 continue
             tangent = np.array(self.newton.tangent)
-            growth = self.heights(point, tangent)[1][dof]
+            growth = self.amplitudes(point, tangent)[1][dof]
             if growth > 0.0 and not low <= point[-1] <= high:
                 point[-1] = min(max(point[-1], low), high)
                 return self.solved(point, np.eye(point.size)[-1])
             if growth <= 0.0:
                 return self._between(here, ahead, (0.0, up, here), (length, growth, point), dof)
-            here, ahead, up, length = point, tangent, growth, length * options.longer
+            here, ahead, up, length = point, tangent, growth, length * options.max_factor
         return None
 
     def _between(self, here: FloatArray, ahead: FloatArray, low: _End, high: _End, dof: int) -> FloatArray:
         """The peak between two points at lengths along a direction, by their slopes: the Illinois method."""
         last = 0
-        for _ in range(self.options.looks):
+        for _ in range(self.options.max_points):
             (a, up, _), (b, down, _) = low, high
             at = a + (b - a) * up / (up - down)
             point = self.solved(here + at * self.scale * ahead, ahead)
             if point is None:
                 break
-            height, growth = self.heights(point, np.array(self.newton.tangent))
+            height, growth = self.amplitudes(point, np.array(self.newton.tangent))
             side = 1 if growth[dof] > 0.0 else -1
             if side > 0:
                 low, high = (at, growth[dof], point), (b, 0.5 * down if last == side else down, high[2])
             else:
                 low, high = (a, 0.5 * up if last == side else up, low[2]), (at, growth[dof], point)
             last = side
-            if abs(growth[dof]) * (high[0] - low[0]) < self.options.height * height[dof]:
+            if abs(growth[dof]) * (high[0] - low[0]) < self.options.peak_tolerance * height[dof]:
                 break
-        peak = max((low[2], high[2]), key=lambda one: self.heights(one, ahead)[0][dof])
+        peak = max((low[2], high[2]), key=lambda one: self.amplitudes(one, ahead)[0][dof])
         self.solved(peak, ahead)  # for the tangent there
         return peak
 
@@ -207,7 +207,9 @@ class _Members:
         balance.evaluate(z)
         force = np.zeros((balance.unknowns, ports.size))
         force[np.asarray(balance.layout.mean_at)[ports], np.arange(ports.size)] = 1.0
-        right = np.concatenate((-answer(balance, force) / scale[:-1, None], np.zeros((1, ports.size))))
+        right = np.concatenate(
+            (-apply_compliance(balance, force) / scale[:-1, None], np.zeros((1, ports.size)))
+        )
         if balance.rank:
             balance.factor(row, scale)
             for column in right.T:
@@ -227,7 +229,9 @@ class _Members:
 class _Family:
     """The members of the family of one peak whose tractions are at their limits."""
 
-    def __init__(self, members: _Members, z: FloatArray, stuck: BoolArray, dof: int, edge: bool) -> None:
+    def __init__(
+        self, members: _FixedTractionBalance, z: FloatArray, stuck: BoolArray, dof: int, edge: bool
+    ) -> None:
         self.members, self.options, self.dof, self.edge = members, members.options, dof, edge
         self.contacts, directions = np.flatnonzero(stuck), members.system.layout.directions
         self.along = directions - 1
@@ -235,7 +239,7 @@ class _Family:
         contacts = [members.system.scene.contacts[i] for i in self.contacts]
         self.fixed = np.zeros((len(contacts), self.along), dtype=np.bool_)  # beside others in a plane
         self.fixed[:, 1:] = np.array([c.second is None for c in contacts])[:, None]
-        members.hold(self.contacts[:0], np.zeros((0, self.along)))
+        members.fix(self.contacts[:0], np.zeros((0, self.along)))
         self.z, self.row = z, members.begin(z, edge)
 
     def change(self) -> FloatArray:
@@ -246,7 +250,7 @@ class _Family:
         if base is None or self.row is None:
             return nothing
         row = self._row(self.row)
-        before = members.heights(base, row)[0]
+        before = members.amplitudes(base, row)[0]
         own = self._limits(base, np.zeros((self.contacts.size, self.along)))
         if own is None:
             return nothing
@@ -262,32 +266,32 @@ class _Family:
         return row if self.edge else np.array(self.members.newton.tangent)
 
     def _top(self, z: FloatArray, row: FloatArray) -> FloatArray | None:
-        return self.members.solved(z, row) if self.edge else self.members.top(z, row, self.dof)
+        return self.members.solved(z, row) if self.edge else self.members.peak(z, row, self.dof)
 
     def _extreme(self, z: FloatArray, row: FloatArray, mean: FloatArray, sense: float) -> FloatArray | None:
         """Amplitudes (dof,) of the member with the greatest, or the least, peak."""
         members = self.members
-        members.hold(self.contacts, mean)
-        best, moved = members.heights(z, row)[0], False
-        for _ in range(self.options.rounds):
+        members.fix(self.contacts, mean)
+        best, moved = members.amplitudes(z, row)[0], False
+        for _ in range(self.options.max_rounds):
             by = members.derivatives(z, row, self.ports)[:, self.dof].reshape(-1, self.along)
             by[self.fixed] = 0.0
             size = np.linalg.norm(by, axis=1, keepdims=True)
             room = size[:, 0] @ np.array([self._reach(i, z) for i in self.contacts.tolist()])
-            if room <= self.options.felt * best[self.dof]:
+            if room <= self.options.min_change * best[self.dof]:
                 return best
             limits = self._limits(z, -sense * by / np.where(size > 0.0, size, 1.0))
             if limits is None:  # one slips there
                 return best
             limits = np.where(size > 0.0, limits, mean)
-            if np.abs(limits - mean).max() <= self.options.settled * np.abs(limits).max():
+            if np.abs(limits - mean).max() <= self.options.traction_tolerance * np.abs(limits).max():
                 return best
             found = self._moved(z, row, mean, limits)
             if found is None:
                 return best if moved else None
             moved = True
             z, mean, row = found, limits, self._row(row)
-            height = members.heights(z, row)[0]
+            height = members.amplitudes(z, row)[0]
             if sense * (height[self.dof] - best[self.dof]) <= 0.0:
                 return best
             best = height
@@ -301,7 +305,7 @@ class _Family:
         found = np.zeros_like(towards)
         for k, i in enumerate(self.contacts.tolist()):
             block = np.ascontiguousarray(blocks[i])
-            far = self.options.far * self._reach(i, z) / members.laws[i].k_u
+            far = self.options.start_distance * self._reach(i, z) / members.laws[i].k_u
             start = block[: self.along] + far * towards[k] if towards[k].any() else np.zeros(self.along)
             one = members.laws[i].mean_from(block, start)
             if one is None:
@@ -321,14 +325,14 @@ class _Family:
         members, done, share = self.members, 0.0, 1.0
         while done < 1.0:
             reach = min(done + share, 1.0)
-            members.hold(self.contacts, begin + reach * (end - begin))
+            members.fix(self.contacts, begin + reach * (end - begin))
             found = self._top(z, row)
             if found is None:
-                share *= self.options.shorter
-                if share < self.options.shortest:
+                share *= self.options.min_factor
+                if share < self.options.min_step:
                     return None
                 continue
-            z, done, share, row = found, reach, share * self.options.longer, self._row(row)
+            z, done, share, row = found, reach, share * self.options.max_factor, self._row(row)
         return z
 
 
@@ -372,13 +376,13 @@ def peak_changes(
     own = amplitude[top, np.arange(top.size)]
     edge = np.isin(z[top, -1], system.scene.frequency_range)
     found = np.where(stuck.any(axis=1) & (own > 0.0), np.nan, 0.0)
-    members, left = None, options.most
+    members, left = None, options.max_peaks
     for d in np.argsort(-own, kind="stable").tolist():
         if not np.isnan(found[d]) or not left:
             continue
-        members = members or _Members(system, options)
+        members = members or _FixedTractionBalance(system, options)
         change = _Family(members, z[top[d]], stuck[d], d, bool(edge[d])).change()
-        near = np.isnan(found) & (amplitude[top[d]] >= options.beside * own) & (edge == edge[d])
+        near = np.isnan(found) & (amplitude[top[d]] >= options.peak_threshold * own) & (edge == edge[d])
         found[near], left = change[near], left - 1
         if np.isnan(change[d]):
             break

@@ -12,13 +12,13 @@ import numpy.typing as npt
 from fcm.contact.loop import sequences
 from fcm.continuation import Path
 from fcm.continuation.corrector import distances
-from fcm.harmonic_balance.reported_quantities import Reported, reported
-from fcm.harmonic_balance.residual import Points, cycles_of
+from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
+from fcm.harmonic_balance.residual import PointQuantities, cycles_of
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Contact, FloatArray
 
-SMALLEST = 1e-150  # amplitudes below this count as this in a division
-NONE = 3  # beside the states of a cycle: no state
+MIN_AMPLITUDE = 1e-150  # amplitudes below this count as this in a division
+NO_STATE = 3  # beside the states of a cycle: no state
 OPEN = 2  # of these, by its place in the letters
 LETTERS = np.array(["E", "P", "S", "", "N"])  # of the states; that of a negative slip is -1
 
@@ -27,7 +27,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
-class Record:
+class PointRecord:
     """Points of paths one after the other; x(theta) = mean + Re sum_j X_j exp(i h_j theta)."""
 
     path: IntArray  # (point,) number of the path
@@ -42,11 +42,13 @@ class Record:
     linear: npt.NDArray[np.bool_]  # (point,) where no contact slips or separates
 
 
-def recorded(system: System, paths: Sequence[Path], shown: Sequence[Reported] | None = None) -> Record:
+def recorded(
+    system: System, paths: Sequence[Path], shown: Sequence[ReportedQuantities] | None = None
+) -> PointRecord:
     """The points of paths; shown is what is reported along each, if it is known."""
     z = np.concatenate([path.z for path in paths])
     if shown is None:
-        shown = [reported(system, path) for path in paths]
+        shown = [reported_quantities(system, path) for path in paths]
     X, mean, amplitude, force, linear = (
         _joined([getattr(one, name) for one in shown])
         for name in ("X", "mean", "amplitude", "force", "linear")
@@ -54,20 +56,22 @@ def recorded(system: System, paths: Sequence[Path], shown: Sequence[Reported] | 
     number = np.repeat(np.arange(len(paths)), [path.z.shape[0] for path in paths])
     names = ("mark", "direction", "orientation")
     mark, tangent, orientation = (np.concatenate([getattr(p, name) for p in paths]) for name in names)
-    return Record(number, z, mark, X, mean, amplitude, force, tangent, orientation, linear)
+    return PointRecord(number, z, mark, X, mean, amplitude, force, tangent, orientation, linear)
 
 
-def table_errors(system: System, points: Record) -> FloatArray:
+def table_errors(system: System, points: PointRecord) -> FloatArray:
     """By how much (point,) the table's own solutions differ, relative to the unknowns' size: one Newton step
     of its balance; 0 where no contact slips or separates, or no table is used."""
     error = np.zeros(points.path.size)
-    if system.tabled is None:
+    if system.table_balance is None:
         return error
-    system.tabled.afresh()
+    system.table_balance.reset_balance()
     slips = ~points.linear
     z, tangent = (np.ascontiguousarray(of[slips]) for of in (points.z, points.tangent))
     # a unit of the unknowns is their size times the root of their number
-    error[slips] = distances(system.tabled.stepper.newton, z, tangent) * np.sqrt(system.layout.ports)
+    error[slips] = distances(system.table_balance.shared_stepper.newton, z, tangent) * np.sqrt(
+        system.layout.ports
+    )
     return error
 
 
@@ -85,9 +89,9 @@ def amplitudes_at(system: System, z: FloatArray) -> tuple[ComplexArray, FloatArr
 def recorded_at_levels(
     system: System, z: FloatArray, level: FloatArray
 ) -> tuple[ComplexArray, FloatArray, FloatArray]:
-    """X, mean and amplitude, as of a `Record`, at points z with all forces times level (point,)."""
-    points = Points(system.looking, z.shape[0])
-    points.take(np.ascontiguousarray(z), np.zeros_like(z), np.ascontiguousarray(level))
+    """X, mean and amplitude, as of a `PointRecord`, at points z with all forces times level (point,)."""
+    points = PointQuantities(system.shared_balance, z.shape[0])
+    points.evaluate(np.ascontiguousarray(z), np.zeros_like(z), np.ascontiguousarray(level))
     X = np.asarray(points.re) + 1j * np.asarray(points.im)
     return X, np.asarray(points.mean), np.asarray(points.amplitude)
 
@@ -111,7 +115,7 @@ def loops(system: System, z: FloatArray) -> FloatArray:
         U = x[:, first] + 1j * x[:, first + 1]
         a = np.abs(U)
         stiffness = contact.k_u if contact.k_u > 0.0 else 1.0
-        ratio = contact.mu / (stiffness * np.maximum(a, SMALLEST))
+        ratio = contact.mu / (stiffness * np.maximum(a, MIN_AMPLITUDE))
         out[:, i, 0] = ratio * (contact.n_0 + contact.k_v * x[:, normal])
         out[:, i, 1] = ratio * contact.k_v * np.abs(V)
         out[:, i, 2] = np.angle(V * np.conj(U))
@@ -128,13 +132,13 @@ def cycles(system: System, z: FloatArray, loop: FloatArray) -> tuple[npt.NDArray
     """
     words, harmonics = [], system.harmonics
     borne = np.zeros((len(system.scene.contacts), z.shape[0], 4))
-    for i, (c, state) in enumerate(_solved(system, z, borne)):
+    for i, (c, state) in enumerate(_solved_contacts(system, z, borne)):
         if c.law is not None:
             words.append(np.full(z.shape[0], "", dtype="<U1"))
         elif c.mu * c.k_u == 0.0:
             words.append(_without_friction(state))
         elif harmonics != (1,) or system.scene.planar:
-            words.append(_spelt(state))
+            words.append(_letters_of(state))
         else:
             words.append(sequences(*loop[:, i, :3].T))
     each = np.stack(words, axis=1) if words else np.empty((z.shape[0], 0), dtype="<U6")
@@ -144,12 +148,12 @@ def cycles(system: System, z: FloatArray, loop: FloatArray) -> tuple[npt.NDArray
 def borne_along(system: System, z: FloatArray) -> FloatArray:
     """What the contacts bear, (point, contact, 4), as of `cycles`."""
     borne = np.zeros((len(system.scene.contacts), z.shape[0], 4))
-    for _ in _solved(system, z, borne):
+    for _ in _solved_contacts(system, z, borne):
         pass
     return np.ascontiguousarray(borne.swapaxes(0, 1))
 
 
-def _solved(
+def _solved_contacts(
     system: System, z: FloatArray, borne: FloatArray
 ) -> Iterator[tuple[Contact, npt.NDArray[np.intc]]]:
     """Each contact and the states of its cycle (point, piece), which the next replaces; borne
@@ -161,7 +165,7 @@ def _solved(
     most = max((law.state.shape[0] for law in laws), default=0)
     state = np.empty((z.shape[0], most), dtype=np.intc)
     for i, c in enumerate(system.scene.contacts):
-        state[:] = NONE
+        state[:] = NO_STATE
         cycles_of(laws[i], z, i * system.layout.width, state, borne[i])
         if c.mu * c.k_u == 0.0 and c.law is None:
             borne[i, :, 2] = 0.0
@@ -177,9 +181,9 @@ def _greatest(U: ComplexArray, V: ComplexArray) -> FloatArray:
     return 0.5 * (np.abs(U + 1j * V) + np.abs(U - 1j * V))
 
 
-def _spelt(state: npt.NDArray[np.intc]) -> npt.NDArray[np.str_]:
+def _letters_of(state: npt.NDArray[np.intc]) -> npt.NDArray[np.str_]:
     """Words (point,) of states (point, piece)."""
-    longest = int((state != NONE).sum(axis=1).max(initial=1))
+    longest = int((state != NO_STATE).sum(axis=1).max(initial=1))
     letters = np.ascontiguousarray(LETTERS[state[:, :longest]])
     words: npt.NDArray[np.str_] = letters.view(f"<U{longest}")[:, 0]
     return words
@@ -188,7 +192,7 @@ def _spelt(state: npt.NDArray[np.intc]) -> npt.NDArray[np.str_]:
 def _without_friction(state: npt.NDArray[np.intc]) -> npt.NDArray[np.str_]:
     """Words (point,) of states (point, piece) of a contact that has no loop."""
     opens = (state == OPEN).any(axis=1)
-    closes = ((state != OPEN) & (state != NONE)).any(axis=1)
+    closes = ((state != OPEN) & (state != NO_STATE)).any(axis=1)
     return np.where(opens & closes, "SE", np.where(closes, "E", "S"))
 
 

@@ -22,7 +22,7 @@ import numpy.typing as npt
 from fcm.harmonic_balance.dense_jacobian import jacobian_of
 from fcm.harmonic_balance.options import DigitOptions
 from fcm.harmonic_balance.residual import Balance
-from fcm.harmonic_balance.response_quantities import Record
+from fcm.harmonic_balance.response_quantities import PointRecord
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Force
 from fcm.structure.linear import Linear, amplitudes, linear_of
@@ -32,7 +32,7 @@ from fcm.structure.ring import RingLinear, Wave
 ComplexArray = npt.NDArray[np.complex128]
 
 
-class Digits(NamedTuple):
+class PreciseFundamental(NamedTuple):
     """The fundamental where contacts are stiff: z (unknown + 1,) with it; X (dof,) of the degrees of freedom,
     of use for those that are no combination of contacts' displacements, None where they are as the balance
     has them; and how far the displacements (port,) and (dof,) are off by rounding."""
@@ -43,7 +43,7 @@ class Digits(NamedTuple):
     dofs: FloatArray
 
 
-def with_digits(system: System, points: Record) -> tuple[Record, FloatArray]:
+def with_precise_fundamental(system: System, points: PointRecord) -> tuple[PointRecord, FloatArray]:
     """Points with the digits that can be kept, and the relative rounding of the amplitudes (point, dof).
 
     Points of a structure whose contacts are not stiff stay as they are; their rounding is not looked at: 0.
@@ -55,13 +55,13 @@ def with_digits(system: System, points: Record) -> tuple[Record, FloatArray]:
     stiff = np.flatnonzero(_stiffness(system, points.z[:, -1], springs) > options.stiff)
     if not stiff.size:
         return points, rounding
-    balance = system.balance()
+    balance = system.new_balance()
     made = replace(
         points, X=points.X.copy(), mean=points.mean.copy(), force=points.force.copy(), z=points.z.copy(),
         amplitude=points.amplitude.copy(),
     )  # fmt: skip
     shown, forces = balance.shown, _Forces(system)
-    apart = np.asarray(shown.apart) != 0
+    apart = np.asarray(shown.without_modes) != 0
     looked = stiff
     if balance.rank and stiff.size > options.points:
         looked = stiff[np.linspace(0, stiff.size - 1, options.points).round().astype(np.intp)]
@@ -89,7 +89,7 @@ def _stiffness(system: System, omega: FloatArray, springs: FloatArray) -> FloatA
     if not springs.size:
         return np.zeros(omega.size)
     if isinstance(linear, RingLinear):
-        balance = system.balance()
+        balance = system.new_balance()
         return np.array([_stiffest(balance, w, springs) for w in omega])
     # a mode is nowhere softer than at its resonance: most structures need not be looked at point by point
     least = np.minimum(np.sqrt(2.0) * linear.damping, 1.0) * linear.natural**2
@@ -158,11 +158,11 @@ def _point(
     springs: FloatArray,
     forces: _Forces,
     options: DigitOptions,
-) -> Digits:
+) -> PreciseFundamental:
     """A point with the digits that can be kept."""
     balance.evaluate(z)
-    G, held = _receptance(balance), _held(balance, springs)
-    seen, linear, at, omega = balance.seen, forces.linear, _places(balance), float(z[-1])
+    G, held = _receptance(balance), _port_stiffness(balance, springs)
+    seen, linear, at, omega = balance.seen, forces.linear, _fundamental_positions(balance), float(z[-1])
     other = len(linear.driven) > 1  # whose answer is no fundamental
     if held is None or other or isinstance(linear, RingLinear) or not np.linalg.cond(G) < options.dependent:
         return _as_balanced(balance, linear, G, springs, tangent, options)
@@ -178,7 +178,7 @@ def _point(
     wrong = last_digit * np.linalg.cond(G) * size
     ports = np.abs(np.linalg.inv(H + np.diag(held))) @ wrong + options.together * last_digit * np.abs(x)
     on_modes = np.abs(linear.ports) @ wrong + last_digit * np.abs(others)
-    return Digits(
+    return PreciseFundamental(
         z, (compliance * left) @ linear.dofs, ports, (np.abs(compliance) * on_modes) @ np.abs(linear.dofs)
     )
 
@@ -190,16 +190,16 @@ def _as_balanced(
     springs: FloatArray,
     tangent: FloatArray,
     options: DigitOptions,
-) -> Digits:
+) -> PreciseFundamental:
     """The point evaluated last as it is; its rounding from what its equations are summed of."""
-    seen, n, at = balance.seen, balance.unknowns, _places(balance)
+    seen, n, at = balance.seen, balance.unknowns, _fundamental_positions(balance)
     force, x = np.asarray(balance.force), np.asarray(balance.evaluated)
     size, on_ports = np.hypot(x[at], x[at + 1]), np.hypot(force[at], force[at + 1])
     terms = np.zeros(n)
     terms[at] = np.abs(G) @ on_ports + np.hypot(seen.X_re[0], seen.X_im[0]) + size
     terms[at + 1] = terms[at]
     rounding = options.together * options.last_digit
-    off = _moved(balance, x, tangent, rounding * terms, options)
+    off = _moved_across_curve(balance, x, tangent, rounding * terms, options)
     ports = np.hypot(off[at], off[at + 1])
     modes: Receptance = seen
     met: Linear | Wave = linear
@@ -209,10 +209,10 @@ def _as_balanced(
     compliance = np.hypot(np.asarray(modes.c_re)[j], np.asarray(modes.c_im)[j])
     shapes, external = np.abs(met.ports), np.hypot(modes.force_re[0], modes.force_im[0])
     on_modes = rounding * (external + shapes @ on_ports) + shapes @ (springs * ports)
-    return Digits(x.copy(), None, ports, (compliance * on_modes) @ np.abs(met.dofs))
+    return PreciseFundamental(x.copy(), None, ports, (compliance * on_modes) @ np.abs(met.dofs))
 
 
-def _moved(
+def _moved_across_curve(
     balance: Balance, z: FloatArray, tangent: FloatArray, wrong: FloatArray, options: DigitOptions
 ) -> FloatArray:
     """By how much errors of the equations (unknown,) move a point across the curve.
@@ -242,13 +242,13 @@ def _moved(
     return moved
 
 
-def _places(balance: Balance) -> npt.NDArray[np.intp]:
+def _fundamental_positions(balance: Balance) -> npt.NDArray[np.intp]:
     """Of the real part of each port's fundamental among the unknowns."""
     places: npt.NDArray[np.intp] = balance.layout.waves_at[balance.seen.first]
     return places
 
 
-def _held(balance: Balance, springs: FloatArray) -> FloatArray | None:
+def _port_stiffness(balance: Balance, springs: FloatArray) -> FloatArray | None:
     """The stiffness of each port (port,), where no contact does anything but stick or stay open."""
     d, stride = balance.directions, balance.seen.stride
     j = d + stride * balance.seen.first

@@ -54,7 +54,7 @@ class SampledLaw(Law):
         self.rest = self._sampled(np.zeros((directions, count)), self.variation)[0]
         self.force, self.tangent = np.zeros(answer.width), np.zeros((answer.width, motion.width))
 
-    def put(self, mu: float, k_u: float, k_v: float, n_0: float) -> None:
+    def set_parameters(self, mu: float, k_u: float, k_v: float, n_0: float) -> None:
         """Take the numbers of the same contact, which the law has not."""
 
     def evaluate(self, x: FloatArray, first: int) -> int:
@@ -62,17 +62,17 @@ class SampledLaw(Law):
         force, change = self._sampled(self._motion(x, first), self.variation)
         self.force[:] = np.einsum("dso,ds->o", self.projection, force)
         self.tangent[:, :] = np.einsum("dso,dsk->ok", self.projection, change)
-        self.mixed = True
+        self.nonlinear = True
         return 0
 
     def probe(self, x: FloatArray, first: int) -> int:
         """The forces alone."""
         force, _ = self._sampled(self._motion(x, first), self.variation[:, :, :1])
         self.force[:] = np.einsum("dso,ds->o", self.projection, force)
-        self.mixed = True
+        self.nonlinear = True
         return 0
 
-    def resist(self) -> int:
+    def compute_resistance(self) -> int:
         """By the tangent of the means."""
         self.resistance[:, :] = np.asarray(self.tangent)[: self.directions, : self.directions]
         return 0
@@ -97,15 +97,15 @@ class SampledLaw(Law):
         force, change = (np.asarray(one, dtype=np.float64) for one in self.own.forces(motion, variation))
         if force.shape != motion.shape or change.shape != variation.shape:
             raise ContactLawError(
-                f"{self._said}: forces of shape {force.shape} and changes of shape {change.shape}; they are "
-                f"to have the shapes of x and dx, {motion.shape} and {variation.shape}"
+                f"{self._description}: forces of shape {force.shape} and changes of shape {change.shape}; "
+                f"they are to have the shapes of x and dx, {motion.shape} and {variation.shape}"
             )
         if not (np.isfinite(force).all() and np.isfinite(change).all()):
-            raise ContactLawError(f"{self._said}: a force or its change is not a finite number")
+            raise ContactLawError(f"{self._description}: a force or its change is not a finite number")
         return force - self.rest, change
 
     @property
-    def _said(self) -> str:
+    def _description(self) -> str:
         return f"the law {type(self.own).__name__} of the contact {self.name!r}"
 
 

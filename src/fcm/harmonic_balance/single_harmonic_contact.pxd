@@ -1,7 +1,7 @@
 from fcm.contact.closed_form cimport CoefficientLaw
 from fcm.harmonic_balance.contact_law cimport Law
 
-cdef class SingleHarmonic(Law):
+cdef class SingleHarmonicLaw(Law):
     cdef public CoefficientLaw coefficients
     cdef double[::1] numbers
     cdef double[:, ::1] slopes

@@ -10,7 +10,7 @@ from fcm.contact.closed_form import CoefficientLaw
 from fcm.harmonic_balance.contact_law import Law
 
 PI = cython.declare(cython.double, 3.141592653589793)
-SMALLEST = cython.declare(cython.double, 1e-150)  # amplitudes below this count as this in a division
+MIN_AMPLITUDE = cython.declare(cython.double, 1e-150)  # amplitudes below this count as this in a division
 CLOSES = cython.declare(cython.int, 0)  # margins, see `bound`
 OPENS = cython.declare(cython.int, 1)
 SLIPS = cython.declare(cython.int, 2)
@@ -19,7 +19,7 @@ LEAST = cython.declare(cython.int, 4)
 
 
 @cython.cclass
-class SingleHarmonic(Law):
+class SingleHarmonicLaw(Law):
     """Forces (27) and (29) with their derivatives by u_0, v_0, U, V.
 
     Its coefficients are a law's: the closed form, or a table.
@@ -44,7 +44,7 @@ class SingleHarmonic(Law):
         b: cython.double = hypot(x[first + 4], x[first + 5])
         self.force[:] = 0.0
         self.tangent[:, :] = 0.0
-        self.mixed = False
+        self.nonlinear = False
         if self.k_v > 0.0:
             self.normal(x, first, b)
         if self.mu > 0.0 and self.k_u > 0.0:
@@ -52,7 +52,7 @@ class SingleHarmonic(Law):
             if self.rests():
                 self.stuck(x, first)
             elif self.margin[CLOSES] > 0.0:
-                self.mixed = True
+                self.nonlinear = True
                 self.slipping(x, first, b)
         return 0
 
@@ -112,7 +112,7 @@ class SingleHarmonic(Law):
             return
         # the derivative of sign (|k_u U + sign mu k_v V| - mu n)
         m: cython.double = sign * self.mu * self.k_v
-        size: cython.double = max(self.limit(x, first, sign), SMALLEST)
+        size: cython.double = max(self.limit(x, first, sign), MIN_AMPLITUDE)
         for i in range(2):
             along: cython.double = (k * x[first + 2 + i] + m * x[first + 4 + i]) / size
             self.tangent[0, 2 + i] = sign * k * along
@@ -139,7 +139,7 @@ class SingleHarmonic(Law):
         self.force[1] = -preload
         if load <= -k * b:
             return
-        self.mixed = True
+        self.nonlinear = True
         star: cython.double = load / (k * b)
         closed: cython.double = sqrt(1.0 + star)
         opened: cython.double = sqrt(1.0 - star)
@@ -167,13 +167,13 @@ class SingleHarmonic(Law):
         U_i: cython.double = x[first + 3]
         V_r: cython.double = x[first + 4]
         V_i: cython.double = x[first + 5]
-        a: cython.double = max(hypot(U_r, U_i), SMALLEST)
+        a: cython.double = max(hypot(U_r, U_i), MIN_AMPLITUDE)
         ratio: cython.double = self.mu / (k * a)
         n0_bar: cython.double = ratio * (self.n_0 + self.k_v * x[first + 1])
         b_bar: cython.double = ratio * self.k_v * b
         phi: cython.double = atan2(V_i * U_r - V_r * U_i, V_r * U_r + V_i * U_i)
         self.coefficients.evaluate(n0_bar, b_bar, phi, True, self.numbers, 0)
-        self.chain(x, first, n0_bar, b_bar, a, max(b, SMALLEST))
+        self.chain(x, first, n0_bar, b_bar, a, max(b, MIN_AMPLITUDE))
         F_b: cython.double = self.numbers[0]
         F_s: cython.double = self.numbers[1]
         F_c: cython.double = self.numbers[2]

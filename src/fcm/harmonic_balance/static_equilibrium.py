@@ -21,18 +21,18 @@ from fcm.model.scene import FloatArray, Scene
 from fcm.structure.linear import Linear
 from fcm.structure.options import RIGID_BODY
 
-ADRIFT = (
+RIGID_BODY_FAULT = (
     "the static loads push the structure along a rigid-body mode that no contact holds along its normal, so "
     "it does not come to rest; hold it by a contact along its normal, or by a small frequency of that mode"
 )
-NONE = "no equilibrium with the static loads was found: the contacts may not be able to hold them"
+NO_EQUILIBRIUM = "no equilibrium with the static loads was found: the contacts may not be able to hold them"
 
 
 class RestError(ValueError):
     """There is no equilibrium; the message says why."""
 
 
-class Share(Problem):
+class StaticLoadProblem(Problem):
     """The balance without harmonic forces, followed in the share of the static loads.
 
     Shares are measured by themselves, and below a unit by that.
@@ -93,31 +93,31 @@ def at_rest(system: System) -> FloatArray:
         If there is no equilibrium.
     """
     linear, ports = system.linear, system.layout.ports
-    if pushed_adrift(linear):
-        raise RestError(ADRIFT)
+    if loads_move_rigid_body(linear):
+        raise RestError(RIGID_BODY_FAULT)
     if not linear.load.any() or not ports:
         return np.zeros(ports)
     options = system.options.rest
     single = System(system.scene, options=system.options)
     omega = max(float(linear.natural.max(initial=0.0)), 1.0)  # any: nothing moves
     for guess in _linear(single, options.first):
-        problem = Share(single.balance(), omega, options.unit)
+        problem = StaticLoadProblem(single.new_balance(), omega, options.unit)
         start, span = np.append(guess, options.first), (options.first, 1.0)
         path = follow(problem, start, span, options=FollowOptions(options.max_step))
         if path.status is Status.COMPLETE and path.z.shape[0] and path.parameter[-1] == 1.0:
             return path.z[-1][single.layout.mean_at]  # type: ignore[no-any-return]
     for guess in _linear(single, 1.0):
-        newton = Newton(Share(single.balance(), omega, options.unit))
+        newton = Newton(StaticLoadProblem(single.new_balance(), omega, options.unit))
         z = np.append(guess, 1.0)
         newton.problem.measure(z)
         newton.scale[:], newton.z[:] = newton.problem.scale, z
         newton.row[:] = np.eye(z.size)[-1]
         if newton.correct(1.0):
             return np.asarray(newton.z)[single.layout.mean_at]
-    raise RestError(NONE)
+    raise RestError(NO_EQUILIBRIUM)
 
 
-def pushed_adrift(linear: Linear) -> bool:
+def loads_move_rigid_body(linear: Linear) -> bool:
     """Whether static loads push along a rigid-body mode that nothing holds."""
     size = np.abs(linear.load)
     return bool((size[linear.adrift] > RIGID_BODY.held * size.max(initial=0.0)).any())
@@ -125,7 +125,7 @@ def pushed_adrift(linear: Linear) -> bool:
 
 def _linear(system: System, share: float) -> Iterator[FloatArray]:
     """Unknowns with the contacts as they are without the loads, then all stuck, then all open."""
-    contacts, balance, layout = system.scene.contacts, system.balance(), system.layout
+    contacts, balance, layout = system.scene.contacts, system.new_balance(), system.layout
     d = layout.directions
     n_0 = np.array([c.n_0 for c in contacts])
     static, rest = np.asarray(balance.seen.static), share * np.asarray(balance.rest)
@@ -153,7 +153,7 @@ def rest_of(scene: Scene) -> tuple[FloatArray, FloatArray]:
     """
     system = System(scene)
     ports = system.rest
-    balance, linear, modal = system.balance(), system.linear, scene.modal
+    balance, linear, modal = system.new_balance(), system.linear, scene.modal
     balance.load = 0.0
     z = np.zeros(balance.unknowns + 1)
     z[balance.layout.mean_at], z[-1] = ports, 1.0

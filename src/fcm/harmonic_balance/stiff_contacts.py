@@ -48,7 +48,7 @@ def too_stiff(system: System, moves: bool = False) -> str:
 
 def _least_receptance(system: System) -> FloatArray:
     """|G| of each port in its own direction, the least at the ends of the range."""
-    seen, found = system.looking.seen, []
+    seen, found = system.shared_balance.seen, []
     for omega in system.scene.frequency_range:
         seen.at(omega)
         found.append(np.abs(seen.between(seen.first).diagonal()))

@@ -17,21 +17,21 @@ from fcm.contact.plane.workspace import planar_contact
 from fcm.continuation.stepper import Stepper
 from fcm.harmonic_balance.contact_law import Law
 from fcm.harmonic_balance.displacement import Displacements, TravellingDisplacements
-from fcm.harmonic_balance.homotopy import Level
-from fcm.harmonic_balance.line_contact import Periodic
+from fcm.harmonic_balance.homotopy import ForceLevelProblem
+from fcm.harmonic_balance.line_contact import LineLaw
 from fcm.harmonic_balance.modal_condensation import (
-    OPTIONS,
-    Condensed,
-    CondensedOptions,
+    CONDENSATION,
+    CondensationOptions,
+    CondensedSystem,
     condensed_size,
-    yielding,
+    modal_compliance,
 )
 from fcm.harmonic_balance.options import HARMONIC_BALANCE, HarmonicBalanceOptions
-from fcm.harmonic_balance.planar_contact import Planar
+from fcm.harmonic_balance.planar_contact import PlanarLaw
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.sampled import SampledLaw
-from fcm.harmonic_balance.single_harmonic_contact import SingleHarmonic
-from fcm.harmonic_balance.work_budget import Work
+from fcm.harmonic_balance.single_harmonic_contact import SingleHarmonicLaw
+from fcm.harmonic_balance.work_budget import WorkCount
 from fcm.model.scene import FloatArray, Scene
 from fcm.structure.layout import Layout, layout_of
 from fcm.structure.linear import ComplexArray, Linear, linear_of
@@ -46,22 +46,24 @@ class System:
 
     The harmonics of its forces are balanced whatever harmonics are asked for.
 
-    With one harmonic the coefficients of a table may be the contacts' law, see `tabled`: that of this balance
-    if it is not corrected. condensing says when the linear systems of many contacts are condensed, options
-    has all other tolerances and limits.
+    With one harmonic the coefficients of a table may be the contacts' law, see `table_balance`: that of
+    this balance if it is not corrected. condensing says when the linear systems of many contacts are
+    condensed, options has all other tolerances and limits.
     """
 
     scene: Scene
     harmonics: tuple[int, ...] = (1,)
     table: Table | None = None
     corrected: bool = True
-    condensing: CondensedOptions = OPTIONS
+    condensation: CondensationOptions = CONDENSATION
     options: HarmonicBalanceOptions = HARMONIC_BALANCE
     linear: Linear = field(init=False)
     coefficients: CoefficientLaw = field(init=False)  # the table's, or the closed form's
-    on_ports: dict[float, ComplexArray] = field(init=False, default_factory=dict)  # see `linear_contacts`
-    kept: dict[object, object] = field(init=False, default_factory=dict)  # known of its contacts' states
-    work: Work = field(init=False, default_factory=Work, compare=False)
+    port_responses: dict[float, ComplexArray] = field(
+        init=False, default_factory=dict
+    )  # see `linear_contacts`
+    cache: dict[object, object] = field(init=False, default_factory=dict)  # known of its contacts' states
+    work: WorkCount = field(init=False, default_factory=WorkCount, compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "linear", linear_of(self.scene))
@@ -82,7 +84,7 @@ class System:
         return any(one.law is not None for one in self.scene.contacts)
 
     @cached_property
-    def unit(self) -> float:
+    def preload_unit(self) -> float:
         """The greatest preload, where the other curves of a sweep may be the same but for that; else 0."""
         scene = self.scene
         swept = [key.startswith("contact.") and key.endswith(".n_0") for key in scene.parameters]
@@ -91,15 +93,22 @@ class System:
         return max(preloads, default=0.0) if plain and swept and all(swept) and all(preloads) else 0.0
 
     @cached_property
-    def normal(self) -> System:
+    def normalised(self) -> System:
         """The same with all preloads divided by the greatest."""
-        contacts = tuple(replace(one, n_0=one.n_0 / self.unit) for one in self.scene.contacts)
-        return self._with(scene=replace(self.scene, contacts=contacts), work=Work())
+        contacts = tuple(replace(one, n_0=one.n_0 / self.preload_unit) for one in self.scene.contacts)
+        return self._with(scene=replace(self.scene, contacts=contacts), work=WorkCount())
 
     def _with(self, **other: object) -> System:
         found = object.__new__(type(self))
         found.__dict__.update(vars(self), **other)
-        for made in ("_workspace", "unit", "normal", "yields", "layout", "tabled"):
+        for made in (
+            "_workspace",
+            "preload_unit",
+            "normalised",
+            "modal_compliance",
+            "layout",
+            "table_balance",
+        ):
             found.__dict__.pop(made, None)
         return found
 
@@ -125,31 +134,31 @@ class System:
         return at_rest(self)
 
     @property
-    def looking(self) -> Balance:
+    def shared_balance(self) -> Balance:
         """A balance for what looks at points or follows curves, one after the other."""
-        return self._workspace.taken_by(self).balance
+        return self._workspace.reset_for(self).balance
 
     @property
-    def stepper(self) -> Stepper:
-        """Of `looking`, for whoever follows it."""
-        return self._workspace.taken_by(self).stepper
+    def shared_stepper(self) -> Stepper:
+        """Of `shared_balance`, for whoever follows it."""
+        return self._workspace.reset_for(self).stepper
 
     @property
-    def raised(self) -> tuple[Level, Stepper]:
-        """`looking` in the level of its forces."""
-        return self._workspace.taken_by(self).raised
+    def level_problem(self) -> tuple[ForceLevelProblem, Stepper]:
+        """`shared_balance` in the level of its forces."""
+        return self._workspace.reset_for(self).level_problem
 
     @cached_property
     def _workspace(self) -> _Workspace:
         return _workspace_of(self)
 
     @contextmanager
-    def alone(self) -> Iterator[None]:
+    def exclusive_balance(self) -> Iterator[None]:
         """While a curve is followed no other system takes its balance, as one of a progress would.
 
         Nor does one after an error, in the middle of which it was left.
         """
-        kept, mine = _KEPT.of, self._workspace
+        kept, mine = _WORKSPACES.by_key, self._workspace
         shared = kept.get(mine.key) is mine
         if shared:
             del kept[mine.key]
@@ -157,49 +166,51 @@ class System:
         if shared:
             kept[mine.key] = mine
 
-    def afresh(self) -> Balance:
-        """`looking` at the level 1, as if nothing had been followed yet."""
-        balance = self.looking
+    def reset_balance(self) -> Balance:
+        """`shared_balance` at the level 1, as if nothing had been followed yet."""
+        balance = self.shared_balance
         balance.largest[:] = 0.0
         balance.load = 1.0
         return balance
 
-    def balance(self) -> Balance:
+    def new_balance(self) -> Balance:
         """A problem of its own, to be followed in the frequency."""
         low, high = self.scene.frequency_range
-        linear, yields = self.linear, self.yields
-        rank = condensed_size(yields, linear.ports.shape[1], len(self.harmonics), self.condensing)
+        linear, yields = self.linear, self.modal_compliance
+        rank = condensed_size(yields, linear.ports.shape[1], len(self.harmonics), self.condensation)
         seen = linear.receptance(np.array(self.harmonics, dtype=np.float64), not rank)
         shown = _displacements(linear, seen)
         balance = Balance(
             seen, self.layout, self.laws(), shown, linear.counted, high - low, rank, self.options.units
         )
         if rank:
-            tangent, options = np.asarray(balance.tangent), self.condensing
+            tangent, options = np.asarray(balance.tangent), self.condensation
             stuck, counted = self.springs(stuck=True), linear.counted
-            balance.condense(Condensed(seen, linear.flexibility, tangent, yields, stuck, counted, options))
+            balance.condense(
+                CondensedSystem(seen, linear.flexibility, tangent, yields, stuck, counted, options)
+            )
         if self.scene.loads:
             balance.rest[:] = linear.ports.T @ linear.flexibility @ linear.load
             shown.rest[:] = linear.dofs.T @ linear.flexibility @ linear.load
         return balance
 
     @cached_property
-    def yields(self) -> FloatArray:
+    def modal_compliance(self) -> FloatArray:
         """How much each mode (mode,) yields beside the contacts; none of a ring's."""
         linear, highest = self.linear, max(self.harmonics) * self.scene.frequency_range[1]
         if type(linear) is not Linear:
             return np.zeros(0)
         springs = self.springs(stuck=True)
-        return yielding(linear.natural, linear.ports, linear.flexibility, springs, highest)
+        return modal_compliance(linear.natural, linear.ports, linear.flexibility, springs, highest)
 
     @cached_property
-    def tabled(self) -> System | None:
+    def table_balance(self) -> System | None:
         """The balance by the table, whose solutions are told how far they are off; None without a table.
 
         Where solving takes the time the closed form costs no more than a table, and none is looked at.
         """
         with_one = self.harmonics == (1,) and self._of_one_harmonic
-        if self.table is None or not self.corrected or not with_one or self.looking.rank:
+        if self.table is None or not self.corrected or not with_one or self.shared_balance.rank:
             return None
         return self._with(corrected=False)
 
@@ -213,7 +224,7 @@ class System:
         if self.harmonics != (1,) or not self._of_one_harmonic:
             return self.exact_laws(self.harmonics)
         of = ClosedForm() if self.corrected else self.coefficients
-        return [SingleHarmonic(of, c.mu, c.k_u, c.k_v, c.n_0) for c in self.scene.contacts]
+        return [SingleHarmonicLaw(of, c.mu, c.k_u, c.k_v, c.n_0) for c in self.scene.contacts]
 
     def exact_laws(self, outputs: tuple[int, ...]) -> list[Law]:
         """The contacts with the exact forces of the motion, of which some harmonics are asked for."""
@@ -224,10 +235,10 @@ class System:
         found: list[Law] = []
         if self.scene.planar:  # one on a line is one in whose second direction nothing moves
             in_plane = planar_contact(harmonics, outputs)
-            found += [Planar(in_plane, c.mu, c.k_u, c.k_v, c.n_0) for c in self.scene.contacts]
+            found += [PlanarLaw(in_plane, c.mu, c.k_u, c.k_v, c.n_0) for c in self.scene.contacts]
         else:
             kernel = periodic_contact(harmonics, outputs)
-            found += [Periodic(kernel, c.mu, c.k_u, c.k_v, c.n_0) for c in self.scene.contacts]
+            found += [LineLaw(kernel, c.mu, c.k_u, c.k_v, c.n_0) for c in self.scene.contacts]
         directions = self.scene.directions_of_contact
         for i, c in enumerate(self.scene.contacts):
             if c.law is not None:
@@ -250,13 +261,13 @@ class _Workspace:
     """
 
     def __init__(self, system: System, key: tuple[object, ...] = ()) -> None:
-        self.system, self.balance, self.key = system, system.balance(), key
+        self.system, self.balance, self.key = system, system.new_balance(), key
 
-    def taken_by(self, system: System) -> _Workspace:
+    def reset_for(self, system: System) -> _Workspace:
         """As if it were new."""
         if self.system is not system:
             self.system, self.balance.laws = system, system.laws()
-            system.afresh()
+            system.reset_balance()
         return self
 
     @cached_property
@@ -264,24 +275,24 @@ class _Workspace:
         return Stepper(self.balance)
 
     @cached_property
-    def raised(self) -> tuple[Level, Stepper]:
-        level = Level(self.balance)
+    def level_problem(self) -> tuple[ForceLevelProblem, Stepper]:
+        level = ForceLevelProblem(self.balance)
         return level, Stepper(level)
 
 
-class _Kept(threading.local):
+class _WorkspaceCache(threading.local):
     """The workspaces that each thread used last, by what they are for."""
 
     def __init__(self) -> None:
-        self.of: OrderedDict[tuple[object, ...], _Workspace] = OrderedDict()
+        self.by_key: OrderedDict[tuple[object, ...], _Workspace] = OrderedDict()
 
 
-_KEPT = _Kept()
+_WORKSPACES = _WorkspaceCache()
 
 
 def _workspace_of(system: System) -> _Workspace:
     """For a system: if it is small, that of one before it, as in a sweep."""
-    scene, kept = system.scene, _KEPT.of
+    scene, kept = system.scene, _WORKSPACES.by_key
     large = len(scene.contacts) * len(system.harmonics) > system.options.workspace.small
     if scene.ring is not None or scene.loads or system.own_laws or large:
         return _Workspace(system)

@@ -8,29 +8,29 @@ from contextlib import contextmanager
 import numpy as np
 
 
-class TooLongError(Exception):
+class WorkLimitError(Exception):
     """More was calculated than may be."""
 
 
-class Work:
+class WorkCount:
     """Of a system and all that are made from it with other harmonics; poll is called now and then."""
 
     def __init__(self) -> None:
-        self.seconds, self.most = 0.0, np.inf
+        self.seconds, self.limit = 0.0, np.inf
         self.poll: Callable[[], object] = int
 
-    def take(self, seconds: float) -> None:
-        """So much more; `TooLongError` where that is more than may be."""
+    def add(self, seconds: float) -> None:
+        """So much more; `WorkLimitError` where that is more than may be."""
         self.poll()
         self.seconds += seconds
-        if self.seconds > self.most:
-            raise TooLongError
+        if self.seconds > self.limit:
+            raise WorkLimitError
 
     @contextmanager
-    def up_to(self, seconds: float) -> Iterator[None]:
+    def limited_to(self, seconds: float) -> Iterator[None]:
         """No more than this, with all that was calculated before."""
-        before, self.most = self.most, min(self.most, seconds)
+        before, self.limit = self.limit, min(self.limit, seconds)
         try:
             yield
         finally:
-            self.most = before
+            self.limit = before

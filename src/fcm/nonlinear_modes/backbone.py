@@ -13,7 +13,7 @@ from fcm.continuation.corrector import Newton
 from fcm.harmonic_balance.response_quantities import borne_along
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
-from fcm.nonlinear_modes.extended_periodic_motion import Autonomous, ComplexArray, Guess
+from fcm.nonlinear_modes.extended_periodic_motion import AutonomousProblem, ComplexArray, Guess
 from fcm.nonlinear_modes.options import NONLINEAR_MODE, NonlinearModeOptions, TruncationOptions
 from fcm.nonlinear_modes.restart import follow_past_corners
 from fcm.scene.options import LIMITS
@@ -28,7 +28,7 @@ class Mode:
     """Points of a nonlinear mode: modal amplitude, frequency, damping ratio, and the modes' motion over a."""
 
     system: System
-    problem: Autonomous
+    problem: AutonomousProblem
     path: Path
     amplitude: FloatArray  # (point,) a, the root of sum_i |a Q_i|^2 over the modes, of mass 1
     omega: FloatArray  # (point,)
@@ -68,8 +68,8 @@ def nonlinear_mode(
     guesses, followed = linear_modes(system, number, options), without_even(system)
     low, high = (float(np.log(a)) for a in span)
     for guess in guesses:
-        problem = Autonomous(system, guess, options)
-        new_problem = partial(Autonomous, followed, guess, options)
+        problem = AutonomousProblem(system, guess, options)
+        new_problem = partial(AutonomousProblem, followed, guess, options)
         first = new_problem()
         following = FollowOptions(max_step, newton=first.precision)
         path = follow_past_corners(new_problem, first.start(low), (low, high), following, options.restart)
@@ -78,7 +78,7 @@ def nonlinear_mode(
     if followed is not system:
         fewer = new_problem()
         z, direction = (
-            np.array([problem.carried(one, fewer) for one in points]).reshape(-1, problem.n + 1)
+            np.array([problem.with_harmonics_of(one, fewer) for one in points]).reshape(-1, problem.n + 1)
             for points in (path.z, path.direction)
         )
         path = replace(path, z=z, direction=direction)
@@ -96,7 +96,7 @@ def without_even(system: System) -> System:
     return system.with_harmonics(odd) if symmetric and odd != system.harmonics else system
 
 
-def mode_at(system: System, problem: Autonomous, path: Path) -> Mode:
+def mode_at(system: System, problem: AutonomousProblem, path: Path) -> Mode:
     """The mode at the points of a path."""
     found = [problem.motion(z) for z in path.z]
     modes = system.linear.natural.size
@@ -178,18 +178,20 @@ def truncation(mode: Mode, options: NonlinearModeOptions | None = None) -> tuple
     options = options or old.options
     highest = min(2 * system.harmonics[-1] + 1, LIMITS.harmonics)
     larger = without_even(system.with_harmonics(tuple(range(1, highest + 1))))
-    finer = Autonomous(larger, old.guess, options)
+    finer = AutonomousProblem(larger, old.guess, options)
     newton = Newton(finer, finer.precision)
     newton.row[-1] = 1.0
     error = np.full(mode.omega.size, np.nan)
     contacts = np.zeros((mode.omega.size, finer.contact_unknowns + 1))
-    for i in _told(mode, finer.n, options.truncation):
-        start = finer.carried(mode.path.z[i], old)
+    for i in _truncation_points(mode, finer.n, options.truncation):
+        start = finer.with_harmonics_of(mode.path.z[i], old)
         finer.measure(start)
         newton.scale[:], newton.z[:] = finer.scale, start
         if newton.correct(1.0):
             omega, damping = np.asarray(newton.z)[-3:-1]
-            of_damping = abs(damping - mode.damping[i]) / max(mode.damping.max(), options.truncation.small)
+            of_damping = abs(damping - mode.damping[i]) / max(
+                mode.damping.max(), options.truncation.damping_floor
+            )
             error[i] = max(abs(omega - mode.omega[i]) / mode.omega[i], of_damping)
             contacts[i] = *(mode.amplitude[i] * np.asarray(newton.z)[: finer.contact_unknowns]), omega
     borne = borne_along(larger, contacts)
@@ -197,11 +199,11 @@ def truncation(mode: Mode, options: NonlinearModeOptions | None = None) -> tuple
     return error, borne
 
 
-def _told(mode: Mode, unknowns: int, options: TruncationOptions) -> npt.NDArray[np.intp]:
+def _truncation_points(mode: Mode, unknowns: int, options: TruncationOptions) -> npt.NDArray[np.intp]:
     """The points at which the error is told that so many unknowns tell."""
     points = len(mode.path.z)
-    if unknowns < options.dear:
+    if unknowns < options.many_unknowns:
         return np.arange(points)
-    affordable = int(options.share * points * (mode.problem.n / unknowns) ** 3)
-    spread = np.linspace(0, points - 1, max(affordable, options.least) + 1)
+    affordable = int(options.time_fraction * points * (mode.problem.n / unknowns) ** 3)
+    spread = np.linspace(0, points - 1, max(affordable, options.min_points) + 1)
     return np.unique(spread[1:].round().astype(np.intp))

@@ -35,7 +35,7 @@ from fcm.nonlinear_modes.scaled_contacts import ScaledContacts
 
 ComplexArray = npt.NDArray[np.complex128]
 
-DECADE = float(np.log(10.0))  # unit of the parameter
+AMPLITUDE_UNIT = float(np.log(10.0))  # unit of the parameter
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Motion:
     Q: ComplexArray
 
 
-class Autonomous(Problem):
+class AutonomousProblem(Problem):
     """The unknowns: those of the contacts as in `law`, over a; Re and Im of the kept Q; omega; D.
 
     precision: of Newton's method, in the units of `measure`.
@@ -68,9 +68,9 @@ class Autonomous(Problem):
     def __init__(self, system: System, guess: Guess, options: NonlinearModeOptions = NONLINEAR_MODE) -> None:
         self.contacts, self.linear, self.guess = ScaledContacts(system), system.linear, guess
         self.options, self.units = options, options.units
-        many = len(self.contacts.laws) >= options.many.many
-        self.coarse = options.many.coarse if many else 1.0
-        self.precision = _finer_by(self.coarse)
+        many = len(self.contacts.laws) >= options.many.min_contacts
+        self.unit_factor = options.many.unit_factor if many else 1.0
+        self.precision = _scaled_steps(self.unit_factor)
         self.h = np.array(system.harmonics, dtype=np.float64)
         self.driven = system.harmonics.index(1)
         self.mean_rows, self.rows = self.contacts.mean_rows, self.contacts.rows
@@ -92,7 +92,7 @@ class Autonomous(Problem):
         z[self.n - 2 :] = self.guess.omega, self.guess.damping, log_amplitude
         return z
 
-    def carried(self, z: FloatArray, other: Autonomous) -> FloatArray:
+    def with_harmonics_of(self, z: FloatArray, other: AutonomousProblem) -> FloatArray:
         """A point of the same mode with other harmonics, or a direction there: what both have, else 0."""
         found = np.zeros(self.n + 1)
         found[self.contact_unknowns :] = z[other.contact_unknowns :]
@@ -195,10 +195,14 @@ class Autonomous(Problem):
         self.largest = np.maximum(self.largest, size)
         floor = np.maximum(self.units.own * self.largest, self.units.greatest * self.largest.max(initial=0.0))
         unit = np.maximum(size, floor)
-        unit = np.where(unit > 0.0, unit, 1.0) * np.sqrt(max(self.ports, 1)) * self.coarse
-        scale[:] = self.coarse
+        unit = np.where(unit > 0.0, unit, 1.0) * np.sqrt(max(self.ports, 1)) * self.unit_factor
+        scale[:] = self.unit_factor
         scale[self.mean_rows] = scale[self.rows] = scale[self.rows + 1] = unit
-        scale[self.n - 2 :] = self.coarse * self.guess.omega, self.coarse * self.units.damping, DECADE
+        scale[self.n - 2 :] = (
+            self.unit_factor * self.guess.omega,
+            self.unit_factor * self.units.damping,
+            AMPLITUDE_UNIT,
+        )
         return 0
 
     def bound(self, z: Any) -> int:
@@ -242,8 +246,17 @@ def _complex(values: FloatArray, rows: npt.NDArray[np.intp]) -> ComplexArray:
     return found
 
 
-def _finer_by(coarse: float) -> NewtonOptions:
+def _scaled_steps(coarse: float) -> NewtonOptions:
     """Lengths that are as short in units so many times as large."""
     usual = NewtonOptions()
-    lengths = ("close", "small", "exact", "rough", "left", "chord", "brief", "coarsest")
+    lengths = (
+        "tolerance",
+        "final_step",
+        "negligible_step",
+        "stalled_rounding",
+        "growing_rounding",
+        "chord_step",
+        "last_chord_step",
+        "max_rounding",
+    )
     return replace(usual, **{name: getattr(usual, name) / coarse for name in lengths})

@@ -68,12 +68,12 @@ def _between(mode: Mode, i: int, level: float) -> FloatArray | None:
     def off(part: float) -> float:
         if not 0.0 < part < 1.0:
             return float(resonant_level(mode)[i + round(part)] - level)
-        if not curve.put(part):
+        if not curve.find(part):
             raise ArithmeticError
         return float(resonant_level(_points(mode, curve.z[None]))[0] - level)
 
     try:
-        curve.put(float(brentq(off, 0.0, 1.0, xtol=mode.problem.options.resonance)))
+        curve.find(float(brentq(off, 0.0, 1.0, xtol=mode.problem.options.resonance)))
     except ArithmeticError:  # no such point of the curve
         return None
     return curve.z

@@ -53,7 +53,7 @@ class UnitOptions:
 
 
 @dataclass(frozen=True)
-class ManyOptions:
+class ManyContactsOptions:
     """How a mode of many contacts is followed: by steps of nearly ln a, past the corners of single contacts.
 
     Each contact that begins to slip turns its mean displacement like a root. Most of them turn frequency and
@@ -61,14 +61,14 @@ class ManyOptions:
 
     Attributes
     ----------
-    many : int
+    min_contacts : int
         Contacts from which on no corner is looked for,
-    coarse : float
+    unit_factor : float
         and the units of all unknowns but ln a are so many times as large.
     """
 
-    many: int = 16
-    coarse: float = 100.0
+    min_contacts: int = 16
+    unit_factor: float = 100.0
 
 
 @dataclass(frozen=True)
@@ -116,21 +116,21 @@ class TruncationOptions:
 
     Attributes
     ----------
-    dear : int
+    many_unknowns : int
         Unknowns with twice as many harmonics, from which on it is not told at all of them but at some, evenly
         spread, of which the last is one:
-    least : int
+    min_points : int
         at so many of them or more,
-    share : float
+    time_fraction : float
         as many as take this part of the time of the mode, which grows as the cube of the unknowns.
-    small : float
+    damping_floor : float
         Damping ratio: errors of a smaller one are relative to this.
     """
 
-    dear: int = 500
-    least: int = 2
-    share: float = 0.5
-    small: float = 1e-6
+    many_unknowns: int = 500
+    min_points: int = 2
+    time_fraction: float = 0.5
+    damping_floor: float = 1e-6
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,7 @@ class NonlinearModeOptions:
 
     Attributes
     ----------
-    linear, units, many, restart, rounding, truncation : LinearModeOptions, UnitOptions, ManyOptions,\
+    linear, units, many, restart, rounding, truncation : LinearModeOptions, UnitOptions, ManyContactsOptions,\
  RestartOptions, RoundingOptions, TruncationOptions
         Of the parts.
     resonance : float
@@ -148,7 +148,7 @@ class NonlinearModeOptions:
 
     linear: LinearModeOptions = field(default_factory=LinearModeOptions)
     units: UnitOptions = field(default_factory=UnitOptions)
-    many: ManyOptions = field(default_factory=ManyOptions)
+    many: ManyContactsOptions = field(default_factory=ManyContactsOptions)
     restart: RestartOptions = field(default_factory=RestartOptions)
     rounding: RoundingOptions = field(default_factory=RoundingOptions)
     truncation: TruncationOptions = field(default_factory=TruncationOptions)

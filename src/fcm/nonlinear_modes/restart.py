@@ -30,7 +30,7 @@ def follow_past_corners(
     """The curve through start, upwards from the lower end of the span, as of `follow`."""
     whole, low = None, span[0]
     for _ in range(restart.most):
-        path, ended = _part(new_problem, start, (low, span[1]), options, restart)
+        path, ended = _first_piece(new_problem, start, (low, span[1]), options, restart)
         if not path.z.shape[0]:
             return path if whole is None else whole
         if low > span[0] and path.status is Status.RETURNED:  # to where it was taken up
@@ -38,7 +38,7 @@ def follow_past_corners(
         whole = path if whole is None else whole.then(path)
         if ended:
             return whole
-        beyond = _beyond(new_problem(), path.z[-1], options, restart)
+        beyond = _restart_point(new_problem(), path.z[-1], options, restart)
         if beyond is None or beyond[-1] >= span[1]:
             return whole
         start, low = beyond, float(beyond[-1])
@@ -46,7 +46,7 @@ def follow_past_corners(
     return whole
 
 
-def _part(
+def _first_piece(
     new_problem: Callable[[], Problem],
     start: FloatArray,
     span: tuple[float, float],
@@ -74,7 +74,7 @@ def _part(
         return replace(path, status=Status.STALLED), path.status is not Status.COMPLETE
 
 
-def _beyond(
+def _restart_point(
     problem: Problem, z: FloatArray, options: FollowOptions, restart: RestartOptions
 ) -> FloatArray | None:
     """The solution a little further on that is nearest; None if there is none near."""

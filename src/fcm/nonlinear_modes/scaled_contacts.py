@@ -28,7 +28,7 @@ class ScaledContacts:
         w, normal, whole = self.width, self.directions - 1, a * x
         for c, law in enumerate(self.laws):
             here = slice(c * w, (c + 1) * w)
-            if self._held(c, whole[here]):
+            if self._is_linear(c, whole[here]):
                 self.force[here] = self._springs[here] * x[here]
                 self.tangent[c] = np.diag(self._springs[here])
             else:
@@ -39,7 +39,7 @@ class ScaledContacts:
             self.force[at] -= self._counted[c] * x[at]
             self.tangent[c, normal, normal] -= self._counted[c]
 
-    def _held(self, c: int, x: FloatArray) -> bool:
+    def _is_linear(self, c: int, x: FloatArray) -> bool:
         """Whether a contact surely neither slips nor opens: then two springs, without rounding by n_0."""
         contact, d = self._contacts[c], self.directions
         size = np.hypot(x[d::2], x[d + 1 :: 2]).reshape(-1, d)

@@ -20,7 +20,7 @@ from fcm.reduction.options import REDUCTION
 from fcm.reduction.sentences import named
 from fcm.results.result import Curve
 from fcm.shooting.harmonic_balance_branches import every_balance
-from fcm.shooting.periodic import without_end
+from fcm.shooting.periodic import never_interrupt
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import resting
 from fcm.time_domain.equations import has_friction
@@ -59,7 +59,7 @@ def expected_constant(scene: Scene, poll: Callable[[], None] | None = None) -> t
 def _balanced(scene: Scene, poll: Callable[[], None] | None) -> tuple[FloatArray, tuple[int, ...]]:
     """Points z of that balance (point, unknown + 1), and its harmonics; none where it is not complete."""
     try:
-        found = every_balance(scene, poll or without_end)
+        found = every_balance(scene, poll or never_interrupt)
     except RestError:
         return np.zeros((0, 0)), ()
     branches = found.traced.branches
@@ -101,7 +101,7 @@ class NotKeptError(Exception):
 
 def check(shot: Shot) -> None:
     """`NotKeptError` if a contact that is held would not have kept its state over a motion."""
-    pairs = zip(shot.system.scene.held, shot.kept.tolist(), strict=True)
+    pairs = zip(shot.system.scene.held, shot.held_distances.tolist(), strict=True)
     lost = tuple(one.place for one, room in pairs if room <= 0.0)
     if lost:
         raise NotKeptError(lost)

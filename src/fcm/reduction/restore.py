@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation.corrector import Newton
-from fcm.harmonic_balance.planar_quantities import in_plane
+from fcm.harmonic_balance.planar_quantities import planar_quantities
 from fcm.harmonic_balance.response_quantities import amplitudes_at, cycles, loops
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
@@ -55,7 +55,7 @@ def _put_back(curve: Curve, scene: Scene, traced: list[int]) -> None:
     cycle = np.full((*regime.shape, curve.cycle.shape[-1]), np.nan)
     loop[at] = loops(system, z)
     if scene.planar:
-        plane = in_plane(
+        plane = planar_quantities(
             System(scene, curve.harmonics or (1,)), unknowns(curve, scene, at, curve.harmonics or (1,))
         )
         rows = np.full(curve.frequency.size, -1)
@@ -109,7 +109,7 @@ def _spread(count: int, most: int) -> IntArray:
 def _shift(curve: Curve, scene: Scene, at: IntArray) -> float:
     """Greatest relative shift of points by a correction with all modes, along the normal of the curve."""
     system = System(scene, curve.harmonics)
-    newton = Newton(system.balance())
+    newton = Newton(system.new_balance())
     low, high = scene.frequency_range
     worst = 0.0
     for z, before in zip(unknowns(curve, scene, at, curve.harmonics), _amplitudes(curve, at), strict=True):

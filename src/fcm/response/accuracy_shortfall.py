@@ -7,15 +7,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from fcm.accuracy.options import REFINEMENT
-from fcm.accuracy.refinement import Accurate
-from fcm.accuracy.stability_limits import Lost
-from fcm.harmonic_balance.cost_model import PATIENCE
+from fcm.accuracy.refinement import RefinedResponse
+from fcm.accuracy.stability_limits import StabilityLimit
+from fcm.harmonic_balance.cost_model import MAX_SECONDS
 from fcm.response.options import SENTENCES
 from fcm.scene.errors import counted
 from fcm.units import in_unit
 
 
-def short_of(found: Accurate, lost: Sequence[Lost], accuracy: float) -> str:
+def shortfall(found: RefinedResponse, lost: Sequence[StabilityLimit], accuracy: float) -> str:
     """What keeps a curve from the accuracy, and what more would take; empty if nothing does.
 
     lost: how far the frequencies are off at which stability is lost without a fold.
@@ -26,41 +26,43 @@ def short_of(found: Accurate, lost: Sequence[Lost], accuracy: float) -> str:
     return _of_stability(found, off) if off else ""
 
 
-def _of_harmonics(found: Accurate, accuracy: float) -> str:
+def _of_harmonics(found: RefinedResponse, accuracy: float) -> str:
     """Too large errors of peaks and folds, and how long it takes with more harmonics."""
     folds, said = found.folds, _with_harmonics(found)
     untold = np.count_nonzero(np.isnan(folds))
-    if np.isnan(found.worst) and np.isnan(found.peak).any():
-        said += f" the errors of some peaks cannot be told{_whose(found, accuracy)}"
-    elif untold and found.told <= accuracy:
+    if np.isnan(found.max_error) and np.isnan(found.peak).any():
+        said += f" the errors of some peaks cannot be told{_dofs_short(found, accuracy)}"
+    elif untold and found.max_known_error <= accuracy:
         said += f" the errors of {untold} of {folds.size} folds cannot be told"
     elif untold:
-        said += f" an estimated error of {found.told:.1e} remains{_whose(found, accuracy)}"
+        said += f" an estimated error of {found.max_known_error:.1e} remains{_dofs_short(found, accuracy)}"
         said += f", and that of {untold} of {folds.size} folds cannot be told"
     else:
-        said += f" an estimated error of {found.worst:.1e} remains{_whose(found, accuracy)}"
+        said += f" an estimated error of {found.max_error:.1e} remains{_dofs_short(found, accuracy)}"
     if not found.further:
         return said
     more = found.further
     which = str(more[-1]) if more[-1] == len(more) else ",".join(map(str, more))
     if found.begun:
-        return f"{said}; more were given up after some {PATIENCE:.0f} s of work: --harmonics {which}"
+        return f"{said}; more were given up after some {MAX_SECONDS:.0f} s of work: --harmonics {which}"
     return f"{said}; more would take some {found.seconds_with(more):.0f} s: --harmonics {which}"
 
 
-def _whose(found: Accurate, accuracy: float) -> str:
+def _dofs_short(found: RefinedResponse, accuracy: float) -> str:
     """The degrees of freedom whose peaks fall short, the worst of them first; empty where all do, or none."""
     height = np.max([one.amplitude.max(axis=0) for one in found.shown], axis=0)
-    short = ~(found.peak <= accuracy) & (height > REFINEMENT.nothing * height.max())
+    short = ~(found.peak <= accuracy) & (height > REFINEMENT.min_amplitude * height.max())
     off, dofs = np.flatnonzero(short), found.system.scene.modal.dofs
     if not 0 < off.size < len(dofs):
         return ""
     worst = off[np.argsort(-np.nan_to_num(found.peak[off], nan=np.inf), kind="stable")]
-    more = f" and {off.size - SENTENCES.dofs} more" if off.size > SENTENCES.dofs else ""
-    return f" (of {len(dofs)} peaks, those of {', '.join(dofs[i] for i in worst[: SENTENCES.dofs])}{more})"
+    more = f" and {off.size - SENTENCES.max_dofs} more" if off.size > SENTENCES.max_dofs else ""
+    return (
+        f" (of {len(dofs)} peaks, those of {', '.join(dofs[i] for i in worst[: SENTENCES.max_dofs])}{more})"
+    )
 
 
-def _of_stability(found: Accurate, off: Sequence[Lost]) -> str:
+def _of_stability(found: RefinedResponse, off: Sequence[StabilityLimit]) -> str:
     """Frequencies at which stability is lost that are too far off: the worst of them."""
     worst = max(off, key=lambda one: 0.0 if np.isnan(one.error) else one.error)
     error = "cannot be told" if np.isnan(worst.error) else f"is estimated as {worst.error:.1e}"
@@ -69,5 +71,5 @@ def _of_stability(found: Accurate, off: Sequence[Lost]) -> str:
     return f"{_with_harmonics(found)} the error of the frequency at which stability is lost, {at}, {error}"
 
 
-def _with_harmonics(found: Accurate) -> str:
+def _with_harmonics(found: RefinedResponse) -> str:
     return f"with {counted(len(found.system.harmonics), 'harmonic')}"

@@ -5,28 +5,28 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from fcm.accuracy.outline import Outline
+from fcm.accuracy.outline import UncheckedResponse
 from fcm.results.result import INTERRUPTED
 from fcm.scene.errors import counted
 
 Tell = Callable[[str], None]  # what there is, and what is at work
 
 
-class SoFar:
+class BestSoFar:
     """Is told of every response that has been traced, as `fcm.accuracy.refinement.Keep`; found is the
     last."""
 
     def __init__(self, tell: Tell | None) -> None:
         self.tell, self.error, self.next = tell, math.nan, 0
-        self.found: Outline | None = None
+        self.found: UncheckedResponse | None = None
 
-    def __call__(self, found: Outline, error: float, more: tuple[int, ...]) -> None:
+    def __call__(self, found: UncheckedResponse, error: float, more: tuple[int, ...]) -> None:
         self.found, self.error, self.next = found, error, len(more)
         if self.tell is not None:
             now = f"now {counted(self.next, 'harmonic')}" if self.next else "now its stability"
-            self.tell(f"{self._has()}; {now}")
+            self.tell(f"{self._harmonics_reached()}; {now}")
 
-    def _has(self) -> str:
+    def _harmonics_reached(self) -> str:
         assert self.found is not None
         has = counted(len(self.found.system.harmonics), "harmonic")
         return f"{has}, {'error not told yet' if math.isnan(self.error) else f'error {self.error:.1e}'}"
@@ -34,4 +34,5 @@ class SoFar:
     def reason(self) -> str:
         """Why the curve is not complete, and what is missing."""
         missing = f" before it was traced with {self.next}" if self.next else " before it was judged"
-        return f"{INTERRUPTED}{missing}: this is the curve with {self._has()}; its stability is missing"
+        reached = self._harmonics_reached()
+        return f"{INTERRUPTED}{missing}: this is the curve with {reached}; its stability is missing"

@@ -21,41 +21,41 @@ from fcm.shooting.harmonic_balance_state import balance_solutions
 from fcm.shooting.initial_orbits import first_point
 from fcm.shooting.linear_orbits import started_states
 from fcm.shooting.options import SHOOTING
-from fcm.shooting.orbit_record import Sample, sampled, settled
+from fcm.shooting.orbit_record import OrbitRecord, recorded_point, recorded_steady
 from fcm.shooting.periodic import Orbit, Poll, shoot, unloaded
 from fcm.shooting.problem import OrbitProblem
-from fcm.shooting.steady_state import Steady, steady
-from fcm.shooting.trace import shown
-from fcm.shooting.work_budget import Doubts
+from fcm.shooting.steady_state import SteadyMotion, steady
+from fcm.shooting.trace import with_unit
+from fcm.shooting.work_budget import UncertainFrequencies
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.state import State
 from fcm.time_domain.system import System
 
 
 @dataclass(frozen=True)
-class Unreached:
+class CoexistingOrbits:
     """What was found at one frequency."""
 
     frequency: float  # [rad/s]
-    samples: tuple[Sample, ...]
+    samples: tuple[OrbitRecord, ...]
     whole: bool = True  # whether the level of the forces was followed to its end there
 
 
-def unreached(
+def coexisting_orbits(
     scene: Scene,
     frequencies: Sequence[float],
-    visited: Sequence[Sample],
+    visited: Sequence[OrbitRecord],
     report: Report,
     poll: Poll,
-    doubts: Doubts,
-) -> Iterator[Sample]:
+    doubts: UncertainFrequencies,
+) -> Iterator[OrbitRecord]:
     """The stable motions at each of some frequencies [rad/s] that are none of those visited; each saved.
 
     doubts take the frequencies at which there may be more.
 
     poll is called now and then.
     """
-    saved = {one.frequency: one for one in report.saved if isinstance(one, Unreached)}
+    saved = {one.frequency: one for one in report.saved if isinstance(one, CoexistingOrbits)}
     problem = OrbitProblem(replace(scene, frequency_range=(0.0, frequencies[-1])))
     left = [omega for omega in frequencies if omega not in saved]
     across = states_across(scene, left, poll)
@@ -63,26 +63,26 @@ def unreached(
         found = saved.get(omega)
         if found is None:
             poll()
-            report(1.0, f"other motions, {shown(scene, omega)}")
+            report(1.0, f"other motions, {with_unit(scene, omega)}")
             here = [one for one in visited if one.frequency == omega]
             known, whole = balance_solutions(scene, omega, poll)
             guesses = [*known, *across.get(omega, ()), *started_states(scene, omega)]
-            found = Unreached(omega, tuple(_beside(problem, omega, guesses, here, poll)), whole)
+            found = CoexistingOrbits(omega, tuple(_coexisting_at(problem, omega, guesses, here, poll)), whole)
             report.save(found)
         doubts.levels += [] if found.whole else [omega]
         yield from found.samples
 
 
-def _beside(
-    problem: OrbitProblem, omega: float, guesses: Sequence[State], known: list[Sample], poll: Poll
-) -> list[Sample]:
+def _coexisting_at(
+    problem: OrbitProblem, omega: float, guesses: Sequence[State], known: list[OrbitRecord], poll: Poll
+) -> list[OrbitRecord]:
     """Those at one frequency that are not known.
 
     Where no periodic motion is near a guess, or one that is left by turns, the motion is simulated from
     there, and from rest: unless one that repeats after several periods, or not at all, is known, as that may
     lead to it, or a mode has no damping, so that what it begins with may stay.
     """
-    found, damped = list[Sample](), bool((problem.scene.modal.damping > 0.0).all())
+    found, damped = list[OrbitRecord](), bool((problem.scene.modal.damping > 0.0).all())
     for guess in (*guesses, None):
         there = [*known, *found]
         simulate = damped and all(one.repeats == 1 for one in there)
@@ -100,59 +100,67 @@ def _orbit_from(
     omega: float,
     guess: State | None,
     simulate: bool,
-    known: Sequence[Sample],
+    known: Sequence[OrbitRecord],
     poll: Poll,
-) -> Sample | None:
+) -> OrbitRecord | None:
     """The stable motion that a guess, or rest, leads to, if it does and that is not known."""
     if guess is None:
         return _simulated(problem, omega, unloaded(problem.scene), known, poll) if simulate else None
     orbit = shoot(System(problem.scene, omega), guess, poll)
-    if simulate and (orbit is None or (not orbit.stable and _left_by_turns(orbit))):
+    if simulate and (orbit is None or (not orbit.stable and _disturbance_alternates(orbit))):
         return _simulated(problem, omega, guess, known, poll)
     return _stable(problem, orbit, known, poll)
 
 
-def _stable(problem: OrbitProblem, orbit: Orbit | None, known: Sequence[Sample], poll: Poll) -> Sample | None:
+def _stable(
+    problem: OrbitProblem, orbit: Orbit | None, known: Sequence[OrbitRecord], poll: Poll
+) -> OrbitRecord | None:
     """The point of a motion that is stable and not known."""
-    if orbit is None or not orbit.stable or any(_as_large(orbit, one, COEXISTING.orbits) for one in known):
+    if (
+        orbit is None
+        or not orbit.stable
+        or any(_as_large(orbit, one, COEXISTING.orbit_tolerance) for one in known)
+    ):
         return None
     z = first_point(problem, orbit, poll)
-    sample = sampled(problem, z, np.zeros(z.size))
+    sample = recorded_point(problem, z, np.zeros(z.size))
     return sample if sample.stable else None
 
 
-def _left_by_turns(orbit: Orbit) -> bool:
+def _disturbance_alternates(orbit: Orbit) -> bool:
     """Whether disturbances grow from side to side, or around; beside others two motions lie, each near."""
     greatest = complex(orbit.multipliers[0])
     return greatest.real < 0.0 or greatest.imag != 0.0
 
 
 def _simulated(
-    problem: OrbitProblem, omega: float, guess: State, known: Sequence[Sample], poll: Poll
-) -> Sample | None:
+    problem: OrbitProblem, omega: float, guess: State, known: Sequence[OrbitRecord], poll: Poll
+) -> OrbitRecord | None:
     """The steady motion that one from a guess comes to; if it repeats after each period, one not known."""
     system = System(problem.scene, omega)
     found = steady(system, guess, poll)
-    if not isinstance(found, Steady):
+    if not isinstance(found, SteadyMotion):
         return None
     if found.periods != 1:
-        return settled(omega, found)
+        return recorded_steady(omega, found)
     return _stable(problem, shoot(system, found.state, poll), known, poll)
 
 
-def _same(one: Sample, other: Sample) -> bool:
+def _same(one: OrbitRecord, other: OrbitRecord) -> bool:
     """Whether two motions are one; of those that do not repeat, whether they are as large."""
     return _as_large(
-        one, other, SHOOTING.steady.near if 0 in (one.repeats, other.repeats) else COEXISTING.orbits
+        one,
+        other,
+        SHOOTING.steady.max_distance if 0 in (one.repeats, other.repeats) else COEXISTING.orbit_tolerance,
     )
 
 
-def _as_large(one: Sample | Orbit, other: Sample, near: float) -> bool:
+def _as_large(one: OrbitRecord | Orbit, other: OrbitRecord, near: float) -> bool:
     """Whether the greatest and least displacements of two motions are the same."""
-    apart = np.abs(_reach(one) - _reach(other)).max(initial=0.0)
-    return bool(apart <= near * np.abs(_reach(one)).max(initial=0.0))
+    apart = np.abs(_displacement_range(one) - _displacement_range(other)).max(initial=0.0)
+    return bool(apart <= near * np.abs(_displacement_range(one)).max(initial=0.0))
 
 
-def _reach(one: Sample | Orbit) -> FloatArray:
+def _displacement_range(one: OrbitRecord | Orbit) -> FloatArray:
     """The greatest and least displacements of a motion: (2, dof)."""
     return np.stack((one.measure.greatest, one.measure.least))

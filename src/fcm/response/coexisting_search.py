@@ -10,11 +10,11 @@ from fcm.model.scene import FloatArray
 from fcm.response.resumable_branches import TimeOver
 from fcm.results.orbits import Stuck
 from fcm.run import Report
-from fcm.shooting.periodic import Poll, without_end
+from fcm.shooting.periodic import Poll, never_interrupt
 
 
 @dataclass(frozen=True)
-class Extents:
+class CoexistingMotions:
     """What is found at one frequency: of its points the extent over residual friction; and what is beside."""
 
     frequency: float
@@ -25,13 +25,13 @@ class Extents:
     beside: list[Stuck]  # motions that no extent holds
 
     @classmethod
-    def unknown(cls, frequency: float, amplitude: FloatArray) -> Extents:
+    def unknown(cls, frequency: float, amplitude: FloatArray) -> CoexistingMotions:
         """To be filled in."""
         least, greatest = np.full_like(amplitude, np.nan), np.full_like(amplitude, np.nan)
         return cls(frequency, amplitude, least, greatest, np.full(len(amplitude), np.nan), [])
 
 
-FOUND = (Extents, Stuck)  # what is saved consists of these
+FOUND = (CoexistingMotions, Stuck)  # what is saved consists of these
 
 
 class Search:
@@ -44,12 +44,12 @@ class Search:
 
     def __init__(self, poll: Poll, report: Report) -> None:
         self._poll, self._report, self.over = poll, report, False
-        self._known = {_key(one): one for one in report.saved if isinstance(one, Extents)}
+        self._known = {_key(one): one for one in report.saved if isinstance(one, CoexistingMotions)}
 
     @classmethod
     def none(cls) -> Search:
         """One in which nothing is looked for."""
-        search = cls(without_end, Report(lambda _fraction, _text: None))
+        search = cls(never_interrupt, Report(lambda _fraction, _text: None))
         search.end()
         return search
 
@@ -68,16 +68,16 @@ class Search:
         """Look for nothing more."""
         self.over = True
 
-    def known(self, frequency: float, amplitude: FloatArray) -> Extents | None:
+    def known(self, frequency: float, amplitude: FloatArray) -> CoexistingMotions | None:
         """What was found at the points of a frequency."""
         return self._known.get((frequency, amplitude.tobytes()))
 
-    def keep(self, found: Extents) -> None:
+    def keep(self, found: CoexistingMotions) -> None:
         """Know, and save, what was found, unless the search was ended while it was."""
         if not self.over:
             self._known[_key(found)] = found
             self._report.save(found)
 
 
-def _key(found: Extents) -> tuple[float, bytes]:
+def _key(found: CoexistingMotions) -> tuple[float, bytes]:
     return found.frequency, found.amplitude.tobytes()

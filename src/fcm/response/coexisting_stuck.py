@@ -9,19 +9,19 @@ import numpy.typing as npt
 
 from fcm.harmonic_balance.wave_extremes import half_peak_to_peak
 from fcm.model.scene import FloatArray, Scene
-from fcm.response.friction_extent import NotUnique
+from fcm.response.friction_extent import FrictionExtent
 from fcm.response.options import COEXISTING
 from fcm.results.orbits import Stuck
 from fcm.shooting.linear_orbits import linear_motions
 from fcm.structure.loads import driven_harmonics
 
 
-def stuck_beside(
+def coexisting_stuck(
     scene: Scene,
     rows: Iterable[int],
     frequency: FloatArray,
     regime: npt.NDArray[np.str_],
-    others: NotUnique,
+    others: FrictionExtent,
 ) -> list[Stuck]:
     """Those at the frequencies of some points that are not of a point there, nor in the extent of a family.
 
@@ -48,6 +48,6 @@ def stuck_beside(
 
 def _within(amplitude: FloatArray, least: FloatArray, greatest: FloatArray) -> bool:
     """Whether amplitudes lie in one of some extents."""
-    room = COEXISTING.within * greatest
+    room = COEXISTING.extent_tolerance * greatest
     inside = (amplitude >= least - room) & (amplitude <= greatest + room)
     return bool(inside.all(axis=1).any())

@@ -16,11 +16,11 @@ from fcm.reduction.mode_effect import effect, expected_effect
 from fcm.reduction.negligible_parts import leave_out_modes
 from fcm.reduction.options import REDUCTION
 from fcm.reduction.sentences import on_modes
-from fcm.response.coexisting_orbits import Unreached
+from fcm.response.coexisting_orbits import CoexistingOrbits
 from fcm.response.coexisting_search import FOUND
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.exact_curve import ExactWork
-from fcm.response.options import EXACT_CURVES, INPUT_LIMITS
+from fcm.response.options import EXACT_CURVES, INPUT_LIMITS, ExactOptions
 from fcm.response.request import ResponseError
 from fcm.response.resumable_branches import LEGS
 from fcm.response.ring_limits import refuse_in_time
@@ -32,7 +32,7 @@ from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.units import UNIT
 
 METHOD = "exact"
-ONLY = "of the exact curves all points but their peaks, folds and jumps"
+ONLY_PEAKS = "of the exact curves all points but their peaks, folds and jumps"
 
 
 def trace_exact(
@@ -49,6 +49,7 @@ def trace_exact(
     only: str | None = None,
     periods: int = 1,
     shooting: ShootingOptions = SHOOTING,
+    options: ExactOptions = EXACT_CURVES,
 ) -> Response:
     """The curves of exact periodic solutions of a scene, in the layout of `fcm.response.trace`.
 
@@ -80,6 +81,8 @@ def trace_exact(
         doubles; with `at` they are found by the sweeps, and this has no meaning.
     shooting : ShootingOptions, optional
         Tolerances and limits of the motions that are followed; with `at` the usual ones are taken.
+    options : ExactOptions, optional
+        Tolerances and limits of the curves.
 
     Raises
     ------
@@ -96,8 +99,8 @@ def trace_exact(
     refuse_in_time(scene, "the exact motion")
     begin, frequencies = time.perf_counter(), _checked(scene, at)
     with checkpoint_of(keep, resume) as checkpoint:
-        work = ExactWork(frequencies, limit, only is not None, tolerance is None, periods, shooting)
-        run = _Run(work, CurveSweep(jobs or os.cpu_count() or 1, checkpoint, place))
+        work = ExactWork(frequencies, limit, only is not None, tolerance is None, periods, shooting, options)
+        run = _SweepRun(work, CurveSweep(jobs or os.cpu_count() or 1, checkpoint, place))
         response = run.response(scene, tolerance, progress)
         if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
             checkpoint.done()
@@ -107,7 +110,7 @@ def trace_exact(
 
 
 @dataclass(frozen=True)
-class _Run:
+class _SweepRun:
     """One after the other the sweeps of a run, the second with all modes where they turn out to be needed."""
 
     work: ExactWork
@@ -118,9 +121,9 @@ class _Run:
         scenes = scene.each_curve()
         if tolerance is None:
             return self._swept(scene, scenes, progress)  # the comparison's, which leaves out by itself
-        lighter = leave_out_modes(scenes, tolerance, EXACT_CURVES.highest)
+        lighter = leave_out_modes(scenes, tolerance, self.work.options.max_harmonic)
         if lighter.above is not None and 2.0 * expected_effect(lighter) > tolerance:
-            lighter = leave_out_modes(scenes, 0.0, EXACT_CURVES.highest)
+            lighter = leave_out_modes(scenes, 0.0, self.work.options.max_harmonic)
         response, said = self._swept(scene, lighter.curves, progress), list(lighter.sentences)
         if lighter.above is not None and not response.interrupted:
             change = effect(response, lighter)
@@ -129,14 +132,16 @@ class _Run:
             else:
                 response = self._swept(scene, lighter.exact, progress)
         said += on_contacts(response.curves, scenes[0].contacts)
-        response.left_out = [*said, *([ONLY] if self.work.only_peaks else [])]
+        response.left_out = [*said, *([ONLY_PEAKS] if self.work.only_peaks else [])]
         response.curves = [without_rounding(one) for one in response.curves]
         return response
 
     def _swept(self, scene: Scene, scenes: Sequence[Scene], progress: Progress | None) -> Response:
         mark = fingerprint(METHOD, replace(self.work, limit=None))
         batches = [(one,) for one in scenes]
-        curves = self.sweep.curves(self.work, batches, mark, progress, (*STATES, Unreached, *LEGS, *FOUND))
+        curves = self.sweep.curves(
+            self.work, batches, mark, progress, (*STATES, CoexistingOrbits, *LEGS, *FOUND)
+        )
         return Response.of(scene, curves, METHOD)
 
 
@@ -152,11 +157,11 @@ def _checked(scene: Scene, at: Sequence[float] | None) -> tuple[float, ...] | No
         what = f"{wrong[0]:g} is none" if wrong.size else "none is given"
         raise ResponseError(f"frequencies to visit must be positive numbers; {what}")
     highest = _highest(scene) / UNIT[scene.frequency_unit]
-    if highest > 0.0 and frequencies[-1] > INPUT_LIMITS.frequency * highest:
+    if highest > 0.0 and frequencies[-1] > INPUT_LIMITS.max_frequency_ratio * highest:
         raise ResponseError(
             f"a frequency to visit of {frequencies[-1]:g} {scene.frequency_unit} is a mistake of units: the "
             f"scene has no natural frequency above {highest:.2g}, and the greatest is "
-            f"{INPUT_LIMITS.frequency:g} times that"
+            f"{INPUT_LIMITS.max_frequency_ratio:g} times that"
         )
     return tuple((frequencies * UNIT[scene.frequency_unit]).tolist())
 

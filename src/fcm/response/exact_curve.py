@@ -11,28 +11,29 @@ from fcm.harmonic_balance.stiff_contacts import too_stiff
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Held, Scene
 from fcm.reduction.constant_state_contacts import NotKeptError, check, expected_constant
-from fcm.response.coexisting_orbits import unreached
+from fcm.response.coexisting_orbits import coexisting_orbits
 from fcm.response.coexisting_search import Search
 from fcm.response.groups import Group, lost_curve
-from fcm.response.only_peaks import Alone, peaks_alone, peaks_curve, peaks_of
-from fcm.response.options import EXACT_CURVES
+from fcm.response.only_peaks import PeaksOnly, peaks_curve, peaks_of, peaks_only
+from fcm.response.options import EXACT_CURVES, ExactOptions
 from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.orbit_curve import orbit_curve, visited_curve
-from fcm.response.reinstated_contacts import Released
-from fcm.response.resumable_branches import Clock, Legs, TimeOver
-from fcm.response.stepped_sweep import Visitor
+from fcm.response.reinstated_contacts import ReinstatedContacts
+from fcm.response.resumable_branches import CurveTimeLimit, Legs, TimeOver
+from fcm.response.stepped_sweep import SteppedSweep
 from fcm.results.cause import Cause
 from fcm.results.result import INTERRUPTED, Curve
 from fcm.run import Interrupted, Report
 from fcm.scene.errors import counted
 from fcm.shooting.options import SHOOTING, ShootingOptions
-from fcm.shooting.orbit_record import Sample
-from fcm.shooting.period_doubling import Doubled, doubled_paths
+from fcm.shooting.orbit_record import OrbitRecord
+from fcm.shooting.period_doubling import DoubledPeriodProblem, doubled_paths
 from fcm.shooting.problem import OrbitProblem
-from fcm.shooting.trace import explore, incomplete, reached, shown
-from fcm.shooting.work_budget import Doubts
+from fcm.shooting.trace import explore, incomplete, stop_reason, with_unit
+from fcm.shooting.work_budget import UncertainFrequencies
 from fcm.time_domain.errors import SimulationError
 
+Expected = Callable[[Scene, Callable[[], None]], tuple[Held, ...]]
 AT_END = f"{INTERRUPTED} at its end, while other motions beside its points were sought"
 
 
@@ -46,6 +47,8 @@ class ExactWork:
     whole: bool = False  # nothing is to be left out
     periods: int = 1  # up to which motions are followed, from where the period doubles
     shooting: ShootingOptions = SHOOTING
+    options: ExactOptions = EXACT_CURVES
+    expected: Expected = expected_constant  # the contacts that are tried as held
 
     def __call__(self, group: Group, report: Report) -> list[Curve]:
         return [self._curve(scene, report) for scene in group]
@@ -63,38 +66,42 @@ class ExactWork:
 
     def _made(self, scene: Scene, report: Report) -> Curve:
         if self.at is not None:
-            return _visited(scene, self.at, report, self.limit)
-        stiff, limit = _too_stiff(scene, self.limit)
-        clock = Clock(limit, report)
+            return _visited(scene, self.at, report, self.limit, self.options)
+        stiff, limit = _too_stiff(scene, self.limit, self.options)
+        clock = CurveTimeLimit(limit, report)
         try:
             return self._in_time(scene, report, clock, stiff)
         except TimeOver as stop:  # before the first point was looked for
-            return lost_curve(scene, f"{_cut_off(stop, limit)}the start{stiff}")
+            return lost_curve(scene, f"{_stop_prefix(stop, limit)}the start{stiff}")
 
-    def _in_time(self, scene: Scene, report: Report, clock: Clock, stiff: str) -> Curve:
-        followed = _Followed(report, clock, stiff, self.periods, options=self.shooting)
+    def _in_time(self, scene: Scene, report: Report, clock: CurveTimeLimit, stiff: str) -> Curve:
+        followed = _CurveFollower(
+            report, clock, stiff, self.periods, options=self.shooting, search=self.options.search_fraction
+        )
         if self.only_peaks:
             return followed.peaks(scene)
-        if self.whole or len(scene.contacts) < EXACT_CURVES.contacts:
+        if self.whole or len(scene.contacts) < self.options.min_contacts:
             return followed.curve(scene)
-        return followed.lightly(scene)
+        return followed.with_held_contacts(scene, self.expected(scene, clock.poll))
 
 
 @dataclass(frozen=True)
-class _Followed:
+class _CurveFollower:
     """Curves that are followed in the range of a scene."""
 
     report: Report
-    clock: Clock
+    clock: CurveTimeLimit
     stiff: str  # what is said of a contact that is too stiff, where a curve is not complete
     periods: int
     before: list[tuple[OrbitProblem, Legs]] = field(default_factory=list)  # the last that were followed
-    doubts: Doubts = field(default_factory=Doubts)  # of the balance that these began near
+    doubts: UncertainFrequencies = field(
+        default_factory=UncertainFrequencies
+    )  # of the balance that these began near
     options: ShootingOptions = SHOOTING
+    search: float = EXACT_CURVES.search_fraction
 
-    def lightly(self, scene: Scene) -> Curve:
+    def with_held_contacts(self, scene: Scene, held: tuple[Held, ...]) -> Curve:
         """The curve, followed without the contacts that keep their state all along it."""
-        held = expected_constant(scene, self.clock.poll)
         while True:
             lost: tuple[int, ...] = ()
             try:
@@ -122,22 +129,28 @@ class _Followed:
         """The curve with all contacts that the scene computes."""
         groups, reason, cause = self.branches(scene)
         search = Search(self.clock.poll, self.report)
-        return _doubted(_finished(partial(orbit_curve, groups), reason, search, cause), self.doubts)
+        return _with_uncertain_frequencies(
+            _finished(partial(orbit_curve, groups), reason, search, cause), self.doubts
+        )
 
     def peaks(self, scene: Scene) -> Curve:
         """The peaks, folds and jumps alone."""
-        known, search = list[Sample](), Search(self.clock.poll, self.report)
+        known, search = list[OrbitRecord](), Search(self.clock.poll, self.report)
         try:
-            alone = peaks_alone(scene, known, self.report, self.clock.poll)
+            alone = peaks_only(scene, known, self.report, self.clock.poll)
         except (KeyboardInterrupt, TimeOver) as stop:
-            where = shown(scene, known[-1].frequency) if known else "the start"
-            reason = _cut_off(stop, self.clock.limit) + where + self.stiff
-            found = Alone(sorted(known, key=lambda one: one.frequency))
+            where = with_unit(scene, known[-1].frequency) if known else "the start"
+            reason = _stop_prefix(stop, self.clock.limit) + where + self.stiff
+            found = PeaksOnly(sorted(known, key=lambda one: one.frequency))
             return _finished(partial(peaks_curve, scene, found), reason, search, _cause(stop))
         if alone is not None:
-            return _doubted(_finished(partial(peaks_curve, scene, alone), "", search), alone.doubts)
+            return _with_uncertain_frequencies(
+                _finished(partial(peaks_curve, scene, alone), "", search), alone.doubts
+            )
         groups, reason, cause = self.branches(scene)
-        return _doubted(_finished(partial(peaks_of, groups), reason, search, cause), self.doubts)
+        return _with_uncertain_frequencies(
+            _finished(partial(peaks_of, groups), reason, search, cause), self.doubts
+        )
 
     def branches(self, scene: Scene) -> tuple[list[OrbitBranches], str, Cause]:
         """All branches, and why they are not complete, else ''; what is stiff is said then, too; the cause.
@@ -147,7 +160,9 @@ class _Followed:
         NotKeptError
             If a contact that is held would not have kept its state.
         """
-        legs = Legs(scene.frequency_range, self.report, self.clock.poll, _watched if scene.held else None)
+        legs = Legs(
+            scene.frequency_range, self.report, self.clock.poll, _check_held_contacts if scene.held else None
+        )
         problems, groups, cause = (
             [OrbitProblem(scene, options=self.options)],
             list[OrbitBranches](),
@@ -155,27 +170,27 @@ class _Followed:
         )
         try:
             for problem, found in self.before:
-                legs.take(Released(problem, problems[0]).legs(found.found(problem)))
+                legs.take(ReinstatedContacts(problem, problems[0]).legs(found.found(problem)))
             self.before[:] = [(problems[0], legs)]
-            paths, without = explore(
-                problems[0], legs, legs.poll, self.clock.share(EXACT_CURVES.beside), self.doubts
-            )
+            paths, without = explore(problems[0], legs, legs.poll, self.clock.share(self.search), self.doubts)
             reason = incomplete(scene, paths, without)
             groups.append(OrbitBranches(problems[0], paths))
             while 2 * problems[-1].repeats <= self.periods and not reason:
-                problem = Doubled(problems[-1])
+                problem = DoubledPeriodProblem(problems[-1])
                 problems.append(problem)
                 paths, lost = doubled_paths(problem, groups[-1].points, legs, legs.poll)
                 reason = incomplete(scene, paths, "") if paths else ""
-                reason = reason or (_without(problem, lost) if lost else "")
+                reason = reason or (_missing_periods(problem, lost) if lost else "")
                 groups.append(OrbitBranches(problem, paths, groups[-1]))
         except (KeyboardInterrupt, TimeOver) as stop:
             legs.keep()
-            while legs.paths(further := Doubled(problems[-1])):  # an earlier run had come to them
+            while legs.paths(
+                further := DoubledPeriodProblem(problems[-1])
+            ):  # an earlier run had come to them
                 problems.append(further)
             groups = [OrbitBranches(one, legs.paths(one), cut_off=True) for one in problems]
             paths = [path for group in groups for path in group.paths]
-            reason, cause = _cut_off(stop, self.clock.limit) + reached(scene, paths), _cause(stop)
+            reason, cause = _stop_prefix(stop, self.clock.limit) + stop_reason(scene, paths), _cause(stop)
         return groups, reason + self.stiff if reason else "", cause
 
 
@@ -193,25 +208,25 @@ def _finished(
         return replace(curve, cause=Cause.INTERRUPTED)
 
 
-def _doubted(curve: Curve, doubts: Doubts) -> Curve:
+def _with_uncertain_frequencies(curve: Curve, doubts: UncertainFrequencies) -> Curve:
     """With where the balance that it began near may lack branches."""
     curve.unsure, curve.folds_unsure = list(doubts.levels), list(doubts.folds)
     return curve
 
 
-def _without(problem: OrbitProblem, lost: int) -> str:
+def _missing_periods(problem: OrbitProblem, lost: int) -> str:
     """Why the curves of motions that repeat after so many periods are not complete."""
     return f"of {counted(lost, 'flip')} no motion was found that repeats after {problem.repeats} periods"
 
 
-def _watched(problem: OrbitProblem, z: FloatArray) -> None:
+def _check_held_contacts(problem: OrbitProblem, z: FloatArray) -> None:
     """`NotKeptError` if a contact that is held would not have kept its state in the motion at z."""
     shot = problem.shot(z)
     if shot is not None:
         check(shot)
 
 
-def _cut_off(stop: BaseException, limit: float | None) -> str:
+def _stop_prefix(stop: BaseException, limit: float | None) -> str:
     """How the reason of a curve begins that has been stopped."""
     over = isinstance(stop, TimeOver)
     return f"not finished in {limit:g} s of processor time, at " if over else f"{INTERRUPTED} at "
@@ -222,7 +237,7 @@ def _cause(stop: BaseException) -> Cause:
     return Cause.CALCULATION if isinstance(stop, TimeOver) else Cause.INTERRUPTED
 
 
-def _too_stiff(scene: Scene, limit: float | None) -> tuple[str, float | None]:
+def _too_stiff(scene: Scene, limit: float | None, options: ExactOptions) -> tuple[str, float | None]:
     """Which contact is too stiff for its motion to be followed, and what to take instead; else ''.
 
     And the limit of time: where that never ends it is said after so long, if there is none of one's own.
@@ -230,24 +245,31 @@ def _too_stiff(scene: Scene, limit: float | None) -> tuple[str, float | None]:
     whole = scene.whole()
     resists = whole.contacts and whole.modal.frequency.all()
     stiff = too_stiff(System(whole, (1,)), moves=True) if resists else ""
-    return stiff, EXACT_CURVES.stiff if stiff and limit is None else limit
+    return stiff, options.stiff_seconds if stiff and limit is None else limit
 
 
-def _visited(scene: Scene, at: tuple[float, ...], report: Report, limit: float | None) -> Curve:
+def _visited(
+    scene: Scene, at: tuple[float, ...], report: Report, limit: float | None, options: ExactOptions
+) -> Curve:
     around = replace(scene, frequency_range=(0.0, at[-1]))
-    stiff, limit = _too_stiff(replace(scene, frequency_range=(at[0], at[-1])), limit)
-    poll = Clock(limit, report).poll
-    visitor, others, reason, doubts = Visitor(around, poll), list[Sample](), "", Doubts()
+    stiff, limit = _too_stiff(replace(scene, frequency_range=(at[0], at[-1])), limit, options)
+    poll = CurveTimeLimit(limit, report).poll
+    visitor, others, reason, doubts = (
+        SteppedSweep(around, poll),
+        list[OrbitRecord](),
+        "",
+        UncertainFrequencies(),
+    )
     cause = Cause.CALCULATION
     try:
         visitor.run(at, report)
-        others.extend(unreached(scene, at, visitor.points, report, poll, doubts))
+        others.extend(coexisting_orbits(scene, at, visitor.points, report, poll, doubts))
     except (KeyboardInterrupt, TimeOver) as stop:
-        where = shown(scene, visitor.points[-1].frequency) if visitor.points else "the start"
-        reason, cause = _cut_off(stop, limit) + where, _cause(stop)
+        where = with_unit(scene, visitor.points[-1].frequency) if visitor.points else "the start"
+        reason, cause = _stop_prefix(stop, limit) + where, _cause(stop)
     except SimulationError as error:
         reason = str(error)
     reason = reason or visitor.reason
     reason = reason + stiff if reason else ""
     found = _finished(partial(visited_curve, scene, visitor, others), reason, Search(poll, report), cause)
-    return _doubted(found, doubts)
+    return _with_uncertain_frequencies(found, doubts)

@@ -91,11 +91,11 @@ def _fit(
     plain = replace(scene, fit=None)
     chosen, fitted = wanted.harmonics or (1,), None
     response = Response.without_curves(plain)
-    for _ in range(FITTED_RESPONSE.rounds):
+    for _ in range(FITTED_RESPONSE.max_rounds):
         near = None if fitted is None else fitted[1].values
         try:
-            found = _found(
-                plain, scene, chosen, part(progress, 0.0, FITTED_RESPONSE.fitting), near, checkpoint
+            found = _fitted_parameters(
+                plain, scene, chosen, part(progress, 0.0, FITTED_RESPONSE.fit_share), near, checkpoint
             )
         except KeyboardInterrupt:
             if fitted is None:
@@ -110,7 +110,7 @@ def _fit(
         try:
             response = trace(
                 there,
-                progress=part(progress, FITTED_RESPONSE.fitting, 1.0),
+                progress=part(progress, FITTED_RESPONSE.fit_share, 1.0),
                 keep=checkpoint,
                 **asked,
                 **options,
@@ -128,7 +128,7 @@ def _fit(
     return response
 
 
-def _found(
+def _fitted_parameters(
     plain: Scene,
     scene: Scene,
     harmonics: tuple[int, ...],

@@ -9,11 +9,11 @@ import numpy as np
 
 from fcm.at_rest import RestOptions
 from fcm.model.scene import FloatArray, Scene
-from fcm.response.coexisting_search import Extents, Search
+from fcm.response.coexisting_search import CoexistingMotions, Search
 from fcm.response.options import COEXISTING
 from fcm.response.resumable_branches import TimeOver
 from fcm.results.orbits import Stuck
-from fcm.shooting.orbit_record import Sample
+from fcm.shooting.orbit_record import OrbitRecord
 from fcm.shooting.partly_sticking_orbits import partly_stuck_motions
 from fcm.shooting.periodic import Poll
 from fcm.shooting.traction_families import Family, family
@@ -24,7 +24,7 @@ REST = RestOptions()
 
 
 @dataclass
-class NotUnique:
+class FrictionExtent:
     """The extent over residual friction at points, nan where the amplitude is unique; and what is beside."""
 
     least: FloatArray  # (point, dof)
@@ -33,33 +33,39 @@ class NotUnique:
     beside: list[Stuck] = field(default_factory=list)  # motions that no extent holds
 
 
-def not_unique(
-    scene: Scene, points: Sequence[Sample | None], amplitude: FloatArray, rows: Sequence[int], search: Search
-) -> NotUnique:
+def friction_extent(
+    scene: Scene,
+    points: Sequence[OrbitRecord | None],
+    amplitude: FloatArray,
+    rows: Sequence[int],
+    search: Search,
+) -> FrictionExtent:
     """What is found at some of the points; amplitude : of all, (point, dof)."""
     least, greatest = np.full_like(amplitude, np.nan), np.full_like(amplitude, np.nan)
-    out = NotUnique(least, greatest, np.full(len(points), np.nan))
+    out = FrictionExtent(least, greatest, np.full(len(points), np.nan))
     told = [(k, point) for k in rows if (point := points[k]) is not None]
     for omega in sorted({point.frequency for _, point in told}):
         here = [k for k, point in told if point.frequency == omega]
         found = search.known(omega, amplitude[here])
         if found is None:
             samples = [point for _, point in told if point.frequency == omega]
-            found = _told(scene, samples, Extents.unknown(omega, amplitude[here]), search)
+            found = _told(scene, samples, CoexistingMotions.unknown(omega, amplitude[here]), search)
             search.keep(found)
         out.least[here], out.greatest[here], out.whole[here] = found.least, found.greatest, found.whole
         out.beside += found.beside
     return out
 
 
-def _told(scene: Scene, points: list[Sample], out: Extents, search: Search) -> Extents:
+def _told(
+    scene: Scene, points: list[OrbitRecord], out: CoexistingMotions, search: Search
+) -> CoexistingMotions:
     """What is found at the points of one frequency."""
     families, amplitude = dict[int, Family](), out.amplitude
     for k, point in enumerate(points):
         same = [
             one
             for one in families
-            if np.allclose(amplitude[one], amplitude[k], rtol=COEXISTING.unique, atol=0.0)
+            if np.allclose(amplitude[one], amplitude[k], rtol=COEXISTING.amplitude_tolerance, atol=0.0)
         ]
         found = families[same[0]] if same else _family(scene, point, out.whole, k, search.poll)
         if found is not None:
@@ -75,7 +81,8 @@ def _told(scene: Scene, points: list[Sample], out: Extents, search: Search) -> E
         greatest = np.max([found.greatest, *(one.family.greatest for one in those)], axis=0)
         whole = found.complete and not search.over
         if (
-            greatest - least > COEXISTING.unique * greatest + REST.displacement * greatest.max(initial=0.0)
+            greatest - least
+            > COEXISTING.amplitude_tolerance * greatest + REST.displacement * greatest.max(initial=0.0)
         ).any():
             out.least[k], out.greatest[k], out.whole[k] = least, greatest, whole
         elif not whole:
@@ -87,7 +94,7 @@ def _told(scene: Scene, points: list[Sample], out: Extents, search: Search) -> E
     return out
 
 
-def _family(scene: Scene, point: Sample, whole: FloatArray, k: int, poll: Poll) -> Family | None:
+def _family(scene: Scene, point: OrbitRecord, whole: FloatArray, k: int, poll: Poll) -> Family | None:
     """The family of a point; None if it has none, or, with 0 for the whole, if it cannot be told."""
     alone = len(scene.contacts) == 1 and has_friction(scene.contacts[0])
     if "E" not in point.states or (alone and set(point.states) == {"E"}):  # of several another may slip

@@ -13,37 +13,39 @@ from dataclasses import replace
 
 import numpy as np
 
-from fcm.accuracy.outline import Outline
-from fcm.accuracy.refinement import Accurate, judged
-from fcm.branches.force_level import Found, resonances, solutions
+from fcm.accuracy.outline import UncheckedResponse
+from fcm.accuracy.refinement import RefinedResponse, with_errors
+from fcm.branches.force_level import LevelSolutions, resonances, solutions
 from fcm.branches.options import LEVEL_CURVE, LEVELS, LevelOptions
 from fcm.branches.prolongation import at_its_frequency
 from fcm.branches.trace import Traced, with_further
-from fcm.harmonic_balance.reported_quantities import reported, reported_at
+from fcm.harmonic_balance.reported_quantities import reported_at, reported_quantities
 from fcm.harmonic_balance.system import System
-from fcm.harmonic_balance.work_budget import TooLongError
+from fcm.harmonic_balance.work_budget import WorkLimitError
 from fcm.model.scene import FloatArray
 from fcm.stability.unstable_ranges import Stretch, stretches_of
 
 
-def with_traced(found: Accurate, traced: Traced, accuracy: float) -> Accurate:
+def with_traced(found: RefinedResponse, traced: Traced, accuracy: float) -> RefinedResponse:
     """A response with further branches, which come after its own."""
     system, known = found.system, len(found.shown)
-    shown = (*found.shown, *(reported(system, path) for path in traced.branches.paths[known:]))
-    every = judged(Outline(system, traced, shown, found.seconds), accuracy, found.errors)
+    shown = (*found.shown, *(reported_quantities(system, path) for path in traced.branches.paths[known:]))
+    every = with_errors(UncheckedResponse(system, traced, shown, found.seconds), accuracy, found.errors)
     return replace(every, further=found.further, begun=found.begun)
 
 
-def with_levels_below_peaks(found: Accurate, accuracy: float, options: LevelOptions = LEVELS) -> Accurate:
+def with_levels_below_peaks(
+    found: RefinedResponse, accuracy: float, options: LevelOptions = LEVELS
+) -> RefinedResponse:
     """With the branches that the level leads to where low harmonics come to the highest peaks."""
     system = found.system
-    looked = list(_looks(system, _met(found, options), options))
+    looked = list(_level_solutions(system, _excited_frequencies(found, options), options))
     return _with_branches(found, looked, [z for one in looked for z in one.solutions], accuracy)
 
 
 def with_levels_where_unstable(
-    found: Accurate, stable: Sequence[FloatArray], accuracy: float, options: LevelOptions = LEVELS
-) -> tuple[Accurate, bool]:
+    found: RefinedResponse, stable: Sequence[FloatArray], accuracy: float, options: LevelOptions = LEVELS
+) -> tuple[RefinedResponse, bool]:
     """With the branches that the level leads to in ranges in which nothing is stable, and whether more
     harmonics have a higher motion there.
 
@@ -54,14 +56,14 @@ def with_levels_where_unstable(
     system, paths = found.system, found.traced.branches.paths
     stretches = stretches_of(paths, stable, system.scene.frequency_range)
     harmonics = system.harmonics
-    if len(harmonics) < options.many:
-        harmonics = tuple(sorted({*harmonics, *range(1, options.many + 1)}))
+    if len(harmonics) < options.max_harmonics:
+        harmonics = tuple(sorted({*harmonics, *range(1, options.max_harmonics + 1)}))
     more = system.with_harmonics(harmonics)
-    looked = list(_looks(more, stretches, options))
+    looked = list(_level_solutions(more, stretches, options))
     passed = [z for one in looked for z in one.solutions]
     if more.harmonics == system.harmonics:
         return _with_branches(found, looked, passed, accuracy), False
-    looked = [replace(one, harmonics=system.harmonics, solutions=(), turns=()) for one in looked]
+    looked = [replace(one, harmonics=system.harmonics, solutions=(), folds=()) for one in looked]
     guesses = (system.extended(z, more.harmonics) for z in passed)
     starts = [z for z in (at_its_frequency(system, guess) for guess in guesses) if z is not None]
     found = _with_branches(found, looked, starts, accuracy)
@@ -71,8 +73,8 @@ def with_levels_where_unstable(
 
 
 def _with_branches(
-    found: Accurate, looked: Sequence[Found], starts: Sequence[FloatArray], accuracy: float
-) -> Accurate:
+    found: RefinedResponse, looked: Sequence[LevelSolutions], starts: Sequence[FloatArray], accuracy: float
+) -> RefinedResponse:
     """With the branches through solutions, and where it was looked for them."""
     if not looked:
         return found
@@ -82,7 +84,9 @@ def _with_branches(
     return with_traced(found, traced, accuracy)
 
 
-def _looks(system: System, stretches: Iterable[Stretch], options: LevelOptions) -> Iterator[Found]:
+def _level_solutions(
+    system: System, stretches: Iterable[Stretch], options: LevelOptions
+) -> Iterator[LevelSolutions]:
     """What the level passes in the middle of stretches, the widest first.
 
     Of a wide stretch both halves are looked at as well: a closed branch may lie beside its middle. The level
@@ -90,16 +94,16 @@ def _looks(system: System, stretches: Iterable[Stretch], options: LevelOptions) 
     """
     first, last = system.scene.frequency_range
     left = sorted(stretches, key=_width)
-    seconds = max(options.share * system.work.seconds, options.unnoticed)
-    with system.work.up_to(system.work.seconds + seconds):
+    seconds = max(options.work_fraction * system.work.seconds, options.min_seconds)
+    with system.work.limited_to(system.work.seconds + seconds):
         while left:
             low, high = left.pop()
             middle = 0.5 * (low + high)
             try:
-                yield solutions(system, middle, LEVEL_CURVE.near)
-            except TooLongError:
+                yield solutions(system, middle, LEVEL_CURVE.clear_level)
+            except WorkLimitError:
                 return
-            if high - low > options.wide * (last - first):
+            if high - low > options.wide_range * (last - first):
                 left = sorted([*left, (low, middle), (middle, high)], key=_width)
 
 
@@ -107,21 +111,23 @@ def _width(stretch: Stretch) -> float:
     return stretch[1] - stretch[0]
 
 
-def _met(found: Accurate, options: LevelOptions) -> Iterator[Stretch]:
+def _excited_frequencies(found: RefinedResponse, options: LevelOptions) -> Iterator[Stretch]:
     """Where low harmonics come to a highest peak, and between that and the nearest resonance, as those of
     smaller motions are: single frequencies, as stretches of no width."""
     low, high = found.system.scene.frequency_range
     known, inside = [one.omega for one in found.traced.found], resonances(found.system)
     for top in _highest_peaks(found):
         nearest = min(inside, key=lambda omega: abs(omega - top), default=top)
-        harmonics = (h for h in found.system.harmonics if 1 < h <= options.low)
+        harmonics = (h for h in found.system.harmonics if 1 < h <= options.strong_harmonics)
         for omega in (omega / h for h in harmonics for omega in (top, 0.5 * (top + nearest))):
-            if low < omega < high and all(abs(omega - other) > options.near * omega for other in known):
+            if low < omega < high and all(
+                abs(omega - other) > options.distinct_frequency * omega for other in known
+            ):
                 known.append(omega)
                 yield omega, omega
 
 
-def _highest_peaks(found: Accurate) -> Iterator[float]:
+def _highest_peaks(found: RefinedResponse) -> Iterator[float]:
     """The frequencies of the highest peaks of the degrees of freedom."""
     paths, shown = found.traced.branches.paths, found.shown
     heights = np.array([one.amplitude.max(axis=0) for one in shown])

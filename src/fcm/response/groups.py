@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.branches.shared_levels import forget
+from fcm.branches.shared_levels import clear
 from fcm.model.scene import Scene
 from fcm.response.options import SWEEP
 from fcm.response.request import Request
@@ -57,9 +57,9 @@ class Work:
     def __call__(self, group: Group, report: Report) -> list[Curve]:
         curves = _known(group, report.saved)
         begin, saved = time.monotonic(), len(curves)
-        forget()
+        clear()
         for number, scene in list(enumerate(group))[len(curves) :]:
-            if time.monotonic() - begin > SWEEP.saved:
+            if time.monotonic() - begin > SWEEP.save_interval:
                 saved, begin = _save(curves, saved, report), time.monotonic()
             try:
                 report(number / len(group), "")

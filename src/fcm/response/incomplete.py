@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from fcm.accuracy.refinement import Accurate
+from fcm.accuracy.refinement import RefinedResponse
 from fcm.continuation import Status
-from fcm.harmonic_balance.residual import Points
-from fcm.harmonic_balance.response_quantities import Record
+from fcm.harmonic_balance.residual import PointQuantities
+from fcm.harmonic_balance.response_quantities import PointRecord
 from fcm.harmonic_balance.stiff_contacts import too_stiff
 from fcm.harmonic_balance.system import System
 from fcm.harmonic_balance.well_posedness import REASONS, undetermined
@@ -20,7 +20,7 @@ FLOATING = "; rigid-body modes are at rest only while closed contacts hold them"
 UNDAMPED = "; nothing damps the structure, so that it may turn back on the spot: try a damping ratio of 1e-4"
 
 
-def incomplete(found: Accurate, points: Record) -> tuple[str, npt.NDArray[np.bool_]]:
+def incomplete(found: RefinedResponse, points: PointRecord) -> tuple[str, npt.NDArray[np.bool_]]:
     """Why a curve is not complete, empty if it is; and which of its points are no steady states (point,)."""
     system, branches = found.system, found.traced.branches
     unit = system.scene.frequency_unit
@@ -29,21 +29,21 @@ def incomplete(found: Accurate, points: Record) -> tuple[str, npt.NDArray[np.boo
     for why, which in reasons.items():
         if which.any():
             omega = in_unit(points.z[which, -1], unit)
-            return f"from {omega.min():.5g} to {omega.max():.5g} {unit} {because(system, why)}", nowhere
+            return f"from {omega.min():.5g} to {omega.max():.5g} {unit} {reason_for(system, why)}", nowhere
     status = branches.status
     if status is Status.COMPLETE:
         return "", nowhere
     broken = next((path for path in branches.paths if path.status is status), None)
     if broken is None:
-        return f"{status.value}{_would_do(system, status)}", nowhere
+        return f"{status.value}{remedy(system, status)}", nowhere
     end = float(broken.parameter[-1])
-    why = f"{status.value}{_would_do(system, status)}"
+    why = f"{status.value}{remedy(system, status)}"
     if status is Status.STALLED:
         why = _resonant(system, end) or why
     return f"stopped at {in_unit(end, unit):.8g} {unit}: {why}", nowhere
 
 
-def because(system: System, why: str) -> str:
+def reason_for(system: System, why: str) -> str:
     """One of REASONS in the keys of the scene."""
     return REASONS[why].format(_soft(system.scene.of_matrices))
 
@@ -61,8 +61,8 @@ def no_steady_states(system: System, z: FloatArray, level: FloatArray) -> dict[s
     """
     if system.linear.natural.all():
         return {}
-    points = Points(system.looking, len(z))
-    points.take(np.ascontiguousarray(z), np.zeros_like(z), np.ascontiguousarray(level))
+    points = PointQuantities(system.shared_balance, len(z))
+    points.evaluate(np.ascontiguousarray(z), np.zeros_like(z), np.ascontiguousarray(level))
     found = undetermined(system, z, np.asarray(points.force))
     return {why: which & (level > 0.0) for why, which in found.items()}
 
@@ -78,9 +78,9 @@ def _resonant(system: System, omega: float) -> str:
         return ""
     met = linear.stiffened(system.springs(stuck=True))
     for h in system.harmonics:
-        near = met[np.abs(met - h * omega) < SENTENCES.resonant * met]
+        near = met[np.abs(met - h * omega) < SENTENCES.resonance_tolerance * met]
         if near.size:
-            at, soft = (float(in_unit(x, unit)) for x in (near[0], near[0] / SENTENCES.soft))
+            at, soft = (float(in_unit(x, unit)) for x in (near[0], near[0] / SENTENCES.spring_ratio))
             hold = f"try a modal.frequency of {soft:.1g} for them, with a ratio of 0.01"
             if system.scene.of_matrices:
                 spring = f"the frequencies of their modes to some {soft:.1g} {unit}"
@@ -92,7 +92,7 @@ def _resonant(system: System, omega: float) -> str:
     return ""
 
 
-def _would_do(system: System, status: Status) -> str:
+def remedy(system: System, status: Status) -> str:
     """What would help where a curve has stalled, if that is known."""
     if status is not Status.STALLED:
         return ""

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from fcm.accuracy.refinement import enlarged, estimated
-from fcm.harmonic_balance.cost_model import AGAIN
+from fcm.accuracy.refinement import enlarged, with_estimated_errors
+from fcm.harmonic_balance.cost_model import MAX_SECONDS_REPEATED
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.options import OPTIMUM
@@ -18,10 +18,10 @@ from fcm.results.tracked import Optimal, TrackedCurve
 from fcm.run import Progress
 from fcm.run.progress import part
 from fcm.scene.draft import Number
-from fcm.tracking.lowest_peak import Lowest, Search
-from fcm.tracking.minimax import Valley, descend
+from fcm.tracking.lowest_peak import LowestPeak, LowestPeakSearch
+from fcm.tracking.minimax import PeakEnvelope, descend
 from fcm.tracking.parameter_line import along
-from fcm.tracking.peak_envelope import UNFINISHED, Least, Target
+from fcm.tracking.peak_envelope import INCOMPLETE, EnvelopeMinimum, Target
 from fcm.tracking.stability import stability_along
 from fcm.tracking.trials import by_trials
 
@@ -39,7 +39,7 @@ def with_values(scene: Scene, numbers: list[Number], values: FloatArray) -> Scen
     return scene.draft.curve(scene, scene.parameters, every)
 
 
-class Task:
+class PeakTask:
     """One scene (of one curve) with what is to be chosen."""
 
     def __init__(self, scene: Scene, numbers: list[Number], accuracy: float) -> None:
@@ -48,28 +48,28 @@ class Task:
         self.bounds = np.array(scene.optimum.bounds)
         dofs = scene.modal.dofs
         self.targets = [Target(dofs.index(aim.dof), aim.ends) for aim in scene.optimum.minimise]
-        self.seeking: Search | Valley | None = None  # what is at work,
+        self.seeking: LowestPeakSearch | PeakEnvelope | None = None  # what is at work,
         self.fewer: Optimal | None = None  # and what was found before, with fewer harmonics
 
-    def put(self, values: FloatArray) -> Scene:
+    def with_values(self, values: FloatArray) -> Scene:
         """The scene with values of the numbers."""
         return with_values(self.scene, self.numbers, values)
 
-    def so_far(self) -> Optimal | None:
+    def least_traced(self) -> Optimal | None:
         """Of a search that is interrupted: the least of what was traced; None where nothing was."""
-        found = None if self.seeking is None else self.seeking.so_far()
+        found = None if self.seeking is None else self.seeking.least_traced()
         if self.seeking is None or found is None:
-            return None if self.fewer is None else replace(self.fewer, kind=UNFINISHED)
+            return None if self.fewer is None else replace(self.fewer, kind=INCOMPLETE)
         return replace(_optimal(self, *found, self.seeking.system.harmonics), fewer=self.fewer)
 
 
-def optimum(task: Task, harmonics: tuple[int, ...] | None, progress: Progress | None) -> Found:
+def optimum(task: PeakTask, harmonics: tuple[int, ...] | None, progress: Progress | None) -> Found:
     """With given harmonics, or with those that the accuracy takes at the optimum itself."""
-    chosen, seconds = harmonics or (1,), AGAIN
-    known: Lowest | None = None
+    chosen, seconds = harmonics or (1,), MAX_SECONDS_REPEATED
+    known: LowestPeak | None = None
     task.fewer = None
-    for i in range(OPTIMUM.rounds):
-        shown = part(progress, i / OPTIMUM.rounds, (i + 1) / OPTIMUM.rounds)
+    for i in range(OPTIMUM.max_rounds):
+        shown = part(progress, i / OPTIMUM.max_rounds, (i + 1) / OPTIMUM.max_rounds)
         if len(task.numbers) == 1:
             task.seeking = search = _search(task, chosen)
             known = search.run(known, _sharing(shown))
@@ -80,7 +80,7 @@ def optimum(task: Task, harmonics: tuple[int, ...] | None, progress: Progress | 
             found = _downhill(task, chosen)
         if harmonics:
             break
-        more, taken = enough(task, found[0], chosen, seconds)
+        more, taken = harmonics_for_peaks(task, found[0], chosen, seconds)
         if more == chosen:
             break
         chosen, seconds, task.fewer = more, seconds - taken, found[0]
@@ -91,20 +91,20 @@ def _sharing(progress: Progress | None) -> Callable[[float], None] | None:
     return None if progress is None else lambda share: progress(share, "optimum")
 
 
-def enough(
-    task: Task, found: Optimal, harmonics: tuple[int, ...], seconds: float = AGAIN
+def harmonics_for_peaks(
+    task: PeakTask, found: Optimal, harmonics: tuple[int, ...], seconds: float = MAX_SECONDS_REPEATED
 ) -> tuple[tuple[int, ...], float]:
     """The harmonics that the accuracy of the peaks to be least takes at an optimum, from some on.
 
     No more than a response can be followed with in some seconds; and how many that takes.
     """
-    scene, taken = task.put(np.array(list(found.values.values()))), 0.0
+    scene, taken = task.with_values(np.array(list(found.values.values()))), 0.0
     dofs = [target.dof for target in task.targets]
     while True:
-        there = estimated(System(scene, harmonics), task.accuracy)
+        there = with_estimated_errors(System(scene, harmonics), task.accuracy)
         height = np.max([one.amplitude.max(axis=0) for one in there.shown], axis=0, initial=0.0)[dofs]
-        worst = float(there.peak[dofs][height > OPTIMUM.counts * height.max()].max(initial=0.0))
-        there = replace(there, worst=worst)
+        worst = float(there.peak[dofs][height > OPTIMUM.min_height * height.max()].max(initial=0.0))
+        there = replace(there, max_error=worst)
         if worst <= task.accuracy:
             return harmonics, taken
         more = enlarged(there, task.accuracy, seconds - taken)
@@ -113,36 +113,40 @@ def enough(
         harmonics, taken = more, taken + there.seconds_with(more)
 
 
-def _search(task: Task, harmonics: tuple[int, ...]) -> Search:
+def _search(task: PeakTask, harmonics: tuple[int, ...]) -> LowestPeakSearch:
     (number,), span = task.numbers, (float(task.bounds[0, 0]), float(task.bounds[0, 1]))
-    return Search(System(task.scene, harmonics), along(number), span, task.targets)
+    return LowestPeakSearch(System(task.scene, harmonics), along(number), span, task.targets)
 
 
-def _on_line(task: Task, found: Lowest, harmonics: tuple[int, ...]) -> Found:
+def _on_line(task: PeakTask, found: LowestPeak, harmonics: tuple[int, ...]) -> Found:
     """Of one number, by the curves of the peaks."""
     if found.best is None:
-        raise ResponseError(_nothing(task))
+        raise ResponseError(_no_peak(task))
     way = _search(task, harmonics).way
     curves = [as_curve(task.scene, way, *stability_along(way, one)) for one in found.curves]
     return _optimal(task, np.array([found.best.s]), found.best, harmonics), curves
 
 
-def _downhill(task: Task, harmonics: tuple[int, ...]) -> Found:
+def _downhill(task: PeakTask, harmonics: tuple[int, ...]) -> Found:
     """Of several numbers; from what was found with fewer harmonics."""
-    task.seeking = valley = Valley(System(task.scene, harmonics), task.numbers, task.bounds, task.targets)
+    task.seeking = valley = PeakEnvelope(
+        System(task.scene, harmonics), task.numbers, task.bounds, task.targets
+    )
     found = descend(valley, None if task.fewer is None else np.array(list(task.fewer.values.values())))
     if found is None:
-        raise ResponseError(_nothing(task))
+        raise ResponseError(_no_peak(task))
     return _optimal(task, found[0], found[1], harmonics), []
 
 
-def _nothing(task: Task) -> str:
+def _no_peak(task: PeakTask) -> str:
     dofs = " and ".join(task.scene.modal.dofs[target.dof] for target in task.targets)
     why = f"{dofs} has no peak inside the range of frequencies"
     return f"optimum: {why}; minimise greatest.NAME, or widen the range"
 
 
-def _optimal(task: Task, values: FloatArray, best: Least, harmonics: tuple[int, ...]) -> Optimal:
+def _optimal(
+    task: PeakTask, values: FloatArray, best: EnvelopeMinimum, harmonics: tuple[int, ...]
+) -> Optimal:
     scene = task.scene
     assert scene.optimum is not None
     names = tuple(f"{'greatest' if aim.ends else 'peak'}.{aim.dof}" for aim in scene.optimum.minimise)

@@ -18,17 +18,17 @@ import numpy.typing as npt
 from fcm.accuracy.level_errors import errors_at_levels, evenness, stable_at_levels
 from fcm.accuracy.options import REFINEMENT, VALIDITY
 from fcm.branches.force_level import level_curve
-from fcm.branches.linear_limits import highest
+from fcm.branches.linear_limits import highest_linear_limit
 from fcm.continuation import Mark, Status
 from fcm.continuation.path import Path
 from fcm.harmonic_balance.cost_model import with_twice_as_many
-from fcm.harmonic_balance.planar_quantities import in_plane
+from fcm.harmonic_balance.planar_quantities import planar_quantities
 from fcm.harmonic_balance.response_quantities import cycles, loops, recorded_at_levels
 from fcm.harmonic_balance.static_equilibrium import RestError
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.groups import anonymous, lost_curve
-from fcm.response.incomplete import because, no_steady_states
+from fcm.response.incomplete import no_steady_states, reason_for
 from fcm.response.options import INPUT_LIMITS
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_modes
@@ -82,7 +82,10 @@ def trace_levels(
         (curve, frequency * UNIT[scene.frequency_unit]) for curve in scene.each_curve() for frequency in at
     ]
     tasks = [
-        (_without(curve, omega, NOT_BEGUN, Cause.INTERRUPTED), partial(_level, curve, wanted, omega, span))
+        (
+            _without(curve, omega, NOT_BEGUN, Cause.INTERRUPTED),
+            partial(_level_curve, curve, wanted, omega, span),
+        )
         for curve, omega in ways
     ]
     mark = (
@@ -103,9 +106,13 @@ def level_fault(low: float, high: float) -> str:
     """What is wrong with a span of levels of the forces; empty if nothing is."""
     if fault := span_fault(low, high):
         return fault
-    if high > INPUT_LIMITS.level:
-        return f"a level beyond {INPUT_LIMITS.level:g} is a mistake of units"
-    return "" if high > INPUT_LIMITS.rest else f"up to a level of {INPUT_LIMITS.rest:g} there is but rest"
+    if high > INPUT_LIMITS.max_level:
+        return f"a level beyond {INPUT_LIMITS.max_level:g} is a mistake of units"
+    return (
+        ""
+        if high > INPUT_LIMITS.min_level
+        else f"up to a level of {INPUT_LIMITS.min_level:g} there is but rest"
+    )
 
 
 def _without(scene: Scene, omega: float, reason: str, cause: Cause = Cause.CALCULATION) -> Curve:
@@ -114,7 +121,7 @@ def _without(scene: Scene, omega: float, reason: str, cause: Cause = Cause.CALCU
     return replace(lost_curve(scene, reason, cause), parameters=parameters, level=np.empty(0))
 
 
-def _level(scene: Scene, wanted: Request, omega: float, span: tuple[float, float]) -> Curve:
+def _level_curve(scene: Scene, wanted: Request, omega: float, span: tuple[float, float]) -> Curve:
     """With the harmonics that are wanted; with ever more until they are enough for the accuracy."""
     begin, stopped = time.perf_counter(), ""
     system = System(scene, wanted.harmonics or (1,))
@@ -149,7 +156,7 @@ def _worst(curve: Curve) -> float:
     that of a peak is not. What hardly moves is not asked for."""
     assert curve.level is not None
     height = np.nanmax(curve.amplitude, axis=0)
-    moves = height > REFINEMENT.nothing * height.max()
+    moves = height > REFINEMENT.min_amplitude * height.max()
     peaks = np.array([peak.error for peak in curve.peaks.values()])[moves]
     there = curve.error[curve.level == 1.0][:, moves]
     return float(np.max([*peaks, *there[np.isfinite(there)]], initial=0.0))
@@ -162,7 +169,7 @@ def _followed(system: System, omega: float, span: tuple[float, float]) -> Curve:
     except RestError as error:
         return _without(system.scene, omega, str(error))
     # what folds back into the span from beyond it is part of the curve
-    reach = (span[0], max(span[1], highest(system, omega)))
+    reach = (span[0], max(span[1], highest_linear_limit(system, omega)))
     path = level_curve(system, omega, reach, system.scene.max_step, (1.0, span[1]))
     inside = np.flatnonzero((path.parameter >= span[0]) & (path.parameter <= span[1]))
     curve = _without(system.scene, omega, "no response was found at the least level")
@@ -190,7 +197,7 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     error, of_borne = errors_at_levels(system, z, level, amplitude, borne, even)
     truncation = (error * amplitude).max(axis=1) / np.where(size := amplitude.max(axis=1), size, 1.0)
     stable = stable_at_levels(system, z, even)
-    known = truncation <= VALIDITY.believed  # with more harmonics there may be no solution where it is not
+    known = truncation <= VALIDITY.max_error  # with more harmonics there may be no solution where it is not
     stable[~known & (stable == 1.0)] = np.nan
     lost = no_steady_states(system, z, level)
     for which in lost.values():
@@ -213,7 +220,7 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     }
     if len(system.harmonics) > 1:
         of_points["harmonic"] = X
-    plane, tops = in_plane(system, z), amplitude.argmax(axis=0)
+    plane, tops = planar_quantities(system, z), amplitude.argmax(axis=0)
     residual = residual_changes_at_levels(system, z, level, amplitude, words).tolist()
     at_top = stability_at_top(amplitude, stable).tolist()
     folds = level[(path.mark[inside] & Mark.FOLD) > 0]
@@ -224,15 +231,17 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
         },
         "level_folds": folds.tolist(),
         "undetermined": int(undetermined(system.scene, words).sum()),
-        "reason": _lost(system, level, lost),
+        "reason": _unsteady_ranges(system, level, lost),
         "in_plane": None if plane is None else plane.at(rows),
     }
     return {name: pick(values, rows) for name, values in of_points.items()} | of_curve
 
 
-def _lost(system: System, level: FloatArray, lost: Mapping[str, npt.NDArray[np.bool_]]) -> str:
+def _unsteady_ranges(system: System, level: FloatArray, lost: Mapping[str, npt.NDArray[np.bool_]]) -> str:
     """From where to where there is no steady state, and why; empty if there is one everywhere."""
     for why, which in lost.items():
         if which.any():
-            return f"from level {level[which].min():.5g} to {level[which].max():.5g} {because(system, why)}"
+            return (
+                f"from level {level[which].min():.5g} to {level[which].max():.5g} {reason_for(system, why)}"
+            )
     return ""

@@ -12,9 +12,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from fcm.accuracy.outline import Outline
-from fcm.accuracy.refinement import Accurate, judged
-from fcm.harmonic_balance.reported_quantities import reported
+from fcm.accuracy.outline import UncheckedResponse
+from fcm.accuracy.refinement import RefinedResponse, with_errors
+from fcm.harmonic_balance.reported_quantities import reported_quantities
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.options import OPTIMUM
@@ -24,16 +24,16 @@ from fcm.structure.linear import Linear, linear_of
 from fcm.structure.ring import RingLinear
 
 
-def leading(scene: Scene) -> Scene:
+def with_master_dofs(scene: Scene) -> Scene:
     """The scene at the degrees of freedom that lead in its first curve; itself if there are few."""
     dofs = scene.modal.dofs
-    if len(dofs) <= OPTIMUM.dofs:
+    if len(dofs) <= OPTIMUM.max_dofs:
         return scene
     natural, shapes = _modes(linear_of(scene.each_curve()[0]))
     order = np.argsort(natural)
     within = 1 + int(np.count_nonzero(natural <= scene.frequency_range[1]))
     chosen = np.zeros(len(dofs), dtype=np.bool_)
-    chosen[np.abs(shapes[order[: min(within, OPTIMUM.dofs)]]).argmax(axis=1)] = True
+    chosen[np.abs(shapes[order[: min(within, OPTIMUM.max_dofs)]]).argmax(axis=1)] = True
     return scene.at_attached_and(chosen)
 
 
@@ -45,15 +45,15 @@ def _modes(linear: Linear) -> tuple[FloatArray, FloatArray]:
     return linear.natural, linear.dofs
 
 
-def of_all(found: Accurate, scene: Scene, accuracy: float) -> Accurate:
+def with_all_dofs(found: RefinedResponse, scene: Scene, accuracy: float) -> RefinedResponse:
     """What was found of a scene that leads, of all degrees of freedom of another."""
     system = System(scene, found.system.harmonics, found.system.table, found.system.corrected)
-    shown = tuple(reported(system, path) for path in found.traced.branches.paths)
-    every = judged(Outline(system, found.traced, shown, found.seconds), accuracy)
+    shown = tuple(reported_quantities(system, path) for path in found.traced.branches.paths)
+    every = with_errors(UncheckedResponse(system, found.traced, shown, found.seconds), accuracy)
     return replace(every, further=found.further, begun=found.begun)
 
 
-def with_tops(peaks: Mapping[str, Peak], found: Accurate) -> dict[str, Peak]:
+def with_tops(peaks: Mapping[str, Peak], found: RefinedResponse) -> dict[str, Peak]:
     """Peaks (by dof) with what is higher between the points."""
     raised = dict(peaks)
     for path, shown in zip(found.traced.branches.paths, found.shown, strict=True):

@@ -13,7 +13,7 @@ from fcm.accuracy.contact_load_errors import relative
 from fcm.accuracy.options import PAIR
 from fcm.continuation import Mark, Status
 from fcm.harmonic_balance.cost_model import with_twice_as_many
-from fcm.harmonic_balance.planar_quantities import in_plane
+from fcm.harmonic_balance.planar_quantities import planar_quantities
 from fcm.harmonic_balance.response_quantities import cycles, loops
 from fcm.harmonic_balance.system import System
 from fcm.harmonic_balance.wave_extremes import half_peak_to_peak
@@ -21,7 +21,7 @@ from fcm.model.scene import FloatArray, Scene
 from fcm.nonlinear_modes.backbone import Mode, ModeError, nonlinear_mode, truncation
 from fcm.nonlinear_modes.forced_response import flanks, modal_force, resonances, resonant_level
 from fcm.response.groups import anonymous, lost_curve
-from fcm.response.incomplete import because, no_steady_states
+from fcm.response.incomplete import no_steady_states, reason_for
 from fcm.response.options import INPUT_LIMITS
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_other_harmonics, refuse_own_laws
@@ -65,12 +65,12 @@ def trace_modes(
         If nothing is finished then; else what is finished is returned.
     """
     low, high = span
-    if not 0.0 < low < high <= INPUT_LIMITS.amplitudes * low:
+    if not 0.0 < low < high <= INPUT_LIMITS.max_amplitude_ratio * low:
         raise ResponseError(
             f"level is from {low:g} to {high:g}, but the modal amplitudes must rise, from more than 0, by at "
-            f"most a factor of {INPUT_LIMITS.amplitudes:g}"
+            f"most a factor of {INPUT_LIMITS.max_amplitude_ratio:g}"
         )
-    if not all(0.0 < level <= INPUT_LIMITS.level for level in force_levels):
+    if not all(0.0 < level <= INPUT_LIMITS.max_level for level in force_levels):
         raise ResponseError("a level of the forces must be finite and greater than 0")
     check_free(scene)
     begin = time.perf_counter()
@@ -160,7 +160,7 @@ def _recorded(
     for why, which in lost.items():
         if which.any():
             ends = mode.amplitude[which]
-            reason = f"from modal amplitude {ends.min():.5g} to {ends.max():.5g} {because(system, why)}"
+            reason = f"from modal amplitude {ends.min():.5g} to {ends.max():.5g} {reason_for(system, why)}"
     curve = replace(
         empty,
         frequency=mode.omega,
@@ -183,7 +183,7 @@ def _recorded(
         harmonics=system.harmonics,
         harmonic=X if len(system.harmonics) > 1 else None,
         mode=_along(mode, number, levels),
-        in_plane=in_plane(system, mode.contacts),
+        in_plane=planar_quantities(system, mode.contacts),
     )
     curve.greatest = greatest_of(curve)
     return curve

@@ -26,36 +26,38 @@ from fcm.run import Report
 from fcm.shooting.harmonic_balance_state import state_of
 from fcm.shooting.initial_orbits import near_balance
 from fcm.shooting.options import SHOOTING
-from fcm.shooting.orbit_record import Sample
+from fcm.shooting.orbit_record import OrbitRecord
 from fcm.shooting.peaks_and_folds import Guess, located
 from fcm.shooting.periodic import Poll
 from fcm.shooting.problem import OrbitProblem
-from fcm.shooting.work_budget import Doubts
+from fcm.shooting.work_budget import UncertainFrequencies
 from fcm.time_domain.errors import SimulationError
 
 
 @dataclass(frozen=True)
-class Alone:
+class PeaksOnly:
     """The peaks, folds and jumps of a scene, by frequency, and what it took to find them."""
 
-    points: list[Sample]
+    points: list[OrbitRecord]
     jumps: list[Jump] = field(default_factory=list)
     periods: int = 0  # that were computed
-    doubts: Doubts = field(default_factory=Doubts)  # of the balance that they are near
+    doubts: UncertainFrequencies = field(
+        default_factory=UncertainFrequencies
+    )  # of the balance that they are near
 
 
-def peaks_alone(scene: Scene, known: list[Sample], report: Report, poll: Poll) -> Alone | None:
+def peaks_only(scene: Scene, known: list[OrbitRecord], report: Report, poll: Poll) -> PeaksOnly | None:
     """The peaks, folds and jumps of a scene; None where the balance has others.
 
     known : to which points are added as they are found.
     """
-    if not _leads_on(traced_curve(scene, ONE_HARMONIC, poll)):
+    if not _one_harmonic_suffices(traced_curve(scene, ONE_HARMONIC, poll)):
         return None
     balanced = traced_curve(scene, Request(None, INPUT_LIMITS.accuracy), poll)
     swept = balanced.swept()
     if not balanced.complete or swept.untold or not _at_folds(swept, balanced):
         return None
-    problem, folds = OrbitProblem(scene), dict[float, Sample]()
+    problem, folds = OrbitProblem(scene), dict[float, OrbitRecord]()
     guesses = list(_guesses(scene, balanced))
     for number, guess in enumerate(guesses):
         report(number / len(guesses), f"{number} of {len(guesses)} peaks and folds")
@@ -72,10 +74,12 @@ def peaks_alone(scene: Scene, known: list[Sample], report: Report, poll: Poll) -
     there = [jump for jump in jumps if jump is not None]
     if len(there) < len(jumps):
         return None
-    return Alone(points, there, problem.periods, Doubts(balanced.unsure, balanced.folds_unsure))
+    return PeaksOnly(
+        points, there, problem.periods, UncertainFrequencies(balanced.unsure, balanced.folds_unsure)
+    )
 
 
-def peaks_curve(scene: Scene, alone: Alone, reason: str, search: Search) -> Curve:
+def peaks_curve(scene: Scene, alone: PeaksOnly, reason: str, search: Search) -> Curve:
     """The curve of peaks, folds and jumps; complete without a reason."""
     return _curve(scene, alone.points, Swept(alone.jumps, []), alone.periods, reason, search)
 
@@ -90,7 +94,7 @@ def peaks_of(groups: Sequence[OrbitBranches], reason: str, search: Search) -> Cu
 
 
 def _curve(
-    scene: Scene, points: list[Sample], swept: Swept, periods: int, reason: str, search: Search
+    scene: Scene, points: list[OrbitRecord], swept: Swept, periods: int, reason: str, search: Search
 ) -> Curve:
     curve = curve_of_points(scene, points, reason, search)
     curve.folds = [one.frequency for one in points if one.mark & Mark.FOLD]
@@ -100,13 +104,13 @@ def _curve(
     return curve
 
 
-def _leads_on(single: Curve) -> bool:
+def _one_harmonic_suffices(single: Curve) -> bool:
     """Whether by one harmonic the peaks are nearly those of the motion, and it jumps at folds alone.
 
     Else a balance that is near enough takes longer than to follow the exact curve, and often that is
     followed after all.
     """
-    near = all(peak.error <= EXACT_CURVES.near for peak in single.peaks.values())
+    near = all(peak.error <= EXACT_CURVES.max_peak_error for peak in single.peaks.values())
     swept = single.swept()
     told = bool(single.folds) or not swept.untold  # beside folds more harmonics tell
     return single.complete and near and told and _at_folds(swept, single)
@@ -117,11 +121,11 @@ def _at_folds(swept: Swept, curve: Curve) -> bool:
     return all(jump.frequency in curve.folds for jump in swept.jumps)
 
 
-def _paired(folds: dict[float, Sample], points: list[Sample]) -> bool:
+def _paired(folds: dict[float, OrbitRecord], points: list[OrbitRecord]) -> bool:
     """Whether each fold of the balance is one of the motion, and the motion has no other."""
     theirs = sorted(one.frequency for one in folds.values())
     own = sorted(one.frequency for one in points if one.mark & Mark.FOLD)
-    return len(theirs) == len(own) and np.allclose(theirs, own, rtol=SHOOTING.peaks.same, atol=0.0)
+    return len(theirs) == len(own) and np.allclose(theirs, own, rtol=SHOOTING.peaks.peak_tolerance, atol=0.0)
 
 
 def _guesses(scene: Scene, curve: Curve) -> Iterator[Guess]:
@@ -129,18 +133,18 @@ def _guesses(scene: Scene, curve: Curve) -> Iterator[Guess]:
     if not curve.points:
         return
     for dof in range(curve.amplitude.shape[1]):
-        for k in _summits(curve, dof):
+        for k in _peaks(curve, dof):
             yield _guess(scene, curve, k, dof)
     for fold in curve.folds:
         for at in np.flatnonzero(curve.frequency == fold):
             yield _guess(scene, curve, int(at), None)
 
 
-def _summits(curve: Curve, dof: int) -> list[int]:
+def _peaks(curve: Curve, dof: int) -> list[int]:
     """Points that are higher than their neighbours, and nearly as high as the highest."""
     a = np.where(np.isfinite(curve.amplitude[:, dof]), curve.amplitude[:, dof], -np.inf)
     padded = np.concatenate(([-np.inf], a, [-np.inf]))
-    tops = (a >= padded[:-2]) & (a >= padded[2:]) & (a >= EXACT_CURVES.high * a.max()) & (a > 0.0)
+    tops = (a >= padded[:-2]) & (a >= padded[2:]) & (a >= EXACT_CURVES.peak_threshold * a.max()) & (a > 0.0)
     return [int(k) for k in np.flatnonzero(tops)]
 
 
@@ -152,7 +156,7 @@ def _guess(scene: Scene, curve: Curve, k: int, dof: int | None) -> Guess:
     return Guess(float(curve.frequency[k]), one, (float(curve.frequency[beside]), other), dof)
 
 
-def _jump(scene: Scene, jump: Jump, fold: Sample | None) -> Jump | None:
+def _jump(scene: Scene, jump: Jump, fold: OrbitRecord | None) -> Jump | None:
     """The jump of the balance at the exact fold that belongs to it; None where there is no such jump."""
     if fold is None or not fold.stable:
         return None
@@ -160,7 +164,7 @@ def _jump(scene: Scene, jump: Jump, fold: Sample | None) -> Jump | None:
     return None if after is None else Jump(jump.sweep, fold.frequency, fold.measure.amplitude, after)
 
 
-def _landed(scene: Scene, fold: Sample, wanted: FloatArray) -> FloatArray | None:
+def _landed(scene: Scene, fold: OrbitRecord, wanted: FloatArray) -> FloatArray | None:
     """The amplitude of the other stable motion at a fold, the nearest to the balance's, if any is."""
     try:
         found = [one.measure.amplitude for one in near_balance(scene, fold.frequency) if one.stable]

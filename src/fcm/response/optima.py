@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
-from fcm.response.least_peak import Found, Task, enough, optimum
+from fcm.response.least_peak import Found, PeakTask, harmonics_for_peaks, optimum
 from fcm.response.options import OPTIMUM
 from fcm.results.tracked import Optimal, TrackedCurve
 from fcm.run import Checkpoint, Progress, Results, fingerprint
@@ -16,7 +16,7 @@ KINDS = (Optimal, TrackedCurve)  # what is kept consists of these
 
 
 def optima(
-    tasks: list[Task],
+    tasks: list[PeakTask],
     harmonics: tuple[int, ...] | None,
     checkpoint: Checkpoint | None,
     progress: Progress | None,
@@ -30,19 +30,19 @@ def optima(
     """
     found: list[Found] = []
     try:
-        for one in _sought(tasks, harmonics, checkpoint, progress):
+        for one in _optima(tasks, harmonics, checkpoint, progress):
             found.append(one)
         return found if harmonics else _with_the_same(tasks, found, checkpoint), False
     except KeyboardInterrupt:
-        last = tasks[len(found)].so_far() if len(found) < len(tasks) else None
+        last = tasks[len(found)].least_traced() if len(found) < len(tasks) else None
         found += [] if last is None else [(last, [])]
         if not found:
             raise
         return found, True
 
 
-def _sought(
-    tasks: list[Task],
+def _optima(
+    tasks: list[PeakTask],
     harmonics: tuple[int, ...] | None,
     checkpoint: Checkpoint | None,
     progress: Progress | None,
@@ -56,14 +56,14 @@ def _sought(
         yield kept.finished[i][0]
 
 
-def _kept(tasks: list[Task], harmonics: tuple[int, ...] | None, checkpoint: Checkpoint) -> Results:
+def _kept(tasks: list[PeakTask], harmonics: tuple[int, ...] | None, checkpoint: Checkpoint) -> Results:
     """What is finished of these tasks; they are known by all that decides their optima."""
     scenes = [replace(task.scene, name="", title="", curves=()) for task in tasks]
     mark = fingerprint("optima", harmonics, [(task.numbers, task.accuracy) for task in tasks], scenes)
     return checkpoint.results(mark, KINDS, lambda i, found: _fits(tasks, i, found))
 
 
-def _fits(tasks: list[Task], number: int, results: Any) -> bool:
+def _fits(tasks: list[PeakTask], number: int, results: Any) -> bool:
     """Whether results that were read from a file can be the optimum of the task with this number."""
     if not (0 <= number < len(tasks) and isinstance(results, list) and len(results) == 1):
         return False
@@ -74,18 +74,18 @@ def _fits(tasks: list[Task], number: int, results: Any) -> bool:
     return curves and isinstance(found[0], Optimal) and found[0].parameters == tasks[number].scene.parameters
 
 
-def _with_the_same(tasks: list[Task], found: list[Found], checkpoint: Checkpoint | None) -> list[Found]:
+def _with_the_same(tasks: list[PeakTask], found: list[Found], checkpoint: Checkpoint | None) -> list[Found]:
     """The optima with the same harmonics, as the curves of a response have: what any of them takes."""
     every = {h for one, _ in found for h in one.harmonics}
     if all(len(one.harmonics) == len(every) for one, _ in found):
         return found
-    for _ in range(OPTIMUM.rounds):
+    for _ in range(OPTIMUM.max_rounds):
         chosen = tuple(sorted(every))
         others = [task for task, one in zip(tasks, found, strict=True) if one[0].harmonics != chosen]
-        again = _sought(others, chosen, checkpoint, None)
+        again = _optima(others, chosen, checkpoint, None)
         found = [one if one[0].harmonics == chosen else next(again) for one in found]
         for task, one in zip(tasks, found, strict=True):
-            every |= set(enough(task, one[0], chosen)[0])
+            every |= set(harmonics_for_peaks(task, one[0], chosen)[0])
         if len(every) == len(chosen):
             break
     return found

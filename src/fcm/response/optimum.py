@@ -12,7 +12,7 @@ import numpy as np
 
 from fcm.model.scene import Optimum, Scene
 from fcm.response.curve_sweep import checkpoint_of
-from fcm.response.least_peak import Found, Task, with_values
+from fcm.response.least_peak import Found, PeakTask, with_values
 from fcm.response.optima import optima
 from fcm.response.options import OPTIMUM
 from fcm.response.request import ResponseError, request_of
@@ -28,7 +28,7 @@ from fcm.scene.address import replaced
 from fcm.scene.draft import Draft, Number, number_of
 from fcm.scene.errors import counted
 from fcm.tracking.options import SEARCH
-from fcm.tracking.peak_envelope import UNFINISHED
+from fcm.tracking.peak_envelope import INCOMPLETE
 
 
 def optimise(
@@ -68,21 +68,23 @@ def optimise(
     begin = time.perf_counter()
     numbers, free = _freed(scene, scene.optimum.vary)
     wanted = request_of(scene, harmonics, accuracy)
-    tasks = [Task(curve, numbers, wanted.accuracy) for curve in free.each_curve()]
+    tasks = [PeakTask(curve, numbers, wanted.accuracy) for curve in free.each_curve()]
     with checkpoint_of(keep, resume) as checkpoint:
-        found, stopped = optima(tasks, wanted.harmonics, checkpoint, part(progress, 0.0, OPTIMUM.seeking))
+        found, stopped = optima(
+            tasks, wanted.harmonics, checkpoint, part(progress, 0.0, OPTIMUM.search_share)
+        )
         tracking = _tracking(scene.optimum, found)
         if stopped:
             return _unfinished(free, tracking, len(tasks), begin)
         there, options = _at(free, numbers, tracking.optima), {**options, "keep": checkpoint}
-        shown = part(progress, OPTIMUM.seeking, 1.0)
+        shown = part(progress, OPTIMUM.search_share, 1.0)
         response = trace(there, progress=shown, harmonics=tracking.harmonics, **options)
         if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
             checkpoint.done()
     for one, curve in zip(tracking.optima, response.curves, strict=True):
         _check_moves(one, curve)
     tracking.optima = [_with_error(one, c) for one, c in zip(tracking.optima, response.curves, strict=True)]
-    tracking.problems += _higher(tracking, response)
+    tracking.problems += _missed_peaks(tracking, response)
     if wanted.harmonics is None:
         _say_what_is_short(tracking, response, wanted.accuracy)
     response.tracking = tracking
@@ -107,7 +109,7 @@ def _unfinished(free: Scene, tracking: Tracking, count: int, begin: float) -> Re
         replace(one, stable=none, residual=none) for one, none in zip(tracking.optima, untold, strict=True)
     ]
     tracking.interrupted = True
-    finished = sum(one.kind != UNFINISHED for one in tracking.optima)
+    finished = sum(one.kind != INCOMPLETE for one in tracking.optima)
     said = "" if count == 1 else f" (of {count}, {finished} are)"
     tracking.problems.append(
         f"{INTERRUPTED} before the optimum was found{said} and the response with it traced"
@@ -160,21 +162,21 @@ def _check_moves(found: Optimal, curve: Curve) -> None:
 
 def _with_error(found: Optimal, curve: Curve) -> Optimal:
     """With the estimated error of the peaks that are greatest, and what else is known of the motion there."""
-    there = [_told(curve, dof, omega) for dof, omega in found.active]
+    there = [_known_of_peak(curve, dof, omega) for dof, omega in found.active]
     error = float(np.max([one.error for one in there])) if there else np.nan
     stable, residual = (tuple(getattr(one, name) for one in there) for name in ("stable", "residual"))
     return replace(found, error=error, stable=stable, residual=residual)
 
 
-def _told(curve: Curve, dof: str, omega: float) -> Peak:
+def _known_of_peak(curve: Curve, dof: str, omega: float) -> Peak:
     """What is told of the peak of a degree of freedom at a frequency.
 
     That need not be its greatest amplitude, which may be at an end of the range. NaN where it is not known.
     """
     greatest, d = curve.peaks[dof], list(curve.peaks).index(dof)
-    if abs(greatest.frequency - omega) <= OPTIMUM.place * omega:
+    if abs(greatest.frequency - omega) <= OPTIMUM.frequency_tolerance * omega:
         return greatest
-    at = np.flatnonzero(np.abs(curve.frequency - omega) <= OPTIMUM.place * omega)
+    at = np.flatnonzero(np.abs(curve.frequency - omega) <= OPTIMUM.frequency_tolerance * omega)
     residual = np.nan if curve.undetermined else 0.0
     if not at.size:
         return Peak(np.nan, omega, residual=residual)
@@ -198,7 +200,7 @@ def _with(harmonics: tuple[int, ...]) -> str:
     return f"with {counted(len(harmonics), 'harmonic')}"
 
 
-def _higher(tracking: Tracking, response: Response) -> list[str]:
+def _missed_peaks(tracking: Tracking, response: Response) -> list[str]:
     """What is wrong where a response has a higher peak than the ones that were followed."""
     said = []
     for found, curve in zip(tracking.optima, response.curves, strict=True):
@@ -207,7 +209,7 @@ def _higher(tracking: Tracking, response: Response) -> list[str]:
             what, _, dof = name.partition(".")
             peak = curve.peaks[dof]
             inside = what == "greatest" or peak.frequency not in ends
-            if inside and peak.amplitude > found.value * (1.0 + 10.0 * SEARCH.higher):
+            if inside and peak.amplitude > found.value * (1.0 + 10.0 * SEARCH.height_tolerance):
                 said.append(
                     f"at the optimum there is a higher {name}, {peak.amplitude:.6g}, than was followed"
                 )

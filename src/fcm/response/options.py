@@ -13,24 +13,24 @@ class InputLimits:
     ----------
     accuracy : float
         Relative, of peaks and folds, where nothing else is said.
-    frequency : float
+    max_frequency_ratio : float
         Times the highest natural frequency, beyond which a frequency is a mistake of units.
-    level : float
+    max_level : float
         Level of the forces, beyond which it is a mistake of units.
-    rest : float
+    min_level : float
         Level of the forces, below which the structure does not move.
-    amplitudes : float
+    max_amplitude_ratio : float
         Greatest ratio of the ends of a span of amplitudes.
-    narrowest : float
+    min_relative_width : float
         Relative width of a span: of a narrower one not even the first steps can be told from rounding.
     """
 
     accuracy: float = 1e-2
-    frequency: float = 1e6
-    level: float = 1e6
-    rest: float = 1e-3
-    amplitudes: float = 1e15
-    narrowest: float = 1e-6
+    max_frequency_ratio: float = 1e6
+    max_level: float = 1e6
+    min_level: float = 1e-3
+    max_amplitude_ratio: float = 1e15
+    min_relative_width: float = 1e-6
 
 
 INPUT_LIMITS = InputLimits()
@@ -42,22 +42,22 @@ class SentenceOptions:
 
     Attributes
     ----------
-    dofs, harmonics, frequencies : int
+    max_dofs, max_harmonics, max_frequencies : int
         Of each kind at most.
-    states : int
+    max_states : int
         Letters of a sequence of contact states: a contact that chatters has more, and the rest is cut off.
-    resonant : float
+    resonance_tolerance : float
         Relative distance of a harmonic's frequency from a resonance, up to which a curve stops at that.
-    soft : float
+    spring_ratio : float
         Times below that resonance the spring to the ground is that is advised: it shifts it by 1/1800.
     """
 
-    dofs: int = 3
-    harmonics: int = 6
-    frequencies: int = 5
-    states: int = 60
-    resonant: float = 1e-5
-    soft: float = 30.0
+    max_dofs: int = 3
+    max_harmonics: int = 6
+    max_frequencies: int = 5
+    max_states: int = 60
+    resonance_tolerance: float = 1e-5
+    spring_ratio: float = 30.0
 
 
 SENTENCES = SentenceOptions()
@@ -71,21 +71,21 @@ class SweepOptions:
     ----------
     batch : int
         Curves that are finished or interrupted together.
-    highest : int
+    expected_harmonic : int
         Harmonic that is expected to be the highest, where an accuracy decides.
-    traced : float
+    traced_share : float
         Share of the progress bar at which the curves are traced; then they are checked.
-    rounds : int
+    max_rounds : int
         Of more harmonics, after which what is left is said.
-    saved : float
+    save_interval : float
         [s] after which finished curves are saved before their group is, and no kill can lose them.
     """
 
     batch: int = 10
-    highest: int = 9
-    traced: float = 0.9
-    rounds: int = 4
-    saved: float = 1.0
+    expected_harmonic: int = 9
+    traced_share: float = 0.9
+    max_rounds: int = 4
+    save_interval: float = 1.0
 
 
 SWEEP = SweepOptions()
@@ -97,33 +97,33 @@ class SteppedOptions:
 
     Attributes
     ----------
-    far : float
+    max_distance : float
         Distance along the curve, in units of the motion, that is not continued at once.
-    astray : float
+    max_deviation : float
         Distance from what the direction foretells, relative to the way, beyond which a solution is on another
         branch;
-    close : float
+    min_deviation : float
         but never within this distance, in units of the motion.
-    smallest : float
+    min_step : float
         Part of the way between two frequencies that is not divided further: jumps are known to it.
-    beyond : float
+    overshoot : float
         Part of that way, past the end of a branch, where the motion is simulated: nearer it would linger.
-    leap : float
+    irregular_step : float
         Part of the frequency by which a motion that repeats after no single period is taken at once,
-    cycles : int
+    irregular_cycles : int
         and periods for which it is simulated after each leap.
-    jump : float
+    min_jump : float
         Relative change of an amplitude that is a jump.
     """
 
-    far: float = 0.5
-    astray: float = 0.6
-    close: float = 0.05
-    smallest: float = 1e-6
-    beyond: float = 0.1
-    leap: float = 0.005
-    cycles: int = 10
-    jump: float = 0.01
+    max_distance: float = 0.5
+    max_deviation: float = 0.6
+    min_deviation: float = 0.05
+    min_step: float = 1e-6
+    overshoot: float = 0.1
+    irregular_step: float = 0.005
+    irregular_cycles: int = 10
+    min_jump: float = 0.01
 
 
 STEPPED = SteppedOptions()
@@ -135,26 +135,26 @@ class ExactOptions:
 
     Attributes
     ----------
-    highest : int
+    max_harmonic : int
         Harmonic up to which modes are kept as they are; what that does is measured.
-    contacts : int
+    min_contacts : int
         Fewest of a scene of which some may be foreseen to keep their state.
-    stiff : float
+    stiff_seconds : float
         [s] of processor time for a curve that a stiff contact may keep from ever being finished.
-    beside : float
+    search_fraction : float
         Part of the time for a curve, that the search for what leads to further branches may take.
-    high : float
+    peak_threshold : float
         Part of the greatest amplitude of a degree of freedom: lower peaks of the balance are not the highest.
-    near : float
+    max_peak_error : float
         Relative error of peaks by one harmonic, beyond which one that is near enough has too many.
     """
 
-    highest: int = 3
-    contacts: int = 2
-    stiff: float = 10.0
-    beside: float = 0.5
-    high: float = 0.9
-    near: float = 0.1
+    max_harmonic: int = 3
+    min_contacts: int = 2
+    stiff_seconds: float = 10.0
+    search_fraction: float = 0.5
+    peak_threshold: float = 0.9
+    max_peak_error: float = 0.1
 
 
 EXACT_CURVES = ExactOptions()
@@ -166,17 +166,17 @@ class ResumableOptions:
 
     Attributes
     ----------
-    often : float
+    save_interval : float
         [s] between two savings at least,
-    share : float
+    time_fraction : float
         which may take this part of the time.
-    seldom : float
+    poll_interval : float
         [s] between two looks at the processor time, which takes long to tell on some machines.
     """
 
-    often: float = 0.5
-    share: float = 0.05
-    seldom: float = 0.05
+    save_interval: float = 0.5
+    time_fraction: float = 0.05
+    poll_interval: float = 0.05
 
 
 RESUMABLE = ResumableOptions()
@@ -188,17 +188,17 @@ class CoexistingOptions:
 
     Attributes
     ----------
-    orbits : float
+    orbit_tolerance : float
         Relative difference of two periodic motions, below which they are one.
-    within : float
+    extent_tolerance : float
         Relative difference of amplitudes, up to which a motion is within an extent.
-    unique : float
+    amplitude_tolerance : float
         Relative range of amplitudes, below which they are the same.
     """
 
-    orbits: float = 1e-5
-    within: float = 1e-3
-    unique: float = 1e-6
+    orbit_tolerance: float = 1e-5
+    extent_tolerance: float = 1e-3
+    amplitude_tolerance: float = 1e-6
 
 
 COEXISTING = CoexistingOptions()
@@ -210,14 +210,14 @@ class ContactChangeOptions:
 
     Attributes
     ----------
-    point : float
+    point_tolerance : float
         Distance, in the problem's scale, that rounding may put between the same point of two problems.
-    felt : float
+    load_tolerance : float
         Change of a contact's load, relative to the residual friction of another: less is rounding.
     """
 
-    point: float = 1e-8
-    felt: float = 1e-9
+    point_tolerance: float = 1e-8
+    load_tolerance: float = 1e-9
 
 
 CONTACT_CHANGES = ContactChangeOptions()
@@ -229,14 +229,14 @@ class FittedResponseOptions:
 
     Attributes
     ----------
-    rounds : int
+    max_rounds : int
         Of more harmonics, until the response takes no more than the fit had.
-    fitting : float
+    fit_share : float
         Share of the progress bar that is over when the numbers are found.
     """
 
-    rounds: int = 3
-    fitting: float = 0.8
+    max_rounds: int = 3
+    fit_share: float = 0.8
 
 
 FITTED_RESPONSE = FittedResponseOptions()
@@ -248,23 +248,23 @@ class OptimumOptions:
 
     Attributes
     ----------
-    rounds : int
+    max_rounds : int
         Of choosing harmonics by the accuracy at the optimum.
-    counts : float
+    min_height : float
         Part of the greatest peak: those that are lower are none.
-    seeking : float
+    search_share : float
         Share of the progress bar that is over when the optimum is found.
-    place : float
+    frequency_tolerance : float
         Relative difference of frequencies at which a peak was tracked and traced.
-    dofs : int
+    max_dofs : int
         Degrees of freedom, up to which a curve is followed by all: their peaks are points of it.
     """
 
-    rounds: int = 4
-    counts: float = 1e-6
-    seeking: float = 0.8
-    place: float = 1e-6
-    dofs: int = 50
+    max_rounds: int = 4
+    min_height: float = 1e-6
+    search_share: float = 0.8
+    frequency_tolerance: float = 1e-6
+    max_dofs: int = 50
 
 
 OPTIMUM = OptimumOptions()

@@ -8,8 +8,8 @@ from functools import cached_property
 
 from fcm.continuation import Path
 from fcm.shooting.jump_landings import with_landings
-from fcm.shooting.orbit_record import Sample, samples
-from fcm.shooting.period_doubling import Doubled, to_flips
+from fcm.shooting.orbit_record import OrbitRecord, samples
+from fcm.shooting.period_doubling import DoubledPeriodProblem, to_flips
 from fcm.shooting.problem import OrbitProblem
 
 
@@ -23,17 +23,17 @@ class OrbitBranches:
     cut_off: bool = False  # there is no time left to find what lies between the points
 
     @cached_property
-    def own(self) -> list[list[Sample]]:
+    def own(self) -> list[list[OrbitRecord]]:
         """The points of each path, and those at which it loses its stability."""
         return [samples(self.problem, path, located=not self.cut_off) for path in self.paths]
 
     @cached_property
-    def points(self) -> list[list[Sample]]:
+    def points(self) -> list[list[OrbitRecord]]:
         """The same, with those at the frequencies at which others end."""
         found = self.own
         if self.cut_off:
             return found
-        if isinstance(self.problem, Doubled) and self.once is not None:
+        if isinstance(self.problem, DoubledPeriodProblem) and self.once is not None:
             before = self.once.points
             found = [to_flips(self.problem, one, before) for one in found]
         return with_landings(self.problem, found)

@@ -19,19 +19,19 @@ from fcm.reduction.constant_state_contacts import (
     whole_states,
 )
 from fcm.response.coexisting_search import Search
-from fcm.response.coexisting_stuck import stuck_beside
-from fcm.response.friction_extent import NotUnique, not_unique
+from fcm.response.coexisting_stuck import coexisting_stuck
+from fcm.response.friction_extent import FrictionExtent, friction_extent
 from fcm.response.groups import lost_curve
 from fcm.response.options import SENTENCES
 from fcm.response.orbit_branches import OrbitBranches
-from fcm.response.stepped_sweep import Visitor
+from fcm.response.stepped_sweep import SteppedSweep
 from fcm.response.undetermined_traction import undetermined
 from fcm.results.contact_maxima import greatest_of
 from fcm.results.jumps import Swept
 from fcm.results.orbits import Orbits, Stuck
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve
-from fcm.shooting.orbit_record import Sample
+from fcm.shooting.orbit_record import OrbitRecord
 from fcm.shooting.period_doubling import bifurcations, flip, flips
 
 
@@ -45,7 +45,7 @@ def orbit_curve(groups: Sequence[OrbitBranches], reason: str, search: Search) ->
     NotKeptError
         If a contact that is held would not have kept its state.
     """
-    points, folds, scene = list[Sample | None](), list[float](), groups[0].problem.scene
+    points, folds, scene = list[OrbitRecord | None](), list[float](), groups[0].problem.scene
     changes = list[tuple[str, float]]()
     kept = list[FloatArray]()
     for group in groups:
@@ -70,13 +70,13 @@ def orbit_curve(groups: Sequence[OrbitBranches], reason: str, search: Search) ->
     return curve
 
 
-def _of_whole(scene: Scene, point: Sample) -> Sample:
+def _of_whole(scene: Scene, point: OrbitRecord) -> OrbitRecord:
     """A point with the contacts that are held."""
     states, borne = whole_states(scene, point.states), whole_borne(scene, point.borne, point.held[:, 1:])
     return replace(point, state=whole_state(scene, point.state), states=states, borne=borne)
 
 
-def _kept(scene: Scene, points: Sequence[Sample]) -> FloatArray:
+def _kept(scene: Scene, points: Sequence[OrbitRecord]) -> FloatArray:
     """The least of its limit or gap that each contact which is held keeps: (contact, 2), else nan."""
     kept = np.full((len(scene.contacts) + len(scene.held), 2), np.nan)
     if not points:
@@ -87,14 +87,14 @@ def _kept(scene: Scene, points: Sequence[Sample]) -> FloatArray:
     return kept
 
 
-def curve_of_points(scene: Scene, points: Sequence[Sample], reason: str, search: Search) -> Curve:
+def curve_of_points(scene: Scene, points: Sequence[OrbitRecord], reason: str, search: Search) -> Curve:
     """Points that no curve joins: one of NaN between each and the next."""
     apart = [one for point in points for one in (None, point)]
     return _curve(scene, apart[1:], reason, search)
 
 
 def visited_curve(
-    scene: Scene, visitor: Visitor, others: Sequence[Sample], reason: str, search: Search
+    scene: Scene, visitor: SteppedSweep, others: Sequence[OrbitRecord], reason: str, search: Search
 ) -> Curve:
     """The points at which sweeps were steady, in order, then others; complete without a reason."""
     curve = _curve(scene, [*visitor.points, *others], reason, search, everywhere=True)
@@ -106,7 +106,7 @@ def visited_curve(
 
 def _curve(
     scene: Scene,
-    points: Sequence[Sample | None],
+    points: Sequence[OrbitRecord | None],
     reason: str,
     search: Search,
     everywhere: bool = False,
@@ -114,10 +114,10 @@ def _curve(
     empty = lost_curve(scene, reason)
     frequency = _numbers(points, "frequency")
     amplitude = _rows(points, "amplitude", empty)
-    rows = _told(amplitude, everywhere)
-    others = not_unique(scene, points, amplitude, rows, search)
+    rows = _told_points(amplitude, everywhere)
+    others = friction_extent(scene, points, amplitude, rows, search)
     regime = _regimes(points, len(scene.contacts))
-    stuck = stuck_beside(scene, [] if search.over else rows, frequency, regime, others)
+    stuck = coexisting_stuck(scene, [] if search.over else rows, frequency, regime, others)
     told = everywhere | np.isfinite(others.whole)
     # of a motion that does not repeat neither its multipliers nor how far it ranges in the long run are known
     error = np.array([np.nan if p is None or p.repeats == 0 else 0.0 for p in points])
@@ -155,7 +155,7 @@ def _curve(
 
 
 def _orbits(
-    points: Sequence[Sample | None], empty: Curve, others: NotUnique, stuck: Sequence[Stuck]
+    points: Sequence[OrbitRecord | None], empty: Curve, others: FrictionExtent, stuck: Sequence[Stuck]
 ) -> Orbits:
     """What only exact curves have; stuck : motions beside the points, other than those of families."""
     return Orbits(
@@ -171,25 +171,25 @@ def _orbits(
     )
 
 
-def _numbers(points: Sequence[Sample | None], name: str) -> FloatArray:
+def _numbers(points: Sequence[OrbitRecord | None], name: str) -> FloatArray:
     """A number of each point; NaN between branches."""
     return np.array([np.nan if point is None else getattr(point, name) for point in points])
 
 
-def _rows(points: Sequence[Sample | None], name: str, empty: Curve) -> FloatArray:
+def _rows(points: Sequence[OrbitRecord | None], name: str, empty: Curve) -> FloatArray:
     """A measure of each point, (point, dof)."""
     none = np.full(len(empty.peaks), np.nan)
     rows = [none if point is None else getattr(point.measure, name) for point in points]
     return np.array(rows).reshape(len(points), len(empty.peaks))
 
 
-def _borne(points: Sequence[Sample | None], empty: Curve) -> FloatArray:
+def _borne(points: Sequence[OrbitRecord | None], empty: Curve) -> FloatArray:
     """What the contacts bear at each point, (point, contact, 4)."""
     none = np.full(empty.cycle.shape[1:], np.nan)
     return np.array([none if p is None else p.borne for p in points]).reshape(len(points), *none.shape)
 
 
-def _cycles(points: Sequence[Sample | None], name: str, empty: Curve) -> FloatArray:
+def _cycles(points: Sequence[OrbitRecord | None], name: str, empty: Curve) -> FloatArray:
     """The least or greatest amplitude of a cycle of each point, (point, dof)."""
     rows = _rows(points, "amplitude", empty)
     for k, point in enumerate(points):
@@ -198,7 +198,7 @@ def _cycles(points: Sequence[Sample | None], name: str, empty: Curve) -> FloatAr
     return rows
 
 
-def _told(amplitude: FloatArray, everywhere: bool) -> list[int]:
+def _told_points(amplitude: FloatArray, everywhere: bool) -> list[int]:
     """The points of which it is told what other motions residual friction allows: the peaks, or all."""
     known = np.isfinite(amplitude).any(axis=1)
     if everywhere:
@@ -206,16 +206,16 @@ def _told(amplitude: FloatArray, everywhere: bool) -> list[int]:
     return sorted({int(k) for k in np.nanargmax(amplitude, axis=0)}) if known.any() else []
 
 
-def _regimes(points: Sequence[Sample | None], contacts: int) -> npt.NDArray[np.str_]:
+def _regimes(points: Sequence[OrbitRecord | None], contacts: int) -> npt.NDArray[np.str_]:
     rows = [[""] * contacts if point is None else [_short(s) for s in point.states] for point in points]
     return np.array(rows, dtype=str).reshape(len(points), contacts)
 
 
 def _short(states: str) -> str:
-    return states if len(states) <= SENTENCES.states else states[: SENTENCES.states - 3] + "..."
+    return states if len(states) <= SENTENCES.max_states else states[: SENTENCES.max_states - 3] + "..."
 
 
-def _residual(amplitude: FloatArray, others: NotUnique, untold: npt.NDArray[np.bool_]) -> FloatArray:
+def _residual(amplitude: FloatArray, others: FrictionExtent, untold: npt.NDArray[np.bool_]) -> FloatArray:
     """By how much residual friction changes each amplitude (point, dof), relative; NaN where not told."""
     up, down = others.greatest - amplitude, amplitude - others.least
     change = np.maximum(up, down) / np.where(amplitude > 0.0, amplitude, 1.0)

@@ -12,18 +12,18 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
-from fcm.accuracy.refinement import Accurate, Keep, enlarged, finer
-from fcm.accuracy.stability_limits import Lost, lost_along, moved
-from fcm.accuracy.stability_validity import astray
+from fcm.accuracy.refinement import Keep, RefinedResponse, enlarged, retraced
+from fcm.accuracy.stability_limits import StabilityLimit, distances_from, stability_limits
+from fcm.accuracy.stability_validity import on_other_branch
 from fcm.branches.branch_points import all_up_to
 from fcm.branches.search import symmetry_lost, with_branching, with_isolas
-from fcm.harmonic_balance.reported_quantities import Reported, reported_at
+from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_at
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.further_levels import with_levels_below_peaks, with_levels_where_unstable, with_traced
-from fcm.response.master_dofs import of_all
+from fcm.response.master_dofs import with_all_dofs
 from fcm.response.options import SWEEP
-from fcm.stability.bifurcations import Inserted, stability, with_points
+from fcm.stability.bifurcations import InsertedPoint, stability, with_points
 
 Rows = npt.NDArray[np.intp]
 Harmonics = tuple[int, ...]
@@ -49,12 +49,12 @@ class Refined:
         The response of all degrees of freedom.
     """
 
-    found: Accurate
+    found: RefinedResponse
     stable: list[FloatArray] = field(default_factory=list)
-    lost: list[Lost] = field(default_factory=list)
+    lost: list[StabilityLimit] = field(default_factory=list)
     exceeded: bool = False
     bifurcations: list[tuple[str, float]] = field(default_factory=list)
-    every: Accurate | None = None
+    every: RefinedResponse | None = None
 
 
 # the response, the one before with fewer harmonics, the accuracy (None: the harmonics are given), the scene
@@ -62,7 +62,7 @@ class Refined:
 Stage = Callable[[Refined, Refined | None, float | None, Scene], tuple[Refined, Harmonics]]
 
 
-def refined(found: Accurate, accuracy: float | None, scene: Scene, keep: Keep) -> Refined:
+def refined(found: RefinedResponse, accuracy: float | None, scene: Scene, keep: Keep) -> Refined:
     """A response that was traced with every branch, its events, and all degrees of freedom of a scene.
 
     With an accuracy also with the harmonics that these take, unless that takes longer than is worth it.
@@ -70,18 +70,18 @@ def refined(found: Accurate, accuracy: float | None, scene: Scene, keep: Keep) -
     """
     now, before = Refined(found), None
     stages: Sequence[Stage] = (_with_branches, _with_events, _with_all_dofs)
-    for left in reversed(range(SWEEP.rounds + 1)):
+    for left in reversed(range(SWEEP.max_rounds + 1)):
         again = None
         for stage in stages:
             now, more = stage(now, before, accuracy, scene)
             if accuracy is not None and left and more != now.found.system.harmonics:
-                keep(now.found, now.found.worst, more)
-                again = finer(now.found, more, accuracy)
+                keep(now.found, now.found.max_error, more)
+                again = retraced(now.found, more, accuracy)
                 if again is not None:
                     break
         if again is None:
             break
-        keep(again, again.worst, ())
+        keep(again, again.max_error, ())
         now, before = Refined(again), now
     return now
 
@@ -110,7 +110,7 @@ def _with_events(
     found, exceeded = with_levels_where_unstable(now.found, now.stable, _most(accuracy))
     now = _with_stability(replace(now, found=found, exceeded=exceeded), accuracy)
     if before is not None:
-        now = replace(now, lost=moved(now.lost, before.lost))
+        now = replace(now, lost=distances_from(now.lost, before.lost))
     off = (one for one in now.lost if not one.error <= _most(accuracy))
     more = {h for one in off for h in one.harmonics} | set(now.found.system.harmonics)
     return now, tuple(sorted(more))
@@ -123,7 +123,7 @@ def _with_all_dofs(
     found, most = now.found, _most(accuracy)
     if found.system.scene is scene:
         return replace(now, every=found), found.system.harmonics
-    every = of_all(found, scene, most)
+    every = with_all_dofs(found, scene, most)
     short = found.reached and not every.reached
     return replace(now, every=every), enlarged(every, most) if short else found.system.harmonics
 
@@ -145,11 +145,11 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
     every = found.traced.branches.paths
     paths, shown, errors = list(every[:known]), list(found.shown[:known]), list(found.errors[:known])
     for path, seen, error in zip(every[known:], found.shown[known:], found.errors[known:], strict=True):
-        judged = stability(found.system, path, astray(error.believed) if short else None)
+        judged = stability(found.system, path, on_other_branch(error.on_same_branch) if short else None)
         inserted = judged.inserted
         bifurcations += [(one.kind.value, one.frequency) for one in judged.crossings]
         if accuracy is not None and not short:
-            lost += lost_along(found.system, path, judged.crossings, accuracy)
+            lost += stability_limits(found.system, path, judged.crossings, accuracy)
         if not inserted:
             paths.append(path)
             shown.append(seen)
@@ -164,7 +164,7 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
                 error,
                 amplitude=_between(error.amplitude, after),
                 truncation=_between(error.truncation, after),
-                met=np.insert(error.met, after + 1, error.met[after]),
+                is_same_curve=np.insert(error.is_same_curve, after + 1, error.is_same_curve[after]),
                 borne=_between(error.borne, after),
             )
         )
@@ -175,7 +175,9 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
     return replace(now, found=found, stable=stable, lost=lost, bifurcations=bifurcations)
 
 
-def _with_reported(system: System, known: Reported, inserted: Sequence[Inserted], after: Rows) -> Reported:
+def _with_reported(
+    system: System, known: ReportedQuantities, inserted: Sequence[InsertedPoint], after: Rows
+) -> ReportedQuantities:
     """With what is reported of points inserted after some others."""
     z, direction = (np.array([getattr(one, name) for one in inserted]) for name in ("z", "direction"))
     return known.with_rows(after, reported_at(system, z, direction))

@@ -13,17 +13,17 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.continuation import Checkpoint, Path
-from fcm.continuation.checkpoint import state_of
+from fcm.continuation.checkpoint import stepper_state
 from fcm.continuation.point import Points, Stored
 from fcm.continuation.stepper import Stepper
 from fcm.model.scene import FloatArray
 from fcm.response.options import CONTACT_CHANGES
-from fcm.response.resumable_branches import Leg, kind_of
+from fcm.response.resumable_branches import BranchLeg, kind_of
 from fcm.shooting.problem import OrbitProblem
 from fcm.time_domain.equations import has_friction
 
 
-class Released:
+class ReinstatedContacts:
     """From points of a problem with contacts held to those of one with fewer: linear in the unknowns.
 
     The friction force of a contact that sticks is k_u (u - rest), with u the displacement along it.
@@ -44,7 +44,7 @@ class Released:
                 )
                 self._rest[row] = -one.contact.k_u * one.rest
 
-    def legs(self, legs: Iterable[Leg]) -> Iterator[Leg]:
+    def legs(self, legs: Iterable[BranchLeg]) -> Iterator[BranchLeg]:
         """Those of a number of legs that are also of the other problem."""
         for leg in legs:
             path = None if leg.path is None else self._path(leg.path)
@@ -52,12 +52,12 @@ class Released:
                 None if leg.checkpoint is None or leg.path is not None else self._checkpoint(leg.checkpoint)
             )
             if path is not None or checkpoint is not None:
-                yield Leg(leg.number, *kind_of(self.now), path, checkpoint)
+                yield BranchLeg(leg.number, *kind_of(self.now), path, checkpoint)
 
-    def keeps(self, points: Iterable[FloatArray]) -> bool:
+    def states_kept(self, points: Iterable[FloatArray]) -> bool:
         """Whether the contacts that are released have kept their state in motions z."""
         shots = [self.before.shot(z) for z in points]
-        return all(shot is not None and (shot.kept[self._released] > 0.0).all() for shot in shots)
+        return all(shot is not None and (shot.held_distances[self._released] > 0.0).all() for shot in shots)
 
     def point(self, z: FloatArray) -> FloatArray:
         """The same motion in the other unknowns."""
@@ -70,7 +70,7 @@ class Released:
         return there
 
     def _path(self, path: Path) -> Path | None:
-        if not (len(path.z) and self.keeps(path.z)):
+        if not (len(path.z) and self.states_kept(path.z)):
             return None
         stepper = self._stepper(path.z[-1], path.direction[-1])
         if stepper is None:
@@ -82,7 +82,7 @@ class Released:
     def _checkpoint(self, checkpoint: Checkpoint) -> Checkpoint | None:
         """A checkpoint of the other problem, whose stepper is where that of this is."""
         before, last = checkpoint.kept
-        if not self.keeps([*before.z, last[0], checkpoint.z]):
+        if not self.states_kept([*before.z, last[0], checkpoint.z]):
             return None
         stepper = self._stepper(checkpoint.z, checkpoint.scale * checkpoint.tangent)
         if stepper is None:
@@ -99,7 +99,7 @@ class Released:
             kept=Stored(points, end),
             start=self.point(checkpoint.start),
             heading=self._heading(checkpoint),
-            **(state_of(stepper) | {"z": self.point(checkpoint.z)}),
+            **(stepper_state(stepper) | {"z": self.point(checkpoint.z)}),
         )
 
     def _stepper(self, z: FloatArray, direction: FloatArray) -> Stepper | None:
@@ -110,8 +110,8 @@ class Released:
             return None
         off = (np.asarray(stepper.here.z) - there) / np.asarray(stepper.newton.scale)
         same = (
-            np.linalg.norm(off) < CONTACT_CHANGES.point
-            and np.asarray(stepper.here.tangent) @ row > 1.0 - CONTACT_CHANGES.point
+            np.linalg.norm(off) < CONTACT_CHANGES.point_tolerance
+            and np.asarray(stepper.here.tangent) @ row > 1.0 - CONTACT_CHANGES.point_tolerance
         )
         return stepper if same else None
 

@@ -16,13 +16,13 @@ from fcm.model.scene import FloatArray
 from fcm.response.options import RESUMABLE
 from fcm.run import Report
 from fcm.shooting.orbit_record import recorded
-from fcm.shooting.period_doubling import Doubled
-from fcm.shooting.periodic import without_end
+from fcm.shooting.period_doubling import DoubledPeriodProblem
+from fcm.shooting.periodic import never_interrupt
 from fcm.shooting.problem import OrbitProblem
 
 
 @dataclass(frozen=True)
-class Leg:
+class BranchLeg:
     """A curve from one start in one direction: whole, or as far as it has come."""
 
     number: int  # in the order in which they are followed
@@ -31,7 +31,7 @@ class Leg:
     path: Path | None
     checkpoint: Checkpoint | None
 
-    def there(self) -> Path:
+    def partial_path(self) -> Path:
         """The points that there are, as those of a curve that is cut off."""
         if self.path is not None:
             return replace(self.path, status=Status.INTERRUPTED)
@@ -39,7 +39,7 @@ class Leg:
         return self.checkpoint.path(Status.INTERRUPTED)
 
 
-LEGS = (Leg, Path, Checkpoint, Status, Stored, Points)  # what is saved consists of these
+LEGS = (BranchLeg, Path, Checkpoint, Status, Stored, Points)  # what is saved consists of these
 
 
 class _Ended(Exception):  # noqa: N818
@@ -50,7 +50,7 @@ class TimeOver(Exception):  # noqa: N818
     """A curve has taken as long as it may."""
 
 
-class Clock:
+class CurveTimeLimit:
     """Of the processor time that a curve may take [s], from the beginning; without end if that is None.
 
     Each look is reported as a step.
@@ -75,7 +75,7 @@ class Clock:
         if self._end is not None and time.monotonic() > self._ask:
             if self.over:
                 raise TimeOver
-            self._ask = time.monotonic() + RESUMABLE.seldom
+            self._ask = time.monotonic() + RESUMABLE.poll_interval
 
 
 class Legs:
@@ -84,7 +84,7 @@ class Legs:
     The same curves in the same order after an interruption: those that were finished are not followed again,
     and the one that was begun goes on from its last point.
 
-    poll : called before every step, as a `Clock` looks.
+    poll : called before every step, as a `CurveTimeLimit` looks.
     passing : called with the problem and every point from which a step is made.
     """
 
@@ -92,7 +92,7 @@ class Legs:
         self,
         span: tuple[float, float],
         report: Report,
-        poll: Callable[[], None] = without_end,
+        poll: Callable[[], None] = never_interrupt,
         passing: Callable[[OrbitProblem, FloatArray], None] | None = None,
     ) -> None:
         self.report, self.low, self.high = report, *span
@@ -100,10 +100,10 @@ class Legs:
         self.number = 0  # of the next one
         self._recorded = 0  # points of the one that is followed
         self._begun: tuple[OrbitProblem, Checkpoint] | None = None
-        self._passed: Leg | None = None  # the last one of which nothing was wrong
-        self._given = dict[int, Leg]()  # of another scene, with the same motions
+        self._passed: BranchLeg | None = None  # the last one of which nothing was wrong
+        self._given = dict[int, BranchLeg]()  # of another scene, with the same motions
         self._seen, self._took = time.monotonic(), 0.0
-        saved = (leg for leg in report.saved if isinstance(leg, Leg))
+        saved = (leg for leg in report.saved if isinstance(leg, BranchLeg))
         self._known = {_key(leg): leg for leg in saved}  # the latest of each
 
     def __call__(
@@ -142,8 +142,8 @@ class Legs:
         """The curve from its start, or from a checkpoint of it on."""
         self._recorded = 0
         watch = partial(self._watch, problem, float(start[-1]))
-        if isinstance(problem, Doubled):
-            problem.begins()
+        if isinstance(problem, DoubledPeriodProblem):
+            problem.reset_flips()
         try:
             return follow(
                 problem, start, span, wanted, options, forward=forward, watch=watch, checkpoint=checkpoint
@@ -153,12 +153,12 @@ class Legs:
             return self._begun[1].path(Status.COMPLETE)
 
     def _watch(self, problem: OrbitProblem, begin: float, checkpoint: Checkpoint) -> None:
-        if isinstance(problem, Doubled) and problem.ended(checkpoint.z):
+        if isinstance(problem, DoubledPeriodProblem) and problem.has_passed_flip(checkpoint.z):
             raise _Ended
         self._begun = problem, checkpoint
         self._record(problem, checkpoint)
         covered = abs(float(checkpoint.z[-1]) - begin) / (self.high - self.low)
-        if time.monotonic() - self._seen > max(RESUMABLE.often, self._took / RESUMABLE.share):
+        if time.monotonic() - self._seen > max(RESUMABLE.save_interval, self._took / RESUMABLE.time_fraction):
             self.keep()
         self.report(covered, f"{checkpoint.kept.number} points")
         if self.passing is not None:
@@ -175,7 +175,7 @@ class Legs:
             self._recorded = checkpoint.kept.number - 1
             problem.forget()
 
-    def found(self, problem: OrbitProblem) -> list[Leg]:
+    def found(self, problem: OrbitProblem) -> list[BranchLeg]:
         """The legs of a problem as far as all their points were passed."""
         legs = {_key(leg): leg for leg in self._known.values() if leg.path is not None}
         if self._passed is not None and _key(self._passed) not in legs:
@@ -183,11 +183,11 @@ class Legs:
         held, repeats = kind_of(problem)
         return [leg for leg in legs.values() if (leg.held, leg.repeats) == (held, repeats)]
 
-    def take(self, legs: Iterable[Leg]) -> None:
+    def take(self, legs: Iterable[BranchLeg]) -> None:
         """Go on with legs that begin where one is to be followed."""
         self._given = {leg.number: leg for leg in legs}
 
-    def _taken(self, problem: OrbitProblem, start: FloatArray, forward: bool) -> Leg | None:
+    def _taken(self, problem: OrbitProblem, start: FloatArray, forward: bool) -> BranchLeg | None:
         """The one with the next number, if it begins there."""
         leg = self._given.get(self.number)
         known = leg is not None and _key(leg) == _key(self._leg(problem))
@@ -206,21 +206,21 @@ class Legs:
         """What is saved of the curves of a problem, those that an earlier run came to among them."""
         held, repeats = kind_of(problem)
         legs = [leg for leg in self._known.values() if (leg.held, leg.repeats) == (held, repeats)]
-        found = [leg.there() for leg in sorted(legs, key=lambda leg: leg.number)]
+        found = [leg.partial_path() for leg in sorted(legs, key=lambda leg: leg.number)]
         return [path for path in found if path.z.shape[0]]
 
     def _leg(
         self, problem: OrbitProblem, path: Path | None = None, checkpoint: Checkpoint | None = None
-    ) -> Leg:
+    ) -> BranchLeg:
         """The one that is followed now."""
-        return Leg(self.number, *kind_of(problem), path, checkpoint)
+        return BranchLeg(self.number, *kind_of(problem), path, checkpoint)
 
-    def _save(self, leg: Leg) -> None:
+    def _save(self, leg: BranchLeg) -> None:
         self._known[_key(leg)] = leg
         self.report.save(leg)
 
 
-def _begins_at(leg: Leg, problem: OrbitProblem, start: FloatArray, forward: bool) -> bool:
+def _begins_at(leg: BranchLeg, problem: OrbitProblem, start: FloatArray, forward: bool) -> bool:
     """Whether a leg is that from a start in a direction."""
     if leg.path is not None:
         first, rise = leg.path.z[0], float(leg.path.direction[0, -1])
@@ -232,7 +232,7 @@ def _begins_at(leg: Leg, problem: OrbitProblem, start: FloatArray, forward: bool
     return bool(off < PATH.same) and (rise > 0.0) == forward
 
 
-def _key(leg: Leg) -> tuple[int, tuple[int, ...], int]:
+def _key(leg: BranchLeg) -> tuple[int, tuple[int, ...], int]:
     return leg.number, leg.held, leg.repeats
 
 

@@ -84,8 +84,8 @@ def unknown(scene: Scene, wanted: Request) -> list[str]:
         assert curve.ring is not None
         lacking = curve.ring.lacking(range(1, LIMITS.harmonics + 1))
         if lacking:
-            named = ", ".join(map(str, list(lacking)[: SENTENCES.harmonics])) + (
-                ", ..." if len(lacking) > SENTENCES.harmonics else ""
+            named = ", ".join(map(str, list(lacking)[: SENTENCES.max_harmonics])) + (
+                ", ..." if len(lacking) > SENTENCES.max_harmonics else ""
             )
             diameters = ", ".join(map(str, sorted(set(lacking.values()))))
             found[

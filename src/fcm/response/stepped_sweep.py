@@ -22,11 +22,11 @@ from fcm.results.jumps import Jump
 from fcm.run import Report
 from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.initial_orbits import first_point, solution_at
-from fcm.shooting.orbit_record import Sample, sampled, settled
-from fcm.shooting.periodic import Poll, shoot, without_end
+from fcm.shooting.orbit_record import OrbitRecord, recorded_point, recorded_steady
+from fcm.shooting.periodic import Poll, never_interrupt, shoot
 from fcm.shooting.problem import OrbitProblem
-from fcm.shooting.steady_state import Steady, steady
-from fcm.shooting.trace import shown
+from fcm.shooting.steady_state import SteadyMotion, steady
+from fcm.shooting.trace import with_unit
 from fcm.time_domain.cycle_measures import Measure
 from fcm.time_domain.errors import CycleError, SimulationError
 from fcm.time_domain.simulation import cycles_from
@@ -35,35 +35,35 @@ from fcm.time_domain.system import System
 
 
 @dataclass(frozen=True)
-class Visit:
+class StepRecord:
     """What there was at one frequency, and what the next one goes on from."""
 
     number: int  # in the order of the sweeps, from 0
-    sample: Sample | None  # the motion, if it was steady
+    sample: OrbitRecord | None  # the motion, if it was steady
     state: State
     went_on: bool  # whether the sample is a periodic solution that is continued
     jumps: tuple[Jump, ...]  # on the way to it
-    restless: tuple[str, ...]  # all until then
+    irregular: tuple[str, ...]  # all until then
     refused: tuple[tuple[str, str], ...]
 
 
-STATES = (Visit, Sample, State, Measure, Steady)  # what is saved consists of these
+STATES = (StepRecord, OrbitRecord, State, Measure, SteadyMotion)  # what is saved consists of these
 
 
-class Visitor:
+class SteppedSweep:
     """Sweeps of one scene; what they have found is there whenever they are interrupted, as by `poll`."""
 
-    def __init__(self, scene: Scene, poll: Poll = without_end) -> None:
+    def __init__(self, scene: Scene, poll: Poll = never_interrupt) -> None:
         self.scene, self.problem, self.poll = scene, OrbitProblem(scene), poll
         self.newton = Newton(self.problem)
-        self.points: list[Sample] = []
+        self.points: list[OrbitRecord] = []
         self.sweep: list[str] = []
         self.jumps: list[Jump] = []
-        self.restless: dict[str, None] = {}  # frequencies without steady motion, in order
+        self.irregular: dict[str, None] = {}  # frequencies without steady motion, in order
         self.refused: dict[str, str] = {}  # frequencies at which no cycle can be computed, and why
-        self._here: Sample | None = None  # the periodic solution that is continued
+        self._here: OrbitRecord | None = None  # the periodic solution that is continued
         self._state = State.rest(scene)  # the motion, where there is none
-        self._sample: Sample | None = None  # what is steady now
+        self._sample: OrbitRecord | None = None  # what is steady now
 
     def run(self, frequencies: Sequence[float], report: Report | None = None) -> None:
         """Visit increasing frequencies [rad/s] upwards, then downwards; every visit is saved."""
@@ -73,14 +73,14 @@ class Visitor:
         done = self._go_on(report.saved, visits)
         for number, (sweep, omega) in enumerate(visits[done:], done):
             jumps = len(self.jumps)
-            report.begins(f"{sweep}, {shown(self.scene, omega)}")
-            self._go(omega, sweep)
+            report.begins(f"{sweep}, {with_unit(self.scene, omega)}")
+            self._step_to(omega, sweep)
             self._note(sweep)
-            known = tuple(self.restless), tuple(self.refused.items())
+            known = tuple(self.irregular), tuple(self.refused.items())
             went_on = self._here is not None
             new = tuple(self.jumps[jumps:])
-            report.save(Visit(number, self._sample, self._state, went_on, new, *known))
-            report((number + 1) / len(visits), f"{sweep}, {shown(self.scene, omega)}")
+            report.save(StepRecord(number, self._sample, self._state, went_on, new, *known))
+            report((number + 1) / len(visits), f"{sweep}, {with_unit(self.scene, omega)}")
 
     def _note(self, sweep: str) -> None:
         """The motion at a frequency that was visited, if it is steady."""
@@ -90,12 +90,12 @@ class Visitor:
 
     def _go_on(self, saved: Sequence[Any], visits: Sequence[tuple[str, float]]) -> int:
         """Be where an interrupted run was; the number of visits that it has made."""
-        by_number = {visit.number: visit for visit in saved if isinstance(visit, Visit)}
+        by_number = {visit.number: visit for visit in saved if isinstance(visit, StepRecord)}
         made = [by_number[number] for number in takewhile(by_number.__contains__, range(len(visits)))]
         for visit, (sweep, _) in zip(made, visits, strict=False):
             self._sample, self._state = visit.sample, visit.state
             self.jumps += visit.jumps
-            self.restless, self.refused = dict.fromkeys(visit.restless), dict(visit.refused)
+            self.irregular, self.refused = dict.fromkeys(visit.irregular), dict(visit.refused)
             self._note(sweep)
         if made and made[-1].went_on:
             self._here = self._sample
@@ -105,23 +105,23 @@ class Visitor:
     def reason(self) -> str:
         """Which frequencies have no steady motion, or none that can be computed, else ''."""
         refused = next(iter(self.refused.values()), "")
-        if not self.restless:
+        if not self.irregular:
             return refused
-        first = list(self.restless)[: SENTENCES.frequencies]
+        first = list(self.irregular)[: SENTENCES.max_frequencies]
         more = (
-            f" and {len(self.restless) - SENTENCES.frequencies} more"
-            if len(self.restless) > SENTENCES.frequencies
+            f" and {len(self.irregular) - SENTENCES.max_frequencies} more"
+            if len(self.irregular) > SENTENCES.max_frequencies
             else ""
         )
         cycles = sum(self.problem.options.steady.cycles)
         restless = f"at {', '.join(first)}{more} the motion does not become steady within {cycles} cycles"
         return f"{restless}; {refused}" if refused else restless
 
-    def _go(self, omega: float, sweep: str) -> None:
+    def _step_to(self, omega: float, sweep: str) -> None:
         """Bring the motion to a frequency."""
         while self._here is not None and not self._continue(omega):
             lost, before = float(self._here.z[-1]), self._sample
-            self._settle(self._here.state, lost + STEPPED.beyond * (omega - lost))
+            self._settle(self._here.state, lost + STEPPED.overshoot * (omega - lost))
             after = self._sample
             if self._here is None:
                 self._settle(self._state, omega)
@@ -129,45 +129,47 @@ class Visitor:
         if self._sample is None:
             self._begin(omega)
         elif self._sample.frequency != omega:
-            self._sweep(self._sample.frequency, omega)
+            self._simulate_sweep(self._sample.frequency, omega)
             self._settle(self._state, omega)
-        if self._sample is None and shown(self.scene, omega) not in self.refused:
-            self.restless[shown(self.scene, omega)] = None
+        if self._sample is None and with_unit(self.scene, omega) not in self.refused:
+            self.irregular[with_unit(self.scene, omega)] = None
 
     def _begin(self, omega: float) -> None:
         """Where there is nothing to continue: a stable periodic solution, or the motion from rest."""
         try:
             orbit = solution_at(self.scene, omega, self.poll)
         except CycleError as error:
-            self.refused[shown(self.scene, omega)] = str(error)
+            self.refused[with_unit(self.scene, omega)] = str(error)
             return
         except SimulationError:  # none near harmonic balance, nor near the motion from rest
             return
         try:
             z = first_point(self.problem, orbit, self.poll)
         except SimulationError as error:  # the motion is not determined, or not with this start
-            self.refused[shown(self.scene, omega)] = str(error)
+            self.refused[with_unit(self.scene, omega)] = str(error)
             return
-        if not (orbit.stable and self._take(z)):
+        if not (orbit.stable and self._continue_with(z)):
             self._settle(State.rest(self.scene), omega)
 
-    def _take(self, z: FloatArray) -> bool:
+    def _continue_with(self, z: FloatArray) -> bool:
         """Continue with a periodic solution near z at its frequency, if it is stable."""
         if not correct_at_frequency(self.newton, z):
             return False
         direction = np.asarray(self.newton.tangent) * np.asarray(self.newton.scale)
-        sample = sampled(self.problem, np.array(self.newton.z), direction)
+        sample = recorded_point(self.problem, np.array(self.newton.z), direction)
         if sample.stable:
             self._here, self._sample, self._state = sample, sample, sample.state
         return sample.stable
 
-    def _note_jump(self, sweep: str, at: float, before: Sample | None, after: Sample | None) -> None:
+    def _note_jump(
+        self, sweep: str, at: float, before: OrbitRecord | None, after: OrbitRecord | None
+    ) -> None:
         if before is not None and after is not None:
             old, new = before.measure.amplitude, self._brought_back(after, at).measure.amplitude
-            if (np.abs(new - old) > STEPPED.jump * np.maximum(new, old)).any():
+            if (np.abs(new - old) > STEPPED.min_jump * np.maximum(new, old)).any():
                 self.jumps.append(Jump(sweep, at, old, new))
 
-    def _brought_back(self, after: Sample, at: float) -> Sample:
+    def _brought_back(self, after: OrbitRecord, at: float) -> OrbitRecord:
         """The motion beyond the end of a branch at the frequency of the end itself, or as near as it goes.
 
         It is the one before where there was no jump: where the period doubles, or a corner was in the way.
@@ -186,10 +188,10 @@ class Visitor:
         """Follow the periodic solution to a frequency, or as near as it is stable."""
         assert self._here is not None
         step = omega - float(self._here.z[-1])
-        smallest = STEPPED.smallest * abs(step)
+        smallest = STEPPED.min_step * abs(step)
         while (left := omega - float(self._here.z[-1])) != 0.0:
             self.poll()
-            if self._near(omega if abs(step) >= abs(left) else omega - left + step):
+            if self._step_along_branch(omega if abs(step) >= abs(left) else omega - left + step):
                 step *= 2.0
                 continue
             step *= 0.25
@@ -197,7 +199,7 @@ class Visitor:
                 return False
         return True
 
-    def _near(self, omega: float) -> bool:
+    def _step_along_branch(self, omega: float) -> bool:
         """Go to the stable periodic solution of the same branch at a frequency nearby, if there is one."""
         here = self._here
         assert here is not None
@@ -206,20 +208,22 @@ class Visitor:
         rate = here.direction[-1]
         way = here.direction * ((omega - here.z[-1]) / rate) if rate else np.full(here.z.size, np.inf)
         length = float(np.linalg.norm(way / scale))  # of arc
-        if not length <= STEPPED.far:
+        if not length <= STEPPED.max_distance:
             return False
         guess = here.z + way
         guess[-1] = omega
         if not correct_at_frequency(self.newton, guess, length):
             return False
         astray = float(np.linalg.norm((np.asarray(self.newton.z) - guess) / scale))
-        return astray <= max(STEPPED.astray * length, STEPPED.close) and self._take(np.array(self.newton.z))
+        return astray <= max(STEPPED.max_deviation * length, STEPPED.min_deviation) and self._continue_with(
+            np.array(self.newton.z)
+        )
 
-    def _sweep(self, begin: float, omega: float) -> None:
+    def _simulate_sweep(self, begin: float, omega: float) -> None:
         """Simulate the way from one frequency to another: a leap may end in another motion than a sweep."""
-        count = int(np.ceil(abs(omega - begin) / (STEPPED.leap * min(omega, begin))))
+        count = int(np.ceil(abs(omega - begin) / (STEPPED.irregular_step * min(omega, begin))))
         for between in np.linspace(begin, omega, count + 1)[1:-1].tolist():
-            for _, end in cycles_from(System(self.scene, between), STEPPED.cycles, self._state):
+            for _, end in cycles_from(System(self.scene, between), STEPPED.irregular_cycles, self._state):
                 self.poll()
                 self._state = end
 
@@ -232,9 +236,9 @@ class Visitor:
             return
         self._state = found.state
         if found.periods != 1:
-            self._sample = settled(omega, found)
+            self._sample = recorded_steady(omega, found)
             return
         orbit = shoot(system, found.state, self.poll)
         if orbit is not None:
             with suppress(SimulationError):  # resonant but for rounding: no motion is determined
-                self._take(first_point(self.problem, orbit, self.poll))
+                self._continue_with(first_point(self.problem, orbit, self.poll))

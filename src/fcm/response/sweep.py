@@ -123,19 +123,19 @@ def trace(
 def _traced(sweep: _Sweep, tolerance: float | None, progress: Progress | None) -> Response:
     """The curves without what they do not need; where that turns out to be needed, once more with it."""
     curves = sweep.scene.each_curve()
-    highest = max((*(sweep.wanted.harmonics or (SWEEP.highest,)), *driven_harmonics(sweep.scene)))
+    highest = max((*(sweep.wanted.harmonics or (SWEEP.expected_harmonic,)), *driven_harmonics(sweep.scene)))
     if tolerance is None or sweep.scene.ring is not None or sweep.scene.with_own_laws:
         lighter = keep_all(curves)
     else:
         lighter = leave_out(curves, tolerance, highest)
-    response, said = sweep.run(lighter, part(progress, 0.0, SWEEP.traced)), list(lighter.sentences)
+    response, said = sweep.run(lighter, part(progress, 0.0, SWEEP.traced_share)), list(lighter.sentences)
     if lighter.above is not None and tolerance is not None:
         shift = checked(response, lighter)
         if 2.0 * shift <= tolerance or response.interrupted:
             said.append(sentences.on_modes(lighter, shift))
         else:  # the estimate was too good: with all modes after all
             lighter = leave_out(curves, 0.0, highest)
-            response = sweep.run(lighter, part(progress, SWEEP.traced, 1.0))
+            response = sweep.run(lighter, part(progress, SWEEP.traced_share, 1.0))
     response = restored(response, lighter)
     response.curves = [without_rounding(one) for one in response.curves]
     if sweep.table_idle:

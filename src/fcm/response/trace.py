@@ -11,22 +11,22 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.options import PAIR
-from fcm.accuracy.refinement import Accurate, accurate, given, judged
-from fcm.accuracy.stability_validity import disbelieved
+from fcm.accuracy.refinement import RefinedResponse, refined_response, with_errors, with_given_harmonics
+from fcm.accuracy.stability_validity import unreliable_points
 from fcm.branches.options import FOLDS
 from fcm.contact.contact_law import ContactLawError
 from fcm.continuation import Mark
-from fcm.harmonic_balance.planar_quantities import in_plane
-from fcm.harmonic_balance.response_quantities import Record, cycles, loops, recorded, table_errors
-from fcm.harmonic_balance.rounding import with_digits
+from fcm.harmonic_balance.planar_quantities import planar_quantities
+from fcm.harmonic_balance.response_quantities import PointRecord, cycles, loops, recorded, table_errors
+from fcm.harmonic_balance.rounding import with_precise_fundamental
 from fcm.harmonic_balance.static_equilibrium import RestError
 from fcm.harmonic_balance.stiff_contacts import too_stiff
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
-from fcm.response.accuracy_shortfall import short_of
-from fcm.response.best_so_far import SoFar, Tell
+from fcm.response.accuracy_shortfall import shortfall
+from fcm.response.best_so_far import BestSoFar, Tell
 from fcm.response.incomplete import FLOATING, incomplete
-from fcm.response.master_dofs import leading, of_all, with_tops
+from fcm.response.master_dofs import with_all_dofs, with_master_dofs, with_tops
 from fcm.response.refined import Refined, refined
 from fcm.response.request import ONE_HARMONIC, Request
 from fcm.response.undetermined_traction import residual_changes, undetermined
@@ -38,7 +38,9 @@ from fcm.run import Interrupted
 from fcm.stability.confirmation import confirmed_stable
 
 METHODS = ("table", "closed-form")
-QUICK = replace(PAIR, seconds=0.0, points=0.05, dearest=0)  # where nobody waits any more
+NO_CHECKS = replace(
+    PAIR, max_seconds=0.0, max_point_seconds=0.05, max_second_unknowns=0
+)  # where nobody waits any more
 Rows = npt.NDArray[np.intp]
 
 
@@ -57,7 +59,7 @@ def traced_curve(
     """
     from fcm.response.groups import lost_curve
 
-    begin, so_far = time.perf_counter(), SoFar(tell)
+    begin, so_far = time.perf_counter(), BestSoFar(tell)
     try:
         curve = _traced_curve(scene, wanted, poll, so_far)
     except ContactLawError as useless:  # of a motion that was not tried before
@@ -72,43 +74,47 @@ def traced_curve(
     return curve
 
 
-def _unfinished(so_far: SoFar, scene: Scene) -> Curve:
+def _unfinished(so_far: BestSoFar, scene: Scene) -> Curve:
     """The best curve that there is, with its errors as far as they are told quickly."""
     assert so_far.found is not None
     found = so_far.found
     found.system.work.poll = int  # which interrupts no more
-    if not isinstance(found, Accurate):
-        found = judged(found, np.inf, options=QUICK)
+    if not isinstance(found, RefinedResponse):
+        found = with_errors(found, np.inf, options=NO_CHECKS)
     stable = [np.full(len(path.z), np.nan) for path in found.traced.branches.paths]
-    every = found if found.system.scene is scene else of_all(found, scene, np.inf)
+    every = found if found.system.scene is scene else with_all_dofs(found, scene, np.inf)
     curve = _curve(Refined(found, stable, every=every), quick=True)
     curve.complete, curve.reason, curve.cause = False, so_far.reason(), Cause.INTERRUPTED
     return curve
 
 
-def _traced_curve(scene: Scene, wanted: Request, poll: Callable[[], None] | None, so_far: SoFar) -> Curve:
+def _traced_curve(scene: Scene, wanted: Request, poll: Callable[[], None] | None, so_far: BestSoFar) -> Curve:
     from fcm.response.groups import lost_curve
 
-    system = System(leading(scene), wanted.harmonics or (1,), wanted.table, wanted.corrected)
+    system = System(with_master_dofs(scene), wanted.harmonics or (1,), wanted.table, wanted.corrected)
     system.work.poll = poll or system.work.poll
     by_need = wanted.harmonics is None
     try:
-        found = accurate(system, wanted.accuracy, keep=so_far) if by_need else given(system, keep=so_far)
+        found = (
+            refined_response(system, wanted.accuracy, keep=so_far)
+            if by_need
+            else with_given_harmonics(system, keep=so_far)
+        )
     except RestError as nowhere:
         return lost_curve(scene, str(nowhere))
     if not found.traced.branches.paths:
         rigid = bool((system.linear.natural == 0.0).any())
         why = "no solution was found at either end of the range; try another range"
         return lost_curve(scene, f"{why}{FLOATING if rigid else too_stiff(system)}")
-    so_far(found, found.worst, ())
+    so_far(found, found.max_error, ())
     response = refined(found, wanted.accuracy if by_need else None, scene, so_far)
     curve = _curve(response)
     if by_need and curve.complete:
-        curve.short_of = short_of(_told(response), response.lost, wanted.accuracy)
+        curve.short_of = shortfall(_reported(response), response.lost, wanted.accuracy)
     return curve
 
 
-def _told(response: Refined) -> Accurate:
+def _reported(response: Refined) -> RefinedResponse:
     """Of all degrees of freedom."""
     return response.every or response.found
 
@@ -117,20 +123,20 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
     """What was traced as a curve: branches one after the other, with a row of NaN between them.
 
     quick: without what takes further motions to tell."""
-    found, parts = _told(response), response.stable
+    found, parts = _reported(response), response.stable
     system, paths = found.system, found.traced.branches.paths
-    points, rounding = with_digits(system, recorded(system, paths, found.shown))
+    points, rounding = with_precise_fundamental(system, recorded(system, paths, found.shown))
     scene, first = system.scene, system.harmonics.index(1)
     ends, rows = np.flatnonzero(np.diff(points.path)) + 1, np.arange(points.path.size)
     rows = np.insert(rows, ends, -1) if ends.size else rows
-    loop, plane = loops(system, points.z), in_plane(system, points.z)
+    loop, plane = loops(system, points.z), planar_quantities(system, points.z)
     words, borne = cycles(system, points.z, loop)
     X = 1j * points.X  # from Re(X exp(i theta)) to Im(X exp(i theta))
     reason, nowhere = incomplete(found, points)
     stable = np.where(nowhere, 0.0, np.concatenate(parts))  # what creeps away, or floats, is no steady state
     truncations = [one.truncation for one in found.errors]
-    believed = [one.believed for one in found.errors]
-    far = disbelieved(points.z[:, -1], believed, stable, (points.mark & Mark.FOLD) > 0)
+    believed = [one.on_same_branch for one in found.errors]
+    far = unreliable_points(points.z[:, -1], believed, stable, (points.mark & Mark.FOLD) > 0)
     doubted = far & (stable == 1.0)
     for k in np.unique(points.path[doubted]).tolist() if not quick else ():
         rows_of = points.path == k
@@ -171,7 +177,7 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
         symmetry_lost=list(found.traced.symmetry_lost),
         levels=[one.omega for one in found.traced.found],
         digits=bool(rounding.any()),
-        folds_between=(FOLDS.lowest, FOLDS.highest) if scene.contacts else None,
+        folds_between=(FOLDS.min_level, FOLDS.max_level) if scene.contacts else None,
         mirrored=len(found.traced.mirrored),
     )
     of_borne = _of_greatest(found, points.path, borne)
@@ -193,19 +199,19 @@ def _without_slip_of_own_laws(scene: Scene, borne: FloatArray) -> FloatArray:
     return borne
 
 
-def _of_greatest(found: Accurate, path: Rows, borne: FloatArray) -> FloatArray:
+def _of_greatest(found: RefinedResponse, path: Rows, borne: FloatArray) -> FloatArray:
     """Errors (contact, 4) of the greatest forces, slip and energy of all paths, which are borne
     (point, contact, 4); unknown where that of one nearly as great is."""
     heights = np.array([borne[path == k].max(axis=0) for k in range(len(found.errors))])
     errors = np.array([one.greatest for one in found.errors])
-    unknown = (np.isnan(errors) & (heights > PAIR.rival * heights.max(axis=0))).any(axis=0)
+    unknown = (np.isnan(errors) & (heights > PAIR.rival_fraction * heights.max(axis=0))).any(axis=0)
     own = np.take_along_axis(errors, heights.argmax(axis=0)[None], axis=0)[0]
     return np.where(unknown, np.nan, own)
 
 
 def _peaks(
     dofs: tuple[str, ...],
-    points: Record,
+    points: PointRecord,
     error: FloatArray,
     rounding: FloatArray,
     stable: FloatArray,

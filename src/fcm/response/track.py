@@ -12,15 +12,15 @@ from typing import Any
 
 import numpy as np
 
-from fcm.accuracy.refinement import accurate
+from fcm.accuracy.refinement import refined_response
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Scene
 from fcm.response.curve_sweep import checkpoint_of
-from fcm.response.master_dofs import leading
+from fcm.response.master_dofs import with_master_dofs
 from fcm.response.options import INPUT_LIMITS
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
-from fcm.response.tracked_work import KINDS, STATES, Followed, TrackedWork
+from fcm.response.tracked_work import KINDS, STATES, TrackedScene, TrackedWork
 from fcm.results.result import DEFECT, NOT_BEGUN, Response
 from fcm.results.tracked import Tracking
 from fcm.run import (
@@ -104,7 +104,7 @@ def track(
     begin = time.perf_counter()
     free = number.freed(scene)
     wanted = request_of(scene, harmonics, accuracy)
-    tracked = leading(free)
+    tracked = with_master_dofs(free)
     curves = tracked.each_curve()
     chosen = wanted.harmonics or needed(curves, number, span, wanted)
     place = place or place_for((jobs or os.cpu_count() or 1) if len(curves) > 1 else 1)
@@ -153,10 +153,12 @@ def _swept(
 
 def _fits(count: int, number: int, results: Any) -> bool:
     """Whether results that were read from a file can be those of a scene."""
-    return 0 <= number < count and isinstance(results, list) and [type(one) for one in results] == [Followed]
+    return (
+        0 <= number < count and isinstance(results, list) and [type(one) for one in results] == [TrackedScene]
+    )
 
 
-def _add(response: Response, scene: Scene, found: Followed | Lost | None) -> None:
+def _add(response: Response, scene: Scene, found: TrackedScene | Lost | None) -> None:
     """What was followed in one scene to that of all."""
     assert response.tracking is not None
     if isinstance(found, Lost):
@@ -167,8 +169,8 @@ def _add(response: Response, scene: Scene, found: Followed | Lost | None) -> Non
     else:
         response.tracking.curves += found.curves
         response.tracking.unsure += found.unsure
-    problems = found.problems if isinstance(found, Followed) else [reason]
-    cut_off = found is None or (isinstance(found, Followed) and found.interrupted)
+    problems = found.problems if isinstance(found, TrackedScene) else [reason]
+    cut_off = found is None or (isinstance(found, TrackedScene) and found.interrupted)
     response.tracking.interrupted |= cut_off
     where = ", ".join(f"{key} = {value:g}" for key, value in scene.parameters.items())
     response.tracking.problems += [f"{where}: {text}" if where else text for text in problems]
@@ -198,7 +200,7 @@ def _check(scene: Scene, number: Number, span: tuple[float, float]) -> None:
     both = dict(enumerate(span))
     if not low < high:
         raise SpanError(both, f"{number.key} must rise")
-    if high - low < INPUT_LIMITS.narrowest * max(abs(low), abs(high)):
+    if high - low < INPUT_LIMITS.min_relative_width * max(abs(low), abs(high)):
         raise SpanError(both, "too narrow to follow anything in", digits=17)
     if number.key == LEVEL and low <= 0.0:
         raise SpanError({0: low}, "the level must be positive: at 0 nothing moves, and nothing is special")
@@ -224,5 +226,5 @@ def needed(
     found = {1}
     for curve in (curves[0], curves[-1]) if len(curves) > 1 else curves:
         for value in np.linspace(*span, 3).tolist():
-            found |= set(accurate(System(number.put(curve, value)), wanted.accuracy).system.harmonics)
+            found |= set(refined_response(System(number.put(curve, value)), wanted.accuracy).system.harmonics)
     return tuple(sorted(found))

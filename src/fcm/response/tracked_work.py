@@ -20,21 +20,21 @@ from fcm.accuracy.options import VALIDITY
 from fcm.harmonic_balance.response_quantities import cycles, loops
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
-from fcm.response.incomplete import because, no_steady_states
+from fcm.response.incomplete import no_steady_states, reason_for
 from fcm.response.undetermined_traction import undetermined
 from fcm.results.result import INTERRUPTED
 from fcm.results.tracked import TrackedCurve, TrackedError
 from fcm.run import Interrupted, Report
 from fcm.scene.draft import Number
-from fcm.tracking.curve import Track
-from fcm.tracking.curves import tracks
-from fcm.tracking.error import change, places
+from fcm.tracking.curve import SpecialPointCurve
+from fcm.tracking.curves import tracked_curves
+from fcm.tracking.error import error_points, truncation_error
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.onset_functions import KINDS as ONSETS
 from fcm.tracking.parameter_line import along
 from fcm.tracking.stability import stability_along
-from fcm.tracking.starts import Special, moved
-from fcm.tracking.tracked_point import Ending, Spot, Way
+from fcm.tracking.starts import SpecialPoints, for_scene
+from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingRun
 from fcm.units import in_unit
 
 STOPPED = f"{INTERRUPTED}, so that curves and errors may be missing"
@@ -42,7 +42,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class Followed:
+class TrackedScene:
     """What there is of one scene."""
 
     curves: list[TrackedCurve]
@@ -51,8 +51,15 @@ class Followed:
     interrupted: bool = False
 
 
-KINDS = (Followed, TrackedCurve, TrackedError)  # what results consist of
-STATES = (Special, Track, Spot, Ending, Condition, Kind)  # and what is saved of steps
+KINDS = (TrackedScene, TrackedCurve, TrackedError)  # what results consist of
+STATES = (
+    SpecialPoints,
+    SpecialPointCurve,
+    TrackedPoint,
+    Ending,
+    Condition,
+    Kind,
+)  # and what is saved of steps
 
 
 @dataclass(frozen=True)
@@ -64,15 +71,15 @@ class TrackedWork:
     span: tuple[float, float]
     harmonics: tuple[int, ...]
 
-    def __call__(self, scenes: Sequence[Scene], report: Report) -> list[Followed]:
+    def __call__(self, scenes: Sequence[Scene], report: Report) -> list[TrackedScene]:
         return [self._one(scene, report) for scene in scenes]
 
-    def _one(self, scene: Scene, report: Report) -> Followed:
-        system, line, once = System(scene, self.harmonics), along(self.number), _Once(report)
+    def _one(self, scene: Scene, report: Report) -> TrackedScene:
+        system, line, once = System(scene, self.harmonics), along(self.number), _SavedSteps(report)
         shown = partial(report, text=self.number.key)
-        way = Way(system, line, self.span, (), scene.max_step)
-        found = tracks(way, conditions_of(scene, self.what), (), shown, once)
-        followed = Followed([], list(found.problems), list(found.unsure))
+        way = TrackingRun(system, line, self.span, (), scene.max_step)
+        found = tracked_curves(way, conditions_of(scene, self.what), (), shown, once)
+        followed = TrackedScene([], list(found.problems), list(found.uncertain))
         followed.problems.extend(_lost(scene, condition, z) for condition, z in found.lost)
         stopped = found.interrupted
         for one in found.curves:  # after an interruption nothing is estimated any more
@@ -100,7 +107,7 @@ def _lost(scene: Scene, condition: Condition, z: FloatArray) -> str:
     )
 
 
-class _Once:
+class _SavedSteps:
     """Steps that are finished are not taken again."""
 
     def __init__(self, report: Report) -> None:
@@ -124,25 +131,29 @@ def conditions_of(scene: Scene, what: str) -> list[Condition]:
     return [Condition(Kind.ONSET, i, what) for i in range(len(scene.contacts))]
 
 
-def errors(way: Way, one: Track) -> tuple[TrackedError, ...]:
+def errors(way: TrackingRun, one: SpecialPointCurve) -> tuple[TrackedError, ...]:
     """What the harmonics left out change at a track's ends, turns, least and greatest peak."""
     told = []
-    for point, place in places(one).items():
-        by = change(way, one, point)
-        told.append(TrackedError(point, place, by.relative, by.number if one.spots[point].turn else np.nan))
+    for point, place in error_points(one).items():
+        by = truncation_error(way, one, point)
+        told.append(TrackedError(point, place, by.relative, by.number if one.points[point].turn else np.nan))
     return tuple(told)
 
 
 def as_curve(
-    scene: Scene, way: Way, one: Track, stable: FloatArray | None, told: tuple[TrackedError, ...] = ()
+    scene: Scene,
+    way: TrackingRun,
+    one: SpecialPointCurve,
+    stable: FloatArray | None,
+    told: tuple[TrackedError, ...] = (),
 ) -> TrackedCurve:
     """A track in the words of its scene, with its stability and its errors as far as they were looked at."""
-    corners = ["" if spot.corner is None else named(scene, spot.corner) for spot in one.spots]
+    corners = ["" if spot.corner is None else named(scene, spot.corner) for spot in one.points]
     stopped = [ending for ending in one.endings if not ending.whole]
     nowhere, count = _along_spots(way, one)
     stable = np.full(one.s.size, np.nan) if stable is None else np.array(stable)
     stable[_disbelieved(told, one.s.size) & (stable == 1.0)] = np.nan
-    reason = _adrift(way.system, one.s, nowhere)
+    reason = _unsteady_ranges(way.system, one.s, nowhere)
     for which in nowhere.values():
         stable[which] = 0.0  # what creeps away, or floats, is no steady state
     end = one.s[0] if not one.endings[0].whole else one.s[-1]
@@ -153,7 +164,7 @@ def as_curve(
         frequency=one.frequency,
         amplitude=one.amplitude,
         corner=np.array(corners, dtype=str),
-        turn=np.array([bool(spot.turn) for spot in one.spots]),
+        turn=np.array([bool(spot.turn) for spot in one.points]),
         trough=~one.greatest,
         stable=stable,
         closings=tuple(one.turns()),
@@ -170,32 +181,32 @@ def _disbelieved(told: Sequence[TrackedError], count: int) -> npt.NDArray[np.boo
     far = np.zeros(count, dtype=np.bool_)
     places = sorted((one.point, one.relative) for one in told)
     for k, (_, error) in enumerate(places):
-        if error > VALIDITY.believed:
+        if error > VALIDITY.max_error:
             first = places[k - 1][0] if k else 0
             last = places[k + 1][0] if k + 1 < len(places) else count - 1
             far[first : last + 1] = True
     return far
 
 
-def _along_spots(way: Way, one: Track) -> tuple[dict[str, npt.NDArray[np.bool_]], int]:
+def _along_spots(way: TrackingRun, one: SpecialPointCurve) -> tuple[dict[str, npt.NDArray[np.bool_]], int]:
     """For each reason why points of a track are no steady states which they are (point,); and at how many a
     contact never slips beside one that may feel it."""
     count, lost = 0, dict[str, npt.NDArray[np.bool_]]()
-    for k, spot in enumerate(one.spots):
-        system = moved(way.system, way.line.scene(way.system.scene, float(spot.z[-1])))
+    for k, spot in enumerate(one.points):
+        system = for_scene(way.system, way.line.scene(way.system.scene, float(spot.z[-1])))
         z = np.array(spot.z[None, :-1])
         count += int(undetermined(system.scene, cycles(system, z, loops(system, z))[0]).sum())
         for why, which in no_steady_states(system, z, np.ones(1)).items():
-            lost.setdefault(why, np.zeros(len(one.spots), dtype=np.bool_))[k] = which[0]
+            lost.setdefault(why, np.zeros(len(one.points), dtype=np.bool_))[k] = which[0]
     return lost, count
 
 
-def _adrift(system: System, number: FloatArray, nowhere: Mapping[str, npt.NDArray[np.bool_]]) -> str:
+def _unsteady_ranges(system: System, number: FloatArray, nowhere: Mapping[str, npt.NDArray[np.bool_]]) -> str:
     """From where to where a track is of no steady states, and why; empty if it is nowhere."""
     for why, which in nowhere.items():
         if which.any():
             ends = number[which]
-            return f"from {ends.min():.6g} to {ends.max():.6g} {because(system, why)}"
+            return f"from {ends.min():.6g} to {ends.max():.6g} {reason_for(system, why)}"
     return ""
 
 

@@ -37,7 +37,7 @@ def undetermined(scene: Scene, states: npt.NDArray[np.str_]) -> npt.NDArray[np.b
     still = stuck.any(axis=1) & ~changing.any(axis=1)
     if still.any():
         rows, which = np.unique(states[still], axis=0, return_inverse=True)
-        felt = np.array([_felt(scene, row == "E", (row == "E") & rough) for row in rows])
+        felt = np.array([_changes_load(scene, row == "E", (row == "E") & rough) for row in rows])
         found[still] = felt[which.ravel()]
     return found
 
@@ -84,7 +84,7 @@ def residual_changes_at_levels(
     return found
 
 
-def _felt(scene: Scene, closed: npt.NDArray[np.bool_], stuck: npt.NDArray[np.bool_]) -> bool:
+def _changes_load(scene: Scene, closed: npt.NDArray[np.bool_], stuck: npt.NDArray[np.bool_]) -> bool:
     """Whether the residual friction of a contact that sticks changes the load of another, if both stay so."""
     modal, contacts = scene.modal, scene.contacts
     slides = [(i, way) for i, contact in enumerate(contacts) for way in contact.directions[:-1]]
@@ -99,4 +99,4 @@ def _felt(scene: Scene, closed: npt.NDArray[np.bool_], stuck: npt.NDArray[np.boo
     except np.linalg.LinAlgError:  # a mode is free to drift with it
         return True
     load[whose, np.arange(whose.size)] = 0.0
-    return bool((np.abs(load[:, stuck[whose]]) > CONTACT_CHANGES.felt).any())
+    return bool((np.abs(load[:, stuck[whose]]) > CONTACT_CHANGES.load_tolerance).any())

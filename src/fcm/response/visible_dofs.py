@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.harmonic_balance.static_equilibrium import ADRIFT, pushed_adrift
+from fcm.harmonic_balance.static_equilibrium import RIGID_BODY_FAULT, loads_move_rigid_body
 from fcm.model.scene import Scene
 from fcm.response.request import ResponseError
 from fcm.results.result import Curve, Response
@@ -20,8 +20,8 @@ CYCLES = ("displacement", "amplitude", "mean", "greatest", "least")  # of histor
 
 def check_solvable(scene: Scene) -> None:
     """Raise ResponseError for what no method can compute: static loads that nothing holds."""
-    if any(curve.loads and pushed_adrift(linear_of(curve)) for curve in scene.each_curve()):
-        raise ResponseError(f"{scene.name}: load: {ADRIFT}")
+    if any(curve.loads and loads_move_rigid_body(linear_of(curve)) for curve in scene.each_curve()):
+        raise ResponseError(f"{scene.name}: load: {RIGID_BODY_FAULT}")
 
 
 def visible(response: Response, scene: Scene) -> Response:

@@ -13,7 +13,7 @@ from fcm.results.jumps import Jump, Untold
 from fcm.results.meanings import CYCLE
 from fcm.results.orbits import Orbits, Stuck
 from fcm.results.peak import Peak
-from fcm.stability.unstable_ranges import not_looked_at
+from fcm.stability.unstable_ranges import without_frequencies
 from fcm.units import in_unit
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
         out["symmetry_lost_at"] = in_unit(curve.symmetry_lost, unit).tolist()
     if gist.unstable:
         out["no_stable_motion"] = in_unit(sorted(gist.unstable), unit).tolist()
-    missing = [] if curve.levels is None else not_looked_at(gist.unstable, curve.levels)
+    missing = [] if curve.levels is None else without_frequencies(gist.unstable, curve.levels)
     if missing:
         out["no_stable_motion_not_looked_at"] = in_unit(sorted(missing), unit).tolist()
     if curve.folds_between is not None:

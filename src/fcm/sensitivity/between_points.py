@@ -10,7 +10,7 @@ from numpy.polynomial import chebyshev
 
 from fcm.continuation import Path
 from fcm.continuation.segment import Segment
-from fcm.harmonic_balance.reported_quantities import Reported, reported_at
+from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_at
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
@@ -46,7 +46,7 @@ INTERPOLATION = InterpolationOptions()
 
 
 def tops_between(
-    system: System, path: Path, shown: Reported, options: InterpolationOptions = INTERPOLATION
+    system: System, path: Path, shown: ReportedQuantities, options: InterpolationOptions = INTERPOLATION
 ) -> tuple[FloatArray, FloatArray]:
     """Greatest amplitudes (dof,) of a path, and their frequencies, at its points or beside the highest of
     these: where the amplitude grows at one of two neighbours and shrinks at the other."""
@@ -75,7 +75,7 @@ class _Way:
         self.system = System(scene.at_attached_and(chosen), system.harmonics, system.table, system.corrected)
         place = {name: i for i, name in enumerate(self.system.scene.modal.dofs)}
         self.columns = np.array([place[scene.modal.dofs[d]] for d in dofs], dtype=np.intp)
-        self.dofs, self.between = dofs, Segment(self.system.balance(), path, first)
+        self.dofs, self.between = dofs, Segment(self.system.new_balance(), path, first)
 
     def raise_to(self, height: FloatArray, omega: FloatArray) -> None:
         """Put what is higher on the way, and where, in the place of heights (dof,) and frequencies."""
@@ -110,7 +110,7 @@ class _Way:
 
     def _at(self, part: float) -> FloatArray | None:
         """The point of the curve there."""
-        return self.between.z if self.between.put(part) else None
+        return self.between.z if self.between.find(part) else None
 
 
 def _highest(polynomial: FloatArray, options: InterpolationOptions) -> float:

@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.harmonic_balance.contact_law import Law
-from fcm.harmonic_balance.dense_jacobian import places
+from fcm.harmonic_balance.dense_jacobian import unknown_positions
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
@@ -79,7 +79,7 @@ class Rates:
             rows[:, 1 + j] = -(rate.ports.T @ a + structure.ports.T @ da)
             # of combinations of ports, what these no longer are when the ports themselves change
             of_ports = np.asarray(balance.shown.attached).T @ (rate.ports.T @ a)
-            apart = np.asarray(balance.shown.apart) > 0
+            apart = np.asarray(balance.shown.without_modes) > 0
             shown[j] = rate.dofs.T @ a + np.where(apart, structure.dofs.T @ da, -of_ports)
         return layout.flat(rows), shown
 
@@ -99,9 +99,9 @@ class Rates:
                 continue
             c = np.asarray(seen.c_re)[j] + 1j * np.asarray(seen.c_im)[j]
             a = c * balance.load * (self.linear.force[k] + omega**2 * self.linear.square[k])
-            shown[j] = np.where(np.asarray(balance.shown.apart) > 0, structure.dofs.T @ a, 0.0)
+            shown[j] = np.where(np.asarray(balance.shown.without_modes) > 0, structure.dofs.T @ a, 0.0)
             if balance.contacts:
-                of_ports, rows = structure.ports.T @ a, places(balance)[1][j]
+                of_ports, rows = structure.ports.T @ a, unknown_positions(balance)[1][j]
                 residual[rows], residual[rows + 1] = -of_ports.real, -of_ports.imag
         return residual, shown
 
@@ -182,7 +182,7 @@ def rates_of(system: System, address: str, options: SensitivityOptions = SENSITI
     >>> system = System(fcm.load_scene("yang1998-n5"))
     >>> z = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.5, 1.2])
     >>> by_amplitude = rates_of(system, "force.u.amplitude")
-    >>> by_amplitude.at(system.balance(), z)[0][2:].round(4).tolist()
+    >>> by_amplitude.at(system.new_balance(), z)[0][2:].round(4).tolist()
     [0.0618, -1.1225, 0.0618, -1.1377]
     """
     number = number_of(system.scene, address)

@@ -51,7 +51,7 @@ def moved_by(
     for k, weight in terms:
         values = {one.addresses[0]: value + k * step * share for one, value, share in each}
         moved = replace(draft.curve(scene, {}, values), draft=None)
-        found.append((weight / step, Newton(System(moved, harmonics).balance())))
+        found.append((weight / step, Newton(System(moved, harmonics).new_balance())))
     return Moved(found)
 
 
@@ -62,7 +62,7 @@ class Peak:
         self, system: System, dof: int, z: FloatArray, edge: bool, options: SensitivityOptions = SENSITIVITY
     ) -> None:
         self.options = options
-        self.dof, self.newton, self.edge = dof, Newton(system.balance()), edge
+        self.dof, self.newton, self.edge = dof, Newton(system.new_balance()), edge
         self.kind, self.margin, self.curvature = Kind.UNKNOWN, -1, np.nan
         balance = self.newton.problem
         balance.measure(z)

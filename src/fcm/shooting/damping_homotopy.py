@@ -17,9 +17,9 @@ from fcm.shooting.problem import OrbitProblem
 def more_damped(scene: Scene, options: ShootingOptions = SHOOTING) -> tuple[Scene, float] | None:
     """The scene with all damping larger, and by what factor; None if it has enough, or none at all."""
     least = float(scene.modal.damping.min())
-    if not 0.0 < least < options.damping.ratio:
+    if not 0.0 < least < options.damping.damping_ratio:
         return None
-    return damped(scene, options.damping.ratio / least), options.damping.ratio / least
+    return damped(scene, options.damping.damping_ratio / least), options.damping.damping_ratio / least
 
 
 def damped(scene: Scene, factor: float) -> Scene:
@@ -32,8 +32,8 @@ def less_damped(
 ) -> FloatArray | None:
     """The motion of a scene from z, one with damping larger by a factor; None where the way ends before."""
     points = [(np.log(factor), z)]
-    ratio = options.damping.first
-    while factor > 1.0 and ratio < options.damping.smallest:
+    ratio = options.damping.first_factor
+    while factor > 1.0 and ratio < options.damping.max_factor:
         new = max(1.0, factor * ratio)
         found = next(
             _corrected(OrbitProblem(damped(scene, new), options=options), _guesses(points, np.log(new))), None
@@ -41,7 +41,7 @@ def less_damped(
         if found is None:
             ratio = np.sqrt(ratio)
             continue
-        factor, ratio = new, max(ratio**1.5, options.damping.largest)
+        factor, ratio = new, max(ratio**1.5, options.damping.min_factor)
         points = [points[-1], (np.log(new), found)]
     return points[-1][1] if factor == 1.0 else None
 

@@ -30,7 +30,7 @@ class Floquet:
         ports = (modal.shapes * unit[:, None]) @ directions.reshape(-1, modal.shapes.shape[1]).T
         self.states = SegmentSequence(law, len(held), system.tangential, system.normal)
         self.monodromy: Monodromy | ManyMonodromy
-        if len(law) < options.structure.contacts:
+        if len(law) < options.structure.many_contacts:
             stiffness = Stiffness(ports, modal.frequency, modal.damping, None, law)
             self.monodromy = Monodromy(stiffness, self.states)
         else:

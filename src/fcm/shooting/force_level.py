@@ -20,37 +20,40 @@ from fcm.continuation.all_branches import Follow
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.fixed_frequency import correct_at_frequency
-from fcm.shooting.force_level_problem import AtLevel, LevelProblem
+from fcm.shooting.force_level_problem import LevelProblem, ProblemAtLevel
 from fcm.shooting.linear_orbits import about_rest
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic import Poll, within_unit_circle
-from fcm.shooting.work_budget import Bounded
+from fcm.shooting.work_budget import BranchBudget
 
 if TYPE_CHECKING:
-    from fcm.branches.level_turns import Turn
+    from fcm.branches.level_turns import LevelFold
     from fcm.harmonic_balance.system import System
 
 Known = Callable[[float], Sequence[FloatArray]]
+Find = Callable[..., "LevelMotions"]
 
 
 @dataclass(frozen=True)
-class Raised:
+class LevelMotions:
     """The motions (unknown + 1,) that the level leads to from a frequency [rad/s], the frequency last, and
     whether it was followed to its end; if not, whether because the time for that was over."""
 
     omega: float
     motions: tuple[FloatArray, ...]
     complete: bool
-    over: bool = False
+    out_of_time: bool = False
 
 
-def raised(scene: Scene, known: Known, bounded: Bounded) -> Iterator[Raised]:
+def level_motions(
+    scene: Scene, known: Known, bounded: BranchBudget, find: Find | None = None
+) -> Iterator[LevelMotions]:
     """What the level leads to from each frequency at which it is followed, in an equal share of the time; and
     once more, to the end, where that was too short and others leave more than it.
 
-    known : the motions (unknown + 1,) that are known at a frequency.
+    known : the motions (unknown + 1,) that are known at a frequency. find : as `level_motions_at`, otherwise.
     """
-    from fcm.branches.force_level import looked_at
+    from fcm.branches.force_level import level_frequencies
     from fcm.harmonic_balance.system import System
 
     whole = scene.whole()
@@ -58,41 +61,47 @@ def raised(scene: Scene, known: Known, bounded: Bounded) -> Iterator[Raised]:
         return
     one = System(whole, (1,))
     one.work.poll = bounded.poll
-    waiting = [(omega, 0.0) for omega in looked_at(one)]
+    waiting = [(omega, 0.0) for omega in level_frequencies(one)]
     while waiting:
         (omega, before), *waiting = waiting
         if (share := bounded.share(1 + len(waiting))) > before:
-            found = raised_at(scene, one, omega, known(omega), bounded.poll, bounded.options)
-            waiting += [(omega, share)] * found.over
+            found = (find or level_motions_at)(scene, one, omega, known(omega), bounded.poll, bounded.options)
+            waiting += [(omega, share)] * found.out_of_time
             yield found
 
 
-def raised_at(
+def level_motions_at(
     scene: Scene,
     one: System,
     omega: float,
     known: Sequence[FloatArray],
     poll: Poll,
     options: ShootingOptions = SHOOTING,
-) -> Raised:
+    along: Follow = follow,
+) -> LevelMotions:
     """The same at one frequency; one is the balance of one harmonic. What was found is there, too, where look
-    raises `TooLongError`."""
-    from fcm.harmonic_balance.work_budget import TooLongError
+    raises `WorkLimitError`. Curves are followed by `along`."""
+    from fcm.harmonic_balance.work_budget import WorkLimitError
 
     found = list[FloatArray]()
     try:
-        complete = _followed(LevelProblem(scene, omega, options), one, known, poll, found)
-    except TooLongError:
-        return Raised(omega, tuple(found), False, over=True)
-    return Raised(omega, tuple(found), complete)
+        complete = _followed(LevelProblem(scene, omega, options), one, known, poll, found, along)
+    except WorkLimitError:
+        return LevelMotions(omega, tuple(found), False, out_of_time=True)
+    return LevelMotions(omega, tuple(found), complete)
 
 
 def _followed(
-    problem: LevelProblem, one: System, known: Sequence[FloatArray], poll: Poll, found: list[FloatArray]
+    problem: LevelProblem,
+    one: System,
+    known: Sequence[FloatArray],
+    poll: Poll,
+    found: list[FloatArray],
+    follow: Follow,
 ) -> bool:
     """Whether the level was followed to its end; what it leads to is added to what is found."""
-    from fcm.branches.level_turns import turns_of
-    from fcm.branches.linear_limits import least
+    from fcm.branches.level_turns import level_folds
+    from fcm.branches.linear_limits import lowest_linear_limit
     from fcm.branches.options import LEVEL_CURVE
 
     omega, options = problem.omega, problem.options
@@ -100,30 +109,36 @@ def _followed(
     def passes(path: Path) -> None:
         found.extend(np.append(z[:-1], omega) for z in path.z[path.parameter == 1.0])
 
-    linear, top = LEVEL_CURVE.before * least(one, omega), _top(one, omega, options)
+    linear, top = (
+        LEVEL_CURVE.linear_fraction * lowest_linear_limit(one, omega),
+        _highest_level(one, omega, options),
+    )
     if linear >= top:
         return True
-    linear, along = min(linear, 1.0), _Along(poll, passes)
-    span = options.level.linear * max(linear, LEVEL_CURVE.weak[0]), top
+    linear, along = min(linear, 1.0), _InterruptibleFollow(poll, passes, follow)
+    span = options.level.linear_fraction * max(linear, LEVEL_CURVE.linear_levels[0]), top
     rest = _from_rest(problem, linear, span, along)
     if rest is None:
         return False
     there = [np.append(z[:-1], 1.0) for z in known]
-    curves = all_branches(lambda: problem, there, span, FollowOptions(options.level.step), None, along, rest)
-    turns = [turn for path in curves.paths for turn in turns_of(path, omega)]
-    found.extend(_at_turns(problem.scene, turns, poll, options))
+    curves = all_branches(
+        lambda: problem, there, span, FollowOptions(options.level.max_step), None, along, rest
+    )
+    turns = [turn for path in curves.paths for turn in level_folds(path, omega)]
+    found.extend(_beside_level_folds(problem.scene, turns, poll, options))
     return curves.status is Status.COMPLETE
 
 
 @dataclass(frozen=True)
-class _Along:
-    """As `follow`; passes is told of the path also where poll raises `TooLongError`."""
+class _InterruptibleFollow:
+    """As follow; passes is told of the path also where poll raises `WorkLimitError`."""
 
     poll: Poll
     passes: Callable[[Path], None]
+    follow: Follow
 
     def __call__(self, *given: Any, **options: Any) -> Path:
-        from fcm.harmonic_balance.work_budget import TooLongError
+        from fcm.harmonic_balance.work_budget import WorkLimitError
 
         checkpoints = list[Checkpoint]()
 
@@ -132,8 +147,8 @@ class _Along:
             self.poll()
 
         try:
-            path = follow(*given, **options, watch=watch)
-        except TooLongError:
+            path = self.follow(*given, **options, watch=watch)
+        except WorkLimitError:
             for checkpoint in checkpoints:
                 self.passes(checkpoint.path(Status.INTERRUPTED))
             raise
@@ -149,8 +164,8 @@ def _from_rest(
     One that stalls is as far as it goes: from there on it would not be followed by other steps either.
     """
     options = problem.options.level
-    for step in (options.step, options.shorter * options.step):
-        for z in _begun(problem, linear):
+    for step in (options.max_step, options.retry_fraction * options.max_step):
+        for z in _linear_starts(problem, linear):
             path = along(problem, z, (0.0, span[1]), Events((1.0,)), FollowOptions(step), forward=True)
             whole = path.status is Status.COMPLETE and path.parameter[-1] == span[1]
             if whole or (path.status is Status.STALLED and path.z.shape[0]):
@@ -158,29 +173,29 @@ def _from_rest(
     return None
 
 
-def _at_turns(
-    scene: Scene, turns: Sequence[Turn], poll: Poll, options: ShootingOptions = SHOOTING
+def _beside_level_folds(
+    scene: Scene, turns: Sequence[LevelFold], poll: Poll, options: ShootingOptions = SHOOTING
 ) -> Iterator[FloatArray]:
     """Stable motions (unknown + 1,) beside turns below the level 1, at frequencies within the range."""
-    from fcm.branches.level_turns import beside, came
+    from fcm.branches.level_turns import reaches_level_one, solutions_beside
 
-    problem, (low, high) = AtLevel(scene, options=options), scene.frequency_range
+    problem, (low, high) = ProblemAtLevel(scene, options=options), scene.frequency_range
     newton = Newton(problem)
     for turn in turns:
         poll()
-        if turn.may_come and came(problem, newton, turn):
-            for z in (one for one in beside(newton) if low <= one[-1] <= high):
+        if turn.may_reach_level_one and reaches_level_one(problem, newton, turn):
+            for z in (one for one in solutions_beside(newton) if low <= one[-1] <= high):
                 shot = problem.shot(z)
                 if shot is not None and within_unit_circle(shot.multipliers, options):
                     yield z
 
 
-def _begun(problem: LevelProblem, linear: float) -> Iterator[FloatArray]:
+def _linear_starts(problem: LevelProblem, linear: float) -> Iterator[FloatArray]:
     """The motions (unknown + 1,) at levels at which contacts are linear, or nearly so."""
     from fcm.branches.options import LEVEL_CURVE
 
     newton = Newton(problem)
-    for level in dict.fromkeys(max(weak, linear) for weak in LEVEL_CURVE.weak):
+    for level in dict.fromkeys(max(weak, linear) for weak in LEVEL_CURVE.linear_levels):
         for state in about_rest(problem.scene, problem.omega, level):
             z = np.append(problem.shooting.unknowns(state), level)
             if correct_at_frequency(newton, z):
@@ -188,11 +203,14 @@ def _begun(problem: LevelProblem, linear: float) -> Iterator[FloatArray]:
                 break
 
 
-def _top(one: System, omega: float, options: ShootingOptions = SHOOTING) -> float:
+def _highest_level(one: System, omega: float, options: ShootingOptions = SHOOTING) -> float:
     """Up to which level the curve is followed: as that of a few harmonics comes back."""
     from fcm.branches.force_level import solutions
-    from fcm.branches.linear_limits import highest
+    from fcm.branches.linear_limits import highest_linear_limit
     from fcm.branches.options import LEVEL_CURVE
 
-    reach = solutions(one.with_harmonics(options.balance.few), omega).reach
-    return min(highest(one, omega), reach if np.isfinite(reach) else LEVEL_CURVE.further * LEVEL_CURVE.near)
+    reach = solutions(one.with_harmonics(options.balance.guess_harmonics), omega).max_level
+    return min(
+        highest_linear_limit(one, omega),
+        reach if np.isfinite(reach) else LEVEL_CURVE.reach_factor * LEVEL_CURVE.clear_level,
+    )

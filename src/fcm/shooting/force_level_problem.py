@@ -30,7 +30,7 @@ class LevelProblem(OrbitProblem):
     def measure(self, z: FloatArray) -> int:
         """See `OrbitProblem`."""
         super().measure(z)
-        self._scale[-1] = max(abs(float(z[-1])), self.options.level.least)
+        self._scale[-1] = max(abs(float(z[-1])), self.options.level.level_floor)
         return 0
 
     def report(self, z: FloatArray, direction: FloatArray) -> int:
@@ -38,7 +38,7 @@ class LevelProblem(OrbitProblem):
         return 0
 
 
-class AtLevel(OrbitProblem):
+class ProblemAtLevel(OrbitProblem):
     """The closure of one period, z = (q, q', f, omega), with all harmonic forces times its `load`."""
 
     @property

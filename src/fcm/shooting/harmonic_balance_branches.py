@@ -21,7 +21,7 @@ from fcm.shooting.problem import OrbitProblem
 from fcm.time_domain.state import State
 
 if TYPE_CHECKING:
-    from fcm.accuracy.outline import Outline
+    from fcm.accuracy.outline import UncheckedResponse
     from fcm.harmonic_balance.system import System
 
 Place = tuple[float, State]  # frequency [rad/s], and a guess there
@@ -49,7 +49,7 @@ def _leads_to(newton: Newton, guess: FloatArray, z: FloatArray, scale: FloatArra
     return there and bool(np.linalg.norm((np.asarray(newton.z) - z) / scale) < PATH.same)
 
 
-def is_stable(found: Outline, z: FloatArray) -> bool:
+def is_stable(found: UncheckedResponse, z: FloatArray) -> bool:
     """Whether small disturbances of a solution (unknown + 1,) of a balance die out."""
     from fcm.stability.floquet import multipliers_of
 
@@ -57,8 +57,8 @@ def is_stable(found: Outline, z: FloatArray) -> bool:
     return bool(of.verdict(z, enough=(1.0,)).stable == 1.0)
 
 
-def states_along(
-    scene: Scene, found: Outline, options: ShootingOptions = SHOOTING
+def states_of_branches(
+    scene: Scene, found: UncheckedResponse, options: ShootingOptions = SHOOTING
 ) -> Iterator[tuple[float, FloatArray, Iterator[Place]]]:
     """The height of each end and top of a balance's branches, itself, and guesses beside it, the nearest
     first."""
@@ -69,7 +69,7 @@ def states_along(
             yield (
                 float(shown.amplitude[top].max()),
                 path.z[top],
-                _places(scene, found.system.harmonics, guesses, options),
+                _guesses_at(scene, found.system.harmonics, guesses, options),
             )
 
 
@@ -85,19 +85,19 @@ def _tops(
     if not places.size:
         return
     highest = np.unique(places[amplitude[places].argmax(axis=0)])
-    apart = np.append(True, np.diff(highest) > options.balance.together)
+    apart = np.append(True, np.diff(highest) > options.balance.peak_spacing)
     for top in highest[apart].tolist():
         yield top, even
 
 
 def _around(even: npt.NDArray[np.bool_], top: int, options: ShootingOptions = SHOOTING) -> Iterator[int]:
     """A top and the points around it that no fold is between, the nearest first."""
-    for i in (top, *(top + way * step for step in options.balance.around for way in (-1, 1))):
+    for i in (top, *(top + way * step for step in options.balance.peak_offsets for way in (-1, 1))):
         if 0 <= i < len(even) and even[min(i, top) : max(i, top) + 1].all():
             yield i
 
 
-def _places(
+def _guesses_at(
     scene: Scene,
     harmonics: tuple[int, ...],
     points: Iterator[FloatArray],
@@ -110,7 +110,7 @@ def _places(
 
 def converged_balance(
     scene: Scene, apart: bool, poll: Poll, options: ShootingOptions = SHOOTING
-) -> Iterator[Outline]:
+) -> Iterator[UncheckedResponse]:
     """The response of the balance with every branch, whose ends and tops lead to those of the exact motion.
 
     Of many contacts, for which that has one harmonic, only where branches are known to be apart.
@@ -119,28 +119,28 @@ def converged_balance(
 
     whole = scene.whole()
     if not (whole.modal.frequency.all() and whole.contacts) or (
-        len(whole.contacts) >= options.balance.contacts and not apart
+        len(whole.contacts) >= options.balance.many_contacts and not apart
     ):
         return
     with suppress(RestError):
         yield every_balance(whole, poll, options)
 
 
-def every_balance(whole: Scene, poll: Poll, options: ShootingOptions = SHOOTING) -> Outline:
+def every_balance(whole: Scene, poll: Poll, options: ShootingOptions = SHOOTING) -> UncheckedResponse:
     """The response of the balance with as many harmonics as it takes, and every branch; of many contacts
     with one harmonic."""
-    from fcm.accuracy.outline import Outline, outlined
-    from fcm.accuracy.refinement import accurate
+    from fcm.accuracy.outline import UncheckedResponse, unchecked_response
+    from fcm.accuracy.refinement import refined_response
     from fcm.branches.search import with_branching, with_isolas
-    from fcm.harmonic_balance.reported_quantities import reported
+    from fcm.harmonic_balance.reported_quantities import reported_quantities
 
-    if len(whole.contacts) >= options.balance.contacts:
-        return outlined(_single(whole, poll))
-    found = accurate(_single(whole, poll), options.balance.error)
+    if len(whole.contacts) >= options.balance.many_contacts:
+        return unchecked_response(_single_harmonic(whole, poll))
+    found = refined_response(_single_harmonic(whole, poll), options.balance.accuracy)
     system = found.system
     traced = with_branching(system, with_isolas(system, found.traced))
-    shown = (reported(system, path) for path in traced.branches.paths[len(found.shown) :])
-    return Outline(system, traced, (*found.shown, *shown), found.seconds)
+    shown = (reported_quantities(system, path) for path in traced.branches.paths[len(found.shown) :])
+    return UncheckedResponse(system, traced, (*found.shown, *shown), found.seconds)
 
 
 def states_across(
@@ -154,7 +154,7 @@ def states_across(
     if not (inside and whole.contacts and whole.modal.frequency.all()):
         return {}
     try:
-        found = _outlined(_single(whole, poll), options)
+        found = _branches_with_few_harmonics(_single_harmonic(whole, poll), options)
     except RestError:
         return {}
     harmonics, paths = found.system.harmonics, found.traced.branches.paths
@@ -174,7 +174,7 @@ def _crossings(paths: Sequence[Path], omega: float) -> Iterator[FloatArray]:
             yield np.append((before[k] + share * (after[k] - before[k]))[:-1], omega)
 
 
-def _single(whole: Scene, poll: Poll) -> System:
+def _single_harmonic(whole: Scene, poll: Poll) -> System:
     """The balance of one harmonic."""
     from fcm.harmonic_balance.system import System
 
@@ -183,12 +183,12 @@ def _single(whole: Scene, poll: Poll) -> System:
     return one
 
 
-def _outlined(one: System, options: ShootingOptions = SHOOTING) -> Outline:
+def _branches_with_few_harmonics(one: System, options: ShootingOptions = SHOOTING) -> UncheckedResponse:
     """The branches of `SOME` harmonics, or of one where there are many contacts."""
-    from fcm.accuracy.outline import outlined
+    from fcm.accuracy.outline import unchecked_response
 
-    return outlined(
+    return unchecked_response(
         one
-        if len(one.scene.contacts) >= options.balance.contacts
+        if len(one.scene.contacts) >= options.balance.many_contacts
         else one.with_harmonics(options.balance.harmonics)
     )

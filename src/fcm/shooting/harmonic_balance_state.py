@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from fcm.contact import hysteresis_loop, periodic_forces
 from fcm.contact.closed_form import ClosedForm
-from fcm.harmonic_balance.single_harmonic_contact import SingleHarmonic
+from fcm.harmonic_balance.single_harmonic_contact import SingleHarmonicLaw
 from fcm.model.scene import Contact, FloatArray, Scene
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.time_domain.equations import has_friction
@@ -102,7 +102,8 @@ def balance_solutions(
     from fcm.harmonic_balance.system import System as Balanced
 
     balanced = Balanced(
-        whole, options.balance.few if len(whole.contacts) < options.balance.contacts else (1,)
+        whole,
+        options.balance.guess_harmonics if len(whole.contacts) < options.balance.many_contacts else (1,),
     )
     balanced.work.poll = poll or balanced.work.poll
     found = solutions(balanced, frequency)
@@ -125,7 +126,7 @@ def state_of(
 
     The contacts' forces on the balanced motion have more harmonics than that, and move the modes by them.
     """
-    system, highest = System(scene, float(z[-1])), options.balance.forces * max(harmonics)
+    system, highest = System(scene, float(z[-1])), options.balance.force_harmonics * max(harmonics)
     driven = list(system.harmonics)
     width = 2 + 4 * len(harmonics)
     wave = np.zeros((highest + 1, system.modes), dtype=np.complex128)  # modal forces
@@ -170,7 +171,7 @@ def _forces(
     contact: Contact, u: complex, v: complex, u_mean: float, v_mean: float
 ) -> tuple[tuple[complex, complex], tuple[float, float], float]:
     """Balanced friction and normal force: their fundamentals, their means; the friction at the angle 0."""
-    law = SingleHarmonic(ClosedForm(), contact.mu, contact.k_u, contact.k_v, contact.n_0)
+    law = SingleHarmonicLaw(ClosedForm(), contact.mu, contact.k_u, contact.k_v, contact.n_0)
     x = np.array([u_mean, v_mean, u.real, u.imag, v.real, v.imag])
     law.evaluate(x, 0)
     mean_u, mean_v, *parts = (float(f) for f in law.force)
@@ -184,7 +185,7 @@ def _forces(
     return pair, (mean_u, mean_v), start
 
 
-def _stuck(law: SingleHarmonic, x: FloatArray) -> bool:
+def _stuck(law: SingleHarmonicLaw, x: FloatArray) -> bool:
     """Whether the contact never slips nor opens."""
     law.bound(x, 0)
     return bool(law.rests())

@@ -13,33 +13,35 @@ from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.damping_homotopy import less_damped, more_damped
 from fcm.shooting.fixed_frequency import correct_at_frequency
-from fcm.shooting.harmonic_balance_branches import Place, is_stable, states_along
+from fcm.shooting.harmonic_balance_branches import Place, is_stable, states_of_branches
 from fcm.shooting.harmonic_balance_state import balanced_states, computed_state
 from fcm.shooting.linear_orbits import started_states
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.partly_sticking_orbits import partly_stuck_as_started
-from fcm.shooting.periodic import Orbit, Poll, approached, shoot, without_end
+from fcm.shooting.periodic import Orbit, Poll, approached, never_interrupt, shoot
 from fcm.shooting.problem import OrbitProblem
-from fcm.shooting.traction_families import chosen
-from fcm.shooting.undetermined import not_determined, rests_elsewhere
+from fcm.shooting.traction_families import member_at_start
+from fcm.shooting.undetermined import start_reason, undetermined_reason
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.state import State
 from fcm.time_domain.system import System
 
 if TYPE_CHECKING:
-    from fcm.accuracy.outline import Outline
+    from fcm.accuracy.outline import UncheckedResponse
 
 
-class Starts(NamedTuple):
+class InitialOrbits(NamedTuple):
     """What there is to begin with."""
 
     points: list[FloatArray]  # z, from which branches are followed
     missed: dict[float, str]  # of ends of the range why there is none
     sought: bool  # whether they are from anywhere in the range, as nothing led to one that was looked at
-    apart: bool  # whether the balance has more solutions than there are points: see `converged_balance`
+    away_from_balance: (
+        bool  # whether the balance has more solutions than there are points: see `converged_balance`
+    )
 
 
-def starts(problem: OrbitProblem, poll: Poll = without_end) -> Starts:
+def find_initial_orbits(problem: OrbitProblem, poll: Poll = never_interrupt) -> InitialOrbits:
     """Points from which branches are followed.
 
     At both ends, and at the resonances inside, near every solution of the balance, and from motions in which
@@ -72,44 +74,46 @@ def starts(problem: OrbitProblem, poll: Poll = without_end) -> Starts:
             missed[omega] = str(error)
         for orbit in orbits:
             try:
-                _add(problem, found, first_point(problem, orbit, poll))
+                _add_distinct(problem, found, first_point(problem, orbit, poll))
             except SimulationError as error:
                 missed[omega] = str(error)
         apart = apart or len(found) - before < len(guesses)
     at_ends = {omega: missed[omega] for omega in missed if omega not in inside}
-    return Starts(found or _anywhere(problem, poll), at_ends, not found, apart)
+    return InitialOrbits(found or _first_anywhere(problem, poll), at_ends, not found, apart)
 
 
-class Along(NamedTuple):
+class BalanceOrbits(NamedTuple):
     """What the branches of a balance lead to: points, whether each is as high as there, and the frequencies
     [rad/s] and heights of tops at which the balance is stable and nothing as high was found."""
 
     points: list[FloatArray]
-    alike: bool
+    near_balance: bool
     unreached: list[tuple[float, float]]
 
 
-def along_balance(problem: OrbitProblem, found: Outline, poll: Poll = without_end) -> Along:
+def orbits_along_balance(
+    problem: OrbitProblem, found: UncheckedResponse, poll: Poll = never_interrupt
+) -> BalanceOrbits:
     """Points beside the ends and tops of a balance's branches.
 
-    What `starts` has, at its frequencies, need not lead there: some branches are closed, or are so for the
-    exact motion alone.
+    What `find_initial_orbits` has, at its frequencies, need not lead there: some branches are closed, or
+    are so for the exact motion alone.
     poll is called now and then.
     """
     points, alike, unreached = list[FloatArray](), True, list[tuple[float, float]]()
-    for height, top, places in states_along(problem.scene, found, problem.options):
+    for height, top, places in states_of_branches(problem.scene, found, problem.options):
         there, high = list[tuple[float, FloatArray]](), False
-        for place in islice(places, problem.options.start.guesses):
+        for place in islice(places, problem.options.start.max_guesses):
             there += [(height_of(problem, z), z) for z in _points(problem, place, poll)]
-            high = bool(there) and there[-1][0] >= problem.options.start.height * height
+            high = bool(there) and there[-1][0] >= problem.options.start.min_height * height
             if high:
                 break
         if there:  # some may lead to a lower branch
-            _add(problem, points, max(there, key=lambda one: one[0])[1])
+            _add_distinct(problem, points, max(there, key=lambda one: one[0])[1])
         alike = alike and high
         if not high and is_stable(found, top):
             unreached.append((float(top[-1]), height))
-    return Along(points, alike, unreached)
+    return BalanceOrbits(points, alike, unreached)
 
 
 def height_of(problem: OrbitProblem, z: FloatArray) -> float:
@@ -126,10 +130,10 @@ def _points(problem: OrbitProblem, place: Place, poll: Poll) -> Iterator[FloatAr
             yield first_point(problem, orbit, poll)
 
 
-def _anywhere(problem: OrbitProblem, poll: Poll) -> list[FloatArray]:
+def _first_anywhere(problem: OrbitProblem, poll: Poll) -> list[FloatArray]:
     """The first point that the balance leads to, at frequencies across the range."""
     scene = problem.scene
-    for omega in np.linspace(*scene.frequency_range, problem.options.start.places + 1)[::-1].tolist():
+    for omega in np.linspace(*scene.frequency_range, problem.options.start.frequencies + 1)[::-1].tolist():
         for orbit in _shot(
             scene, omega, _corrected_states(scene, omega, poll, problem.options), poll, problem.options
         ):
@@ -147,7 +151,7 @@ def _by_damping(problem: OrbitProblem, poll: Poll) -> Iterator[list[FloatArray]]
     if more is None:
         return
     easier, factor = more
-    for omega in np.linspace(*scene.frequency_range, problem.options.start.damped_places + 1).tolist():
+    for omega in np.linspace(*scene.frequency_range, problem.options.start.damped_frequencies + 1).tolist():
         for orbit in near_balance(easier, omega, poll, problem.options):
             poll()
             with suppress(SimulationError):
@@ -174,21 +178,21 @@ def _corrected_states(
     from fcm.branches.force_level import solutions
     from fcm.harmonic_balance.system import System as Balanced
 
-    one, more = Balanced(whole, options.start.harmonics), Balanced(whole, options.start.corrected)
-    newton = Newton(more.balance())
+    one, more = Balanced(whole, options.start.harmonics), Balanced(whole, options.start.corrected_harmonics)
+    newton = Newton(more.new_balance())
     one.work.poll = poll
     for solution in solutions(one, omega).solutions:
         z = more.extended(solution, options.start.harmonics)
         yield computed_state(
             scene,
-            options.start.corrected,
+            options.start.corrected_harmonics,
             np.array(newton.z) if correct_at_frequency(newton, z) else z,
             options,
         )
 
 
 def solution_at(
-    scene: Scene, omega: float, poll: Poll = without_end, options: ShootingOptions = SHOOTING
+    scene: Scene, omega: float, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
 ) -> Orbit:
     """A stable solution near harmonic balance, or the one that a motion from rest comes near to, or any.
 
@@ -210,7 +214,7 @@ def solution_at(
 
 
 def near_balance(
-    scene: Scene, omega: float, poll: Poll = without_end, options: ShootingOptions = SHOOTING
+    scene: Scene, omega: float, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
 ) -> Iterator[Orbit]:
     """The motions that shooting finds from the solutions of the balance."""
     return _shot(scene, omega, balanced_states(scene, omega, poll, options), poll, options)
@@ -220,7 +224,7 @@ def _shot(
     scene: Scene,
     omega: float,
     guesses: Iterable[State],
-    poll: Poll = without_end,
+    poll: Poll = never_interrupt,
     options: ShootingOptions = SHOOTING,
 ) -> Iterator[Orbit]:
     """The motions that shooting finds from guesses."""
@@ -234,7 +238,11 @@ def _shot(
 
 
 def _from_rest(
-    scene: Scene, omega: float, others: bool, poll: Poll = without_end, options: ShootingOptions = SHOOTING
+    scene: Scene,
+    omega: float,
+    others: bool,
+    poll: Poll = never_interrupt,
+    options: ShootingOptions = SHOOTING,
 ) -> list[Orbit]:
     """The motion that one from rest comes to; none if there are others and this cannot be had."""
     try:
@@ -254,14 +262,14 @@ def inner_resonances(scene: Scene) -> list[float]:
     return resonances(Balanced(scene)) if scene.modal.frequency.all() and scene.contacts else []
 
 
-def _add(problem: OrbitProblem, found: list[FloatArray], z: FloatArray) -> None:
+def _add_distinct(problem: OrbitProblem, found: list[FloatArray], z: FloatArray) -> None:
     problem.measure(z)
     scale = np.asarray(problem.scale)
-    if all(np.linalg.norm((z - other) / scale) > problem.options.start.distinct for other in found):
+    if all(np.linalg.norm((z - other) / scale) > problem.options.start.distinct_distance for other in found):
         found.append(z)
 
 
-def first_point(problem: OrbitProblem, orbit: Orbit, poll: Poll = without_end) -> FloatArray:
+def first_point(problem: OrbitProblem, orbit: Orbit, poll: Poll = never_interrupt) -> FloatArray:
     """The point z of a solution, its stuck contacts as little stressed as can be, or as the scene starts.
 
     Raises
@@ -271,12 +279,12 @@ def first_point(problem: OrbitProblem, orbit: Orbit, poll: Poll = without_end) -
     """
     z = problem.z(orbit.state, orbit.frequency)
     near = problem.shot(z)
-    member = None if near is None else chosen(near, problem.shooting.resting, poll, problem.options)
+    member = None if near is None else member_at_start(near, problem.shooting.resting, poll, problem.options)
     if member is not None:
         z = np.append(member.x[problem.free], orbit.frequency)
     newton = Newton(problem)
     if not correct_at_frequency(newton, z):
         if near is not None and member is None and any(choice.gap for choice in near.chosen):
-            raise SimulationError(rests_elsewhere(problem.scene, orbit, near))
-        raise SimulationError(not_determined(orbit, problem.options))
+            raise SimulationError(start_reason(problem.scene, orbit, near))
+        raise SimulationError(undetermined_reason(orbit, problem.options))
     return np.array(newton.z)

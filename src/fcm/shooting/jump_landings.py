@@ -10,11 +10,11 @@ from fcm.continuation import Mark
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
 from fcm.shooting.fixed_frequency import correct_at_frequency
-from fcm.shooting.orbit_record import Sample, sampled
+from fcm.shooting.orbit_record import OrbitRecord, recorded_point
 from fcm.shooting.problem import OrbitProblem
 
 
-def with_landings(problem: OrbitProblem, branches: list[list[Sample]]) -> list[list[Sample]]:
+def with_landings(problem: OrbitProblem, branches: list[list[OrbitRecord]]) -> list[list[OrbitRecord]]:
     """The points of branches, and one more wherever a stable stretch passes the end of another.
 
     A stable stretch ends at a fold or where stability changes. Between two points of a curve amplitudes are
@@ -33,7 +33,9 @@ def with_landings(problem: OrbitProblem, branches: list[list[Sample]]) -> list[l
 _ENDS = Mark.FOLD | Mark.CROSSING
 
 
-def _landed(problem: OrbitProblem, newton: Newton, points: list[Sample], ends: FloatArray) -> list[Sample]:
+def _landed(
+    problem: OrbitProblem, newton: Newton, points: list[OrbitRecord], ends: FloatArray
+) -> list[OrbitRecord]:
     out = points[:1]
     for one, other in pairwise(points):
         if one.stable and other.stable:
@@ -46,7 +48,9 @@ def _landed(problem: OrbitProblem, newton: Newton, points: list[Sample], ends: F
     return out
 
 
-def _at(problem: OrbitProblem, newton: Newton, one: Sample, other: Sample, omega: float) -> Sample | None:
+def _at(
+    problem: OrbitProblem, newton: Newton, one: OrbitRecord, other: OrbitRecord, omega: float
+) -> OrbitRecord | None:
     """The point of the curve at a frequency between those of two neighbours; None if it is not found."""
     share = (omega - one.frequency) / (other.frequency - one.frequency)
     guess = one.z + share * (other.z - one.z)
@@ -58,4 +62,4 @@ def _at(problem: OrbitProblem, newton: Newton, one: Sample, other: Sample, omega
     direction = np.asarray(newton.tangent) * np.asarray(newton.scale)
     if direction @ (other.z - one.z) < 0.0:
         direction = -direction
-    return sampled(problem, np.array(newton.z), direction, Mark.STATION)
+    return recorded_point(problem, np.array(newton.z), direction, Mark.STATION)

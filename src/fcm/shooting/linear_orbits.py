@@ -27,7 +27,7 @@ from fcm.time_domain.system import System
 
 
 @dataclass(frozen=True)
-class Linear:
+class LinearOrbit:
     """A motion in which no contact changes its state."""
 
     states: tuple[str, ...]  # of each contact: E sticks, or is closed without friction; S is open
@@ -39,7 +39,7 @@ class Linear:
 
 def linear_motions(
     scene: Scene, omega: float, as_started: bool = False, options: ShootingOptions = SHOOTING
-) -> list[Linear]:
+) -> list[LinearOrbit]:
     """Those in which a contact with friction sticks, at a frequency [rad/s]; of the scene with what is held.
 
     Their residual friction is the nearest to that of the scene's start, or just that.
@@ -48,7 +48,7 @@ def linear_motions(
     system, count = System(whole, omega), len(whole.contacts)
     wanted = system.k_u * resting(whole)
     closed = (
-        product((True, False), repeat=count) if count <= options.linear.combinations else [(True,) * count]
+        product((True, False), repeat=count) if count <= options.linear.max_combined else [(True,) * count]
     )
     found = (_motion(system, np.array(one, dtype=bool), wanted, as_started, options) for one in closed)
     return [one for one in found if one is not None]
@@ -82,7 +82,7 @@ def _motion(
     wanted: FloatArray,
     as_started: bool,
     options: ShootingOptions = SHOOTING,
-) -> Linear | None:
+) -> LinearOrbit | None:
     """The motion with these contacts closed, if any residual friction admits it."""
     stuck = [j for j in np.flatnonzero(closed).tolist() if has_friction(system.scene.contacts[j])]
     if not stuck:
@@ -93,7 +93,7 @@ def _motion(
         return None
     limits = list(_limits(system, closed, stuck, wave, mean, by_residual))
     rows, least = np.array([row for row, _ in limits]), np.array([least for _, least in limits])
-    inside = _inside(rows, least, wanted[stuck], as_started, options)
+    inside = _nearest_inside(rows, least, wanted[stuck], as_started, options)
     if inside is None:
         return None
     mean = mean + by_residual @ inside
@@ -101,7 +101,7 @@ def _motion(
     residual[stuck] = inside
     friction[stuck] = system.k_u[stuck] * (system.tangential[stuck] @ q) - inside
     state = State(q, system.omega * (np.array(system.harmonics) @ wave.real), friction)
-    return Linear(tuple("E" if one else "S" for one in closed), residual, mean, wave, state)
+    return LinearOrbit(tuple("E" if one else "S" for one in closed), residual, mean, wave, state)
 
 
 def linear_answer(
@@ -138,7 +138,7 @@ def _limits(
             press, sign = contact.k_v * system.normal[j], 1.0 if closed[j] else -1.0
             yield (
                 sign * (press @ by_residual),
-                _lowered(system, sign * (wave @ press)) - sign * (contact.n_0 + press @ mean),
+                _greatest_descent(system, sign * (wave @ press)) - sign * (contact.n_0 + press @ mean),
             )
         else:
             yield from sticking(system, j, np.array(stuck) == j, wave, mean, by_residual)
@@ -159,17 +159,17 @@ def sticking(
     force = pull @ by_residual - own, pull @ mean, wave @ pull
     for sign in (1.0, -1.0):
         row, constant, swing = (contact.mu * n - sign * f for n, f in zip(load, force, strict=True))
-        yield row, _lowered(system, swing) - constant
+        yield row, _greatest_descent(system, swing) - constant
 
 
-def _lowered(system: System, swing: npt.NDArray[np.complex128]) -> float:
+def _greatest_descent(system: System, swing: npt.NDArray[np.complex128]) -> float:
     """How far below zero Im(sum_h swing_h exp(i h theta)) comes, swing (driven,)."""
     if swing.size == 1:
         return float(abs(swing[0]))
     return float(greatest(1j * swing[None, :, None], np.array(system.harmonics))[0, 0])
 
 
-def _inside(
+def _nearest_inside(
     rows: FloatArray,
     least: FloatArray,
     wanted: FloatArray,
@@ -178,13 +178,14 @@ def _inside(
 ) -> FloatArray | None:
     """The residual friction nearest to what is wanted with rows @ residual >= least, if there is any."""
     size = float(np.abs(least).max()) or 1.0
-    if (rows @ wanted >= least + options.linear.least * size).all():
+    if (rows @ wanted >= least + options.linear.min_limit_distance * size).all():
         return wanted
     if just_that:
         return None
     nearest = _nearest_number if wanted.size == 1 else _nearest
     tried = (
-        nearest(rows, least + kept * size, wanted) for kept in (options.linear.kept, options.linear.least)
+        nearest(rows, least + kept * size, wanted)
+        for kept in (options.linear.limit_distance, options.linear.min_limit_distance)
     )
     return next((one for one in tried if one is not None), None)
 

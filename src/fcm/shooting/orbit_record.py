@@ -16,7 +16,7 @@ from fcm.shooting.problem import OrbitProblem
 from fcm.shooting.residual import Shot
 from fcm.shooting.stability_changes import crossing
 from fcm.shooting.stability_windows import with_windows
-from fcm.shooting.steady_state import Steady, several
+from fcm.shooting.steady_state import SteadyMotion, several
 from fcm.time_domain.contact_loads import borne
 from fcm.time_domain.cycle_measures import Measure, measure
 from fcm.time_domain.errors import SimulationError
@@ -25,7 +25,7 @@ from fcm.units import spoken
 
 
 @dataclass(frozen=True)
-class Sample:
+class OrbitRecord:
     """A periodic solution, and where on its curve it is."""
 
     frequency: float  # [rad/s]
@@ -39,8 +39,8 @@ class Sample:
     z: FloatArray  # (unknown + 1,), the frequency last
     direction: FloatArray  # (unknown + 1,) of the curve, in the units of z
     mark: int = 0  # of `Mark`, joined
-    held: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))  # (held, 3): see `_held`
-    steady: Steady | None = None  # how it repeats or ranges, where it does not after every period
+    held: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))  # (held, 3): see `_held_distances`
+    steady: SteadyMotion | None = None  # how it repeats or ranges, where it does not after every period
 
     @property
     def repeats(self) -> int:
@@ -48,34 +48,34 @@ class Sample:
         return 1 if self.steady is None else self.steady.periods
 
 
-def sampled(problem: OrbitProblem, z: FloatArray, direction: FloatArray, mark: int = 0) -> Sample:
+def recorded_point(problem: OrbitProblem, z: FloatArray, direction: FloatArray, mark: int = 0) -> OrbitRecord:
     """What is kept of a point."""
     return replace(recorded(problem, z), direction=direction, mark=mark)
 
 
-def recorded(problem: OrbitProblem, z: FloatArray) -> Sample:
+def recorded(problem: OrbitProblem, z: FloatArray) -> OrbitRecord:
     """The same without its place on a curve, found once for each z: while its period is still known, if it is
     asked for when the curve comes there."""
     key = z.tobytes()
     if key not in problem.samples:
-        problem.samples[key] = _made(_shot(problem, z), z, problem.options)
+        problem.samples[key] = _record_of(_shot(problem, z), z, problem.options)
     return problem.samples[key]
 
 
-def _made(shot: Shot, z: FloatArray, options: ShootingOptions = SHOOTING) -> Sample:
+def _record_of(shot: Shot, z: FloatArray, options: ShootingOptions = SHOOTING) -> OrbitRecord:
     """What is kept of a period from z."""
     multipliers, found = shot.multipliers, shot.scanned
-    return Sample(
+    return OrbitRecord(
         float(z[-1]), shot.state, shot.cycle.states, measure(shot.cycle, found.displaced),
         borne([shot.cycle], found), multipliers, shot.residual, within_unit_circle(multipliers, options),
-        z, np.zeros(z.size), held=_held(shot), steady=several(shot),
+        z, np.zeros(z.size), held=_held_distances(shot), steady=several(shot),
     )  # fmt: skip
 
 
-def _held(shot: Shot) -> FloatArray:
+def _held_distances(shot: Shot) -> FloatArray:
     """What each contact that is held keeps of its limit or gap; its greatest normal and friction force."""
     least, greatest = (one.reshape(2, -1) for one in shot.scanned.part(shot.system.parts.held))
-    return np.column_stack((shot.kept, greatest[0], np.maximum(greatest[1], -least[1])))
+    return np.column_stack((shot.held_distances, greatest[0], np.maximum(greatest[1], -least[1])))
 
 
 def _shot(problem: OrbitProblem, z: FloatArray) -> Shot:
@@ -88,23 +88,24 @@ def _shot(problem: OrbitProblem, z: FloatArray) -> Shot:
     return shot
 
 
-def settled(omega: float, motion: Steady) -> Sample:
+def recorded_steady(omega: float, motion: SteadyMotion) -> OrbitRecord:
     """What is kept of a motion that a simulation has come to."""
     none = np.zeros(0)
-    return Sample(
+    return OrbitRecord(
         omega, motion.state, motion.states, motion.measure, motion.borne, motion.multipliers,
         motion.error, True, none, none, steady=motion,
     )  # fmt: skip
 
 
-def samples(problem: OrbitProblem, path: Path, located: bool = True) -> list[Sample]:
+def samples(problem: OrbitProblem, path: Path, located: bool = True) -> list[OrbitRecord]:
     """The points of a path, with those added at which stability changes between folds, and changes back.
 
     A fold belongs to the stable side, and so does a point at which stability changes.
     located : whether to add those; to find them takes three times as long as the rest.
     """
     points = [
-        sampled(problem, path.z[k], path.direction[k], int(path.mark[k])) for k in range(path.z.shape[0])
+        recorded_point(problem, path.z[k], path.direction[k], int(path.mark[k]))
+        for k in range(path.z.shape[0])
     ]
     turns = [k for k in range(1, len(points) - 1) if points[k].mark & Mark.FOLD]
     for k in turns:
@@ -113,11 +114,11 @@ def samples(problem: OrbitProblem, path: Path, located: bool = True) -> list[Sam
         return points
     whole, inside = with_windows(problem, path, points)
     for k in inside:
-        points.insert(k, sampled(problem, whole.z[k], whole.direction[k]))
+        points.insert(k, recorded_point(problem, whole.z[k], whole.direction[k]))
     return _with_crossings(problem, whole, points)
 
 
-def _with_crossings(problem: OrbitProblem, path: Path, points: Sequence[Sample]) -> list[Sample]:
+def _with_crossings(problem: OrbitProblem, path: Path, points: Sequence[OrbitRecord]) -> list[OrbitRecord]:
     """A point of its own for each change of stability, but where that is at one already."""
     out = list(points[:1])
     for k, point in enumerate(points[1:]):
@@ -125,7 +126,7 @@ def _with_crossings(problem: OrbitProblem, path: Path, points: Sequence[Sample])
         if before.stable != point.stable and not (before.mark | point.mark) & Mark.FOLD:
             place = crossing(problem, path, k)
             if place is not None and 0.0 < place.part < 1.0:
-                out.append(sampled(problem, place.z, place.direction, Mark.CROSSING))
+                out.append(recorded_point(problem, place.z, place.direction, Mark.CROSSING))
             elif place is not None and before.stable:
                 out[-1] = replace(out[-1], mark=before.mark | Mark.CROSSING)
             elif place is not None:

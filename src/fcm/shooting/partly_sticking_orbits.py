@@ -16,7 +16,7 @@ import numpy as np
 from fcm.model.scene import FloatArray, Held, Scene
 from fcm.shooting.linear_orbits import linear_answer, sticking
 from fcm.shooting.options import SHOOTING, ShootingOptions
-from fcm.shooting.periodic import Orbit, Poll, closed, converged, shoot, within_unit_circle, without_end
+from fcm.shooting.periodic import Orbit, Poll, closed, converged, never_interrupt, shoot, within_unit_circle
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import always_stuck, resting, resting_at
 from fcm.shooting.traction_families import Family, family
@@ -30,7 +30,7 @@ Choices = list[FloatArray]
 
 
 @dataclass(frozen=True)
-class Partly:
+class PartlyStickingOrbit:
     """A stable motion in which some contacts stick all through, and its family over residual friction."""
 
     states: tuple[str, ...]  # of each contact over the period
@@ -42,23 +42,23 @@ def partly_stuck_motions(
     scene: Scene,
     omega: float,
     known: list[Family],
-    poll: Poll = without_end,
+    poll: Poll = never_interrupt,
     options: ShootingOptions = SHOOTING,
-) -> list[Partly]:
+) -> list[PartlyStickingOrbit]:
     """Those that belong to no family that is known, at a frequency [rad/s]; of the scene with what is held.
 
     Of more contacts than `MOST` none.
     """
-    whole, found, families = scene.whole(), list[Partly](), list(known)
+    whole, found, families = scene.whole(), list[PartlyStickingOrbit](), list(known)
     system = System(whole, omega)
-    for stuck, residual in _tried(system, poll, options):
-        if any(_has(one, stuck, residual) for one in families):
+    for stuck, residual in _residual_guesses(system, poll, options):
+        if any(_has_family(one, stuck, residual) for one in families):
             continue
         poll()
         orbit = _with_held(system, stuck, residual, poll, options)
-        if orbit is None or any(_holds(one, orbit, options) for one in families):
+        if orbit is None or any(_contains(one, orbit, options) for one in families):
             continue
-        one = _partly(orbit, poll, options)
+        one = _with_family(orbit, poll, options)
         if one is not None:
             found.append(one)
             families.append(one.family)
@@ -66,7 +66,7 @@ def partly_stuck_motions(
 
 
 def partly_stuck_as_started(
-    scene: Scene, omega: float, poll: Poll = without_end, options: ShootingOptions = SHOOTING
+    scene: Scene, omega: float, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
 ) -> list[State]:
     """Guesses from those motions whose contacts rest where the scene starts."""
     whole, computed = scene.whole(), scene.computed()
@@ -84,17 +84,17 @@ def _sets(scene: Scene, options: ShootingOptions = SHOOTING) -> Iterator[tuple[i
     """The contacts that may stick while others do not."""
     rough = [j for j, contact in enumerate(scene.contacts) if has_friction(contact)]
     count = len(scene.contacts)
-    for size in range(1, count if count <= options.linear.combinations else 1):
+    for size in range(1, count if count <= options.linear.max_combined else 1):
         yield from combinations(rough, size)
 
 
-def _tried(
+def _residual_guesses(
     system: System, poll: Poll, options: ShootingOptions = SHOOTING
 ) -> Iterator[tuple[tuple[int, ...], FloatArray]]:
     """Contacts, and residual friction of them with which they may stick."""
     for stuck in _sets(system.scene, options):
         poll()
-        for residual in _thinned(_choices(system, stuck, options=options), options):
+        for residual in _spread_out(_choices(system, stuck, options=options), options):
             yield stuck, residual
 
 
@@ -128,7 +128,7 @@ def _choices(
 def _inside(rows: FloatArray, least: FloatArray, options: ShootingOptions = SHOOTING) -> Choices:
     """Places near the corners of where rows @ x >= least, and the middle of them."""
     size, count, found = float(np.abs(least).max()) or 1.0, rows.shape[1], Choices()
-    for kept in options.partly.kept:
+    for kept in options.partly_sticking.limit_distances:
         beyond = least + kept * size
         for pair in combinations(range(len(rows)), count):
             one = rows[list(pair)]
@@ -139,25 +139,25 @@ def _inside(rows: FloatArray, least: FloatArray, options: ShootingOptions = SHOO
     return [np.mean(found, axis=0), *found] if found else found
 
 
-def _thinned(choices: Choices, options: ShootingOptions = SHOOTING) -> Choices:
+def _spread_out(choices: Choices, options: ShootingOptions = SHOOTING) -> Choices:
     """Some of them, not near to one another, those first that came first."""
     kept, size = Choices(), float(np.ptp(choices, axis=0).max(initial=0.0)) if choices else 0.0
     for one in choices:
-        if all(np.abs(one - other).max() > options.partly.apart * size for other in kept):
+        if all(np.abs(one - other).max() > options.partly_sticking.min_distance * size for other in kept):
             kept.append(one)
-    return kept[: options.partly.tried]
+    return kept[: options.partly_sticking.max_tries]
 
 
-def _has(known: Family, stuck: tuple[int, ...], residual: FloatArray) -> bool:
+def _has_family(known: Family, stuck: tuple[int, ...], residual: FloatArray) -> bool:
     """Whether a whole family of just these contacts has this residual friction in its bounds."""
     if not known.complete or known.contacts != stuck:
         return False
     return bool(((-known.friction[:, 1] <= residual) & (residual <= -known.friction[:, 0])).all())
 
 
-def _holds(known: Family, orbit: Orbit, options: ShootingOptions = SHOOTING) -> bool:
+def _contains(known: Family, orbit: Orbit, options: ShootingOptions = SHOOTING) -> bool:
     """Whether a motion has a contact that sticks in a family, and its amplitudes are within that."""
-    room = options.partly.same * known.greatest
+    room = options.partly_sticking.amplitude_tolerance * known.greatest
     amplitude = orbit.measure.amplitude
     inside = (amplitude >= known.least - room) & (amplitude <= known.greatest + room)
     stuck = always_stuck(orbit.cycle.system, orbit.cycle.segments)
@@ -185,7 +185,7 @@ def _with_held(
 def _approached(system: System, poll: Poll, options: ShootingOptions = SHOOTING) -> Orbit | None:
     """The stable motion that one from no displacement comes to soon."""
     state = State.unloaded(system.scene)
-    for count in options.partly.cycles:
+    for count in options.partly_sticking.cycles:
         for _, end in cycles_from(system, count, state):
             poll()
             state = end
@@ -208,13 +208,13 @@ def _released(
     sticks = set(rest) <= set(always_stuck(system, shot.segments))
     found = (
         converged(shot, poll=poll, options=options)
-        if sticks and shot.residual < options.partly.closure
+        if sticks and shot.residual < options.partly_sticking.closure_tolerance
         else None
     )
     return closed(*found) if found is not None and within_unit_circle(found[0].multipliers, options) else None
 
 
-def _partly(orbit: Orbit, poll: Poll, options: ShootingOptions = SHOOTING) -> Partly | None:
+def _with_family(orbit: Orbit, poll: Poll, options: ShootingOptions = SHOOTING) -> PartlyStickingOrbit | None:
     """The motion with its family; None if that cannot be told."""
     system, state = System(orbit.scene, orbit.frequency), orbit.state
     x = np.concatenate((state.q, state.velocity, state.friction))
@@ -226,4 +226,4 @@ def _partly(orbit: Orbit, poll: Poll, options: ShootingOptions = SHOOTING) -> Pa
         return None
     residual, stuck = np.zeros(len(orbit.states)), list(found.contacts)
     residual[stuck] = (system.k_u * resting_at(system, x))[stuck]
-    return Partly(orbit.states, residual, found)
+    return PartlyStickingOrbit(orbit.states, residual, found)

@@ -12,11 +12,11 @@ from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
 from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.options import SHOOTING, ShootingOptions
-from fcm.shooting.orbit_record import Sample, sampled
+from fcm.shooting.orbit_record import OrbitRecord, recorded_point
 from fcm.shooting.problem import OrbitProblem
 from fcm.time_domain.state import State
 
-Summits = npt.NDArray[np.bool_]  # (dof,)
+PeakDofs = npt.NDArray[np.bool_]  # (dof,)
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Guess:
     dof: int | None  # whose peak is sought; a fold if None
 
 
-def located(problem: OrbitProblem, guess: Guess, known: list[Sample]) -> Sample | None:
+def located(problem: OrbitProblem, guess: Guess, known: list[OrbitRecord]) -> OrbitRecord | None:
     """The peak or fold near a guess; None where there is none.
 
     known : pieces' peaks and folds that were found before, to which those of this piece are added.
@@ -44,7 +44,7 @@ def located(problem: OrbitProblem, guess: Guess, known: list[Sample]) -> Sample 
         known += [one for one, _ in found if all(_differ(one, other, problem.options) for other in known)]
         wanted = [one for one, highest in found if _is_wanted(one, highest, guess.dof)]
         if wanted:
-            return min(wanted, key=lambda one: _away(one, guess))
+            return min(wanted, key=lambda one: _distance_from_guess(one, guess))
     return None
 
 
@@ -61,14 +61,16 @@ def _on_curve(problem: OrbitProblem, guess: Guess) -> FloatArray | None:
     np.asarray(newton.row)[:] = row / size if size > 0.0 else np.eye(z.size)[-1]
     if (
         newton.correct(1.0) or correct_at_frequency(newton, z)
-    ) and newton.moved < problem.options.peaks.distance:
+    ) and newton.moved < problem.options.peaks.max_distance:
         return np.array(newton.z)
     return None
 
 
-def _within(problem: OrbitProblem, z: FloatArray, span: tuple[float, float]) -> list[tuple[Sample, Summits]]:
+def _within(
+    problem: OrbitProblem, z: FloatArray, span: tuple[float, float]
+) -> list[tuple[OrbitRecord, PeakDofs]]:
     """The peaks, folds and ends of the range on the piece of the curve through z within a span."""
-    found: list[tuple[Sample, Summits]] = []
+    found: list[tuple[OrbitRecord, PeakDofs]] = []
     options = FollowOptions(problem.scene.max_step)
     paths = [follow(problem, z, span, options=options, forward=forward) for forward in (True, False)]
     for path in paths:
@@ -76,28 +78,28 @@ def _within(problem: OrbitProblem, z: FloatArray, span: tuple[float, float]) -> 
             mark = int(path.mark[k])
             if mark & Mark.END and path.parameter[k] not in problem.scene.frequency_range:
                 continue
-            here = sampled(problem, path.z[k], path.direction[k], mark)
+            here = recorded_point(problem, path.z[k], path.direction[k], mark)
             here = _with_stable_side(problem, path.z, path.direction, int(k), here)
-            found.append((here, _summits(problem, path, int(k))))
-    return found + _begun_at_a_peak(problem, *paths)
+            found.append((here, _peak_dofs(problem, path, int(k))))
+    return found + _peak_at_start(problem, *paths)
 
 
-def _begun_at_a_peak(problem: OrbitProblem, ahead: Path, behind: Path) -> list[tuple[Sample, Summits]]:
+def _peak_at_start(problem: OrbitProblem, ahead: Path, behind: Path) -> list[tuple[OrbitRecord, PeakDofs]]:
     """The common start of two paths if it is a peak, which is then within no step of either."""
     if min(len(ahead.z), len(behind.z)) < 2:
         return []
     here = _amplitudes(problem, ahead, 0)
-    level = np.abs(np.asarray(problem.growth)) <= problem.options.peaks.level * here
-    highest = level & _summits(problem, ahead, 0) & (here >= _amplitudes(problem, behind, 1))
+    level = np.abs(np.asarray(problem.growth)) <= problem.options.peaks.min_growth * here
+    highest = level & _peak_dofs(problem, ahead, 0) & (here >= _amplitudes(problem, behind, 1))
     if not highest.any():
         return []
-    return [(sampled(problem, ahead.z[0], ahead.direction[0], Mark.PEAK), highest)]
+    return [(recorded_point(problem, ahead.z[0], ahead.direction[0], Mark.PEAK), highest)]
 
 
-def _summits(problem: OrbitProblem, path: Path, k: int) -> Summits:
+def _peak_dofs(problem: OrbitProblem, path: Path, k: int) -> PeakDofs:
     """Whose amplitude is no less than at the points beside it: a mark does not say whose peak it is."""
     here, *sides = (_amplitudes(problem, path, i) for i in (k, k - 1, k + 1) if 0 <= i < len(path.z))
-    highest: Summits = np.logical_and.reduce([here > 0.0, *(here >= side for side in sides)])
+    highest: PeakDofs = np.logical_and.reduce([here > 0.0, *(here >= side for side in sides)])
     return highest
 
 
@@ -107,27 +109,29 @@ def _amplitudes(problem: OrbitProblem, path: Path, k: int) -> FloatArray:
 
 
 def _with_stable_side(
-    problem: OrbitProblem, z: FloatArray, direction: FloatArray, k: int, here: Sample
-) -> Sample:
+    problem: OrbitProblem, z: FloatArray, direction: FloatArray, k: int, here: OrbitRecord
+) -> OrbitRecord:
     """A fold belongs to the stable side, if it has one."""
     if not here.mark & Mark.FOLD or here.stable:
         return here
     sides = [i for i in (k - 1, k + 1) if 0 <= i < len(z)]
-    return replace(here, stable=any(sampled(problem, z[i], direction[i]).stable for i in sides))
+    return replace(here, stable=any(recorded_point(problem, z[i], direction[i]).stable for i in sides))
 
 
-def _is_wanted(one: Sample, highest: Summits, dof: int | None) -> bool:
+def _is_wanted(one: OrbitRecord, highest: PeakDofs, dof: int | None) -> bool:
     return bool(one.mark & Mark.FOLD if dof is None else highest[dof])
 
 
-def _differ(one: Sample, other: Sample, options: ShootingOptions = SHOOTING) -> bool:
-    if abs(one.frequency - other.frequency) > options.peaks.same * one.frequency:
+def _differ(one: OrbitRecord, other: OrbitRecord, options: ShootingOptions = SHOOTING) -> bool:
+    if abs(one.frequency - other.frequency) > options.peaks.peak_tolerance * one.frequency:
         return True
     size = np.abs(one.measure.amplitude).max()
-    return bool(np.abs(one.measure.amplitude - other.measure.amplitude).max() > options.peaks.same * size)
+    return bool(
+        np.abs(one.measure.amplitude - other.measure.amplitude).max() > options.peaks.peak_tolerance * size
+    )
 
 
-def _away(one: Sample, guess: Guess) -> float:
+def _distance_from_guess(one: OrbitRecord, guess: Guess) -> float:
     """How little it is what was sought: the highest is the peak, the nearest the fold."""
     if guess.dof is not None:
         return -float(one.measure.amplitude[guess.dof])

@@ -11,20 +11,20 @@ from fcm.time_domain.segments import Segments
 from fcm.time_domain.system import System
 
 
-class Along(NamedTuple):
+class InstantDerivative(NamedTuple):
     """The derivative at an instant."""
 
     columns: FloatArray  # (unknown + 2, d): by each of x = (q, q', f), by the parameter; last the state
     rate: FloatArray  # (d,) of the state [1/s]
 
 
-def derivative_at(system: System, segments: Segments, last: int, position: float) -> Along:
+def derivative_at(system: System, segments: Segments, last: int, position: float) -> InstantDerivative:
     """At a position (in steps) in a segment."""
     kernel = system.derivative()
     kernel.begins(segments, system.by_level)
     while (missing := kernel.go(segments, last, position)) >= 0:
         system.make(np.asarray(segments.states)[missing])
-    return Along(np.array(kernel.columns), np.array(kernel.rate))
+    return InstantDerivative(np.array(kernel.columns), np.array(kernel.rate))
 
 
 def period_derivative(system: System, segments: Segments, duration: float) -> tuple[FloatArray, FloatArray]:

@@ -12,47 +12,52 @@ from itertools import pairwise
 import numpy as np
 
 from fcm.continuation import Events, FollowOptions, Mark, Path
-from fcm.continuation.all_branches import Follow, contains, through
+from fcm.continuation.all_branches import Follow, branch_through, contains
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
 from fcm.shooting.fixed_frequency import correct_at_frequency
-from fcm.shooting.orbit_record import Sample
-from fcm.shooting.periodic import Poll, converged, without_end
+from fcm.shooting.orbit_record import OrbitRecord
+from fcm.shooting.periodic import Poll, converged, never_interrupt
 from fcm.shooting.problem import OrbitProblem
 from fcm.shooting.residual import Shot
-from fcm.shooting.steady_state import Steady, steady
+from fcm.shooting.steady_state import SteadyMotion, steady
 from fcm.stability.verdict import Bifurcation, bifurcation_of
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.state import State
 
 
-class Doubled(OrbitProblem):
+class DoubledPeriodProblem(OrbitProblem):
     """Motions of twice the periods of others; a curve of them has ended where it comes to those."""
 
     def __init__(self, once: OrbitProblem) -> None:
         super().__init__(once.scene, 2 * once.repeats, once.options)
         self.once, self._way = once, np.zeros(0)
 
-    def begins(self) -> None:
+    def reset_flips(self) -> None:
         """To be called before another curve is followed."""
         self._way = np.zeros(0)
 
-    def ended(self, z: FloatArray) -> bool:
+    def has_passed_flip(self, z: FloatArray) -> bool:
         """Whether the curve has passed a flip since it was asked before: what half the periods lack turns."""
         shot = self.once.shot(z)
         if shot is None:
             return False
-        before, self._way = self._way, shot.gap / shot.scale
-        return shot.residual < self.options.doubling.closure or bool(before.size and before @ self._way < 0.0)
+        before, self._way = self._way, shot.closure / shot.scale
+        return shot.residual < self.options.doubling.closure_tolerance or bool(
+            before.size and before @ self._way < 0.0
+        )
 
-    def later(self, z: FloatArray) -> FloatArray:
+    def half_period_later(self, z: FloatArray) -> FloatArray:
         """The same motion, begun after half of its periods."""
         shot = self.once.shot(z)
-        return z if shot is None else z + np.append(shot.gap[self.free], 0.0)
+        return z if shot is None else z + np.append(shot.closure[self.free], 0.0)
 
 
 def doubled_paths(
-    problem: Doubled, branches: list[list[Sample]], along: Follow, poll: Poll = without_end
+    problem: DoubledPeriodProblem,
+    branches: list[list[OrbitRecord]],
+    along: Follow,
+    poll: Poll = never_interrupt,
 ) -> tuple[list[Path], int]:
     """The curves that begin at the flips of branches, and how many flips none was found from."""
     starts, lost = doubled_starts(problem, branches, poll)
@@ -60,8 +65,10 @@ def doubled_paths(
     wanted = Events(sorted({float(z[-1]) for z in starts}))
     paths = list[Path]()
     for z in starts:
-        if not any(contains(path, one, problem) for path in paths for one in (z, problem.later(z))):
-            path = through(lambda: problem, z, span, wanted, options, progress=None, along=along)
+        if not any(
+            contains(path, one, problem) for path in paths for one in (z, problem.half_period_later(z))
+        ):
+            path = branch_through(lambda: problem, z, span, wanted, options, progress=None, along=along)
             if path.z.shape[0]:
                 paths.append(path)
             else:
@@ -69,7 +76,9 @@ def doubled_paths(
     return paths, lost
 
 
-def to_flips(problem: Doubled, points: list[Sample], branches: list[list[Sample]]) -> list[Sample]:
+def to_flips(
+    problem: DoubledPeriodProblem, points: list[OrbitRecord], branches: list[list[OrbitRecord]]
+) -> list[OrbitRecord]:
     """The points of a curve, with the flips of others at which it ends within the range."""
     ends = [flip(branch, k) for branch in branches for k in flips(branch)]
     for end in (0, -1):
@@ -77,7 +86,9 @@ def to_flips(problem: Doubled, points: list[Sample], branches: list[list[Sample]
         problem.measure(last.z)
         scale = np.array(problem.scale)
         near = [
-            one for one in ends if np.linalg.norm((one.z - last.z) / scale) < problem.options.doubling.near
+            one
+            for one in ends
+            if np.linalg.norm((one.z - last.z) / scale) < problem.options.doubling.max_distance
         ]
         if near and last.frequency not in problem.scene.frequency_range:
             nearest = min(near, key=lambda one: float(np.linalg.norm((one.z - last.z) / scale)))
@@ -85,25 +96,25 @@ def to_flips(problem: Doubled, points: list[Sample], branches: list[list[Sample]
     return points
 
 
-def bifurcations(points: list[Sample]) -> Iterator[tuple[int, Bifurcation]]:
+def bifurcations(points: list[OrbitRecord]) -> Iterator[tuple[int, Bifurcation]]:
     """The places k in a branch where stability changes between the points k and k + 1, but at no fold."""
     for k, (one, other) in enumerate(pairwise(points)):
         if one.stable != other.stable and not (one.mark | other.mark) & Mark.FOLD:
             yield k, bifurcation_of((other if one.stable else one).multipliers.tolist())
 
 
-def flips(points: list[Sample]) -> Iterator[int]:
+def flips(points: list[OrbitRecord]) -> Iterator[int]:
     """Those where the period doubles."""
     return (k for k, kind in bifurcations(points) if kind is Bifurcation.PERIOD_DOUBLING)
 
 
-def flip(points: list[Sample], k: int) -> Sample:
+def flip(points: list[OrbitRecord], k: int) -> OrbitRecord:
     """The point at a bifurcation, which belongs to the stable side."""
     return points[k] if points[k].stable else points[k + 1]
 
 
 def doubled_starts(
-    problem: Doubled, branches: list[list[Sample]], poll: Poll = without_end
+    problem: DoubledPeriodProblem, branches: list[list[OrbitRecord]], poll: Poll = never_interrupt
 ) -> tuple[list[FloatArray], int]:
     """Motions of twice the periods beside the flips of branches, and how many flips lead to none."""
     found, lost = list[FloatArray](), 0
@@ -117,7 +128,9 @@ def doubled_starts(
     return found, lost
 
 
-def _near_flip(problem: Doubled, points: list[Sample], k: int, poll: Poll) -> Iterator[FloatArray]:
+def _near_flip(
+    problem: DoubledPeriodProblem, points: list[OrbitRecord], k: int, poll: Poll
+) -> Iterator[FloatArray]:
     """Motions of twice the periods at the frequencies of points beside a flip, the unstable ones first.
 
     Not at flips themselves, beside which a motion hardly changes that does not repeat. Where none is near an
@@ -125,8 +138,8 @@ def _near_flip(problem: Doubled, points: list[Sample], k: int, poll: Poll) -> It
     """
     ends = [id(flip(points, j)) for j in flips(points)]
     after, before = (
-        points[k + 1 : k + 1 + problem.options.doubling.points],
-        points[k : max(k - problem.options.doubling.points, -1) : -1],
+        points[k + 1 : k + 1 + problem.options.doubling.max_points],
+        points[k : max(k - problem.options.doubling.max_points, -1) : -1],
     )
     sides = (after, before) if points[k].stable else (before, after)
     near = [point for side in sides for point in side if id(point) not in ends]
@@ -141,7 +154,7 @@ def _near_flip(problem: Doubled, points: list[Sample], k: int, poll: Poll) -> It
             yield from _approached(problem, point, shot, poll)
 
 
-def _doubled(problem: Doubled, point: Sample, once: Shot) -> Iterator[FloatArray]:
+def _doubled(problem: DoubledPeriodProblem, point: OrbitRecord, once: Shot) -> Iterator[FloatArray]:
     """The motion in the direction in which a disturbance changes its sign after each period."""
     for reach in problem.options.doubling.distances:
         try:
@@ -150,17 +163,21 @@ def _doubled(problem: Doubled, point: Sample, once: Shot) -> Iterator[FloatArray
         except SimulationError:
             continue
         if found is not None:
-            yield from _held(problem, point, found[0])
+            yield from _repeating_solution(problem, point, found[0])
 
 
-def _approached(problem: Doubled, point: Sample, once: Shot, poll: Poll) -> Iterator[FloatArray]:
+def _approached(
+    problem: DoubledPeriodProblem, point: OrbitRecord, once: Shot, poll: Poll
+) -> Iterator[FloatArray]:
     """The motion that a simulation comes to from a disturbed one."""
     x, system = _disturbed(once, problem.options.doubling.distances[0]), once.system
     found = steady(system, State(x[system.q], x[system.p], x[system.f]), poll, problem.options)
-    if isinstance(found, Steady) and found.periods == problem.repeats:
+    if isinstance(found, SteadyMotion) and found.periods == problem.repeats:
         state = found.state
         x = np.concatenate((state.q, state.velocity, state.friction))
-        yield from _held(problem, point, Shot(system, x, problem.shooting.resting, problem.repeats))
+        yield from _repeating_solution(
+            problem, point, Shot(system, x, problem.shooting.resting, problem.repeats)
+        )
 
 
 def _disturbed(once: Shot, reach: float) -> FloatArray:
@@ -171,9 +188,14 @@ def _disturbed(once: Shot, reach: float) -> FloatArray:
     return x
 
 
-def _held(problem: Doubled, point: Sample, shot: Shot) -> Iterator[FloatArray]:
+def _repeating_solution(
+    problem: DoubledPeriodProblem, point: OrbitRecord, shot: Shot
+) -> Iterator[FloatArray]:
     """The solution of the problem that a motion is, unless that repeats before."""
-    if Shot(shot.system, shot.x, periods=problem.once.repeats).residual < problem.options.doubling.closure:
+    if (
+        Shot(shot.system, shot.x, periods=problem.once.repeats).residual
+        < problem.options.doubling.closure_tolerance
+    ):
         return
     newton = Newton(problem)
     if correct_at_frequency(newton, np.append(shot.x[problem.free], point.frequency)):

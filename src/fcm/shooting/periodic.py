@@ -25,7 +25,7 @@ from fcm.units import spoken
 Poll = Callable[[], None]  # called now and then; raises what ends the search
 
 
-def without_end() -> None:
+def never_interrupt() -> None:
     """A `Look` that lets the search take as long as it does."""
 
 
@@ -64,7 +64,7 @@ class Orbit:
 
 def within_unit_circle(multipliers: npt.NDArray[np.complex128], options: ShootingOptions = SHOOTING) -> bool:
     """Whether no disturbance grows, but for rounding."""
-    return bool(np.abs(multipliers).max(initial=0.0) <= 1.0 + options.floquet.verdict.excess)
+    return bool(np.abs(multipliers).max(initial=0.0) <= 1.0 + options.floquet.verdict.growth_tolerance)
 
 
 def periodic(
@@ -121,7 +121,7 @@ def unloaded(scene: Scene) -> State:
     return State(rest.q, rest.velocity, friction)
 
 
-def approached(system: System, poll: Poll = without_end, options: ShootingOptions = SHOOTING) -> Orbit:
+def approached(system: System, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING) -> Orbit:
     """The periodic solution that a simulation from rest comes near to.
 
     Raises
@@ -144,18 +144,18 @@ def approached(system: System, poll: Poll = without_end, options: ShootingOption
     at = spoken(system.omega, system.scene.frequency_unit)
     raise SimulationError(
         f"the motion from rest at {at} has not become periodic "
-        f"in {sum(options.approach.cycles)} cycles; {_neither(system, np.array(amplitudes), options)}"
+        f"in {sum(options.approach.cycles)} cycles; {_description(system, np.array(amplitudes), options)}"
     )
 
 
-def _neither(system: System, amplitude: FloatArray, options: ShootingOptions = SHOOTING) -> str:
+def _description(system: System, amplitude: FloatArray, options: ShootingOptions = SHOOTING) -> str:
     """What a motion does that has not become periodic, by the greatest amplitudes of its last cycles."""
     first, second = np.array_split(amplitude, 2)
-    if abs(second.mean() - first.mean()) > options.approach.drift * np.ptp(amplitude):
+    if abs(second.mean() - first.mean()) > options.approach.max_drift * np.ptp(amplitude):
         return "it may grow without end, repeat only after several periods, or need a guess"
     modal = system.scene.modal
     rate = float((modal.damping * modal.frequency).min())
-    last = -np.log(options.approach.settled) / rate / system.period if rate > 0.0 else np.inf
+    last = -np.log(options.approach.settled_fraction) / rate / system.period if rate > 0.0 else np.inf
     slow = f", or settles only in some {last:.1g} cycles" if last > sum(options.approach.cycles) else ""
     return (
         f"the amplitude of its last {amplitude.size} lies between {amplitude.min():.4g} and "
@@ -165,7 +165,7 @@ def _neither(system: System, amplitude: FloatArray, options: ShootingOptions = S
 
 
 def shoot(
-    system: System, guess: State, poll: Poll = without_end, options: ShootingOptions = SHOOTING
+    system: System, guess: State, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
 ) -> Orbit | None:
     """Newton's method from a state at the forces' angle 0; None when it does not converge."""
     x = np.concatenate((guess.q, guess.velocity, guess.friction))
@@ -176,7 +176,7 @@ def shoot(
 def converged(
     shot: Shot,
     most: int | None = None,
-    poll: Poll = without_end,
+    poll: Poll = never_interrupt,
     shortest: float | None = None,
     options: ShootingOptions = SHOOTING,
 ) -> tuple[Shot, int] | None:
@@ -184,8 +184,8 @@ def converged(
 
     None after the most steps, or where only a shorter part of one than the shortest brings it nearer.
     """
-    most = options.closure.iterations if most is None else most
-    shortest = options.closure.shortest if shortest is None else shortest
+    most = options.closure.max_iterations if most is None else most
+    shortest = options.closure.min_step if shortest is None else shortest
     for iteration in range(most):
         poll()
         if shot.residual <= options.closure.tolerance:
@@ -208,7 +208,7 @@ def closed(shot: Shot, iterations: int = 0) -> Orbit:
 def _step(shot: Shot, options: ShootingOptions = SHOOTING) -> FloatArray:
     """Newton's step; along directions in which nothing changes, none."""
     matrix = shot.by_state * shot.scale / shot.scale[:, None]
-    solution = np.linalg.lstsq(matrix, -shot.gap / shot.scale, rcond=options.closure.rank)[0]
+    solution = np.linalg.lstsq(matrix, -shot.closure / shot.scale, rcond=options.closure.rank_tolerance)[0]
     with np.errstate(over="ignore"):  # what is not finite is refused when it is tried
         step: FloatArray = solution * shot.scale
     return step

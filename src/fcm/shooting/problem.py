@@ -16,7 +16,7 @@ from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.state import State
 
 if TYPE_CHECKING:
-    from fcm.shooting.orbit_record import Sample
+    from fcm.shooting.orbit_record import OrbitRecord
 
 
 class OrbitProblem(Problem):
@@ -62,7 +62,7 @@ class OrbitProblem(Problem):
         self._scale, self._root = np.asarray(self.scale), float(np.sqrt(self.free.size))
         self._shots: dict[bytes, Shot | None] = {}
         self._numbers = 0  # in them
-        self.samples: dict[bytes, Sample] = {}  # what is kept of points, see `recorded`
+        self.samples: dict[bytes, OrbitRecord] = {}  # what is kept of points, see `recorded`
         self._rates = scene.modal.frequency
 
     def z(self, state: State, omega: float) -> FloatArray:
@@ -76,7 +76,7 @@ class OrbitProblem(Problem):
         shot = self._shots.get(key)
         if shot is None and key not in self._shots:
             shot = self._made(z)
-            if self._numbers > self.options.orbit.remembered:
+            if self._numbers > self.options.orbit.max_cached:
                 self.forget()
             self._numbers += 0 if shot is None else int(shot.segments.y.size) + 3 * shot.x.size**2
             self._shots[key] = shot
@@ -85,7 +85,7 @@ class OrbitProblem(Problem):
     @property
     def full(self) -> bool:
         """Whether so much is remembered that it may be forgotten with the next step."""
-        return 2 * self._numbers > self.options.orbit.remembered
+        return 2 * self._numbers > self.options.orbit.max_cached
 
     def forget(self) -> None:
         """Forget all periods."""
@@ -104,16 +104,20 @@ class OrbitProblem(Problem):
         if shot is None:
             jacobian[:] = self._residual[:] = np.nan
         elif self._all:
-            self._residual[:], jacobian[:, :-1], jacobian[:, -1] = shot.gap, shot.by_state, shot.by_parameter
+            self._residual[:], jacobian[:, :-1], jacobian[:, -1] = (
+                shot.closure,
+                shot.by_state,
+                shot.by_parameter,
+            )
         else:
-            self._residual[:], jacobian[:, :-1] = shot.gap[self.free], shot.by_state[self._block]
+            self._residual[:], jacobian[:, :-1] = shot.closure[self.free], shot.by_state[self._block]
             jacobian[:, -1] = shot.by_parameter[self.free]
         return 0
 
     def probe(self, z: FloatArray) -> int:
         """See `Problem`."""
         shot = self.shot(z)
-        self._residual[:] = np.nan if shot is None else shot.gap[self.free]
+        self._residual[:] = np.nan if shot is None else shot.closure[self.free]
         return 0
 
     def measure(self, z: FloatArray) -> int:
@@ -148,7 +152,7 @@ class OrbitProblem(Problem):
         shapes = self.scene.modal.shapes
         least, greatest, places = shot.scanned.displaced
         amplitude = 0.5 * (greatest - least)
-        moves = amplitude > self.options.orbit.still * amplitude.max(initial=0.0)
+        moves = amplitude > self.options.orbit.min_amplitude * amplitude.max(initial=0.0)
         way = np.zeros(self.shooting.size)
         way[self.free] = np.asarray(direction)[:-1]
         rates = along(shot.system, shot.segments, places, way, float(direction[-1]))
@@ -162,6 +166,6 @@ def _label(shot: Shot, options: ShootingOptions = SHOOTING) -> float:
 
     A transition that passes the start is a corner of the friction force there, though of nothing else.
     """
-    states = shot.segments.lasting(shot.duration, options.orbit.instant * shot.duration)
+    states = shot.segments.lasting(shot.duration, options.orbit.min_duration * shot.duration)
     limited = bytes([choice.contact for choice in shot.chosen if choice.limited])
     return float(crc32(states + limited))

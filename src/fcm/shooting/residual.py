@@ -10,7 +10,7 @@ import numpy.typing as npt
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.floquet_multipliers import floquet_of
 from fcm.shooting.period_derivative import period_derivative
-from fcm.shooting.residual_traction import Choice, choices, overshoots, resting, stuck_of
+from fcm.shooting.residual_traction import Choice, choices, one_sided_slips, resting, stuck_of
 from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.cycle_measures import Displaced, Scanned, displaced, scanned
 from fcm.time_domain.equations import has_friction
@@ -39,7 +39,7 @@ class Shot:
         self.system, self.x, self.resting, self.periods = system, x, resting, periods
         self.duration = periods * system.period  # [s]
         self.segments, end = march_from(system, x, self.duration)
-        self.gap, self.chosen = end[: system.unknowns] - x, list[Choice]()
+        self.closure, self.chosen = end[: system.unknowns] - x, list[Choice]()
         self._derivatives: tuple[FloatArray, FloatArray, FloatArray] | None = None
         if resting is not None:
             self._choose(resting)
@@ -49,9 +49,9 @@ class Shot:
         first, seen = self.system.f.start, self.segments.seen()
         self.chosen = choices(self.system, self.segments, resting, stuck_of(self.system, seen))
         for choice in self.chosen:
-            self.gap[first + choice.contact] = choice.gap
-        for contact, missing in overshoots(self.system, self.segments, seen):
-            self.gap[first + contact] -= missing
+            self.closure[first + choice.contact] = choice.gap
+        for contact, missing in one_sided_slips(self.system, self.segments, seen):
+            self.closure[first + contact] -= missing
 
     @cached_property
     def scale(self) -> FloatArray:
@@ -62,7 +62,7 @@ class Shot:
     @cached_property
     def residual(self) -> float:
         """By how much it fails to close, relative to its size."""
-        return float(np.abs(self.gap / self.scale).max(initial=0.0))
+        return float(np.abs(self.closure / self.scale).max(initial=0.0))
 
     @property
     def state(self) -> State:
@@ -123,7 +123,7 @@ class Shot:
         return half
 
     @cached_property
-    def kept(self) -> FloatArray:
+    def held_distances(self) -> FloatArray:
         """What each contact that is held keeps of its limit, or of its gap: (held,); negative, nothing."""
         least, greatest = self.scanned.part(self.system.parts.limits)
         most = greatest[::3]
@@ -131,7 +131,7 @@ class Shot:
         return share
 
     @cached_property
-    def others(self) -> npt.NDArray[np.complex128]:
+    def other_multipliers(self) -> npt.NDArray[np.complex128]:
         """Floquet's multipliers but the 1 of each contact that always sticks, whose slip motion w stays, and
         of each that stays closed without friction, whose f = 0 does; nor the 0 of a slider that forgets.
         """
@@ -142,8 +142,8 @@ class Shot:
         """Floquet's, the greatest first; 1 for each contact that always sticks, or stays closed smooth."""
         values = np.zeros(self.x.size, dtype=np.complex128)
         ones = sum(states == 1 << STICKING for states in self.segments.seen())
-        values[: self.others.size] = self.others
-        values[self.others.size : self.others.size + ones] = 1.0
+        values[: self.other_multipliers.size] = self.other_multipliers
+        values[self.other_multipliers.size : self.other_multipliers.size + ones] = 1.0
         return values[np.argsort(-np.abs(values), kind="stable")]
 
 

@@ -20,7 +20,9 @@ from fcm.time_domain.segments import NEGATIVE_SLIP, POSITIVE_SLIP, SEPARATED, ST
 from fcm.time_domain.state import State
 from fcm.time_domain.system import System
 
-BOTH = 1 << POSITIVE_SLIP | 1 << NEGATIVE_SLIP  # of what has been seen of a contact: slip in both directions
+BOTH_SIGNS = (
+    1 << POSITIVE_SLIP | 1 << NEGATIVE_SLIP
+)  # of what has been seen of a contact: slip in both directions
 
 
 class Choice(NamedTuple):
@@ -79,7 +81,7 @@ def choices(
     # a gap needs no search that is within a bound of the limits, or of no size
     known = {j: max(options.rounding * margin[j], segments.held(j) - margin[j]) for j in stuck}
     far = [j for j in stuck if abs(gaps[j]) > known[j]]
-    room = rooms(system, segments, far) if far else {}
+    room = limit_distances(system, segments, far) if far else {}
     return [
         _choice(system, segments, (j, gaps[j], margin[j]), *room[j])
         if j in room
@@ -118,7 +120,7 @@ def _margin(system: System, y: FloatArray, j: int, options: TractionOptions) -> 
     return options.margin * float(abs(y[system.f.start + j]) + limit)
 
 
-def overshoots(
+def one_sided_slips(
     system: System, segments: Segments, seen: list[int], options: TractionOptions = SHOOTING.traction
 ) -> list[tuple[int, float]]:
     """Contacts that slip in one direction only, with what their gap lacks to continue that of a `Choice`.
@@ -127,14 +129,16 @@ def overshoots(
     """
     found = []
     for j, states in enumerate(seen):
-        ways = states & BOTH
-        if ways not in (0, BOTH) and not states & 1 << SEPARATED and system.rough[j]:
+        ways = states & BOTH_SIGNS
+        if ways not in (0, BOTH_SIGNS) and not states & 1 << SEPARATED and system.rough[j]:
             sign = 1.0 if ways == 1 << POSITIVE_SLIP else -1.0
             found.append((j, sign * _margin(system, np.asarray(segments.y)[0], j, options)))
     return found
 
 
-def rooms(system: System, segments: Segments, contacts: list[int]) -> dict[int, tuple[Extreme, Extreme]]:
+def limit_distances(
+    system: System, segments: Segments, contacts: list[int]
+) -> dict[int, tuple[Extreme, Extreme]]:
     """Of each contact the least of mu n - f and of mu n + f over the segments."""
     found, _ = extremes_by(system.limits, system, segments)
     return {j: (found[2 * j], found[2 * j + 1]) for j in contacts}

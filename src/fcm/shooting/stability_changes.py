@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.continuation import Path, Segment
-from fcm.continuation.events import Secants
+from fcm.continuation.events import SignChange
 from fcm.continuation.options import FOLLOW
 from fcm.model.scene import FloatArray
 from fcm.shooting.problem import OrbitProblem
@@ -34,17 +34,17 @@ def crossing(problem: OrbitProblem, path: Path, first: int) -> Place | None:
     change of label is.
     """
     ends = [_place(problem, float(i), path.z[first + i], path.direction[first + i]) for i in (0, 1)]
-    sides = Secants(0.0, 1.0, ends[0].excess, ends[1].excess, may_jump=True)
+    sides = SignChange(0.0, 1.0, ends[0].excess, ends[1].excess, may_jump=True)
     between, stable = Segment(problem, path, first), min(ends, key=lambda place: place.excess)
-    for _ in range(problem.options.stability.looks):
-        if stable.there or sides.width * between.length < FOLLOW.switching.touched:
+    for _ in range(problem.options.stability.max_evaluations):
+        if stable.there or sides.width * between.length < FOLLOW.switching.reached_distance:
             return stable
         tried = sides.at, 0.5 * (sides.low + sides.high)
-        part = next((at for at in tried if between.put(at)), None)
+        part = next((at for at in tried if between.find(at)), None)
         if part is None:
             break
         new = _place(problem, part, between.z, between.direction)
-        sides.saw(part, new.excess)
+        sides.update(part, new.excess)
         if new.excess < 0.0 or new.there:
             stable = new
     return stable if 0.0 < stable.part < 1.0 else None
@@ -53,8 +53,8 @@ def crossing(problem: OrbitProblem, path: Path, first: int) -> Place | None:
 def _place(problem: OrbitProblem, part: float, z: FloatArray, direction: FloatArray) -> Place:
     """Its excess is counted from half of what is sure below the limit, so that what is there is stable."""
     shot = problem.shot(z)
-    others = np.zeros(0) if shot is None else np.abs(shot.others)
-    excess = problem.options.floquet.verdict.excess
-    room = 0.5 * problem.options.stability.sure * excess
+    others = np.zeros(0) if shot is None else np.abs(shot.other_multipliers)
+    excess = problem.options.floquet.verdict.growth_tolerance
+    room = 0.5 * problem.options.stability.certain_fraction * excess
     beyond = float(np.log(others.max(initial=1e-300)) - np.log1p(excess) + room)
     return Place(part, beyond, z, direction, abs(beyond) <= room)

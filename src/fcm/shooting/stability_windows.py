@@ -21,7 +21,14 @@ from fcm.model.scene import FloatArray
 from fcm.shooting.options import ShootingOptions
 from fcm.shooting.periodic import within_unit_circle
 from fcm.shooting.problem import OrbitProblem
-from fcm.stability.bifurcation_functions import LEAST, Seen, dip, foretold, products, seen
+from fcm.stability.bifurcation_functions import (
+    MIN_LOGARITHM,
+    MultiplierSample,
+    multiplier_sample,
+    predicted_minima,
+    predicted_minimum,
+    products,
+)
 from fcm.stability.options import StabilityOptions
 from fcm.stability.verdict import Bifurcation, Verdict
 
@@ -48,7 +55,7 @@ class Window(NamedTuple):
     orientation: float
 
 
-class _Known(NamedTuple):
+class _PathSamples(NamedTuple):
     """What is known of the points of a path, (point,) each: see `Seen`."""
 
     length: FloatArray
@@ -57,28 +64,30 @@ class _Known(NamedTuple):
     flip: FloatArray
     pair: FloatArray
 
-    def places(self, first: int, end: int) -> list[Seen]:
+    def places(self, first: int, end: int) -> list[MultiplierSample]:
         """Those from the first to before the end."""
         rows = zip(*(values[first:end].tolist() for values in self), strict=True)
-        return [Seen(*row) for row in rows]
+        return [MultiplierSample(*row) for row in rows]
 
     def suspected(self, jumps: npt.NDArray[np.bool_], options: ShootingOptions) -> list[int]:
         """The points after which there may be a window: where a dip is foretold, or multipliers may jump."""
         low, high = self.stable[:-1], self.stable[1:]
         dips = np.where(
-            low, self._dips(options.floquet, self.flip, self.pair), self._dips(options.floquet, self.growth)
+            low,
+            self._predicted_minima(options.floquet, self.flip, self.pair),
+            self._predicted_minima(options.floquet, self.growth),
         )
-        near = np.maximum(self.growth[:-1], self.growth[1:]) >= options.stability.safe
+        near = np.maximum(self.growth[:-1], self.growth[1:]) >= options.stability.safe_growth
         found: list[int] = np.flatnonzero((low == high) & near & (jumps | dips)).tolist()
         return found
 
-    def _dips(self, options: StabilityOptions, *functions: FloatArray) -> npt.NDArray[np.bool_]:
+    def _predicted_minima(self, options: StabilityOptions, *functions: FloatArray) -> npt.NDArray[np.bool_]:
         """Whether a dip of any of them is foretold after each point but the last."""
         s, before = self.length, self.stable[:-2] == self.stable[1:-1]
         alike = before & (self.stable[1:-1] == self.stable[2:])
         found = np.zeros(max(s.size - 1, 0), dtype=bool)
         for values in functions:
-            sides = foretold(s, values, len(functions) > 1, options)
+            sides = predicted_minima(s, values, len(functions) > 1, options)
             for k, side in enumerate(sides):  # between the first two of three points, and the last two
                 found[k : found.size - 1 + k] |= side & alike
         return found
@@ -91,7 +100,7 @@ def with_windows(problem: OrbitProblem, path: Path, points: Sequence[Point]) -> 
     """
     if not points:
         return path, []
-    known = _known(path, points, problem.options.floquet)
+    known = _path_samples(path, points, problem.options.floquet)
     jumps = np.array([one.states != other.states for one, other in pairwise(points)], dtype=bool)
     looked = (
         _window(problem, path, known, k, bool(jumps[k])) for k in known.suspected(jumps, problem.options)
@@ -114,7 +123,7 @@ def with_windows(problem: OrbitProblem, path: Path, points: Sequence[Point]) -> 
     return whole, [k + i for i, k in enumerate(behind)]
 
 
-def _window(problem: OrbitProblem, path: Path, known: _Known, k: int, jumps: bool) -> Window | None:
+def _window(problem: OrbitProblem, path: Path, known: _PathSamples, k: int, jumps: bool) -> Window | None:
     """A place in a window between a point and the next, if what is known of the points tells of one.
 
     jumps : whether multipliers may jump there.
@@ -122,24 +131,30 @@ def _window(problem: OrbitProblem, path: Path, known: _Known, k: int, jumps: boo
     first, (low, high) = max(k - 1, 0), known.places(k, k + 2)
     between: Segment | None = None
 
-    def inside(before: Sequence[Seen], low: Seen, high: Seen, after: Sequence[Seen], times: int) -> bool:
+    def inside(
+        before: Sequence[MultiplierSample],
+        low: MultiplierSample,
+        high: MultiplierSample,
+        after: Sequence[MultiplierSample],
+        times: int,
+    ) -> bool:
         """Whether one is found, the way divided so often already; `between` is there then."""
         nonlocal between
         alike = [one for one in (*before, low, high, *after) if one.stable == low.stable]
-        again = times < problem.options.stability.dips
-        length = dip(low, high, alike, times, problem.options.floquet) if again else None
+        again = times < problem.options.stability.max_divisions
+        length = predicted_minimum(low, high, alike, times, problem.options.floquet) if again else None
         if length is None and jumps and times == 0:
             length = 0.5 * (low.length + high.length)
         if length is None:
             return False
         between = between or Segment(problem, path, k)
-        if not between.put((length - start) / width):
+        if not between.find((length - start) / width):
             return False
         shot = problem.shot(between.z)
         if shot is None:
             return False
         stable = within_unit_circle(shot.multipliers, problem.options)
-        there = _seen(length, shot.multipliers, stable, problem.options.floquet)
+        there = _multiplier_sample(length, shot.multipliers, stable, problem.options.floquet)
         return (
             there.stable != low.stable
             or inside(before, low, there, [high], times + 1)
@@ -152,22 +167,24 @@ def _window(problem: OrbitProblem, path: Path, known: _Known, k: int, jumps: boo
     return Window(k, between.z, between.direction, between.orientation)
 
 
-def _seen(length: float, multipliers: ComplexArray, stable: bool, options: StabilityOptions) -> Seen:
+def _multiplier_sample(
+    length: float, multipliers: ComplexArray, stable: bool, options: StabilityOptions
+) -> MultiplierSample:
     """A point; of contacts that always stick, or stay closed smooth, multipliers are 1 and tell nothing."""
-    values = tuple(multipliers[multipliers != 1.0].tolist()[: options.windows.multipliers])
+    values = tuple(multipliers[multipliers != 1.0].tolist()[: options.windows.max_multipliers])
     growth = math.log(max((abs(value) for value in values), default=0.0) + 1e-300)
     verdict = Verdict(float(stable), growth, Bifurcation.NEIMARK_SACKER, values=values)
-    return seen(length, verdict, options)
+    return multiplier_sample(length, verdict, options)
 
 
-def _known(path: Path, points: Sequence[Point], options: StabilityOptions) -> _Known:
+def _path_samples(path: Path, points: Sequence[Point], options: StabilityOptions) -> _PathSamples:
     """The points of a path, all at once."""
     values = np.array([point.multipliers for point in points])
-    kept = (values != 1.0) & (np.cumsum(values != 1.0, axis=1) <= options.windows.multipliers)
-    growth = np.log(np.where(kept, np.abs(values), 0.0).max(axis=1, initial=0.0) + LEAST)
+    kept = (values != 1.0) & (np.cumsum(values != 1.0, axis=1) <= options.windows.max_multipliers)
+    growth = np.log(np.where(kept, np.abs(values), 0.0).max(axis=1, initial=0.0) + MIN_LOGARITHM)
     stable = np.array([point.stable for point in points])
     flip, pair = (np.where(stable, each, 0.0) for each in products(np.where(kept, values, 0.0), options))
-    return _Known(_lengths(path), stable, growth, flip, pair)
+    return _PathSamples(_lengths(path), stable, growth, flip, pair)
 
 
 def _lengths(path: Path) -> FloatArray:

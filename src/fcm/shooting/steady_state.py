@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from fcm.model.scene import FloatArray
 from fcm.shooting.options import SHOOTING, ShootingOptions
-from fcm.shooting.periodic import Poll, converged, within_unit_circle, without_end
+from fcm.shooting.periodic import Poll, converged, never_interrupt, within_unit_circle
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import resting_at
 from fcm.time_domain.contact_loads import borne
@@ -28,7 +28,7 @@ from fcm.time_domain.state import State
 from fcm.time_domain.system import System
 
 
-class Steady(NamedTuple):
+class SteadyMotion(NamedTuple):
     """A steady motion; amplitudes are half the peak-to-peak."""
 
     periods: int  # after which it repeats; 0 if it is quasi-periodic or irregular
@@ -44,8 +44,8 @@ class Steady(NamedTuple):
 
 
 def steady(
-    system: System, state: State, poll: Poll = without_end, options: ShootingOptions = SHOOTING
-) -> Steady | State:
+    system: System, state: State, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
+) -> SteadyMotion | State:
     """The steady motion that a simulation from a state comes to; where there is none, the state at its end.
 
     poll is called after every cycle.
@@ -58,21 +58,21 @@ def steady(
     >>> found.periods, found.states, found.measure.amplitude.round(4)
     (1, ('SPEN',), array([7.1681, 7.1663]))
     """
-    ranging: Steady | None = None
+    ranging: SteadyMotion | None = None
     seen = list[Cycle]()
     for count in options.steady.cycles:
-        ends, cycles = deque([state], options.steady.periods + 1), list[Cycle]()
+        ends, cycles = deque([state], options.steady.max_periods + 1), list[Cycle]()
         for cycle, end in cycles_from(system, count, state):
             poll()
             ends.append(end)
             cycles.append(cycle)
         state = ends[-1]
-        near = np.inf if _linear(cycles) else options.steady.near
+        near = np.inf if _linear(cycles) else options.steady.max_distance
         for periods in _candidates(ends, options):
             found = _repeating(system, state, periods, near, options)
             if found is not None:
                 return found
-        if count >= options.steady.ranging:
+        if count >= options.steady.ranging_cycles:
             of_all = _ranging([*seen, *cycles], options)
             seen = cycles if of_all is None else [*seen, *cycles]
             ranging = of_all or _ranging(cycles, options) or ranging
@@ -89,7 +89,7 @@ def _candidates(ends: Sequence[State], options: ShootingOptions = SHOOTING) -> l
         *(
             k + 1
             for k in range(1, apart.size)
-            if apart[k] < min(options.steady.near, options.steady.nearer * apart[:k].min())
+            if apart[k] < min(options.steady.max_distance, options.steady.return_ratio * apart[:k].min())
         ),
     ]
 
@@ -101,7 +101,7 @@ def _linear(cycles: Sequence[Cycle]) -> bool:
 
 def _repeating(
     system: System, state: State, periods: int, near: float, options: ShootingOptions = SHOOTING
-) -> Steady | None:
+) -> SteadyMotion | None:
     """The stable motion near a state that repeats after so many periods and not before."""
     x = np.concatenate((state.q, state.velocity, state.friction))
     shot = _closed(system, x, x, periods, options)
@@ -114,16 +114,16 @@ def _repeating(
     return _of_shot(shot) if within_unit_circle(shot.multipliers, options) else None
 
 
-def several(shot: Shot) -> Steady | None:
+def several(shot: Shot) -> SteadyMotion | None:
     """How a motion of several periods, stable or not, ranges over them; None of one."""
     return _of_shot(shot) if shot.periods > 1 else None
 
 
-def _of_shot(shot: Shot) -> Steady:
+def _of_shot(shot: Shot) -> SteadyMotion:
     """A motion that closes after its periods."""
     parts = [measure(cycle) for cycle, _ in cycles_from(shot.system, shot.periods, shot.state)]
     amplitude = np.array([part.amplitude for part in parts])
-    return Steady(
+    return SteadyMotion(
         shot.periods, shot.state, shot.cycle.states, measure(shot.cycle), amplitude.min(axis=0),
         amplitude.max(axis=0), shares([shot.cycle]), shot.multipliers, shot.residual,
         borne([shot.cycle]),
@@ -146,7 +146,7 @@ def _shorter(shot: Shot, options: ShootingOptions = SHOOTING) -> Shot | None:
     for k in range(1, shot.periods):
         if shot.periods % k == 0:
             part = Shot(shot.system, shot.x, periods=k)
-            if part.residual < options.doubling.closure:
+            if part.residual < options.doubling.closure_tolerance:
                 return part
     return None
 
@@ -167,36 +167,36 @@ def _flipped(once: Shot, x: FloatArray, periods: int, options: ShootingOptions =
         )
         if found is not None and _shorter(found, options) is None:
             away = np.abs((found.x - once.x) / found.scale)[: 2 * once.system.modes].max()
-            return found if away < options.steady.other else None
+            return found if away < options.steady.distinct_distance else None
     return None
 
 
-def _ranging(cycles: Sequence[Cycle], options: ShootingOptions = SHOOTING) -> Steady | None:
+def _ranging(cycles: Sequence[Cycle], options: ShootingOptions = SHOOTING) -> SteadyMotion | None:
     """The motion over cycles that do not repeat, unless their amplitudes still grow or decay."""
     measures = [measure(cycle) for cycle in cycles]
     amplitude = np.array([one.amplitude for one in measures])
     first, second = np.array_split(amplitude, 2)
     drift = np.abs(second.mean(axis=0) - first.mean(axis=0))
-    if (drift > options.approach.drift * np.ptp(amplitude, axis=0)).any():
+    if (drift > options.approach.max_drift * np.ptp(amplitude, axis=0)).any():
         return None
     spreads = first.std(axis=0), second.std(axis=0)
-    if (np.minimum(*spreads) < options.steady.lasting * np.maximum(*spreads)).any():
+    if (np.minimum(*spreads) < options.steady.min_spread_ratio * np.maximum(*spreads)).any():
         return None
     start, none = cycles[0], np.zeros(0, dtype=np.complex128)
     system, y = start.system, np.asarray(start.segments.y)[0]
     state = State(y[system.q].copy(), y[system.p].copy(), y[system.f].copy(), start.angle)
-    return Steady(
-        0, state, cycles[-1].states, together(measures), amplitude.min(axis=0), amplitude.max(axis=0),
+    return SteadyMotion(
+        0, state, cycles[-1].states, combined_measure(measures), amplitude.min(axis=0), amplitude.max(axis=0),
         shares(cycles), none, np.nan, borne(cycles),
     )  # fmt: skip
 
 
-def together(measures: Sequence[Measure]) -> Measure:
+def combined_measure(measures: Sequence[Measure]) -> Measure:
     """Measures of successive cycles as of one motion: its extremes, its mean, its fundamental.
 
     >>> import numpy as np
     >>> one, other = (Measure(*np.full((6, 1), x)) for x in (1.0, 3.0))
-    >>> together([one, other]).mean, together([one, other]).amplitude
+    >>> combined_measure([one, other]).mean, combined_measure([one, other]).amplitude
     (array([2.]), array([1.]))
     """
     greatest = np.max([m.greatest for m in measures], axis=0)

@@ -12,31 +12,31 @@ from fcm.continuation import FollowOptions, Mark, Path, Status, all_branches, fo
 from fcm.continuation.all_branches import Branches, Follow
 from fcm.model.scene import FloatArray, Scene
 from fcm.scene.modal import UNITS
-from fcm.shooting.force_level import Raised, raised
+from fcm.shooting.force_level import LevelMotions, level_motions
 from fcm.shooting.harmonic_balance_branches import converged_balance, passes
-from fcm.shooting.initial_orbits import along_balance, first_point, height_of, starts
+from fcm.shooting.initial_orbits import find_initial_orbits, first_point, height_of, orbits_along_balance
 from fcm.shooting.options import SHOOTING, ShootingOptions
-from fcm.shooting.orbit_record import Sample, samples
-from fcm.shooting.periodic import Orbit, Poll, periodic, without_end
+from fcm.shooting.orbit_record import OrbitRecord, samples
+from fcm.shooting.periodic import Orbit, Poll, never_interrupt, periodic
 from fcm.shooting.problem import OrbitProblem
 from fcm.shooting.unstable_range_search import orbits_in_unstable_ranges
-from fcm.shooting.work_budget import Bounded, Doubts
+from fcm.shooting.work_budget import BranchBudget, UncertainFrequencies
 from fcm.time_domain.errors import SimulationError
 
 Progress = Callable[[float, str], None]
-ENDED = (Status.COMPLETE, Status.RETURNED, Status.CLOSED)
+COMPLETE_STATUS = (Status.COMPLETE, Status.RETURNED, Status.CLOSED)
 
 
 @dataclass
 class Branch:
     """Periodic solutions along one curve."""
 
-    orbits: list[Sample] = field(default_factory=list)  # in the order along the curve
+    orbits: list[OrbitRecord] = field(default_factory=list)  # in the order along the curve
     status: Status = Status.COMPLETE
     periods: int = 0  # of the motion that were computed
 
     @property
-    def folds(self) -> list[Sample]:
+    def folds(self) -> list[OrbitRecord]:
         """Those of the solutions at which the curve turns back in frequency."""
         return [orbit for orbit in self.orbits if orbit.mark & Mark.FOLD]
 
@@ -101,9 +101,9 @@ def trace_orbits(
 def explore(
     problem: OrbitProblem,
     along: Follow = follow,
-    poll: Poll = without_end,
+    poll: Poll = never_interrupt,
     most: float = np.inf,
-    doubts: Doubts | None = None,
+    doubts: UncertainFrequencies | None = None,
 ) -> tuple[list[Path], str]:
     """All branches of a scene as paths, and what is missing, else ''; doubts take those of the balance that
     leads to them.
@@ -112,7 +112,7 @@ def explore(
     up: what leads to them may take so many seconds of processor time.
     """
     scene = problem.scene
-    found, missed, sought, apart = starts(problem, poll)
+    found, missed, sought, apart = find_initial_orbits(problem, poll)
     branches = partial(
         all_branches,
         lambda: problem,
@@ -121,42 +121,44 @@ def explore(
         along=along,
     )
     paths, lost = branches(found).paths, list[float]()
-    bounded = Bounded(poll, most, problem.options)
-    search = _Search(problem, branches, bounded, doubts or Doubts())
+    bounded = BranchBudget(poll, most, problem.options)
+    search = _BranchSearch(problem, branches, bounded, doubts or UncertainFrequencies())
     if not sought:
         paths = search.with_others(paths, apart)
-    if search.broken(paths):
-        bounded.note(f"{problem.options.search.broken} that were followed break off")
+    if search.too_many_broken(paths):
+        bounded.add_reason(f"{problem.options.search.max_broken} that were followed break off")
     if not bounded.given_up:
         paths = search.with_motions(paths, orbits_in_unstable_ranges(problem, paths, poll))
     ends = (end for end in missed if not any((path.parameter == end).any() for path in paths))
     if not bounded.given_up:  # else that is said
-        lost = [omega for omega, height in search.unreached if not _reaches(problem, paths, omega, height)]
+        lost = [
+            omega for omega, height in search.unreached if not _reaches_height(problem, paths, omega, height)
+        ]
     told = [
-        f"no exact motion was found from the stable branch of the balance at {shown(scene, one)}"
+        f"no exact motion was found from the stable branch of the balance at {with_unit(scene, one)}"
         for one in dict.fromkeys(lost)
     ]
     return list(paths), "; ".join([*(missed[end] for end in ends), *told, *bounded.given_up])
 
 
-def _reaches(problem: OrbitProblem, paths: Sequence[Path], omega: float, height: float) -> bool:
+def _reaches_height(problem: OrbitProblem, paths: Sequence[Path], omega: float, height: float) -> bool:
     """Whether a path has motions as high as that beside a frequency [rad/s], which is the balance's."""
     for path in paths:
-        near = path.z[np.abs(path.parameter / omega - 1.0) < problem.options.balance.error]
-        if any(height_of(problem, z) >= problem.options.start.height * height for z in near):
+        near = path.z[np.abs(path.parameter / omega - 1.0) < problem.options.balance.accuracy]
+        if any(height_of(problem, z) >= problem.options.start.min_height * height for z in near):
             return True
     return False
 
 
 @dataclass
-class _Search:
+class _BranchSearch:
     """The search for further branches of a problem; unreached: frequencies [rad/s] and amplitudes of the
     balance, from where it led to no motion as high."""
 
     problem: OrbitProblem
     branches: Callable[..., Branches]
-    bounded: Bounded
-    doubts: Doubts
+    bounded: BranchBudget
+    doubts: UncertainFrequencies
     unreached: list[tuple[float, float]] = field(default_factory=list)
 
     def with_others(self, paths: tuple[Path, ...], apart: bool) -> tuple[Path, ...]:
@@ -168,9 +170,9 @@ class _Search:
         problem, bounded, scene = self.problem, self.bounded, self.problem.scene
         high = True
         for balance in bounded.each(converged_balance(scene, apart, bounded.poll, problem.options)):
-            self.doubts.take(balance.traced)
-            along = along_balance(problem, balance, bounded.outside)
-            paths, high = self.with_motions(paths, along.points), along.alike
+            self.doubts.replace_with(balance.traced)
+            along = orbits_along_balance(problem, balance, bounded.outside)
+            paths, high = self.with_motions(paths, along.points), along.near_balance
             self.unreached += along.unreached
         if high:
             return paths
@@ -178,45 +180,51 @@ class _Search:
         def there(omega: float) -> list[FloatArray]:
             return [z for path in paths for z in path.z[path.parameter == omega]]
 
-        last = dict[float, Raised]()
-        for one in bounded.each(raised(scene, there, bounded)):
+        last = dict[float, LevelMotions]()
+        for one in bounded.each(level_motions(scene, there, bounded)):
             paths = self.with_motions(paths, one.motions)
             last[one.omega] = one
-            if self.broken(paths):
+            if self.too_many_broken(paths):
                 return paths
         for one in (each for each in last.values() if not each.complete):
             failed = (
-                f"takes more than its share of {bounded.most:.3g} s" if one.over else "cannot be followed"
+                f"takes more than its share of {bounded.most:.3g} s"
+                if one.out_of_time
+                else "cannot be followed"
             )
-            bounded.note(f"the level of the forces {failed} at {shown(scene, one.omega)}")
+            bounded.add_reason(f"the level of the forces {failed} at {with_unit(scene, one.omega)}")
         return paths
 
     def with_motions(self, paths: tuple[Path, ...], motions: Iterable[FloatArray]) -> tuple[Path, ...]:
         """Paths, and those through motions that none of them passes, unless too many break off."""
         problem = self.problem
         for z in motions:  # what is passed already is known without being followed again
-            if self.broken(paths):
+            if self.too_many_broken(paths):
                 break
-            if not known(paths, [z], problem):
+            if not is_known(paths, [z], problem):
                 more = self.branches([z], known=paths).paths[len(paths) :]
-                fresh = [one for one in more if not known(paths, spread(one, problem.options), problem)]
+                fresh = [
+                    one
+                    for one in more
+                    if not is_known(paths, distinct_motions(one, problem.options), problem)
+                ]
                 paths += tuple(fresh)
         return paths
 
-    def broken(self, paths: Sequence[Path]) -> bool:
+    def too_many_broken(self, paths: Sequence[Path]) -> bool:
         """Whether so many paths have come to no end that no more are looked for."""
-        count = sum(path.status not in ENDED for path in paths)
-        return count >= self.problem.options.search.broken
+        count = sum(path.status not in COMPLETE_STATUS for path in paths)
+        return count >= self.problem.options.search.max_broken
 
 
-def known(paths: Sequence[Path], motions: Sequence[FloatArray], problem: OrbitProblem) -> bool:
+def is_known(paths: Sequence[Path], motions: Sequence[FloatArray], problem: OrbitProblem) -> bool:
     """Whether any of some motions is passed by a path."""
     return any(passes(path, z, problem) for path in paths for z in motions)
 
 
-def spread(path: Path, options: ShootingOptions = SHOOTING) -> list[FloatArray]:
+def distinct_motions(path: Path, options: ShootingOptions = SHOOTING) -> list[FloatArray]:
     """Motions of a path far from one another: at a fold one may not be found on another path that has it."""
-    chosen = np.linspace(0.0, len(path.z) - 1.0, options.search.motions)
+    chosen = np.linspace(0.0, len(path.z) - 1.0, options.search.compared_motions)
     return list(path.z[chosen.astype(np.intp)]) if len(path.z) else []
 
 
@@ -228,23 +236,23 @@ def branch_of(problem: OrbitProblem, path: Path) -> Branch:
 
 def incomplete(scene: Scene, paths: Sequence[Path], problem: str) -> str:
     """Why the curve of these paths is not complete, else ''."""
-    broken = [path for path in paths if path.status not in ENDED]
+    broken = [path for path in paths if path.status not in COMPLETE_STATUS]
     reasons = dict.fromkeys(
-        f"stopped at {shown(scene, path.parameter[-1])}: {path.status.value}" for path in broken
+        f"stopped at {with_unit(scene, path.parameter[-1])}: {path.status.value}" for path in broken
     )
     missing = [*reasons, *filter(None, [problem])]
     return "; ".join(missing) or ("" if paths else "no solution was found to start from")
 
 
-def reached(scene: Scene, paths: Sequence[Path]) -> str:
+def stop_reason(scene: Scene, paths: Sequence[Path]) -> str:
     """Where a curve was stopped, and how often it had turned back: with light damping, very often."""
     if not paths:
         return "the start"
     folds = sum(path.where(Mark.FOLD).size for path in paths)
     turns = f", after {folds} fold{'s' if folds > 1 else ''}" if folds else ""
-    return shown(scene, paths[-1].parameter[-1]) + turns
+    return with_unit(scene, paths[-1].parameter[-1]) + turns
 
 
-def shown(scene: Scene, omega: float) -> str:
+def with_unit(scene: Scene, omega: float) -> str:
     """A frequency [rad/s] in the scene's unit."""
     return f"{omega / UNITS[scene.frequency_unit]:.8g} {scene.frequency_unit}"

@@ -8,13 +8,13 @@ import numpy as np
 
 from fcm.model.scene import FloatArray
 from fcm.shooting.options import SHOOTING, ShootingOptions
-from fcm.shooting.periodic import Poll, converged, without_end
+from fcm.shooting.periodic import Poll, converged, never_interrupt
 from fcm.shooting.residual import Shot
-from fcm.shooting.residual_traction import always_stuck, resting_at, rooms
+from fcm.shooting.residual_traction import always_stuck, limit_distances, resting_at
 from fcm.time_domain.errors import SimulationError
 
 
-class Way:
+class TractionPath:
     """The family in one direction, until every contact that is pushed is at its limit, or others stick."""
 
     def __init__(
@@ -22,7 +22,7 @@ class Way:
         begun: Shot,
         contacts: list[int],
         sense: FloatArray,
-        poll: Poll = without_end,
+        poll: Poll = never_interrupt,
         options: ShootingOptions = SHOOTING,
     ) -> None:
         self.options = options
@@ -30,11 +30,11 @@ class Way:
         self.poll = poll
         self.beyond: Shot | None = None  # the motion just beyond the end, where others stick
         self.tried = 0  # motions that were looked for
-        self.room = self._rooms(begun)
+        self.room = self._limit_distances(begun)
         self.reach = self.room.sum(axis=1)  # the greatest so far
         self.push = np.zeros(len(self.system.contacts))
         self.push[contacts] = sense * self.reach / self.options.family.steps
-        self.far = self.options.family.furthest * float(
+        self.far = self.options.family.max_distance * float(
             max(self.reach.max(), np.abs(residual_of(begun)).max())
         )
         self.slope: FloatArray | None = None  # of x by the share of the push
@@ -42,48 +42,50 @@ class Way:
     def shots(self, tries: int) -> Iterator[Shot]:
         """The motions on the way, the last one at the limits, as far as so many trials lead."""
         share = longest = 1.0
-        most = self.options.family.growth
-        while share > self.options.family.shortest * longest and not self.ended and self.tried < tries:
+        most = self.options.family.max_factor
+        while share > self.options.family.min_step * longest and not self.ended and self.tried < tries:
             self.tried += 1
-            new = self._further(share)
+            new = self._next_motion(share)
             if new is None:
                 share, most = 0.25 * share, 1.0
                 continue
             self.ended = all(choice.limited for choice in new.chosen if self.push[choice.contact] != 0.0)
             self.ended |= bool(np.abs(residual_of(new)).max() > self.far)
             self.slope = (new.x - self.last.x) / share
-            share, most = share * min(self._growth(new), most), self.options.family.growth
+            share, most = share * min(self._growth(new), most), self.options.family.max_factor
             self.last, longest = new, max(longest, share)
             yield new
         self.ended |= self.beyond is not None
 
     def _growth(self, new: Shot) -> float:
         """Of a step to the next: most of it moves the structure where that is softer than the contact."""
-        before, self.room = self.room, self._rooms(new)
+        before, self.room = self.room, self._limit_distances(new)
         self.reach = np.maximum(self.reach, before.sum(axis=1))
         used = np.abs(self.room - before).max(axis=1) / np.where(self.reach > 0.0, self.reach, 1.0)
-        return 1.0 / (self.options.family.steps * max(float(used.max()), self.options.family.none))
+        return 1.0 / (self.options.family.steps * max(float(used.max()), self.options.family.zero_distance))
 
-    def _rooms(self, shot: Shot) -> FloatArray:
+    def _limit_distances(self, shot: Shot) -> FloatArray:
         """How far each contact's force is from its limits, (contact, 2)."""
-        found = rooms(self.system, shot.segments, self.contacts)
+        found = limit_distances(self.system, shot.segments, self.contacts)
         return np.array([(found[j][0].value, found[j][1].value) for j in self.contacts])
 
-    def _further(self, share: float) -> Shot | None:
+    def _next_motion(self, share: float) -> Shot | None:
         """The motion when the contacts are stressed a little more."""
         guess = None if self.slope is None else self.last.x + share * self.slope
-        new = moved(self.last, -(residual_of(self.last) + share * self.push), guess, self.poll, self.options)
+        new = with_traction(
+            self.last, -(residual_of(self.last) + share * self.push), guess, self.poll, self.options
+        )
         if new is None:
             return None
-        self.beyond = None if stuck_in(new) == self.contacts else new
+        self.beyond = None if sticking_contacts(new) == self.contacts else new
         return new if self.beyond is None else None
 
 
-def moved(
+def with_traction(
     shot: Shot,
     force: FloatArray,
     guess: FloatArray | None = None,
-    poll: Poll = without_end,
+    poll: Poll = never_interrupt,
     options: ShootingOptions = SHOOTING,
 ) -> Shot | None:
     """The motion near another whose contacts rest where they would have the friction forces k_u w."""
@@ -95,21 +97,27 @@ def moved(
     w = force / np.where(system.k_u > 0.0, system.k_u, 1.0)
     try:
         found = converged(
-            Shot(system, x, w, shot.periods), options.family.iterations, poll, options.family.part, options
+            Shot(system, x, w, shot.periods),
+            options.family.max_iterations,
+            poll,
+            options.family.min_fraction,
+            options,
         )
     except SimulationError:
         return None
     return None if found is None else found[0]
 
 
-def between(
-    one: Shot, other: Shot, poll: Poll = without_end, options: ShootingOptions = SHOOTING
+def midpoint(
+    one: Shot, other: Shot, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
 ) -> Shot | None:
     """The motion with the mean of the residual friction of two that are near to one another."""
-    return moved(one, -0.5 * (residual_of(one) + residual_of(other)), 0.5 * (one.x + other.x), poll, options)
+    return with_traction(
+        one, -0.5 * (residual_of(one) + residual_of(other)), 0.5 * (one.x + other.x), poll, options
+    )
 
 
-def stuck_in(shot: Shot) -> list[int]:
+def sticking_contacts(shot: Shot) -> list[int]:
     """The contacts that stick all through a motion."""
     return always_stuck(shot.system, shot.segments)
 

@@ -18,10 +18,16 @@ import numpy as np
 
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.options import SHOOTING, ShootingOptions
-from fcm.shooting.periodic import Poll, converged, within_unit_circle, without_end
+from fcm.shooting.periodic import Poll, converged, never_interrupt, within_unit_circle
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import resting_at
-from fcm.shooting.traction_continuation import Way, between, moved, residual_of, stuck_in
+from fcm.shooting.traction_continuation import (
+    TractionPath,
+    midpoint,
+    residual_of,
+    sticking_contacts,
+    with_traction,
+)
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.state import State
 from fcm.time_domain.system import System
@@ -50,7 +56,7 @@ def family(
     frequency: float,
     state: State,
     periods: int = 1,
-    poll: Poll = without_end,
+    poll: Poll = never_interrupt,
     options: ShootingOptions = SHOOTING,
 ) -> Family | None:
     """The family that a periodic motion belongs to; None if no contact of it always sticks.
@@ -90,13 +96,15 @@ def family(
         at = spoken(frequency, scene.frequency_unit)
         raise SimulationError(f"no periodic motion is found at {at} from this state")
     begun = found[0]
-    contacts = stuck_in(begun)
+    contacts = sticking_contacts(begun)
     if not contacts:
         return None
     shots, complete = _members(begun, poll, options)
     shown = [shot for shot in shots if _stable(shot, options)] if _stable(begun, options) else shots
     amplitude = np.array([shot.amplitude for shot in shown])
-    friction = np.array([residual_of(shot)[contacts] for shot in shots if contacts == stuck_in(shot)])
+    friction = np.array(
+        [residual_of(shot)[contacts] for shot in shots if contacts == sticking_contacts(shot)]
+    )
     return Family(
         tuple(contacts), np.stack((friction.min(axis=0), friction.max(axis=0)), axis=1),
         amplitude.min(axis=0), amplitude.max(axis=0), complete,
@@ -105,30 +113,30 @@ def family(
 
 def _members(begun: Shot, poll: Poll, options: ShootingOptions = SHOOTING) -> tuple[list[Shot], bool]:
     """Motions of the family up to its ends, and whether these were reached on every way."""
-    shots, waiting, seen, complete = [begun], [begun], list[_Seen](), True
-    left = options.family.tried
+    shots, waiting, seen, complete = [begun], [begun], list[_VisitedTractions](), True
+    left = options.family.max_motions
     while waiting:
         first = waiting.pop(0)
-        contacts = stuck_in(first)
-        if not contacts or any(one.has(contacts, first) for one in seen):
+        contacts = sticking_contacts(first)
+        if not contacts or any(one.contains(contacts, first) for one in seen):
             continue
         found = [first]
         for direction in _directions(len(contacts), options):
-            ways = [Way(first, contacts, sign * direction, poll, options) for sign in (-1.0, 1.0)]
-            behind, ahead = (list(way.shots(min(left, options.family.tried // 5))) for way in ways)
+            ways = [TractionPath(first, contacts, sign * direction, poll, options) for sign in (-1.0, 1.0)]
+            behind, ahead = (list(way.shots(min(left, options.family.max_motions // 5))) for way in ways)
             left -= sum(way.tried for way in ways)
             complete &= all(way.ended for way in ways)
             line = [*reversed(behind), first, *ahead]
-            found += [*line, *_finer(line, poll, options), *_last_stable(line, poll, options)]
+            found += [*line, *_refined(line, poll, options), *_last_stable(line, poll, options)]
             beyond = [way.beyond for way in ways if way.beyond is not None]
             shots += beyond
             waiting += beyond
-        seen.append(_Seen(contacts, np.array([residual_of(shot) for shot in found]), options))
+        seen.append(_VisitedTractions(contacts, np.array([residual_of(shot) for shot in found]), options))
         shots += found
     return shots, complete
 
 
-class _Seen:
+class _VisitedTractions:
     """What has been followed with the same contacts that stick, by their residual friction."""
 
     def __init__(self, contacts: list[int], residual: FloatArray, options: ShootingOptions) -> None:
@@ -136,37 +144,37 @@ class _Seen:
         self.contacts = contacts
         self.low, self.high = residual[:, contacts].min(axis=0), residual[:, contacts].max(axis=0)
 
-    def has(self, contacts: list[int], shot: Shot) -> bool:
+    def contains(self, contacts: list[int], shot: Shot) -> bool:
         """Whether a motion lies within; another part may be beyond a gap in which other contacts stick."""
         if contacts != self.contacts:
             return False
-        residual, within = residual_of(shot)[contacts], self.options.family.within[len(contacts) > 1]
+        residual, within = residual_of(shot)[contacts], self.options.family.bound_tolerance[len(contacts) > 1]
         room = within * (self.high - self.low)
         return bool(((residual >= self.low - room) & (residual <= self.high + room)).all())
 
 
-def _finer(line: list[Shot], poll: Poll, options: ShootingOptions = SHOOTING) -> list[Shot]:
+def _refined(line: list[Shot], poll: Poll, options: ShootingOptions = SHOOTING) -> list[Shot]:
     """More motions beside those, within a line, at which an amplitude is greatest or least.
 
     Where it is so at an end, it may be more so beside that.
     """
     amplitude = np.array([shot.amplitude for shot in line])
-    flat = np.ptp(amplitude, axis=0) <= options.family.same * amplitude.max(axis=0)
-    middles, last = _Middles(poll, options), len(line) - 1
+    flat = np.ptp(amplitude, axis=0) <= options.family.amplitude_tolerance * amplitude.max(axis=0)
+    middles, last = _MidpointCache(poll, options), len(line) - 1
     for sense in (1.0, -1.0):
         for dof in np.flatnonzero(~flat).tolist():
             k = int(np.argmax(sense * amplitude[:, dof]))
             if 0 < k < last:
-                _about(line[k - 1 : k + 2], sense, dof, middles)
+                _extreme_near(line[k - 1 : k + 2], sense, dof, middles)
                 continue
             one, other = line[k], line[1] if k == 0 else line[-2]
             middle = middles.of(one, other)
             if middle is not None and sense * (middle.amplitude[dof] - one.amplitude[dof]) > 0.0:
-                _about([one, middle, other], sense, dof, middles)
+                _extreme_near([one, middle, other], sense, dof, middles)
     return middles.found()
 
 
-class _Middles:
+class _MidpointCache:
     """The motions between two, each looked for once: several amplitudes are often extreme together."""
 
     def __init__(self, poll: Poll, options: ShootingOptions) -> None:
@@ -177,7 +185,7 @@ class _Middles:
         """That of two; None where it is not found."""
         key = min(id(one), id(other)), max(id(one), id(other))
         if key not in self.known:  # which keeps both, and with them their numbers
-            self.known[key] = one, other, between(one, other, self.poll, self.options)
+            self.known[key] = one, other, midpoint(one, other, self.poll, self.options)
         return self.known[key][2]
 
     def found(self) -> list[Shot]:
@@ -193,7 +201,7 @@ def _last_stable(line: list[Shot], poll: Poll, options: ShootingOptions = SHOOTI
             continue
         inner, outer = sorted(pair, key=partial(_stable, options=options), reverse=True)
         for _ in range(options.family.halvings_to_stable):
-            middle = between(inner, outer, poll, options)
+            middle = midpoint(inner, outer, poll, options)
             if middle is None:
                 break
             inner, outer = (middle, outer) if _stable(middle, options) else (inner, middle)
@@ -205,7 +213,7 @@ def _stable(shot: Shot, options: ShootingOptions = SHOOTING) -> bool:
     return within_unit_circle(shot.multipliers, options)
 
 
-def _about(near: list[Shot], sense: float, dof: int, middles: _Middles) -> None:
+def _extreme_near(near: list[Shot], sense: float, dof: int, middles: _MidpointCache) -> None:
     """Look ever nearer to the greatest, or least, amplitude of a degree of freedom among three motions."""
     for _ in range(middles.options.family.halvings_to_extreme):
         one, other = middles.of(near[0], near[1]), middles.of(near[1], near[2])
@@ -221,13 +229,13 @@ def _directions(count: int, options: ShootingOptions = SHOOTING) -> list[FloatAr
     alone = list(np.eye(count))
     if count == 1:
         return alone
-    if count > options.family.directions:
+    if count > options.family.max_combined:
         return [*alone, np.ones(count)]
     return [*alone, *(np.array((1.0, *signs)) for signs in product((1.0, -1.0), repeat=count - 1))]
 
 
-def chosen(
-    shot: Shot, wanted: FloatArray, poll: Poll = without_end, options: ShootingOptions = SHOOTING
+def member_at_start(
+    shot: Shot, wanted: FloatArray, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
 ) -> Shot | None:
     """The member that a scene chooses of the family that a motion belongs to, in as many steps as it takes.
 
@@ -240,9 +248,9 @@ def chosen(
     """
     begin, end = -residual_of(shot), shot.system.k_u * wanted
     done, share = 0.0, 1.0
-    while done < 1.0 and share > options.family.shortest:
+    while done < 1.0 and share > options.family.min_step:
         reach = min(done + share, 1.0)
-        new = moved(shot, begin + reach * (end - begin), poll=poll, options=options)
+        new = with_traction(shot, begin + reach * (end - begin), poll=poll, options=options)
         if new is None:
             share *= 0.25
         else:

@@ -11,12 +11,12 @@ from fcm.shooting.residual import Shot
 from fcm.units import spoken
 
 
-def not_determined(orbit: Orbit, options: ShootingOptions = SHOOTING) -> str:
+def undetermined_reason(orbit: Orbit, options: ShootingOptions = SHOOTING) -> str:
     """That a solution is not determined, and why."""
     unit = orbit.scene.frequency_unit
     where = f"the solution at {spoken(orbit.frequency, unit)} to start from is not determined"
     ratio = orbit.frequency / float(orbit.scene.modal.frequency.max(initial=0.0) or np.inf)
-    if ratio > options.search.rounding:
+    if ratio > options.search.rounding_frequency:
         return (
             f"{where}: that is {ratio:.1g} times the frequency of the highest mode, which hardly moves, and "
             "loses nothing, in one period of the force; take a lower frequency"
@@ -26,7 +26,7 @@ def not_determined(orbit: Orbit, options: ShootingOptions = SHOOTING) -> str:
     )
 
 
-def rests_elsewhere(scene: Scene, orbit: Orbit, near: Shot) -> str:
+def start_reason(scene: Scene, orbit: Orbit, near: Shot) -> str:
     """That its contacts cannot rest where a scene starts."""
     names = " and ".join(scene.contacts[choice.contact].name for choice in near.chosen if choice.gap)
     at = spoken(orbit.frequency, scene.frequency_unit)

@@ -33,7 +33,7 @@ def orbits_in_unstable_ranges(
     if not (scene.modal.damping > 0.0).all():
         return
     parts = [(path.parameter, np.array([_stable(problem, z) for z in path.z])) for path in paths]
-    for low, high in unstable_stretches(parts, scene.frequency_range)[: problem.options.stability.ranges]:
+    for low, high in unstable_stretches(parts, scene.frequency_range)[: problem.options.stability.max_ranges]:
         try:
             orbit = approached(System(scene, 0.5 * (low + high)), poll, problem.options)
             if orbit.stable:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, TypeVar
 
@@ -19,7 +19,7 @@ Found = TypeVar("Found")
 
 
 @dataclass
-class Doubts:
+class UncertainFrequencies:
     """Frequencies [rad/s] at which the balance that exact motions begin near may lack branches.
 
     levels: where the level of the forces was not followed to its end; folds: from where its folds were not.
@@ -28,48 +28,54 @@ class Doubts:
     levels: list[float] = field(default_factory=list)
     folds: list[float] = field(default_factory=list)
 
-    def take(self, found: Traced) -> None:
+    def replace_with(self, found: Traced) -> None:
         """Those of a traced balance, in the place of others."""
         self.levels[:] = [one.omega for one in found.found if not one.complete]
         self.folds[:] = found.folds_lost
 
 
-class Bounded:
+class BranchBudget:
     """What leads to further branches, found in no more than so many seconds of processor time together.
 
     outside : called now and then, all the while; `poll` is to be called while it is sought.
     given_up : why there may be more branches than those, empty if all was sought.
     """
 
-    def __init__(self, outside: Poll, most: float, options: ShootingOptions = SHOOTING) -> None:
-        self.options = options
+    def __init__(
+        self,
+        outside: Poll,
+        most: float,
+        options: ShootingOptions = SHOOTING,
+        clock: Callable[[], float] = time.process_time,
+    ) -> None:
+        self.options, self.clock = options, clock
         self.outside, self.most, self.given_up = outside, most, list[str]()
         self._begin = self._ask = 0.0
         self._end, self._left = np.inf, most
 
     def poll(self) -> None:
-        """Raise `TooLongError` when it has taken as much."""
-        from fcm.harmonic_balance.work_budget import TooLongError
+        """Raise `WorkLimitError` when it has taken as much."""
+        from fcm.harmonic_balance.work_budget import WorkLimitError
 
         self.outside()
         if self._end < np.inf and time.monotonic() > self._ask:
-            if time.process_time() > self._end:
-                raise TooLongError
-            self._ask = time.monotonic() + self.options.search.time
+            if self.clock() > self._end:
+                raise WorkLimitError
+            self._ask = time.monotonic() + self.options.search.poll_interval
 
     def each(self, finds: Iterator[Found]) -> Iterator[Found]:
         """One after the other; what is done with them between takes nothing of their time."""
-        from fcm.harmonic_balance.work_budget import TooLongError
+        from fcm.harmonic_balance.work_budget import WorkLimitError
 
         while True:
-            self._begin = time.process_time()
+            self._begin = self.clock()
             self._end = self._begin + self._left
             try:
                 found = next(finds, None)
-            except TooLongError:
-                self.note(f"what leads to them takes more than {self.most:.3g} s to be found")
+            except WorkLimitError:
+                self.add_reason(f"what leads to them takes more than {self.most:.3g} s to be found")
                 return
-            self._left -= time.process_time() - self._begin
+            self._left -= self.clock() - self._begin
             if found is None:
                 return
             yield found
@@ -80,6 +86,6 @@ class Bounded:
         self._end = self._begin + found
         return found
 
-    def note(self, why: str) -> None:
+    def add_reason(self, why: str) -> None:
         """That the search is not whole, and why."""
         self.given_up.append(f"the search for further branches was given up: {why}")

@@ -16,17 +16,17 @@ from fcm.continuation import Mark, Path, Segment
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
-from fcm.stability.bifurcation_functions import Seen, seen
+from fcm.stability.bifurcation_functions import MultiplierSample, multiplier_sample
 from fcm.stability.floquet import multipliers_of
-from fcm.stability.inserted_points import Inserted
-from fcm.stability.multipliers import far_above
+from fcm.stability.inserted_points import InsertedPoint
+from fcm.stability.multipliers import quasi_static_modes
 from fcm.stability.options import STABILITY, StabilityOptions
-from fcm.stability.verdict import Verdict, apart
+from fcm.stability.verdict import Verdict, meeting_angle
 
 EITHER = (0.0, 1.0)  # what the finer motion says is enough, stable or not
 
 
-class Verdicts:
+class PathVerdicts:
     """The verdicts of places, those between the points of the path, and how many were calculated.
 
     rotation (point,) [rad]: by how much multipliers that are not small have turned up to each point, about.
@@ -35,12 +35,16 @@ class Verdicts:
     def __init__(self, system: System, path: Path, options: StabilityOptions = STABILITY) -> None:
         self.path, self.evaluations, self.options = path, 0, options
         self._verdicts: dict[float, Verdict] = {}
-        self.between: dict[float, Inserted] = {}
+        self.between: dict[float, InsertedPoint] = {}
         self._places: list[float] = []  # with a verdict, in order
         self.multipliers = multipliers_of(system, float(path.parameter.max(initial=0.0)), self.options)
         self.fold = (path.mark & Mark.FOLD) != 0
         self.rotation = _rotation(system, path, self.options)
-        self._system, self._seen, self._apart = system, dict[float, Seen](), dict[float, float]()
+        self._system, self._multiplier_sample, self._meeting_angles = (
+            system,
+            dict[float, MultiplierSample](),
+            dict[float, float](),
+        )
 
     @cached_property
     def length(self) -> FloatArray:
@@ -64,7 +68,7 @@ class Verdicts:
         return verdict
 
     def judge(self, z: FloatArray, enough: Sequence[float] = ()) -> Verdict:
-        """Of a solution that is not kept; `enough` as of `Multipliers.verdict`."""
+        """Of a solution that is not kept; `sufficient` as of `Multipliers.verdict`."""
         self.evaluations += 1
         return self.multipliers.verdict(z, enough=enough)
 
@@ -79,27 +83,27 @@ class Verdicts:
         lone = first + 1 + (told[1:-1] & ~told[:-2] & ~told[2:]).nonzero()[0]
         return [i for i in lone.tolist() if not self.confirmed(i, stable[i])]
 
-    def among(self, first: int, last: int) -> list[float]:
+    def places_between(self, first: int, last: int) -> list[float]:
         """The places from one point to another of which there is a verdict, in order."""
         return self._places[bisect_left(self._places, first) : bisect_right(self._places, last)]
 
-    def framed(self, a: float, b: float) -> bool:
+    def same_on_both_sides(self, a: float, b: float) -> bool:
         """Whether what is told on both sides of the untold way that a or b ends is the same."""
         k = bisect_left(self._places, a)
-        before = next((t for t in reversed(self._places[: k + 1]) if self._told(t)), None)
-        after = next((t for t in self._places[k + 1 :] if self._told(t)), None)
+        before = next((t for t in reversed(self._places[: k + 1]) if self._is_known(t)), None)
+        after = next((t for t in self._places[k + 1 :] if self._is_known(t)), None)
         if before is None or after is None:
             return False
         return self._verdicts[before].stable == self._verdicts[after].stable
 
-    def _told(self, t: float) -> bool:
+    def _is_known(self, t: float) -> bool:
         return not math.isnan(self._verdicts[t].stable)
 
     def grows(self, t: float) -> bool:
         """Whether a disturbance does at a place with a verdict."""
         return self._verdicts[t].growth > 0.0
 
-    def enough(self, *places: float) -> Sequence[float]:
+    def sufficient(self, *places: float) -> Sequence[float]:
         """What is enough to find where growth changes sign between places: EITHER, if the finer motion alone
         says the same of these as their verdicts."""
         alone = (self.judge(self._z(t), EITHER).growth > 0.0 for t in places)
@@ -108,41 +112,41 @@ class Verdicts:
     def _z(self, t: float) -> FloatArray:
         return self.between[t].z if t in self.between else self.path.z[int(t)]
 
-    def seen(self, t: float) -> Seen:
+    def multiplier_sample(self, t: float) -> MultiplierSample:
         """What is known of a place with a verdict."""
-        if t not in self._seen:
+        if t not in self._multiplier_sample:
             k, part = int(t), t - int(t)
             length = self.length[k] + (part * (self.length[k + 1] - self.length[k]) if part else 0.0)
-            self._seen[t] = seen(float(length), self._verdicts[t], self.options)
-        return self._seen[t]
+            self._multiplier_sample[t] = multiplier_sample(float(length), self._verdicts[t], self.options)
+        return self._multiplier_sample[t]
 
-    def apart(self, t: float) -> float:
+    def meeting_angle(self, t: float) -> float:
         """[rad] by which multipliers at a place with a verdict have to turn until two of them meet."""
-        if t not in self._apart:
-            self._apart[t] = apart(self._verdicts[t], self.options)
-        return self._apart[t]
+        if t not in self._meeting_angles:
+            self._meeting_angles[t] = meeting_angle(self._verdicts[t], self.options)
+        return self._meeting_angles[t]
 
-    def way(self, a: float, b: float) -> float:
+    def rotation_between(self, a: float, b: float) -> float:
         """[rad] by how much multipliers turn, about, between points around two places."""
         return float(self.rotation[math.ceil(b)] - self.rotation[int(a)])
 
     @cached_property
     def _balance(self) -> Balance:
-        return self._system.balance()
+        return self._system.new_balance()
 
     def curve(self, k: int) -> Segment:
         """From a point to the next."""
         return Segment(self._balance, self.path, k)
 
-    def put(self, length: float, enough: Sequence[float] = ()) -> float | None:
+    def find(self, length: float, enough: Sequence[float] = ()) -> float | None:
         """The place at a length, if it is found between two points; it has a verdict then."""
         k = int(np.searchsorted(self.length, length)) - 1
         t = k + float((length - self.length[k]) / (self.length[k + 1] - self.length[k]))
         curve = self.curve(k)
-        if not k < t < k + 1 or not curve.put(t - k):
+        if not k < t < k + 1 or not curve.find(t - k):
             return None
         verdict = self._keep(t, self.judge(curve.z, enough))
-        self.between[t] = Inserted(t, curve.z, curve.direction, curve.orientation, verdict.stable)
+        self.between[t] = InsertedPoint(t, curve.z, curve.direction, curve.orientation, verdict.stable)
         return t
 
 
@@ -155,16 +159,16 @@ def _lengths(path: Path) -> FloatArray:
 
 
 def _rotation(system: System, path: Path, options: StabilityOptions = STABILITY) -> FloatArray:
-    """As of `Verdicts`; 0 where there are so many multipliers that two are always about to meet."""
+    """As of `PathVerdicts`; 0 where there are so many multipliers that two are always about to meet."""
     linear, omega = system.linear, path.parameter
-    near = ~far_above(
+    near = ~quasi_static_modes(
         linear.natural, float(omega.max(initial=0.0)), [int(h) for h in system.harmonics], options
     )
     lasting = (
         np.exp(-2.0 * np.pi * linear.damping * linear.natural / omega.min(initial=np.inf))
-        > options.verdict.small
+        > options.verdict.small_multiplier
     )
-    few = 2 * near.sum() + len(system.scene.contacts) <= options.windows.multipliers
+    few = 2 * near.sum() + len(system.scene.contacts) <= options.windows.max_multipliers
     fastest = float(linear.natural[lasting & near].max(initial=0.0)) if few else 0.0
     angle = 2.0 * np.pi * fastest / omega
     return np.concatenate(([0.0], np.cumsum(np.abs(angle[1:] - angle[:-1]))))

@@ -23,10 +23,10 @@ from fcm.model.scene import FloatArray
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.verdict import Verdict
 
-LEAST = 1e-300  # a product, or a length
+MIN_LOGARITHM = 1e-300  # a product, or a length
 
 
-class Seen(NamedTuple):
+class MultiplierSample(NamedTuple):
     """A place that was looked at."""
 
     length: float  # along the curve
@@ -36,17 +36,19 @@ class Seen(NamedTuple):
     pair: float
 
 
-def seen(length: float, verdict: Verdict, options: StabilityOptions = STABILITY) -> Seen:
+def multiplier_sample(
+    length: float, verdict: Verdict, options: StabilityOptions = STABILITY
+) -> MultiplierSample:
     """A place with its verdict; of the products where it is stable, otherwise they are of no use."""
     if verdict.stable != 1.0:
-        return Seen(length, verdict.stable, verdict.growth, 0.0, 0.0)
+        return MultiplierSample(length, verdict.stable, verdict.growth, 0.0, 0.0)
     values = np.array(
-        [value for value in verdict.values if abs(value) > options.windows.size], dtype=np.complex128
+        [value for value in verdict.values if abs(value) > options.windows.min_size], dtype=np.complex128
     )
     i, j = _pairs(values.size)
     products = np.abs(1.0 + values), np.abs(1.0 - values[i] * values[j])
-    sums = (float(np.log(product + LEAST).sum()) for product in products)
-    return Seen(length, verdict.stable, verdict.growth, *sums)
+    sums = (float(np.log(product + MIN_LOGARITHM).sum()) for product in products)
+    return MultiplierSample(length, verdict.stable, verdict.growth, *sums)
 
 
 @lru_cache(maxsize=16)
@@ -55,8 +57,12 @@ def _pairs(count: int) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
     return i, j
 
 
-def dip(
-    low: Seen, high: Seen, places: Sequence[Seen], divided: int = 0, options: StabilityOptions = STABILITY
+def predicted_minimum(
+    low: MultiplierSample,
+    high: MultiplierSample,
+    places: Sequence[MultiplierSample],
+    divided: int = 0,
+    options: StabilityOptions = STABILITY,
 ) -> float | None:
     """Length at which a product is foretold to be so small that stability may have changed; None if nowhere.
 
@@ -70,25 +76,25 @@ def dip(
         Times that the way between places was.
     """
     windows = options.windows
-    near, most, at = windows.near * (high.length - low.length), 0.0, None
-    if high.length - low.length < windows.narrow:
+    near, most, at = windows.min_distance * (high.length - low.length), 0.0, None
+    if high.length - low.length < windows.min_length:
         return None
     for k in range(len(places) - 2):
         three = places[k : k + 3]
         lengths = [one.length for one in three]
         for values in _positive(three):
-            place, least = _lowest(lengths, values)
+            place, least = _parabola_minimum(lengths, values)
             if not low.length <= place <= high.length:
                 continue
             place = min(max(place, low.length + near), high.length - near)
             greatest = max(values)
-            doubt = (windows.doubt * windows.divided**divided * (greatest - least) - least) / greatest
+            doubt = (windows.doubt * windows.doubt_reduction**divided * (greatest - least) - least) / greatest
             if doubt > most:
                 most, at = doubt, place
     return at
 
 
-def _positive(three: Sequence[Seen]) -> list[list[float]]:
+def _positive(three: Sequence[MultiplierSample]) -> list[list[float]]:
     """Functions along the curve that are positive while stability stays what it is, of any unit."""
     if three[0].stable == 0.0:
         return [[one.growth for one in three]]
@@ -100,14 +106,14 @@ def _relative(logarithms: list[float]) -> list[float]:
     return [math.exp(one - greatest) for one in logarithms]
 
 
-def _lowest(s: list[float], f: list[float]) -> tuple[float, float]:
+def _parabola_minimum(s: list[float], f: list[float]) -> tuple[float, float]:
     """Where the parabola through three points is least, and how much that is; nan if nowhere.
 
-    >>> _lowest([0.0, 1.0, 3.0], [4.0, 1.0, 1.0])
+    >>> _parabola_minimum([0.0, 1.0, 3.0], [4.0, 1.0, 1.0])
     (2.0, 0.0)
     """
-    first, second = ((f[k + 1] - f[k]) / max(s[k + 1] - s[k], LEAST) for k in (0, 1))
-    bend = (second - first) / max(s[2] - s[0], LEAST)
+    first, second = ((f[k + 1] - f[k]) / max(s[k + 1] - s[k], MIN_LOGARITHM) for k in (0, 1))
+    bend = (second - first) / max(s[2] - s[0], MIN_LOGARITHM)
     if not bend > 0.0:
         return math.nan, math.nan
     at = 0.5 * (s[0] + s[1] - first / bend)
@@ -122,29 +128,29 @@ def products(
     >>> [each.round(2).tolist() for each in products(np.array([[-0.9, 0.9j, -0.9j]]))]
     [[-1.71], [-1.16]]
     """
-    values = np.where(np.abs(values) > options.windows.size, values, 0.0)
-    flip: FloatArray = np.log(np.abs(1.0 + values) + LEAST).sum(axis=1)
+    values = np.where(np.abs(values) > options.windows.min_size, values, 0.0)
+    flip: FloatArray = np.log(np.abs(1.0 + values) + MIN_LOGARITHM).sum(axis=1)
     pair = np.zeros(len(values))
     for i in range(values.shape[1] - 1):
-        pair += np.log(np.abs(1.0 - values[:, i, None] * values[:, i + 1 :]) + LEAST).sum(axis=1)
+        pair += np.log(np.abs(1.0 - values[:, i, None] * values[:, i + 1 :]) + MIN_LOGARITHM).sum(axis=1)
     return flip, pair
 
 
-def foretold(
+def predicted_minima(
     s: FloatArray, f: FloatArray, logarithms: bool, options: StabilityOptions = STABILITY
 ) -> tuple[npt.NDArray[np.bool_], ...]:
-    """Whether `dip` finds a place by any three in a row of the values f at lengths s, all alike: between the
-    first two of them, and between the last two; (place - 2,) each."""
+    """Whether `predicted_minimum` finds a place by any three in a row of the values f at lengths s, all
+    alike: between the first two of them, and between the last two; (place - 2,) each."""
     three = np.array([f[:-2], f[1:-1], f[2:]])
     if logarithms:
         three = np.exp(three - three.max(axis=0))
     width = np.diff(s)
     with np.errstate(over="ignore", invalid="ignore"):  # by points at one place, which foretell nothing
-        slope = np.diff(three, axis=0) / np.maximum((width[:-1], width[1:]), LEAST)
-        bend = (slope[1] - slope[0]) / np.maximum(s[2:] - s[:-2], LEAST)
+        slope = np.diff(three, axis=0) / np.maximum((width[:-1], width[1:]), MIN_LOGARITHM)
+        bend = (slope[1] - slope[0]) / np.maximum(s[2:] - s[:-2], MIN_LOGARITHM)
         up = bend > 0.0
         at = 0.5 * (s[:-2] + s[1:-1] - slope[0] / np.where(up, bend, 1.0))
         least = three[0] + (at - s[:-2]) * (slope[0] + bend * (at - s[1:-1]))
         deep = up & (options.windows.doubt * (three.max(axis=0) - least) > least)
-    sides, wide = (slice(-1), slice(1, None)), width >= options.windows.narrow
+    sides, wide = (slice(-1), slice(1, None)), width >= options.windows.min_length
     return tuple(deep & (s[:-1][k] <= at) & (at <= s[1:][k]) & wide[k] for k in sides)

@@ -17,19 +17,19 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Path
-from fcm.continuation.events import Secants
+from fcm.continuation.events import SignChange
 from fcm.harmonic_balance.runs import runs
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
-from fcm.stability.along_branch import Verdicts
-from fcm.stability.bifurcation_functions import dip
-from fcm.stability.inserted_points import Crossing, Inserted, with_points
+from fcm.stability.along_branch import PathVerdicts
+from fcm.stability.bifurcation_functions import predicted_minimum
+from fcm.stability.inserted_points import Crossing, InsertedPoint, with_points
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.verdict import Bifurcation, Verdict
 
 IntArray = npt.NDArray[np.intp]
 
-__all__ = ["Bifurcation", "Crossing", "Inserted", "Stability", "stability", "with_points"]
+__all__ = ["Bifurcation", "Crossing", "InsertedPoint", "Stability", "stability", "with_points"]
 
 
 @dataclass(frozen=True)
@@ -39,10 +39,10 @@ class Stability:
     stable: FloatArray
     crossings: tuple[Crossing, ...]
     evaluations: int  # of multipliers
-    inside: tuple[Inserted, ...] = ()  # of windows between two points
+    inside: tuple[InsertedPoint, ...] = ()  # of windows between two points
 
     @property
-    def inserted(self) -> list[Inserted]:
+    def inserted(self) -> list[InsertedPoint]:
         """Points to be added to the path, in order."""
         return sorted((*self.crossings, *self.inside), key=lambda one: one.place)
 
@@ -60,27 +60,29 @@ def stability(
     beyond (point,), too far from the motion, and that the determinant allows to be stable.
     """
     none = np.zeros(path.z.shape[0], dtype=np.bool_)
-    return _Along(system, path, options).run(none if beyond is None else beyond)
+    return _BifurcationSearch(system, path, options).run(none if beyond is None else beyond)
 
 
-class _Along:
+class _BifurcationSearch:
     def __init__(self, system: System, path: Path, options: StabilityOptions) -> None:
-        self.path, self.verdicts, self.options = path, Verdicts(system, path, options), options
-        self.many = len(system.scene.contacts) >= self.options.structure.contacts
-        self.span = options.along.many_contacts if self.many else options.along.several_harmonics
+        self.path, self.verdicts, self.options = path, PathVerdicts(system, path, options), options
+        self.many = len(system.scene.contacts) >= self.options.structure.many_contacts
+        self.step_span = (
+            options.path.interval_many_contacts if self.many else options.path.interval_several_harmonics
+        )
         if len(system.harmonics) == 1:
-            self.span = options.along.one_harmonic
+            self.step_span = options.path.interval_one_harmonic
 
     def run(self, beyond: npt.NDArray[np.bool_]) -> Stability:
-        even = self._even()
+        even = self._is_even()
         stable = np.where(even & beyond, np.nan, 0.0)
         crossings: list[Crossing] = []
         for first, end in runs(even & ~beyond):
             last = end - 1
             self._judge(first, last)
             if not self.many:
-                self._hidden(first, last)
-            places = self.verdicts.among(first, last)
+                self._search_windows(first, last)
+            places = self.verdicts.places_between(first, last)
             at = np.array([int(t) for t in places if t == int(t)])
             known = np.array([self.verdicts[i].stable for i in at.tolist()])
             # points between two that were looked at have neighbours that agree
@@ -89,11 +91,13 @@ class _Along:
             found = list(self._crossings(places))
             for one in found:
                 for way in (range(one.after, first - 1, -1), range(one.after + 1, end)):
-                    stable[list(self._moved(stable, way))] = math.nan
+                    stable[list(self._confirmed_after(stable, way))] = math.nan
             crossings += found
-        return Stability(stable, tuple(crossings), self.verdicts.evaluations, tuple(self._inside(stable)))
+        return Stability(
+            stable, tuple(crossings), self.verdicts.evaluations, tuple(self._inserted_points(stable))
+        )
 
-    def _even(self) -> npt.NDArray[np.bool_]:
+    def _is_even(self) -> npt.NDArray[np.bool_]:
         """Whether the number of real multipliers above 1 is even, folds included on that side."""
         sign = self.path.orientation * np.sign(self.path.direction[:, -1])
         even: npt.NDArray[np.bool_] = (sign > 0.0) | self.verdicts.fold
@@ -101,85 +105,101 @@ class _Along:
 
     def _judge(self, first: int, last: int) -> None:
         """Enough points of a run."""
-        parts = max(-(-(last - first) // self.span), 1)
+        parts = max(-(-(last - first) // self.step_span), 1)
         angle = self.verdicts.rotation[first : last + 1]
-        passed = np.floor((angle - angle[0]) / self.options.along.phase)
+        passed = np.floor((angle - angle[0]) / self.options.path.max_phase)
         some = (first + k * (last - first) // parts for k in range(parts + 1))
         nodes = sorted({*some, *(first + 1 + (passed[1:] != passed[:-1]).nonzero()[0]).tolist()})
         for i in nodes:
             self.verdicts.at(i)
         for a, b in itertools.pairwise(nodes):
-            self._between(a, b)
+            self._refine_between(a, b)
 
-    def _hidden(self, first: int, last: int) -> None:
+    def _search_windows(self, first: int, last: int) -> None:
         """Look where a window may be hidden between two places of a run that were looked at."""
-        places = self.verdicts.among(first, last)
+        places = self.verdicts.places_between(first, last)
         for k, (a, b) in enumerate(itertools.pairwise(places)):
-            self._dips(places[max(k - 1, 0) : k], (a, b), places[k + 2 : k + 3], 0)
+            self._divide(places[max(k - 1, 0) : k], (a, b), places[k + 2 : k + 3], 0)
 
-    def _dips(self, before: list[float], ends: tuple[float, float], after: list[float], divided: int) -> None:
+    def _divide(
+        self, before: list[float], ends: tuple[float, float], after: list[float], divided: int
+    ) -> None:
         """Divide the way between two places as long as what both and their neighbours tell is in doubt."""
-        t = self._doubtful(before, ends, after, divided) if divided < self.options.windows.dips else None
+        t = (
+            self._doubtful_place(before, ends, after, divided)
+            if divided < self.options.windows.max_divisions
+            else None
+        )
         if t is None or not ends[0] < t < ends[1]:
             return
         one, found, other = (self.verdicts[place].stable for place in (ends[0], t, ends[1]))
         if found in (one, other) or math.isnan(found):
-            self._dips(before, (ends[0], t), [ends[1]], divided + 1)
-            self._dips([ends[0]], (t, ends[1]), after, divided + 1)
+            self._divide(before, (ends[0], t), [ends[1]], divided + 1)
+            self._divide([ends[0]], (t, ends[1]), after, divided + 1)
             return
         self.verdicts.at(int(t)), self.verdicts.at(math.ceil(t))
-        self._between(math.ceil(ends[0]), int(t))
-        self._between(math.ceil(t), int(ends[1]))
+        self._refine_between(math.ceil(ends[0]), int(t))
+        self._refine_between(math.ceil(t), int(ends[1]))
 
-    def _doubtful(
+    def _doubtful_place(
         self, before: list[float], ends: tuple[float, float], after: list[float], divided: int
     ) -> float | None:
         """A place between two, with its verdict, at which stability may be another; None if there is none."""
         one, other = self.verdicts[ends[0]], self.verdicts[ends[1]]
-        if one.passive or other.passive or max(one.growth, other.growth) < self.options.along.enough:
+        if one.passive or other.passive or max(one.growth, other.growth) < self.options.path.sufficient_decay:
             return None
-        if max(len(one.values), len(other.values)) > self.options.windows.multipliers:
+        if max(len(one.values), len(other.values)) > self.options.windows.max_multipliers:
             return None
         if math.isnan(one.stable) != math.isnan(other.stable):
-            return self._edge(*ends)
+            return self._window_edge(*ends)
         if one.stable != other.stable or (one.stable == 1.0 and not self._may_meet(*ends)):
             return None
-        verdicts, seen = self.verdicts, self.verdicts.seen
+        verdicts, seen = self.verdicts, self.verdicts.multiplier_sample
         alike = [t for t in (*before, *ends, *after) if verdicts[t].stable == one.stable]
         low, high = (seen(t) for t in ends)
-        length = dip(low, high, [seen(t) for t in alike if not verdicts[t].passive], divided, self.options)
+        length = predicted_minimum(
+            low, high, [seen(t) for t in alike if not verdicts[t].passive], divided, self.options
+        )
         # a place like its ends is no window, whatever the balanced harmonics say of it
-        return None if length is None else self.verdicts.put(length, enough=(one.stable,))
+        return None if length is None else self.verdicts.find(length, enough=(one.stable,))
 
-    def _edge(self, a: float, b: float) -> float | None:
+    def _window_edge(self, a: float, b: float) -> float | None:
         """A place between one that is told and one that is not: this may be the edge of a window."""
         verdicts = self.verdicts
-        apart = self.options.windows.edge < b - a <= 1.0
-        if verdicts.grows(a) == verdicts.grows(b) or not apart or not verdicts.framed(a, b):
+        apart = self.options.windows.edge_distance < b - a <= 1.0
+        if verdicts.grows(a) == verdicts.grows(b) or not apart or not verdicts.same_on_both_sides(a, b):
             return None
-        return verdicts.put(0.5 * (verdicts.seen(a).length + verdicts.seen(b).length))
+        return verdicts.find(
+            0.5 * (verdicts.multiplier_sample(a).length + verdicts.multiplier_sample(b).length)
+        )
 
     def _may_meet(self, a: float, b: float) -> bool:
         """Whether two multipliers may meet between two places of a stable way."""
-        nearest = self.verdicts.apart(a) + self.verdicts.apart(b)
-        return nearest < self.options.windows.ahead * self.verdicts.way(a, b) + self.options.windows.about
+        nearest = self.verdicts.meeting_angle(a) + self.verdicts.meeting_angle(b)
+        return (
+            nearest
+            < self.options.windows.angle_factor * self.verdicts.rotation_between(a, b)
+            + self.options.windows.angle_margin
+        )
 
-    def _inside(self, stable: FloatArray) -> Iterator[Inserted]:
+    def _inserted_points(self, stable: FloatArray) -> Iterator[InsertedPoint]:
         """The places between points that are stable where both neighbours are not, or the other way round."""
         for t, one in self.verdicts.between.items():
             before, after = stable[int(t) : int(t) + 2].tolist()
             if before == after != one.stable and not math.isnan(one.stable):
                 yield one
 
-    def _between(self, a: int, b: int) -> None:
+    def _refine_between(self, a: int, b: int) -> None:
         """Look between two points until neither the verdict nor a change of its sign can hide there."""
         if b - a < 2:
             return
         one, middle, other = self.verdicts.at(a), (a + b) // 2, self.verdicts.at(b)
         passive = one.passive and other.passive
-        if not passive and not _straight(one, self.verdicts.at(middle), other, self.many, self.options):
-            self._between(a, middle)
-            self._between(middle, b)
+        if not passive and not _growth_is_linear(
+            one, self.verdicts.at(middle), other, self.many, self.options
+        ):
+            self._refine_between(a, middle)
+            self._refine_between(middle, b)
 
     def _crossings(self, places: list[float]) -> Iterator[Crossing]:
         """Where the growth changes sign between places that are told, and what is not told between them."""
@@ -195,7 +215,7 @@ class _Along:
                 if found is not None:
                     yield found
 
-    def _moved(self, stable: FloatArray, way: range) -> Iterator[int]:
+    def _confirmed_after(self, stable: FloatArray, way: range) -> Iterator[int]:
         """The points from a crossing on until further harmonics, balanced, confirm one: they may move it."""
         for i in way:
             if stable[i] != stable[way[0]] or self.verdicts.confirmed(i, stable[i]):
@@ -204,29 +224,29 @@ class _Along:
 
     def _crossing(self, a: float, b: float) -> Crossing | None:
         """Where the growth changes sign between two places."""
-        first, found, enough = int(a), None, self.verdicts.enough(a, b)
+        first, found, enough = int(a), None, self.verdicts.sufficient(a, b)
         curve = self.verdicts.curve(first)
-        before, after = (max(self.verdicts[t].growth, self.options.along.enough) for t in (a, b))
+        before, after = (max(self.verdicts[t].growth, self.options.path.sufficient_decay) for t in (a, b))
         kind = self.verdicts[a if before > 0.0 else b].kind
-        sides = Secants(a - first, b - first, before, after, may_jump=True)
-        fine = self.options.along.fine if enough else self.options.along.confirmed
-        for _ in range(self.options.along.looks):
+        sides = SignChange(a - first, b - first, before, after, may_jump=True)
+        fine = self.options.path.tolerance if enough else self.options.path.confirmed_tolerance
+        for _ in range(self.options.path.max_evaluations):
             at = sides.at
-            if sides.width < fine or not curve.put(at):
+            if sides.width < fine or not curve.find(at):
                 break
             verdict = self.verdicts.judge(curve.z, enough)
-            now = max(verdict.growth, self.options.along.enough)
+            now = max(verdict.growth, self.options.path.sufficient_decay)
             if math.isnan(now):
                 break
             kind = verdict.kind if now > 0.0 else kind
             found = Crossing(first + at, curve.z, curve.direction, curve.orientation, kind=kind)
-            if abs(now) < self.options.along.zero:
+            if abs(now) < self.options.path.growth_tolerance:
                 break
-            sides.saw(at, now)
+            sides.update(at, now)
         return found
 
 
-def _straight(
+def _growth_is_linear(
     one: Verdict, middle: Verdict, other: Verdict, many: bool, options: StabilityOptions = STABILITY
 ) -> bool:
     """Whether three verdicts agree, with growths so nearly on a line that none between has another sign.
@@ -241,16 +261,16 @@ def _straight(
     if (
         not many
         and stable[0] == 1.0
-        and min(one.before_flip, middle.before_flip, other.before_flip) < options.verdict.flip
+        and min(one.before_flip, middle.before_flip, other.before_flip) < options.verdict.flip_angle
     ):
         return False
-    safe = max(growth) < options.along.safe
+    safe = max(growth) < options.path.safe_growth
     if not many and not safe and not one.held == middle.held == other.held:
         return False
     if stable[0] == 1.0 and (safe or one.passive or middle.passive or other.passive):
         return True
-    a, b, c = (max(size, options.along.enough) for size in growth)
-    return abs(b - 0.5 * (a + c)) < options.along.deviation * min(abs(a), abs(b), abs(c))
+    a, b, c = (max(size, options.path.sufficient_decay) for size in growth)
+    return abs(b - 0.5 * (a + c)) < options.path.max_deviation * min(abs(a), abs(b), abs(c))
 
 
 def _nearer(at: IntArray, first: int, last: int) -> IntArray:

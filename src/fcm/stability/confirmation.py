@@ -35,14 +35,15 @@ def confirmed_stable(
     doubted : (point,) bool
         Those that are to be confirmed.
     options : StabilityOptions, optional
-        Of a row of them some are looked at, `ConfirmationOptions.span` apart; between two that are confirmed
-        all are, between others those beside them by bisection. None is where a contact has a law of its own.
+        Of a row of them some are looked at, `ConfirmationOptions.point_interval` apart; between two that
+        are confirmed all are, between others those beside them by bisection. None is where a contact has a
+        law of its own.
     """
     found = np.zeros(len(z), dtype=np.bool_)
     if doubted.any() and not system.own_laws:
-        looks = _Looks(system, z, options)
+        looks = _ConfirmedPoints(system, z, options)
         for first, end in runs(doubted):
-            parts = -(-(end - 1 - first) // options.confirmation.span) or 1
+            parts = -(-(end - 1 - first) // options.confirmation.point_interval) or 1
             nodes = sorted({first + k * (end - 1 - first) // parts for k in range(parts + 1)})
             found[nodes[0]] = looks.at(nodes[0])
             for a, b in itertools.pairwise(nodes):
@@ -50,19 +51,19 @@ def confirmed_stable(
     return found
 
 
-class _Looks:
+class _ConfirmedPoints:
     """Points that are looked at, each once."""
 
     def __init__(self, system: System, z: FloatArray, options: StabilityOptions) -> None:
         self.multipliers = multipliers_of(system, float(z[:, -1].max()), options)
-        self.settled = options.confirmation.settled
+        self.max_addition = options.confirmation.max_addition
         self.work, self.z, self.known = system.work, z, dict[int, bool]()
 
     def at(self, i: int) -> bool:
         """Whether the motion with further harmonics is found, and stable."""
         if i not in self.known:
             self.work.poll()
-            self.known[i] = self.multipliers.confirms(self.z[i], 1.0, self.settled)
+            self.known[i] = self.multipliers.confirms(self.z[i], 1.0, self.max_addition)
         return self.known[i]
 
     def between(self, a: int, b: int, found: Mask) -> None:

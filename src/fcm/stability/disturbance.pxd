@@ -18,14 +18,14 @@ cdef class Stiffness:
     cdef void modal(self) noexcept
     cdef int displacement(self, Py_ssize_t port, double[:, ::1] X, double[::1] out) except -1
 
-cdef class Parts:
+cdef class EigenExpansion:
     cdef double[::1] re, im
     cdef object share, driven, back
     cdef readonly Py_ssize_t modes, count
     cpdef int carry(self, double time, double omega, object X) except -1
     cdef void grow(self, double time, double[:, ::1] part, double[:, ::1] drive) noexcept
 
-cdef void turn(double[::1] re, double[::1] im, double[::1] by_re, double[::1] by_im, double times, double times_im) noexcept
+cdef void add_complex_product(double[::1] re, double[::1] im, double[::1] by_re, double[::1] by_im, double times, double times_im) noexcept
 
 cdef class Disturbances:
     cdef readonly Stiffness stiffness
@@ -36,10 +36,10 @@ cdef class Disturbances:
     cdef object states, rows, key
     cdef int assemble(self) except -1
     cdef int propagate(self, double length) except -1
-    cdef int jump(self, double length) except -1
-    cdef void fill(self, double length) noexcept
+    cdef int propagate_by_squaring(self, double length) except -1
+    cdef void fill_system(self, double length) noexcept
     cdef int carry(self) except -1
     cdef int product(self, double[:, ::1] left, double[:, ::1] right, double factor) except -1
     cdef int apply(self, double h) except -1
-    cdef int resist(self, Py_ssize_t columns) except -1
-    cdef void drag(self, Py_ssize_t columns) noexcept
+    cdef int add_stiffness(self, Py_ssize_t columns) except -1
+    cdef void add_sliders(self, Py_ssize_t columns) noexcept

@@ -220,7 +220,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 @cython.cclass
-class Parts:
+class EigenExpansion:
     """A disturbance as the sum of those that grow by exp(value time), one value of each pair.
 
     values (value,); real and imaginary parts side by side of share (2 values, 2 modes) of (q, v), and of
@@ -271,19 +271,19 @@ class Parts:
             half: cython.double = sin(0.5 * self.im[i] * time)
             re = less * cos(self.im[i] * time) - 2.0 * half * half
             im = (1.0 + less) * sin(self.im[i] * time)
-            turn(part[2 * i], part[2 * i + 1], part[2 * i], part[2 * i + 1], re, im)
+            add_complex_product(part[2 * i], part[2 * i + 1], part[2 * i], part[2 * i + 1], re, im)
             if drive is not None:
                 still: cython.bint = self.re[i] == 0.0 and self.im[i] == 0.0
                 re = time if still else re
-                turn(part[2 * i], part[2 * i + 1], drive[2 * i], drive[2 * i + 1], re, im)
+                add_complex_product(part[2 * i], part[2 * i + 1], drive[2 * i], drive[2 * i + 1], re, im)
 
 
 class Propagator:
     """States by their keys, each seen once before it is decomposed."""
 
     def __init__(self) -> None:
-        self.known: dict[bytes, Parts | None] = {}
-        self.seen: set[bytes] = set()
+        self.known: dict[bytes, EigenExpansion | None] = {}
+        self.counts: set[bytes] = set()
 
     def through(
         self,
@@ -305,11 +305,11 @@ class Propagator:
 
     def _parts(
         self, key: bytes, omega: float, system: Callable[[], tuple[FloatArray, FloatArray, FloatArray]]
-    ) -> Parts | None:
+    ) -> EigenExpansion | None:
         if key in self.known:
             return self.known[key]
-        if key not in self.seen or len(self.known) >= MOST:
-            self.seen.add(key)
+        if key not in self.counts or len(self.known) >= MOST:
+            self.counts.add(key)
             return None
         K, D, B = system()
         m = len(D)
@@ -320,7 +320,7 @@ class Propagator:
         return self.known[key]
 
 
-def _decomposed(A: FloatArray, B: FloatArray) -> Parts | None:
+def _decomposed(A: FloatArray, B: FloatArray) -> EigenExpansion | None:
     """None where the eigenvectors are nearly dependent."""
     try:
         values, vectors = np.linalg.eig(A)
@@ -334,7 +334,7 @@ def _decomposed(A: FloatArray, B: FloatArray) -> Parts | None:
     values, vectors, inverse = values[one].astype(np.complex128), vectors[:, one], inverse[one]
     pair = np.where(values.imag > 0.0, 2.0, 1.0)
     driven = _real((inverse @ B) / np.where(values == 0.0, 1.0, values)[:, None]) if B.any() else None
-    return Parts(values, _real(inverse), driven, _real(np.conj(vectors * pair).T).T.copy())
+    return EigenExpansion(values, _real(inverse), driven, _real(np.conj(vectors * pair).T).T.copy())
 
 
 def _real(rows: ComplexArray) -> FloatArray:
@@ -344,7 +344,7 @@ def _real(rows: ComplexArray) -> FloatArray:
 
 @cython.cfunc
 @cython.exceptval(check=False)
-def turn(
+def add_complex_product(
     re: cython.double[::1],
     im: cython.double[::1],
     by_re: cython.double[::1],
@@ -403,7 +403,7 @@ class Disturbances:
         """X by the exponential, by the state's eigenvalues, or by a series in steps in which its terms do not
         grow large; of those there are too many where a mode is far stiffer than the others."""
         if self.size <= FEW:
-            return self.jump(length)
+            return self.propagate_by_squaring(length)
         s: Stiffness = self.stiffness
         columns: cython.Py_ssize_t = 2 * self.modes + self.memories
         X = self.rows[:, :columns]
@@ -411,7 +411,7 @@ class Disturbances:
             return 0
         s.make()
         if s.rate * length > MANY * REACH:
-            return self.jump(length)
+            return self.propagate_by_squaring(length)
         steps: cython.int = cython.cast(cython.int, ceil(s.rate * length / REACH))
         i: cython.int
         steps = max(steps, 1)
@@ -421,7 +421,7 @@ class Disturbances:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def jump(self, length: cython.double) -> cython.int:
+    def propagate_by_squaring(self, length: cython.double) -> cython.int:
         """X by the rows of the exponential for (q, q'), from a short angle by squaring."""
         m: cython.Py_ssize_t = self.modes
         n: cython.Py_ssize_t = self.size
@@ -433,7 +433,7 @@ class Disturbances:
         while self.stiffness.rate * length > SHORT:
             length *= 0.5
             squarings += 1
-        self.fill(length)
+        self.fill_system(length)
         self.E[:, :] = self.A
         for order in range(ORDER, 1, -1):  # A (1 + A / 2 (1 + A / 3 (...)))
             self.product(self.A, self.E, 1.0 / order)
@@ -450,7 +450,7 @@ class Disturbances:
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def fill(self, length: cython.double) -> cython.void:
+    def fill_system(self, length: cython.double) -> cython.void:
         """A, the system times a length."""
         m: cython.Py_ssize_t = self.modes
         i: cython.Py_ssize_t
@@ -523,9 +523,9 @@ class Disturbances:
             order += 1
             share = h / order
             size *= self.stiffness.rate * share
-            self.resist(columns)
+            self.add_stiffness(columns)
             if order == 1:
-                self.drag(columns)
+                self.add_sliders(columns)
             for i in range(m):
                 for k in range(columns):
                     self.term[i, k] = share * self.term[m + i, k]
@@ -536,7 +536,7 @@ class Disturbances:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def resist(self, columns: cython.Py_ssize_t) -> cython.int:
+    def add_stiffness(self, columns: cython.Py_ssize_t) -> cython.int:
         """work = K q + D q' of the term (q, q')."""
         m: cython.Py_ssize_t = self.modes
         K: cython.double[:, ::1] = self.stiffness.K
@@ -562,7 +562,7 @@ class Disturbances:
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def drag(self, columns: cython.Py_ssize_t) -> cython.void:
+    def add_sliders(self, columns: cython.Py_ssize_t) -> cython.void:
         """From work what the sliders add, image w."""
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t

@@ -16,7 +16,7 @@ from fcm.stability.options import STABILITY, StabilityOptions
 ComplexArray = npt.NDArray[np.complex128]
 
 
-class _Last(threading.local):
+class _WorkspaceCache(threading.local):
     """The workspace that each thread used last, and what it is for."""
 
     def __init__(self) -> None:
@@ -24,7 +24,7 @@ class _Last(threading.local):
         self.multipliers: Multipliers | None = None
 
 
-_LAST = _Last()
+_WORKSPACES = _WorkspaceCache()
 
 
 def multipliers_of(
@@ -39,13 +39,13 @@ def multipliers_of(
 
         return RingMultipliers(system, highest, options=options)
     linear = system.linear
-    if 2 * linear.natural.size + len(system.scene.contacts) > options.structure.remembered:
+    if 2 * linear.natural.size + len(system.scene.contacts) > options.structure.max_cached:
         return Multipliers(system, highest, options=options)
     key = (*linear.numbers, system.harmonics, options)
-    if _LAST.multipliers is None or _LAST.key != key:
-        _LAST.key, _LAST.multipliers = key, Multipliers(system, highest, options=options)
-    _LAST.multipliers.take(system)
-    return _LAST.multipliers
+    if _WORKSPACES.multipliers is None or _WORKSPACES.key != key:
+        _WORKSPACES.key, _WORKSPACES.multipliers = key, Multipliers(system, highest, options=options)
+    _WORKSPACES.multipliers.take(system)
+    return _WORKSPACES.multipliers
 
 
 def multipliers(system: System, z: FloatArray, options: StabilityOptions = STABILITY) -> ComplexArray:

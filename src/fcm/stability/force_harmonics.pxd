@@ -1,6 +1,6 @@
 from fcm.structure.receptance cimport Receptance
 
-cdef class Finer:
+cdef class EnrichedMotion:
     cdef public Receptance seen
     cdef public list laws
     cdef readonly int contacts, width, wide, directions
@@ -15,4 +15,4 @@ cdef class Finer:
     cdef void unknowns(self, double[::1] z) noexcept
     cdef void displace(self, Py_ssize_t h) noexcept
     cdef int displace_many(self, int h) except -1
-    cdef double added(self, Py_ssize_t p) noexcept
+    cdef double relative_addition(self, Py_ssize_t p) noexcept

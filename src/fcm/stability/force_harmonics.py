@@ -33,14 +33,14 @@ FEWEST, MOST = 6, 15  # harmonics beyond the highest that was balanced
 PORTS = 20  # up to which their equations are solved without leaving compiled code
 
 
-def beyond(harmonics: list[int]) -> list[int]:
+def enriched_harmonics(harmonics: list[int]) -> list[int]:
     """The harmonics of the finer motion: all, and as many again beyond the highest."""
     highest = max(harmonics)
     return list(range(1, highest + min(max(highest, FEWEST), MOST) + 1))
 
 
 @cython.cclass
-class Finer:
+class EnrichedMotion:
     """`at` a point z of the balance fills x, the unknowns of the finer motion.
 
     shift is the greatest amplitude that was added to a displacement of a contact, in any of its directions,
@@ -74,7 +74,7 @@ class Finer:
         for c in range(self.contacts):
             law: Law = self.laws[c]
             law.probe(z, c * self.width)
-            law.resist()
+            law.compute_resistance()
             for i in range(self.wide):
                 self.force[c, i] = law.force[i]
             for i in range(self.directions):
@@ -88,12 +88,12 @@ class Finer:
                 self.displace_many(h)
         self.shift = 0.0
         for i in range(self.seen.ports):
-            self.shift = max(self.shift, self.added(i))
+            self.shift = max(self.shift, self.relative_addition(i))
         return 0
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def added(self, p: cython.Py_ssize_t) -> cython.double:
+    def relative_addition(self, p: cython.Py_ssize_t) -> cython.double:
         """The greatest amplitude that was added to one displacement of a contact, relative to the greatest
         that there was; 0 if there was none."""
         h: cython.Py_ssize_t

@@ -25,13 +25,13 @@ import numpy.typing as npt
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.options import STABILITY, StabilityOptions
-from fcm.stability.verdict import UNKNOWN, Spectrum, Verdict
+from fcm.stability.verdict import UNKNOWN, MultiplierSpectrum, Verdict
 from fcm.structure.layout import Layout
 
 ComplexArray = npt.NDArray[np.complex128]
 
 
-class Same:
+class UnchangedMotion:
     """The motion that is judged: that of the balance itself, with nothing added to it."""
 
     shift = 0.0
@@ -45,7 +45,7 @@ class HillMultipliers:
 
     def __init__(self, system: System, options: StabilityOptions = STABILITY) -> None:
         self.options = options
-        self.system, self.finer = system, Same()
+        self.system, self.finer = system, UnchangedMotion()
         linear, layout = system.linear, system.layout
         self.harmonics = tuple(range(1, max(system.harmonics) + 1))
         self.wide = Layout(layout.contacts, layout.directions, len(self.harmonics))
@@ -81,8 +81,8 @@ class HillMultipliers:
         for k in np.argsort(np.abs(off), kind="stable").tolist():
             value = complex(np.exp(2.0 * np.pi / omega * exponents[k]))
             # of a pair at -1 both signs of the imaginary part are the same multiplier
-            same = any(abs(value - one) < self.options.hill.same * abs(one) for one in found)
-            twice = same and abs(off[k]) > self.options.hill.offset
+            same = any(abs(value - one) < self.options.hill.multiplier_tolerance * abs(one) for one in found)
+            twice = same and abs(off[k]) > self.options.hill.min_offset
             (again if twice else found).append(value)
         return [*found, *again][: 2 * self.modes]
 
@@ -115,7 +115,7 @@ class HillMultipliers:
         values = self.of(z)
         if values is None:
             return UNKNOWN
-        spectrum = Spectrum(values, self.options)
+        spectrum = MultiplierSpectrum(values, self.options)
         return spectrum.verdict(spectrum.odd or turning)
 
     def confirms(self, z: FloatArray, stable: float, most: float = 0.0) -> bool:

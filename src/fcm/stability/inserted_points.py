@@ -14,7 +14,7 @@ from fcm.stability.verdict import Bifurcation
 
 
 @dataclass(frozen=True)
-class Inserted:
+class InsertedPoint:
     """A point of the curve between two of the path, within a window in which stability is another."""
 
     place: float  # the point of the path that it follows, and the part of the way to the next
@@ -40,7 +40,7 @@ class Inserted:
 
 
 @dataclass(frozen=True)
-class Crossing(Inserted):
+class Crossing(InsertedPoint):
     """A point of the curve at which stability changes without a fold, of which it is not told: a disturbance
     neither grows nor dies out there, but by what more harmonics make of that."""
 
@@ -53,7 +53,7 @@ class Crossing(Inserted):
         return Mark.CROSSING
 
 
-def with_points(path: Path, inserted: Sequence[Inserted]) -> Path:
+def with_points(path: Path, inserted: Sequence[InsertedPoint]) -> Path:
     """The path with points between its own, in order."""
     if not inserted:
         return path

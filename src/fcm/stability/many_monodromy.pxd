@@ -11,10 +11,10 @@ cdef class ManyMonodromy:
     cdef double[::1] damping
     cdef int[::1] state
     cpdef int follow(self, double omega) except -1
-    cdef int happen(self, int e) except -1
+    cdef int apply_event(self, int e) except -1
     cdef void seen(self, int c) noexcept
     cdef void displacements(self, int c) noexcept
-    cdef void push(self, int c, double by) noexcept
+    cdef void add_slider_force(self, int c, double by) noexcept
     cdef void change(self, int c, int was, int to, double unit) noexcept
     cdef void pull(self) noexcept
     cdef int propagate(self, double length) except -1

@@ -76,9 +76,9 @@ class ManyMonodromy:
         self.out, self.into = np.zeros((2, modes)), np.zeros((2, modes))
         self.columns, self.first, self.rate, self.omega = 2 * modes, 0, 1.0, 1.0
         self.remembering: list[int] = []
-        self.room(2 * modes)
+        self.allocate(2 * modes)
 
-    def room(self, columns: int) -> None:
+    def allocate(self, columns: int) -> None:
         """Arrays for so many disturbances."""
         self.columns = columns
         self.q, self.v, self.tq, self.tv, self.work, self.g = np.zeros((6, self.modes, columns))
@@ -107,12 +107,12 @@ class ManyMonodromy:
             if k + 1 == s.events:
                 length += TWO_PI
             if i > 0:
-                self.happen(e)
+                self.apply_event(e)
             if length > 0.0:
                 self.pull()
                 self.propagate(length)
         # the event after which the period began ends it
-        return self.happen(s.order[self.first])
+        return self.apply_event(s.order[self.first])
 
     def matrix(self) -> npt.NDArray[np.float64]:
         """(2 modes + memories, the same)."""
@@ -141,7 +141,7 @@ class ManyMonodromy:
         np.asarray(self.state)[:] = state
         self.remembering = [c for c in moving.tolist() if state[c] == STICK]
         if 2 * self.modes + len(self.remembering) != self.columns:
-            self.room(2 * self.modes + len(self.remembering))
+            self.allocate(2 * self.modes + len(self.remembering))
         self.q[:, :] = 0.0
         self.v[:, :] = 0.0
         self.w[:, :] = 0.0
@@ -181,7 +181,7 @@ class ManyMonodromy:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def happen(self, e: cython.int) -> cython.int:
+    def apply_event(self, e: cython.int) -> cython.int:
         """An event: what the slider remembers of the disturbance, and the new state."""
         c: cython.int = self.sequence.whose[e]
         to: cython.int = self.sequence.into[e]
@@ -192,7 +192,7 @@ class ManyMonodromy:
         if to == STICK:
             self.displacements(c)
         if was == STICK:
-            self.push(c, -k_u * unit)
+            self.add_slider_force(c, -k_u * unit)
         if to == STICK:
             weight: cython.double = self.sequence.along[e] * self.contact[c, 0] * self.contact[c, 2] / k_u
             k: cython.Py_ssize_t
@@ -201,7 +201,7 @@ class ManyMonodromy:
         self.state[c] = to
         self.change(c, was, to, unit)
         if to == STICK:
-            self.push(c, k_u * unit)
+            self.add_slider_force(c, k_u * unit)
         return 0
 
     @cython.cfunc
@@ -254,7 +254,7 @@ class ManyMonodromy:
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def push(self, c: cython.int, by: cython.double) -> cython.void:
+    def add_slider_force(self, c: cython.int, by: cython.double) -> cython.void:
         """Add the force of a slider, so many times its place."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t

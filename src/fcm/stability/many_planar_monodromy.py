@@ -93,7 +93,7 @@ class _Period:
         self.ratio = self.ratio[self.moving]
         self._structure(springs.ravel(), omega)
         self.memory = np.zeros((self.moving.size, 2, 0))
-        self.next, self.steps, self._taken = self.options.longest, 0, -1.0
+        self.next, self.steps, self._taken = self.options.max_step, 0, -1.0
 
     def _structure(self, springs: FloatArray, omega: float) -> None:
         """That with the springs: what moving contacts see of the modes, and of one another's forces."""
@@ -138,7 +138,7 @@ class _Period:
             opens = self.state[k] == SLIP and self.sequence.state[self.moving[k], i] == SEPARATION
             if not self._propagate(now, angle - now, opens):
                 return lost
-            now = angle if angle - now > self.options.same else now
+            now = angle if angle - now > self.options.event_tolerance else now
             self._happen(k, i)
         if not self._propagate(now, start + TWO_PI - now, False):
             return lost
@@ -160,7 +160,7 @@ class _Period:
             return 0.0, 0
         at = np.array([angle for angle, _, _ in events])
         gap = np.diff(at, append=at[0] + TWO_PI)
-        wide = np.flatnonzero(gap > self.options.apart)
+        wide = np.flatnonzero(gap > self.options.min_gap)
         middle = at + 0.5 * gap
         counts = {j: sum(self._remembers(int(c), middle[j]) for c in self.moving) for j in wide.tolist()}
         best = min(counts, key=lambda j: (counts[j], -gap[j]))
@@ -190,24 +190,24 @@ class _Period:
     def _propagate(self, theta: float, length: float, opens: bool) -> bool:
         """Carry the disturbances on, in steps as of `PlanarMonodromy`; false where none is short enough."""
         options, left, s = self.options, length, self.options.stages
-        if length <= options.same:
+        if length <= options.event_tolerance:
             return True
         closed = bool(self.fresh.any())
         while left > 0.0:
-            h = min(self.next, options.longest)
+            h = min(self.next, options.max_step)
             wanted, h = h, left if h >= left else 0.5 * left if h > 0.5 * left else h
             refused = False
             while True:
-                if h < options.same:
+                if h < options.event_tolerance:
                     return False
                 rest = self._step(theta + length - left, h)
-                rest /= options.ends if closed or (opens and h == left) else 1.0
+                rest /= options.end_factor if closed or (opens and h == left) else 1.0
                 by = (options.tolerance / max(rest, 1e-300)) ** (1.0 / s)
                 if rest <= options.tolerance:
                     break
-                h *= min(max(options.safety * by, options.shrink), 0.7)
+                h *= min(max(options.safety * by, options.min_factor), 0.7)
                 refused = True
-            following = h * min(max(options.safety * by, options.shrink), options.grow)
+            following = h * min(max(options.safety * by, options.min_factor), options.max_factor)
             self.next = following if refused else max(following, wanted)  # an event alone cut it
             self._accept()
             closed = False
@@ -320,7 +320,7 @@ class _Period:
         tail = np.tensordot(self.of.rule.tail, np.concatenate((self.p[None], p)), axes=1)
         scale = np.maximum(1.0, np.abs(y).max(axis=0, initial=0.0))
         before, last = np.abs(tail / scale).max(axis=(1, 2), initial=0.0).tolist()
-        return float(max(last, self.options.before * before))
+        return float(max(last, self.options.coefficient_floor * before))
 
     def _accept(self) -> None:
         """The end of the step is where the disturbances are."""

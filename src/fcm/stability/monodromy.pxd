@@ -6,7 +6,7 @@ cdef class Monodromy(Disturbances):
     cdef double[:, ::1] port
     cpdef int follow(self, double omega) except -1
     cdef int begin(self) except -1
-    cdef int happen(self, int e) except -1
+    cdef int apply_event(self, int e) except -1
 
 cdef class RingMonodromy(Monodromy):
     cdef double part, start

@@ -65,7 +65,7 @@ class Monodromy(Disturbances):
             self.propagate(TWO_PI)
         for i in range(s.events):
             e = s.order[i]
-            self.happen(e)
+            self.apply_event(e)
             if i + 1 < s.events:
                 length = s.angle[s.order[i + 1]] - s.angle[e]
             else:
@@ -114,7 +114,7 @@ class Monodromy(Disturbances):
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def happen(self, e: cython.int) -> cython.int:
+    def apply_event(self, e: cython.int) -> cython.int:
         """An event: what the slider remembers of the disturbance, and the new state."""
         c: cython.int = self.sequence.whose[e]
         k: cython.Py_ssize_t
@@ -184,7 +184,7 @@ class RingMonodromy(Monodromy):
             if angle > now:
                 self.propagate(angle - now)
                 now = angle
-            self.happen(e)
+            self.apply_event(e)
             self.assemble()
         self.propagate(end - now)
         return 0

@@ -1,9 +1,9 @@
 r"""Floquet multipliers of a balanced solution, and what they say of its stability.
 
 The growth over a period of a small disturbance, slow or fast, is an eigenvalue of the `Monodromy` of the
-motion. Its motion is the `Finer` one; that of the harmonics balanced alone tells how sure the verdict is.
-Where it is in doubt, as of light impacts, whose multipliers change severalfold where amplitudes change by a
-hundredth, the further harmonics are balanced too (`Refined`).
+motion. Its motion is the `EnrichedMotion` one; that of the harmonics balanced alone tells how sure the
+verdict is. Where it is in doubt, as of light impacts, whose multipliers change severalfold where amplitudes
+change by a hundredth, the further harmonics are balanced too (`Refined`).
 Where no contact changes its state the motion is linear, and stable. That an extreme of its limit holds a
 slider is no matter then: with a little less residual friction the slider rests, in the same motion.
 Neither is quite a periodic solution of the structure, so that a real multiplier passes +1 beside the fold of
@@ -24,19 +24,28 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.disturbance import Propagator, Stiffness
 from fcm.stability.eigenvalues import eigenvalues
-from fcm.stability.force_harmonics import PORTS, Finer, beyond
+from fcm.stability.force_harmonics import PORTS, EnrichedMotion, enriched_harmonics
 from fcm.stability.many_monodromy import ManyMonodromy
 from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy
 from fcm.stability.monodromy import Monodromy
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.planar_monodromy import PlanarMonodromy
 from fcm.stability.planar_sequence import PlanarSequence
-from fcm.stability.rebalanced import Refined
+from fcm.stability.rebalanced import Rebalancing
 from fcm.stability.state_sequence import BalancedSequence
-from fcm.stability.verdict import PASSIVE, UNKNOWN, Spectrum, Verdict, doubtful, either, even, meeting
+from fcm.stability.verdict import (
+    PASSIVE,
+    UNKNOWN,
+    MultiplierSpectrum,
+    Verdict,
+    doubtful,
+    either_slider,
+    even_verdict,
+    flip_distance,
+)
 
 
-class Followed(NamedTuple):
+class VariationalProblem(NamedTuple):
     """A balanced motion by its states, and what follows its disturbances through them."""
 
     states: BalancedSequence | PlanarSequence
@@ -56,12 +65,12 @@ class Multipliers:
         law = [[c.mu, c.k_u, c.k_v, c.n_0] for c in system.scene.contacts]
         self.contact = contact = np.array(law, dtype=np.float64).reshape(self.contacts, 4)  # all look at it
         harmonics = [int(h) for h in system.harmonics]
-        finer = beyond(harmonics)
-        far = far_above(linear.natural, highest, harmonics, self.options)
-        self.adrift = int(np.count_nonzero(linear.adrift))
+        finer = enriched_harmonics(harmonics)
+        far = quasi_static_modes(linear.natural, highest, harmonics, self.options)
+        self.has_rigid_body_modes = int(np.count_nonzero(linear.adrift))
         summed = linear.ports.shape[1] <= PORTS
         seen = linear.receptance(np.array(finer, dtype=np.float64), summed)
-        self.finer = Finer(seen, system.exact_laws(tuple(finer)), harmonics)
+        self.finer = EnrichedMotion(seen, system.exact_laws(tuple(finer)), harmonics)
         self.far = far
         self.states: tuple[BalancedSequence, BalancedSequence] | tuple[PlanarSequence, PlanarSequence]
         if system.scene.planar:
@@ -72,7 +81,7 @@ class Multipliers:
         else:
             self.states = BalancedSequence(contact, finer), BalancedSequence(contact, harmonics)
         self.fine, self.plain = self._followed()
-        self.further: tuple[Refined, Multipliers] | None = None
+        self.further: tuple[Rebalancing, Multipliers] | None = None
 
     def take(self, system: System) -> None:
         """A system with the same structure and harmonics, whose contacts may be others."""
@@ -82,29 +91,31 @@ class Multipliers:
         for row, c in zip(self.contact, system.scene.contacts, strict=True):
             row[:] = c.mu, c.k_u, c.k_v, c.n_0
         for law, c in zip(self.finer.laws, system.scene.contacts, strict=True):
-            law.put(c.mu, c.k_u, c.k_v, c.n_0)
+            law.set_parameters(c.mu, c.k_u, c.k_v, c.n_0)
         if not np.array_equal(self.contact[:, :3], before):  # what is known of the states is of others
             self.fine, self.plain = self._followed()
 
-    def _followed(self) -> list[Followed]:
+    def _followed(self) -> list[VariationalProblem]:
         """The finer motion and that of the balanced harmonics."""
         fine, plain = self.states
         if isinstance(fine, BalancedSequence) and isinstance(plain, BalancedSequence):
-            make = _many if len(self.contact) >= self.options.structure.contacts else _few
+            make = (
+                _many_contacts if len(self.contact) >= self.options.structure.many_contacts else _few_contacts
+            )
             return make(self.system, self.far, self.contact, (fine, plain), self.options)
         linear = self.system.linear
         structure = linear.ports, linear.natural, linear.damping, self.far
         planar = (one for one in self.states if isinstance(one, PlanarSequence))
-        many = len(self.contact) >= self.options.structure.contacts
+        many = len(self.contact) >= self.options.structure.many_contacts
         carried = ManyPlanarMonodromy if many else PlanarMonodromy
-        return [Followed(one, carried(*structure, one)) for one in planar]
+        return [VariationalProblem(one, carried(*structure, one)) for one in planar]
 
     def of(self, z: FloatArray) -> list[complex] | None:
         """The multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""
         self.finer.at(z)
-        return self._values(self.fine, z[-1]) if self.see(self.fine.states, self.finer.x) else None
+        return self._values(self.fine, z[-1]) if self.find_states(self.fine.states, self.finer.x) else None
 
-    def see(self, states: BalancedSequence | PlanarSequence, x: FloatArray) -> bool:
+    def find_states(self, states: BalancedSequence | PlanarSequence, x: FloatArray) -> bool:
         """Let states look at the motion x; false where a number is not finite."""
         return bool(states.find_events(x))
 
@@ -120,20 +131,26 @@ class Multipliers:
         """
         fine, plain, omega = self.fine.states, self.plain.states, float(z[-1])
         self.finer.at(z)
-        if self.finer.shift < self.options.confirmation.rounding:
-            if not self.see(plain, z):
+        if self.finer.shift < self.options.confirmation.min_addition:
+            if not self.find_states(plain, z):
                 return UNKNOWN
             if plain.moving == 0:  # nor does the finer motion, which has no further harmonics
                 return PASSIVE._replace(held=plain.held) if plain.held else PASSIVE
-        if not self.see(fine, self.finer.x):
+        if not self.find_states(fine, self.finer.x):
             return UNKNOWN
         values = self._values(self.fine, omega)
         if values is None:
             return UNKNOWN
-        found = self._found(Spectrum(values, self.options), z, turning, enough)
-        return either(found, self._resting(omega))._replace(held=fine.held) if fine.held else found
+        found = self._verdict_of(MultiplierSpectrum(values, self.options), z, turning, enough)
+        return (
+            either_slider(found, self._with_sliders_at_rest(omega))._replace(held=fine.held)
+            if fine.held
+            else found
+        )
 
-    def _found(self, fine: Spectrum, z: FloatArray, turning: bool, enough: Sequence[float]) -> Verdict:
+    def _verdict_of(
+        self, fine: MultiplierSpectrum, z: FloatArray, turning: bool, enough: Sequence[float]
+    ) -> Verdict:
         """The verdict, which the motion of the balanced harmonics alone confirms where that may matter.
 
         What that does not confirm, or only just, is that of a motion with the further harmonics balanced too,
@@ -141,68 +158,72 @@ class Multipliers:
         """
         alone = fine.verdict(turning)
         options = self.options.confirmation
-        safe = alone.growth < -max(options.decay, options.safe * self.finer.shift)
+        safe = alone.growth < -max(options.doubtful_decay, options.decay_ratio * self.finer.shift)
         if not fine.odd and (safe or alone.stable in enough):
             return alone
         if self.finer.shift == 0.0:  # both motions are the same, as where no contact slips but one just would
-            return even(fine, fine, turning, self.options)
-        values = self._values(self.plain, float(z[-1])) if self.see(self.plain.states, z) else None
+            return even_verdict(fine, fine, turning, self.options)
+        values = self._values(self.plain, float(z[-1])) if self.find_states(self.plain.states, z) else None
         if values is None:
             return UNKNOWN
-        plain = Spectrum(values, self.options)
-        found = even(fine, plain, turning, self.options)
+        plain = MultiplierSpectrum(values, self.options)
+        found = even_verdict(fine, plain, turning, self.options)
         if turning:
             return found
         if self.last:
             doubt = self._doubtful(found, fine, plain, 1.0, float(z[-1]))
             return found._replace(stable=math.nan) if doubt else found
-        slight = 0.0 < found.growth < max(options.decay, options.slight * self.finer.shift)
-        if slight or self._doubtful(found, fine, plain, options.slight, float(z[-1])):
+        slight = 0.0 < found.growth < max(options.doubtful_decay, options.growth_ratio * self.finer.shift)
+        if slight or self._doubtful(found, fine, plain, options.growth_ratio, float(z[-1])):
             return self.refined(z, persistent=found.stable == 1.0) or found._replace(stable=math.nan)
         return found
 
-    def _doubtful(self, found: Verdict, fine: Spectrum, plain: Spectrum, times: float, omega: float) -> bool:
+    def _doubtful(
+        self, found: Verdict, fine: MultiplierSpectrum, plain: MultiplierSpectrum, times: float, omega: float
+    ) -> bool:
         """As `doubtful`, but for a pair that decays also where it meets at -1."""
         if not doubtful(found, fine, plain, times, options=self.options):
             return False
-        return doubtful(found, fine, plain, times, False, self.options) or not self._meets_in_decay(
+        return doubtful(found, fine, plain, times, False, self.options) or not self._pair_decays_at_flip(
             found.values, omega
         )
 
-    def _meets_in_decay(self, values: Sequence[complex], omega: float) -> bool:
+    def _pair_decays_at_flip(self, values: Sequence[complex], omega: float) -> bool:
         """Whether the pair nearest to -1, of values of the finer motion, decays where it meets there.
 
         The same motion is taken at frequencies at which the pair comes to -1: as far as it parts there, the
         changing contacts drive it.
         """
-        at, seen = [0.0], [meeting(values, self.options)]
-        ahead = self.options.confirmation.step
-        for _ in range(self.options.confirmation.looks):
+        at, seen = [0.0], [flip_distance(values, self.options)]
+        ahead = self.options.confirmation.frequency_step
+        for _ in range(self.options.confirmation.max_evaluations):
             there = self._values(self.fine, omega * (1.0 + ahead))
             if there is None:
                 return False
             at.append(ahead)
-            seen.append(meeting(there, self.options))
+            seen.append(flip_distance(there, self.options))
             if not math.isfinite(seen[-1][0]):
                 return False
-            if len(at) > 2 and abs(seen[-1][0]) < self.options.confirmation.met:
+            if len(at) > 2 and abs(seen[-1][0]) < self.options.confirmation.meeting_tolerance:
                 break
             roots = [math.copysign(math.sqrt(abs(apart)), apart) for apart, _ in seen[-2:]]
             slope = (roots[1] - roots[0]) / (at[-1] - at[-2])
-            if slope == 0.0 or abs(roots[1] / slope) > self.options.confirmation.furthest:
+            if slope == 0.0 or abs(roots[1] / slope) > self.options.confirmation.max_frequency_change:
                 return False
             ahead = at[-1] - roots[1] / slope
         else:
             return False
         bend, tilt, level = np.polyfit(at[-3:], [apart for apart, _ in seen[-3:]], 2)
         least = level - 0.25 * tilt**2 / bend if bend > 0.0 else -math.inf
-        return bool(math.sqrt(max(-least, 0.0)) + seen[-1][1] < -self.options.confirmation.meeting)
+        return bool(math.sqrt(max(-least, 0.0)) + seen[-1][1] < -self.options.confirmation.meeting_decay)
 
     def refined(self, z: FloatArray, persistent: bool) -> Verdict | None:
         """Of the solution with the harmonics of the finer motion, which was looked at last, balanced; None
         where there is none near."""
         if self.further is None:
-            refined = Refined(self.system, beyond([int(h) for h in self.system.harmonics]), self.options)
+            refined = Rebalancing(
+                self.system, enriched_harmonics([int(h) for h in self.system.harmonics]), self.options
+            )
             self.further = refined, type(self)(refined.system, self.highest, True, self.options)
         refined, judge = self.further
         if refined.fewer is not self.system:
@@ -213,7 +234,7 @@ class Multipliers:
 
     def confirms(self, z: FloatArray, stable: float, most: float = math.inf) -> bool:
         """Whether a solution is as stable as told (1 or 0) with the further harmonics balanced, too; to these
-        those beyond them add no more than the most, as `Finer.shift` says it."""
+        those beyond them add no more than the most, as `EnrichedMotion.shift` says it."""
         self.finer.at(z)
         if self.finer.shift == 0.0:  # it has none
             return True
@@ -223,63 +244,63 @@ class Multipliers:
         assert self.further is not None
         return bool(self.further[1].finer.shift <= most)
 
-    def _values(self, followed: Followed, omega: float) -> list[complex] | None:
+    def _values(self, followed: VariationalProblem, omega: float) -> list[complex] | None:
         """Of the motion that was looked at."""
         followed.monodromy.follow(omega)
         found = eigenvalues(followed.monodromy.matrix())
         if found is None:
             return None
         values = self.of_period(found)
-        for _ in range(2 * self.adrift):
+        for _ in range(2 * self.has_rigid_body_modes):
             nearest = min(values, key=_from_one)
-            if _from_one(nearest) < self.options.verdict.neutral:
+            if _from_one(nearest) < self.options.verdict.neutral_tolerance:
                 values.remove(nearest)
         return values
 
-    def _resting(self, omega: float) -> Verdict:
+    def _with_sliders_at_rest(self, omega: float) -> Verdict:
         """With the sliders that an extreme of a limit holds left where they are."""
         states = self.fine.states
         states.yielding = False
-        self.see(states, self.finer.x)
+        self.find_states(states, self.finer.x)
         values = self._values(self.fine, omega) if states.moving else []
         states.yielding = True
-        return UNKNOWN if values is None else Spectrum(values, self.options).verdict()
+        return UNKNOWN if values is None else MultiplierSpectrum(values, self.options).verdict()
 
 
-def _few(
+def _few_contacts(
     system: System,
     far: npt.NDArray[np.bool_],
     contact: FloatArray,
     states: Sequence[BalancedSequence],
     options: StabilityOptions,
-) -> list[Followed]:
+) -> list[VariationalProblem]:
     """Each state of the contacts put together anew."""
     linear = system.linear
     soft = (linear.ports[far].T * linear.natural[far] ** -2.0) @ linear.ports[far] if far.any() else None
     stiffness = Stiffness(linear.ports[~far], linear.natural[~far], linear.damping[~far], soft, contact)
-    carried = system.kept.setdefault((Propagator, stiffness.modes), Propagator())
+    carried = system.cache.setdefault((Propagator, stiffness.modes), Propagator())
     assert isinstance(carried, Propagator)
-    return [Followed(one, Monodromy(stiffness, one, carried)) for one in states]
+    return [VariationalProblem(one, Monodromy(stiffness, one, carried)) for one in states]
 
 
-def _many(
+def _many_contacts(
     system: System,
     far: npt.NDArray[np.bool_],
     contact: FloatArray,
     states: Sequence[BalancedSequence],
     options: StabilityOptions,
-) -> list[Followed]:
+) -> list[VariationalProblem]:
     """Each change of one contact's state as that, without far modes that hardly yield beside the contacts."""
-    linear, kept = system.linear, ~far | (system.yields > options.structure.displacement)
+    linear, kept = system.linear, ~far | (system.modal_compliance > options.structure.min_displacement)
     shown = linear.ports[kept], linear.natural[kept], linear.damping[kept], far[kept]
-    return [Followed(one, ManyMonodromy(*shown, contact, one)) for one in states]
+    return [VariationalProblem(one, ManyMonodromy(*shown, contact, one)) for one in states]
 
 
-def far_above(
+def quasi_static_modes(
     natural: FloatArray, highest: float, harmonics: list[int], options: StabilityOptions = STABILITY
 ) -> npt.NDArray[np.bool_]:
     """Which of many modes are so far above the excitation that they follow without delay."""
-    if natural.size <= options.structure.modes:
+    if natural.size <= options.structure.many_modes:
         return np.zeros(natural.size, dtype=bool)
     times = max(options.structure.above_excitation, options.structure.above_harmonics * max(harmonics))
     far: npt.NDArray[np.bool_] = natural > highest * times

@@ -20,7 +20,7 @@ cdef class PlanarMonodromy:
     cdef int remembers(self, int c, double theta) noexcept
     cdef bint begin(self, double start) except -1
     cdef bint propagate(self, double theta, double length, bint opens) noexcept
-    cdef void happen(self, int c, int i) noexcept
+    cdef void apply_event(self, int c, int i) noexcept
     cdef void activate(self) noexcept
     cdef void displaced(self, int c) noexcept
     cdef double contact_ratio(self, int c) noexcept

@@ -73,9 +73,14 @@ class PlanarMonodromy:
     ) -> None:
         options = sequence.options
         self.sequence = sequence
-        self.tolerance, self.before, self.longest = options.tolerance, options.before, options.longest
-        self.shrink, self.grow, self.safety = options.shrink, options.grow, options.safety
-        self.ends, self.same, self.apart, self.most = options.ends, options.same, options.apart, options.most
+        self.tolerance, self.before, self.longest = (
+            options.tolerance,
+            options.coefficient_floor,
+            options.max_step,
+        )
+        self.shrink, self.grow, self.safety = options.min_factor, options.max_factor, options.safety
+        self.ends, self.same = options.end_factor, options.event_tolerance
+        self.apart, self.most = options.min_gap, options.max_disturbances
         self.shapes = np.ascontiguousarray(shapes[~far])
         self.natural, self.damping = natural[~far], damping[~far]
         self.soft = (shapes[far].T * natural[far] ** -2.0) @ shapes[far]
@@ -144,7 +149,7 @@ class PlanarMonodromy:
                 found = self.propagate(now, at - now, opens)
                 now = at
             if found and e >= 0:
-                self.happen(self.whose[e], self.which[e])
+                self.apply_event(self.whose[e], self.which[e])
         if not found:
             self.filled = np.full((1, 1), np.nan)
             return 0
@@ -284,7 +289,7 @@ class PlanarMonodromy:
             self.steps += 1
         return True
 
-    def happen(self, c: cython.int, i: cython.int) -> None:
+    def apply_event(self, c: cython.int, i: cython.int) -> None:
         """State i of a contact begins: what it remembers of the disturbances."""
         j: cython.int
         x: cython.Py_ssize_t = 2 * c

@@ -73,13 +73,13 @@ class PlanarSequence:
         numbers = [int(h) for h in harmonics]
         self.options, self.invisible = options, OPTIONS.invisible
         self.contact, self.contacts = np.ascontiguousarray(contact), contact.shape[0]
-        self.kernel = PlanarContact(numbers, [1], options.panels)
+        self.kernel = PlanarContact(numbers, [1], options.initial_panels)
         self.width, self.capacity = 3 + 6 * len(numbers), self.kernel.cycle.slider.capacity
         self.count = np.zeros(self.contacts, dtype=np.intc)
         self.first = np.zeros(self.contacts + 1, dtype=np.intc)
         self.begin = np.zeros((self.contacts, self.capacity))
         self.state = np.zeros((self.contacts, self.capacity), dtype=np.intc)
-        self.record = np.zeros((self.contacts * options.panels, 5 + STAGES))
+        self.record = np.zeros((self.contacts * options.initial_panels, 5 + STAGES))
         self.re, self.im = np.zeros((2, self.contacts, 3, len(numbers)))
         self.mean, self.order = np.zeros(self.contacts), np.array(numbers, dtype=np.float64)
         rule = radau(STAGES)

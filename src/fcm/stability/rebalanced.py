@@ -6,27 +6,27 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fcm.continuation.corrector import Newton, settle
+from fcm.continuation.corrector import Newton, correct_with_kept_jacobian
 from fcm.harmonic_balance.homotopy import Homotopy
-from fcm.harmonic_balance.normal_plane_prolongation import DAMPED, Lifted
+from fcm.harmonic_balance.normal_plane_prolongation import DAMPED, Prolongation
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.options import STABILITY, StabilityOptions
 
 
-class Refined:
+class Rebalancing:
     """`beside` a point of a system's balance is one of the balance with more harmonics; a workspace."""
 
     def __init__(self, system: System, more: Sequence[int], options: StabilityOptions = STABILITY) -> None:
         self.options = options.confirmation
         self.harmonics, self.more, self.fewer = system.harmonics, tuple(more), system
         self.system = system.with_harmonics(self.more)
-        self.balance = self.system.balance()
+        self.balance = self.system.new_balance()
         self.damped = None
-        if self.balance.contacts >= DAMPED.contacts:
-            self.damped = Lifted(self.balance, list(self.harmonics), list(more), self.options.enough)
+        if self.balance.contacts >= DAMPED.min_contacts:
+            self.damped = Prolongation(self.balance, list(self.harmonics), list(more), self.options.tolerance)
         self.homotopy = Homotopy(self.balance)
-        self.homotopy.taken = 1.0
+        self.homotopy.subtracted_part = 1.0
         self.newton = Newton(self.homotopy)
         self.newton.row[:] = np.eye(self.balance.unknowns + 1)[-1]  # holds the frequency
         balanced = np.isin(self.system.layout.harmonic_of(self.more), [0, *self.harmonics])
@@ -51,23 +51,23 @@ class Refined:
         newton, lack = self.newton, np.array(self.balance.residual)
         newton.z[:-1], newton.z[-1] = x, z[-1]
         newton.scale[:] = self.balance.scale
-        by_parts = persistent and len(lack) < self.options.unknowns
-        if self._settled(lack, 1.0):
+        by_parts = persistent and len(lack) < self.options.max_unknowns
+        if self._converges(lack, 1.0):
             return np.array(newton.z)
         if self.damped is not None:
             kept = np.where(self.balanced, lack, 0.0)
             return np.array(self.damped.newton.z) if self.damped.rebalance(here, kept) else None
-        return np.array(newton.z) if by_parts and self._by_parts(here, lack) else None
+        return np.array(newton.z) if by_parts and self._by_homotopy(here, lack) else None
 
-    def _settled(self, lack: FloatArray, part: float) -> bool:
+    def _converges(self, lack: FloatArray, part: float) -> bool:
         """Whether Newton's method leads to a solution near, of a part of the further harmonics' equations."""
-        self.homotopy.removed[:] = np.where(self.balanced, lack, (1.0 - part) * lack)
-        distance = self.options.distance
-        return settle(self.newton, distance) and self.newton.moved <= distance
+        self.homotopy.initial_residual[:] = np.where(self.balanced, lack, (1.0 - part) * lack)
+        distance = self.options.max_change
+        return correct_with_kept_jacobian(self.newton, distance) and self.newton.moved <= distance
 
-    def _by_parts(self, here: FloatArray, lack: FloatArray) -> bool:
+    def _by_homotopy(self, here: FloatArray, lack: FloatArray) -> bool:
         """The same from where all of them are lacking, to a solution that is near that, too."""
         self.newton.z[:] = here
-        if not all(self._settled(lack, part) for part in self.options.parts):
+        if not all(self._converges(lack, part) for part in self.options.homotopy_parts):
             return False
-        return bool(np.linalg.norm((self.newton.z - here) / self.balance.scale) <= self.options.distance)
+        return bool(np.linalg.norm((self.newton.z - here) / self.balance.scale) <= self.options.max_change)

@@ -18,9 +18,9 @@ from fcm.harmonic_balance.system import System
 from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray
 from fcm.stability.disturbance import Stiffness
-from fcm.stability.force_harmonics import Finer, beyond
+from fcm.stability.force_harmonics import EnrichedMotion, enriched_harmonics
 from fcm.stability.monodromy import RingMonodromy
-from fcm.stability.multipliers import Followed, Multipliers, far_above
+from fcm.stability.multipliers import Multipliers, VariationalProblem, quasi_static_modes
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.planar_monodromy import PlanarMonodromy
 from fcm.stability.planar_sequence import PlanarSequence
@@ -28,7 +28,7 @@ from fcm.stability.state_sequence import BalancedSequence
 from fcm.stability.verdict import Verdict
 from fcm.structure.ring import RingLinear
 
-MOST_NAMED = 8  # diameters in a sentence
+MAX_NAMED = 8  # diameters in a sentence
 
 
 def stability_unknown(system: System, highest: float, options: StabilityOptions = STABILITY) -> str:
@@ -37,19 +37,19 @@ def stability_unknown(system: System, highest: float, options: StabilityOptions 
     assert ring is not None
     missing = sorted(set(ring.lacking(range(ring.period)).values()))
     if missing:
-        diameters = ", ".join(map(str, missing[:MOST_NAMED])) + (", ..." if len(missing) > MOST_NAMED else "")
+        diameters = ", ".join(map(str, missing[:MAX_NAMED])) + (", ..." if len(missing) > MAX_NAMED else "")
         return f"there are no modes of nodal diameter {diameters}, which disturbances have"
     natural = ring.frequency[_places(ring)]
-    near = ~far_above(natural, highest, [int(h) for h in system.harmonics], options)
+    near = ~quasi_static_modes(natural, highest, [int(h) for h in system.harmonics], options)
     count = 2 * int(near.sum()) + ring.period * len(system.scene.contacts)
-    if count > options.structure.disturbances:
-        most = options.structure.disturbances
+    if count > options.structure.max_disturbances:
+        most = options.structure.max_disturbances
         return f"{count} disturbances of {ring.period} sectors are too many; up to {most} are looked at"
     return ""
 
 
 @dataclass(frozen=True)
-class Around:
+class RingModes:
     """The modes of n sectors, of mass 1, and how they look from j sectors behind."""
 
     natural: FloatArray  # (mode,)
@@ -57,10 +57,10 @@ class Around:
     ports: FloatArray  # (mode, port), sector after sector
     renumber: FloatArray  # (mode, mode)
 
-    def some(self, which: npt.NDArray[np.bool_]) -> Around:
+    def selected(self, which: npt.NDArray[np.bool_]) -> RingModes:
         """Some of the modes."""
         renumber = np.ascontiguousarray(self.renumber[np.ix_(which, which)])
-        return Around(self.natural[which], self.damping[which], self.ports[which], renumber)
+        return RingModes(self.natural[which], self.damping[which], self.ports[which], renumber)
 
 
 class RingMultipliers(Multipliers):
@@ -78,18 +78,18 @@ class RingMultipliers(Multipliers):
         of_one = np.array([[c.mu, c.k_u, c.k_v, c.n_0] for c in system.scene.contacts]).reshape(-1, 4)
         contact = np.tile(of_one, (n, 1))
         harmonics = [int(h) for h in system.harmonics]
-        finer = beyond(harmonics)
+        finer = enriched_harmonics(harmonics)
         self.unknown = bool(stability_unknown(system, highest, self.options))
         around = modes_around(linear, ring)
-        far = far_above(around.natural, highest, harmonics, self.options)
-        self.adrift = int(np.count_nonzero(linear.adrift))
+        far = quasi_static_modes(around.natural, highest, harmonics, self.options)
+        self.has_rigid_body_modes = int(np.count_nonzero(linear.adrift))
         seen = linear.receptance(np.array(finer, dtype=np.float64))
-        self.finer = Finer(seen, system.exact_laws(tuple(finer)), harmonics)
+        self.finer = EnrichedMotion(seen, system.exact_laws(tuple(finer)), harmonics)
         self.ring, self.planar = ring, system.scene.planar
         if self.planar:  # of the whole period
             structure = around.ports, around.natural, around.damping, far
             self.fine, self.plain = (
-                Followed(states, PlanarMonodromy(*structure, states))
+                VariationalProblem(states, PlanarMonodromy(*structure, states))
                 for states in (
                     PlanarSequence(contact, tuple(numbers), options.planar) for numbers in (finer, harmonics)
                 )
@@ -98,11 +98,13 @@ class RingMultipliers(Multipliers):
             soft = None
             if far.any():
                 soft = (around.ports[far].T * around.natural[far] ** -2.0) @ around.ports[far]
-            near = around.some(~far)
+            near = around.selected(~far)
             stiffness = Stiffness(near.ports, near.natural, near.damping, soft, contact)
-            source = np.roll(np.arange(n * self.contacts), behind(ring) * self.contacts)
+            source = np.roll(np.arange(n * self.contacts), sector_shifts(ring) * self.contacts)
             self.fine, self.plain = (
-                Followed(states, RingMonodromy(stiffness, states, 2.0 * np.pi / n, near.renumber, source))
+                VariationalProblem(
+                    states, RingMonodromy(stiffness, states, 2.0 * np.pi / n, near.renumber, source)
+                )
                 for states in (BalancedSequence(contact, numbers) for numbers in (finer, harmonics))
             )
         self.shifts = {
@@ -110,12 +112,12 @@ class RingMultipliers(Multipliers):
             for numbers in (finer, harmonics)
         }
 
-    def _values(self, followed: Followed, omega: float) -> list[complex] | None:
+    def _values(self, followed: VariationalProblem, omega: float) -> list[complex] | None:
         """As `Multipliers._values`; None where modes are missing, or there are too many."""
         return None if self.unknown else Multipliers._values(self, followed, omega)
 
-    def see(self, states: BalancedSequence | PlanarSequence, x: FloatArray) -> bool:
-        """As `Multipliers.see`, with the unknowns of one sector."""
+    def find_states(self, states: BalancedSequence | PlanarSequence, x: FloatArray) -> bool:
+        """As `Multipliers.find_states`, with the unknowns of one sector."""
         d = 3 if self.planar else 2
         count = (states.width // d - 1) // 2
         blocks = np.asarray(x)[: self.contacts * states.width].reshape(self.contacts, states.width)
@@ -146,12 +148,12 @@ def _phases(ring: Ring, harmonics: list[int]) -> FloatArray:
     return 2.0 * np.pi / ring.sectors * np.array([ring.waves(h) for h in harmonics])
 
 
-def behind(ring: Ring) -> int:
+def sector_shifts(ring: Ring) -> int:
     """The sectors j that the wave passes in the n-th part of a period: j engine_order = gcd, of the sectors.
 
     >>> none = np.zeros(0)
     >>> ring = Ring(8, 3, none, none, np.zeros((0, 0), complex), none, none)
-    >>> behind(ring)  # 3 * 3 = 9
+    >>> sector_shifts(ring)  # 3 * 3 = 9
     3
     """
     n = ring.period
@@ -159,7 +161,7 @@ def behind(ring: Ring) -> int:
     return pow(order, -1, n) if n > 1 else 0
 
 
-def modes_around(linear: RingLinear, ring: Ring) -> Around:
+def modes_around(linear: RingLinear, ring: Ring) -> RingModes:
     """The modes of n sectors, those of a nodal diameter between 0 and n / 2 as cosine and sine."""
     n, places = ring.period, _places(ring)
     step = 2.0 * np.pi * ring.diameter[places] / ring.sectors
@@ -171,11 +173,11 @@ def modes_around(linear: RingLinear, ring: Ring) -> Around:
         np.where(second[:, None], wave.imag, wave.real)
         * np.sqrt(np.where(first | second, 2.0, 1.0) / n)[:, None]
     )
-    by = step * behind(ring)
+    by = step * sector_shifts(ring)
     renumber = np.diag(np.cos(by))
     at = np.flatnonzero(first)
     renumber[at, at + 1], renumber[at + 1, at] = -np.sin(by[at]), np.sin(by[at])
-    return Around(ring.frequency[places], ring.damping[places], ports, renumber)
+    return RingModes(ring.frequency[places], ring.damping[places], ports, renumber)
 
 
 def _places(ring: Ring) -> npt.NDArray[np.intp]:

@@ -41,17 +41,17 @@ class StateSequence:
     def __init__(self, contacts: int, most: int) -> None:
         """Of so many contacts, with at most so many events."""
         self.contacts, self.events = contacts, 0
-        self.room(most)
+        self.allocate(most)
         self.state, self.remembers = np.zeros(contacts, dtype=np.intc), np.zeros(contacts, dtype=np.intc)
 
-    def room(self, most: int) -> None:
+    def allocate(self, most: int) -> None:
         """Arrays for so many events."""
         self.angle, self.along = np.zeros(most), np.zeros(most)
         self.whose, self.into, self.order = (np.zeros(most, dtype=np.intc) for _ in range(3))
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def occurs(
+    def add_event(
         self, angle: cython.double, c: cython.int, into: cython.int, along: cython.double
     ) -> cython.void:
         """One more event."""
@@ -154,7 +154,7 @@ class BalancedSequence(StateSequence):
                 self.held += 1
                 if self.yielding:
                     e = self.cycle.event[0]
-                    self.occurs(self.cycle.event_angle[e], c, STICK, self.limit_at(0))
+                    self.add_event(self.cycle.event_angle[e], c, STICK, self.limit_at(0))
             return True
         if not rubs and not self.opens():  # it slides to and fro, and nothing changes by that
             self.state[c] = FREE
@@ -164,7 +164,7 @@ class BalancedSequence(StateSequence):
             state = self.cycle.state[p]
             if not rubs and state != SEPARATION:
                 state = FREE
-            self.occurs(self.cycle.begin[p], c, state, self.limit_at(p) if state == STICK else 0.0)
+            self.add_event(self.cycle.begin[p], c, state, self.limit_at(p) if state == STICK else 0.0)
         return True
 
     @cython.cfunc

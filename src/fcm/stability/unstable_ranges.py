@@ -18,7 +18,7 @@ def unstable_stretches(parts: Iterable[tuple[FloatArray, FloatArray]], span: Str
     parts: of each path its frequencies (point,), and stable (point,): 1 where the motion is, 0 where it is
     not, NaN where that is not known, so that it may be.
     """
-    borne = [ends for frequency, stable in parts for ends in _borne(frequency, stable)]
+    borne = [ends for frequency, stable in parts for ends in _stable_ranges(frequency, stable)]
     reached, found = span[0], []
     for low, high in [*sorted(borne), (span[1], span[1])]:
         if low > reached:
@@ -33,17 +33,17 @@ def stretches_of(paths: Sequence[Path], stable: Sequence[FloatArray], span: Stre
     return unstable_stretches(parts, span)
 
 
-def not_looked_at(stretches: Iterable[Stretch], frequencies: Iterable[float]) -> list[Stretch]:
+def without_frequencies(stretches: Iterable[Stretch], frequencies: Iterable[float]) -> list[Stretch]:
     """The stretches in which none of some frequencies lies.
 
-    >>> not_looked_at([(1.0, 2.0), (3.0, 3.5)], [0.5, 1.5])
+    >>> without_frequencies([(1.0, 2.0), (3.0, 3.5)], [0.5, 1.5])
     [(3.0, 3.5)]
     """
     at = list(frequencies)
     return [(low, high) for low, high in stretches if not any(low <= w <= high for w in at)]
 
 
-def _borne(frequency: FloatArray, stable: FloatArray) -> Iterator[Stretch]:
+def _stable_ranges(frequency: FloatArray, stable: FloatArray) -> Iterator[Stretch]:
     """From where to where a motion may stay, along each part of a path; a point by itself is no such part."""
     may = np.concatenate(([False], stable != 0.0, [False]))
     ends = np.flatnonzero(may[1:] != may[:-1]).tolist()

@@ -34,7 +34,7 @@ PASSIVE = Verdict(1.0, -math.inf, Bifurcation.NEIMARK_SACKER, passive=True)
 UNKNOWN = Verdict(math.nan, math.nan, Bifurcation.NEIMARK_SACKER)
 
 
-class Spectrum:
+class MultiplierSpectrum:
     """All multipliers of a solution sorted by how stability is lost through them; logarithms of their sizes.
 
     nearest: of the real multiplier above 0 that is nearest to 1, nan if there is none; odd: whether the
@@ -65,7 +65,7 @@ class Spectrum:
                     size,
                     Bifurcation.NEIMARK_SACKER if value.imag != 0.0 else Bifurcation.PERIOD_DOUBLING,
                 )
-            if size > self.options.verdict.small and value.imag != 0.0:
+            if size > self.options.verdict.small_multiplier and value.imag != 0.0:
                 self.before_flip = min(self.before_flip, math.pi - abs(math.atan2(value.imag, value.real)))
         self.other = math.log(self.other) if self.other > 0.0 else -math.inf
 
@@ -74,9 +74,9 @@ class Spectrum:
         farther = size
         if not abs(size) >= abs(self.nearest):
             farther, self.nearest = self.nearest, size
-        if farther > self.options.verdict.excess:
+        if farther > self.options.verdict.growth_tolerance:
             self.real_but_nearest = max(self.real_but_nearest, farther)
-        if size > self.options.verdict.excess:
+        if size > self.options.verdict.growth_tolerance:
             self.odd = not self.odd
             self.real = max(self.real, size)
 
@@ -87,7 +87,7 @@ class Spectrum:
         growth = self.other
         if not growth >= most:
             growth, kind = most, Bifurcation.REAL
-        stable = 1.0 if growth <= self.options.verdict.excess else 0.0
+        stable = 1.0 if growth <= self.options.verdict.growth_tolerance else 0.0
         return Verdict(stable, growth, kind, self.before_flip, False, 0, self.values)
 
 
@@ -97,15 +97,15 @@ def bifurcation_of(multipliers: Sequence[complex]) -> Bifurcation:
     >>> bifurcation_of([-1.1, 0.3 + 0.2j, 0.3 - 0.2j]).value
     'period doubling'
     """
-    return Spectrum(list(multipliers)).verdict().kind
+    return MultiplierSpectrum(list(multipliers)).verdict().kind
 
 
-def apart(verdict: Verdict, options: StabilityOptions = STABILITY) -> float:
+def meeting_angle(verdict: Verdict, options: StabilityOptions = STABILITY) -> float:
     """[rad] that multipliers which are not small have to turn at least until two of them meet."""
     angles: list[float] = []
     for value in verdict.values:
         angle = abs(math.atan2(value.imag, value.real))
-        if angle > 0.0 and math.hypot(value.real, value.imag) > options.verdict.small:
+        if angle > 0.0 and math.hypot(value.real, value.imag) > options.verdict.small_multiplier:
             angles.append(angle)
     angles.sort()
     nearest: float = math.pi - angles[len(angles) - 1] if angles else math.inf
@@ -114,8 +114,11 @@ def apart(verdict: Verdict, options: StabilityOptions = STABILITY) -> float:
     return nearest
 
 
-def even(
-    fine: Spectrum, plain: Spectrum, turning: bool = False, options: StabilityOptions = STABILITY
+def even_verdict(
+    fine: MultiplierSpectrum,
+    plain: MultiplierSpectrum,
+    turning: bool = False,
+    options: StabilityOptions = STABILITY,
 ) -> Verdict:
     """Verdict of two approximations to a spectrum whose number of real multipliers above 1 is even.
 
@@ -124,7 +127,9 @@ def even(
     """
     if fine.odd and plain.odd and not turning:
         off = abs(fine.nearest)
-        if off > max(options.verdict.real, options.verdict.shifts * abs(plain.nearest - fine.nearest)):
+        if off > max(
+            options.verdict.real_uncertainty, options.verdict.shift_factor * abs(plain.nearest - fine.nearest)
+        ):
             return UNKNOWN
     found = fine.verdict(fine.odd or turning)
     if found.stable != plain.verdict(plain.odd or turning).stable:
@@ -134,8 +139,8 @@ def even(
 
 def doubtful(
     found: Verdict,
-    fine: Spectrum,
-    plain: Spectrum,
+    fine: MultiplierSpectrum,
+    plain: MultiplierSpectrum,
     times: float,
     meetings: bool = True,
     options: StabilityOptions = STABILITY,
@@ -153,15 +158,15 @@ def doubtful(
     change = abs(one.growth - other.growth)
     if found.stable != 1.0:
         return found.growth < times * change
-    near, turned = to_flip(one, options), abs(to_flip(one, options) - to_flip(other, options))
-    flips = near < min(max(options.verdict.flip, turned), options.verdict.shifts * turned)
-    far = (fine.odd and abs(fine.nearest) > options.verdict.real) or (
-        plain.odd and abs(plain.nearest) > options.verdict.real
+    near, turned = flip_angle(one, options), abs(flip_angle(one, options) - flip_angle(other, options))
+    flips = near < min(max(options.verdict.flip_angle, turned), options.verdict.shift_factor * turned)
+    far = (fine.odd and abs(fine.nearest) > options.verdict.real_uncertainty) or (
+        plain.odd and abs(plain.nearest) > options.verdict.real_uncertainty
     )
     return (meetings and flips) or -found.growth < change or far
 
 
-def meeting(values: Sequence[complex], options: StabilityOptions = STABILITY) -> tuple[float, float]:
+def flip_distance(values: Sequence[complex], options: StabilityOptions = STABILITY) -> tuple[float, float]:
     """How far a pair is from -1, and the logarithm of its size; nan if there is none that is not small.
 
     The pair's sum over its size, plus 2: the square of the angle that is left until both meet, or, less than
@@ -170,10 +175,10 @@ def meeting(values: Sequence[complex], options: StabilityOptions = STABILITY) ->
     pairs = [
         value
         for value in values
-        if value.imag > 0.0 and abs(value) > options.verdict.small and value.real < 0.0
+        if value.imag > 0.0 and abs(value) > options.verdict.small_multiplier and value.real < 0.0
     ]
     axis = sorted(value.real for value in values if value.imag == 0.0 and value.real < 0.0)
-    if len(axis) > 1 and axis[0] * axis[1] > options.verdict.small**2:
+    if len(axis) > 1 and axis[0] * axis[1] > options.verdict.small_multiplier**2:
         size = math.sqrt(axis[0] * axis[1])
         return (axis[0] + axis[1]) / size + 2.0, math.log(size)
     if not pairs:
@@ -182,13 +187,15 @@ def meeting(values: Sequence[complex], options: StabilityOptions = STABILITY) ->
     return 2.0 * nearest.real / abs(nearest) + 2.0, math.log(abs(nearest))
 
 
-def to_flip(verdict: Verdict, options: StabilityOptions = STABILITY) -> float:
+def flip_angle(verdict: Verdict, options: StabilityOptions = STABILITY) -> float:
     """[rad] from the negative real axis to the nearest pair that is not small; 0 where one has come there."""
-    met = verdict.kind is Bifurcation.PERIOD_DOUBLING and verdict.growth > math.log(options.verdict.small)
+    met = verdict.kind is Bifurcation.PERIOD_DOUBLING and verdict.growth > math.log(
+        options.verdict.small_multiplier
+    )
     return 0.0 if met else verdict.before_flip
 
 
-def either(pushed: Verdict, resting: Verdict) -> Verdict:
+def either_slider(pushed: Verdict, resting: Verdict) -> Verdict:
     """Of a motion whose slider, just held by its limit, follows that while it is pushed and rests while not.
 
     What grows at rest grows with a little less residual friction, too. What grows only while it is pushed is

@@ -54,7 +54,7 @@ class SegmentSequence(StateSequence):
         last: cython.Py_ssize_t = segments.count - 1
         most: cython.Py_ssize_t = segments.count * self.computed
         if self.angle.shape[0] < most:
-            self.room(2 * most)
+            self.allocate(2 * most)
         self.events = 0
         for c in range(self.computed):
             self.state[c], self.remembers[c] = self._state(segments, 0, c), 0
@@ -106,7 +106,7 @@ class SegmentSequence(StateSequence):
                 self.law[c, 0] * self.law[c, 2] * self._velocity(self.normal, segments, k, c)
             )
             along = -u / limit if fabs(u) < limit else -1.0 if u > 0.0 else 1.0
-        self.occurs(angle, c, into, along)
+        self.add_event(angle, c, into, along)
 
     @cython.cfunc
     @cython.exceptval(check=False)

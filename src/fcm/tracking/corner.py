@@ -10,25 +10,25 @@ import numpy as np
 
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
-from fcm.tracking.extended_system import Condition, Kind, Tracked
+from fcm.tracking.extended_system import Condition, ExtendedSystem, Kind
 from fcm.tracking.onset_functions import kinds_of, onset
 from fcm.tracking.options import TRACKING, TrackingOptions
-from fcm.tracking.parameter_line import Varied
+from fcm.tracking.parameter_line import VariedBalance
 
 
 class Corner:
     """A corner of a tracked point: the problem with the onset's equation, and what is on its sides."""
 
-    def __init__(self, tracked: Tracked, at: Condition) -> None:
+    def __init__(self, tracked: ExtendedSystem, at: Condition) -> None:
         self.of, self.at, self.options = tracked, at, tracked.options.corner
-        self.problem = Tracked(tracked.varied, at, tracked.span, tracked.options)
+        self.problem = ExtendedSystem(tracked.varied, at, tracked.span, tracked.options)
 
     def reach(self, z: FloatArray, offset: float = 0.0) -> tuple[FloatArray, FloatArray] | None:
         """The nearest point where the function is the offset, and the curve's direction there, scaled."""
         self.problem.offset = offset
         scale = np.asarray(self.problem.scale)
         z = np.array(z)
-        for _ in range(self.options.steps):
+        for _ in range(self.options.max_iterations):
             self.problem.evaluate(z)
             matrix = np.asarray(self.problem.jacobian) * scale / scale[:-1, None]
             step = np.linalg.lstsq(matrix, -np.asarray(self.problem.residual) / scale[:-1], rcond=None)[0]
@@ -37,7 +37,7 @@ class Corner:
                 return z, np.linalg.svd(matrix)[2][-1]
         return None
 
-    def zero(self, z: FloatArray, side: int | None, offset: float = 0.0) -> FloatArray | None:
+    def special_root(self, z: FloatArray, side: int | None, offset: float = 0.0) -> FloatArray | None:
         """Where, along the corner or beside it, what is special is zero: on a side of it, or on it.
 
         By the secant along the direction of the corner's curve, from the point of it that is nearest to z.
@@ -49,16 +49,16 @@ class Corner:
         newton = Newton(self.problem)
         newton.scale[:] = scale
         length, last, worth = 0.0, 0.0, 0.0
-        for count in range(self.options.steps):
+        for count in range(self.options.max_iterations):
             newton.z[:], newton.row[:] = start + length * scale * direction, direction
-            if abs(length) > self.options.furthest or not newton.correct(1e-3):
+            if abs(length) > self.options.max_distance or not newton.correct(1e-3):
                 return None
             at = np.array(newton.z)
             before, worth = worth, self.special(at) if side is None else float(self.sides(at)[side])
             if count and (worth == before or abs(length - last) < self.options.tolerance):
                 return at
             slope = (worth - before) / (length - last) if count else 0.0
-            last, length = length, length - worth / slope if count else self.options.first
+            last, length = length, length - worth / slope if count else self.options.first_step
         return at
 
     def special(self, z: FloatArray, aside: float = 0.0) -> float:
@@ -75,7 +75,7 @@ class Corner:
 
     def sides(self, z: FloatArray) -> FloatArray:
         """What is special before and after the corner, (2,)."""
-        side = self.options.side
+        side = self.options.side_distance
         return np.array([self.special(z, -side), self.special(z, side)])
 
     def holds(self, z: FloatArray) -> bool:
@@ -90,11 +90,11 @@ class Corner:
         return slope / np.linalg.norm(slope)  # type: ignore[no-any-return]
 
 
-def nearest(
-    varied: Varied, z: FloatArray, scale: FloatArray, options: TrackingOptions = TRACKING
+def nearest_onsets(
+    varied: VariedBalance, z: FloatArray, scale: FloatArray, options: TrackingOptions = TRACKING
 ) -> list[tuple[float, Condition]]:
     """The onsets by their distance from z in a scale of its numbers, the nearest first."""
-    varied.put(float(z[-1]))
+    varied.set_parameter(float(z[-1]))
     width = varied.balance.width
     found = []
     for c, law in enumerate(varied.balance.laws):

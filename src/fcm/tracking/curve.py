@@ -8,21 +8,21 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.model.scene import FloatArray
-from fcm.tracking.extended_system import Condition, Kind, Tracked
+from fcm.tracking.extended_system import Condition, ExtendedSystem, Kind
 from fcm.tracking.nonsmooth_continuation import follow_special_point
 from fcm.tracking.options import TRACKING
 from fcm.tracking.peak_check import is_top
-from fcm.tracking.tracked_point import Ending, Spot, Way
+from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingRun
 
 BoolArray = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
-class Track:
+class SpecialPointCurve:
     """One curve: points in the order along it."""
 
     condition: Condition
-    spots: tuple[Spot, ...]
+    points: tuple[TrackedPoint, ...]
     s: FloatArray  # (point,)
     frequency: FloatArray  # (point,) [rad/s]
     amplitude: FloatArray  # (point, dof)
@@ -34,10 +34,10 @@ class Track:
         """Whether there is no more of it."""
         return all(ending.whole for ending in self.endings)
 
-    def turns(self, cusp: float = TRACKING.curves.cusp) -> list[tuple[int, str]]:
+    def turns(self, cusp: float = TRACKING.curves.cusp_tolerance) -> list[tuple[int, str]]:
         """Points at which the number turns back, and what they are; cusp as of `CurveOptions`."""
         other = "peak and trough" if self.condition.kind is Kind.PEAK else "extreme"
-        fold, turns = self.condition.kind is Kind.FOLD, [i for i, spot in enumerate(self.spots) if spot.turn]
+        fold, turns = self.condition.kind is Kind.FOLD, [i for i, spot in enumerate(self.points) if spot.turn]
         return [(i, self._turn_of_fold(i, cusp) if fold else other) for i in turns]
 
     def _turn_of_fold(self, i: int, cusp: float) -> str:
@@ -47,14 +47,14 @@ class Track:
         omega' vanishes with s', as w . R_omega does not; else it is w . R_omega that vanishes, and the
         response has an isolated point, or crosses itself. At a corner the frequency turns back, or does not.
         """
-        beside = [self.spots[j].direction[-2] for j in (i - 1, i + 1) if 0 <= j < len(self.spots)]
-        if self.spots[i].switch and len(beside) == 2:
+        beside = [self.points[j].direction[-2] for j in (i - 1, i + 1) if 0 <= j < len(self.points)]
+        if self.points[i].switch and len(beside) == 2:
             return "cusp" if beside[0] * beside[1] < 0.0 else "isola"
-        still = abs(self.spots[i].direction[-2]) < cusp * max(map(abs, beside), default=0.0)
+        still = abs(self.points[i].direction[-2]) < cusp * max(map(abs, beside), default=0.0)
         return "cusp" if still else "isola"
 
 
-def whole(way: Way, condition: Condition, spot: Spot) -> Track:
+def both_ways(way: TrackingRun, condition: Condition, spot: TrackedPoint) -> SpecialPointCurve:
     """The curve through a spot, both ways."""
     spots, ending = follow_special_point(way, condition, spot, True)
     endings = (ending, ending)
@@ -65,22 +65,24 @@ def whole(way: Way, condition: Condition, spot: Spot) -> Track:
     return recorded(way, condition, spots or [spot], endings)
 
 
-def recorded(way: Way, condition: Condition, spots: list[Spot], endings: tuple[Ending, Ending]) -> Track:
+def recorded(
+    way: TrackingRun, condition: Condition, spots: list[TrackedPoint], endings: tuple[Ending, Ending]
+) -> SpecialPointCurve:
     """A curve with what is reported of its points."""
     problem = way.tracked(condition)
-    return _joined(condition, spots, [_told(problem, spot) for spot in spots], endings)
+    return _joined(condition, spots, [_reported(problem, spot) for spot in spots], endings)
 
 
-def with_spots(way: Way, track: Track, spots: list[Spot]) -> Track:
+def with_points(way: TrackingRun, track: SpecialPointCurve, spots: list[TrackedPoint]) -> SpecialPointCurve:
     """A curve with more points, its own among them."""
     problem = way.tracked(track.condition)
     own = zip(track.amplitude, track.greatest.tolist(), strict=True)
-    known = {id(spot): told for spot, told in zip(track.spots, own, strict=True)}
-    told = [known.get(id(spot)) or _told(problem, spot) for spot in spots]
+    known = {id(spot): told for spot, told in zip(track.points, own, strict=True)}
+    told = [known.get(id(spot)) or _reported(problem, spot) for spot in spots]
     return _joined(track.condition, spots, told, track.endings)
 
 
-def _told(problem: Tracked, spot: Spot) -> tuple[FloatArray, bool]:
+def _reported(problem: ExtendedSystem, spot: TrackedPoint) -> tuple[FloatArray, bool]:
     """Of a point its amplitudes, and whether it is no trough."""
     problem.measure(spot.z)
     amplitude = problem.along(spot.z)[1]
@@ -89,11 +91,11 @@ def _told(problem: Tracked, spot: Spot) -> tuple[FloatArray, bool]:
 
 def _joined(
     condition: Condition,
-    spots: list[Spot],
+    spots: list[TrackedPoint],
     told: list[tuple[FloatArray, bool]],
     endings: tuple[Ending, Ending],
-) -> Track:
+) -> SpecialPointCurve:
     z, (amplitude, greatest) = np.array([spot.z for spot in spots]), zip(*told, strict=True)
-    return Track(
+    return SpecialPointCurve(
         condition, tuple(spots), z[:, -1], z[:, -2], np.array(amplitude), np.array(greatest), endings
     )

@@ -11,90 +11,92 @@ import numpy as np
 
 from fcm.continuation.follow import Progress
 from fcm.model.scene import FloatArray
-from fcm.tracking.curve import Track, whole
+from fcm.tracking.curve import SpecialPointCurve, both_ways
 from fcm.tracking.extended_system import Condition, Kind
-from fcm.tracking.known_curves import passed
+from fcm.tracking.known_curves import passes
 from fcm.tracking.nonsmooth_continuation import land
 from fcm.tracking.peak_check import is_top
-from fcm.tracking.starts import moved, special_points
-from fcm.tracking.tracked_point import Spot, Way
+from fcm.tracking.starts import for_scene, special_points
+from fcm.tracking.tracked_point import TrackedPoint, TrackingRun
 
 T = TypeVar("T")
 
 
-class Once(Protocol):
+class CachedSteps(Protocol):
     """Takes a costly step, or knows already what comes of it: of the first, the second, ..."""
 
     def __call__(self, step: Callable[[], T], /) -> T: ...
 
 
-def at_once(step: Callable[[], T], /) -> T:
+def uncached(step: Callable[[], T], /) -> T:
     """Takes every step."""
     return step()
 
 
 @dataclass(frozen=True)
-class Tracks:
+class TrackedCurves:
     """All curves, and what could not be followed."""
 
-    curves: tuple[Track, ...]
+    curves: tuple[SpecialPointCurve, ...]
     problems: tuple[str, ...] = ()
     lost: tuple[tuple[Condition, FloatArray], ...] = ()  # points of ordinary curves that are on none of these
     interrupted: bool = False  # so that there may be more
-    unsure: tuple[tuple[float, float], ...] = ()  # values and frequencies where branches may have been missed
+    uncertain: tuple[
+        tuple[float, float], ...
+    ] = ()  # values and frequencies where branches may have been missed
 
 
-def tracks(
-    way: Way,
+def tracked_curves(
+    way: TrackingRun,
     conditions: list[Condition],
     starts: tuple[float, ...] = (),
     progress: Progress | None = None,
-    once: Once = at_once,
-) -> Tracks:
+    once: CachedSteps = uncached,
+) -> TrackedCurves:
     """The curves of conditions, from ordinary curves at some values of s, and at more of them.
 
     An onset that comes and goes between two such values is first met by the highest peak. Interrupted, it
     returns the curves that are finished. once takes each costly step. Of the way the system, the line, the
     span and the options count: the step is the scene's, and all values of s but the ends are stations.
     """
-    values = sorted({*np.linspace(*way.span, way.options.curves.starts).tolist(), *starts})
-    way = Way(
+    values = sorted({*np.linspace(*way.span, way.options.curves.start_values).tolist(), *starts})
+    way = TrackingRun(
         way.system, way.line, way.span, tuple(values[1:-1]), way.system.scene.max_step, options=way.options
     )
-    made, stopped = _Made(way, once), False
+    made, stopped = _CurveCollection(way, once), False
     try:
         _follow_all(made, values, conditions, progress)
     except KeyboardInterrupt:
         stopped = True
     lost = () if stopped else tuple(made.lost())
-    return Tracks(tuple(made.curves), tuple(made.problems), lost, stopped, tuple(made.unsure))
+    return TrackedCurves(tuple(made.curves), tuple(made.problems), lost, stopped, tuple(made.unsure))
 
 
 def _follow_all(
-    made: _Made, values: list[float], conditions: list[Condition], progress: Progress | None
+    made: _CurveCollection, values: list[float], conditions: list[Condition], progress: Progress | None
 ) -> None:
     """From ordinary curves at some values."""
     system, line = made.way.system, made.way.line
     for number, value in enumerate(values):
         if progress is not None:
             progress(number / len(values))
-        there = moved(system, line.scene(system.scene, value))
+        there = for_scene(system, line.scene(system.scene, value))
         special = made.once(partial(special_points, there, conditions, made.way.options))
-        if special.wrong:
-            made.problems.append(f"at {value:.6g}: {special.wrong}")
-        made.unsure += [(value, omega) for omega in special.unsure]
+        if special.faults:
+            made.problems.append(f"at {value:.6g}: {special.faults}")
+        made.unsure += [(value, omega) for omega in special.uncertain]
         made.from_points([(condition, np.append(z, value)) for condition, z in special.points])
     onsets = [condition for condition in conditions if condition.kind is Kind.ONSET]
     if onsets:
         made.from_points(made.once(partial(_met_by_peaks, made.way, onsets)))
 
 
-class _Made:
+class _CurveCollection:
     """The curves so far."""
 
-    def __init__(self, way: Way, once: Once = at_once) -> None:
+    def __init__(self, way: TrackingRun, once: CachedSteps = uncached) -> None:
         self.way, self.once = way, once
-        self.curves: list[Track] = []
+        self.curves: list[SpecialPointCurve] = []
         self.problems: list[str] = []
         self.unsure: list[tuple[float, float]] = []
         self.missed: list[tuple[Condition, FloatArray]] = []  # points that were not landed on
@@ -105,25 +107,25 @@ class _Made:
             spot = land(self.way, condition, z)
             if spot is None or not self._is_top(condition, spot):
                 self.missed.append((condition, z))
-            if spot is not None and not any(passed(one, condition, spot, self.way) for one in self.curves):
-                self.curves.append(self.once(partial(whole, self.way, condition, spot)))
+            if spot is not None and not any(passes(one, condition, spot, self.way) for one in self.curves):
+                self.curves.append(self.once(partial(both_ways, self.way, condition, spot)))
 
     def lost(self) -> list[tuple[Condition, FloatArray]]:
         """Points at which no curve could begin, and that none has come to either."""
         return [
             (condition, z)
             for condition, z in self.missed
-            if not any(self._comes_to(curve, condition, z) for curve in self.curves)
+            if not any(self._passes(curve, condition, z) for curve in self.curves)
         ]
 
-    def _comes_to(self, curve: Track, condition: Condition, z: FloatArray) -> bool:
+    def _passes(self, curve: SpecialPointCurve, condition: Condition, z: FloatArray) -> bool:
         """Whether a curve has a point at the same value of the number, and nearly the same frequency."""
         low, high = self.way.span
-        there = np.abs(curve.s - z[-1]) < self.way.options.curves.same * (high - low)
-        near = np.abs(curve.frequency[there] / z[-2] - 1.0) < self.way.options.curves.frequency
+        there = np.abs(curve.s - z[-1]) < self.way.options.curves.value_tolerance * (high - low)
+        near = np.abs(curve.frequency[there] / z[-2] - 1.0) < self.way.options.curves.frequency_tolerance
         return curve.condition == condition and bool(near.any())
 
-    def _is_top(self, condition: Condition, spot: Spot) -> bool:
+    def _is_top(self, condition: Condition, spot: TrackedPoint) -> bool:
         """Whether a peak that was landed on is one: beside a peak at a corner there may be a trough."""
         if condition.kind is not Kind.PEAK:
             return True
@@ -132,17 +134,17 @@ class _Made:
         return is_top(problem, spot)
 
 
-def _met_by_peaks(way: Way, onsets: list[Condition]) -> list[tuple[Condition, FloatArray]]:
+def _met_by_peaks(way: TrackingRun, onsets: list[Condition]) -> list[tuple[Condition, FloatArray]]:
     """Points of onsets next to which the peak of the degree of freedom that moves most comes."""
-    middle = moved(way.system, way.line.scene(way.system.scene, 0.5 * sum(way.span)))
+    middle = for_scene(way.system, way.line.scene(way.system.scene, 0.5 * sum(way.span)))
     peaks = [Condition(Kind.PEAK, d) for d in range(len(middle.scene.modal.dofs))]
     points = special_points(middle, peaks, way.options).points
     problem = way.tracked(onsets[0])
-    made = _Made(way)
-    for condition, z in points[: way.options.curves.peaks]:
+    made = _CurveCollection(way)
+    for condition, z in points[: way.options.curves.max_peaks]:
         made.from_points([(condition, np.append(z, 0.5 * sum(way.span)))])
     found = []
-    for spots in (curve.spots for curve in made.curves):
+    for spots in (curve.points for curve in made.curves):
         for onset in onsets:
             value = np.array([problem.onset_at(spot.z, onset) for spot in spots])
             for i in np.flatnonzero(value[:-1] * value[1:] <= 0.0):

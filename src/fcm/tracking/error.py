@@ -15,31 +15,31 @@ import numpy as np
 from fcm.accuracy.options import AT_POINTS
 from fcm.accuracy.partner import partner_of
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
-from fcm.tracking.curve import Track
+from fcm.tracking.curve import SpecialPointCurve
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.nonsmooth_continuation import follow_special_point, land
 from fcm.tracking.options import TRACKING, TrackingOptions
 from fcm.tracking.peak_check import is_top
-from fcm.tracking.starts import moved
-from fcm.tracking.tracked_point import Ending, Spot, Way
+from fcm.tracking.starts import for_scene
+from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingRun
 
 
-class Change(NamedTuple):
+class TruncationError(NamedTuple):
     """By more harmonics: relative of a peak's amplitude, else of the frequency; of the number at a turn."""
 
     relative: float
     number: float  # 0 where the number is given; NaN both where it cannot be told
 
 
-UNTOLD = Change(np.nan, np.nan)
+UNKNOWN = TruncationError(np.nan, np.nan)
 
 
 @dataclass
-class _Found:
+class _RefinedPoint:
     """A point of the same curve with some harmonics."""
 
-    way: Way
-    spot: Spot
+    way: TrackingRun
+    spot: TrackedPoint
 
     def value(self, condition: Condition) -> float:
         """What the error is of."""
@@ -50,9 +50,9 @@ class _Found:
         return float(problem.along(self.spot.z)[1][condition.which])
 
 
-def places(track: Track) -> dict[int, str]:
+def error_points(track: SpecialPointCurve) -> dict[int, str]:
     """Points at which the error is told, with what they are."""
-    ends = [] if Ending.CLOSED in track.endings else [0, len(track.spots) - 1]
+    ends = [] if Ending.CLOSED in track.endings else [0, len(track.points) - 1]
     marks = [*((i, "end") for i in dict.fromkeys(ends)), *((i, kind) for i, kind in track.turns())]
     if track.condition.kind is Kind.PEAK and track.greatest.any():
         height = np.where(track.greatest, track.amplitude[:, track.condition.which], np.nan)
@@ -63,36 +63,36 @@ def places(track: Track) -> dict[int, str]:
     return found
 
 
-def change(way: Way, track: Track, i: int) -> Change:
+def truncation_error(way: TrackingRun, track: SpecialPointCurve, i: int) -> TruncationError:
     """At one point: to that of the partner."""
-    condition, here = track.condition, _Found(way, track.spots[i])
+    condition, here = track.condition, _RefinedPoint(way, track.points[i])
     value, number, begin = here.value(condition), float(here.spot.z[-1]), beginning(track, i, way.options)
-    start = here if begin is None else _Found(way, track.spots[begin])
+    start = here if begin is None else _RefinedPoint(way, track.points[begin])
     more = _more(here)
     if more == here.way.system.harmonics:
-        return Change(0.0, 0.0)
+        return TruncationError(0.0, 0.0)
     wider = replace(way, system=way.system.with_harmonics(more), stations=())
-    there = _landed(wider, condition, start, track.spots[i], begin is not None)
+    there = _landed(wider, condition, start, track.points[i], begin is not None)
     if there is None:
-        return UNTOLD
+        return UNKNOWN
     off = abs(there.value(condition) - value) / abs(value)
-    return Change(off, abs(float(there.spot.z[-1]) - number))
+    return TruncationError(off, abs(float(there.spot.z[-1]) - number))
 
 
-def beginning(track: Track, i: int, options: TrackingOptions = TRACKING) -> int | None:
+def beginning(track: SpecialPointCurve, i: int, options: TrackingOptions = TRACKING) -> int | None:
     """Of a turn the point from which it is sought, some before it and not beyond another turn."""
-    if not track.spots[i].turn:
+    if not track.points[i].turn:
         return None
     j = i
-    while j > max(0, i - options.error.points) and not track.spots[j - 1].turn:
+    while j > max(0, i - options.error.points_before) and not track.points[j - 1].turn:
         j -= 1
     return j
 
 
-def _more(found: _Found) -> tuple[int, ...]:
+def _more(found: _RefinedPoint) -> tuple[int, ...]:
     """The harmonics of the partner; none more where nothing slips or opens."""
     z, s = found.spot.z, float(found.spot.z[-1])
-    system = moved(found.way.system, found.way.line.scene(found.way.system.scene, s))
+    system = for_scene(found.way.system, found.way.line.scene(found.way.system.scene, s))
     further, y = FurtherHarmonics(system), z[None, :-1]
     if further.linear(y).all():
         return system.harmonics
@@ -103,28 +103,33 @@ def _more(found: _Found) -> tuple[int, ...]:
     return partner_of(system.harmonics, share, system.layout.ports, AT_POINTS)
 
 
-def _landed(wider: Way, condition: Condition, start: _Found, turn: Spot, turns: bool) -> _Found | None:
+def _landed(
+    wider: TrackingRun, condition: Condition, start: _RefinedPoint, turn: TrackedPoint, turns: bool
+) -> _RefinedPoint | None:
     """The point with more harmonics: that beside the start, or the turn that follows it."""
     beside = land(wider, condition, wider.system.extended(start.spot.z, start.way.system.harmonics))
-    if beside is None or not _same(wider, condition, beside, start):
+    if beside is None or not _same_kind(wider, condition, beside, start):
         return None
     if not turns:
-        return _Found(wider, beside)
+        return _RefinedPoint(wider, beside)
     s, rise = float(start.spot.z[-1]), float(turn.z[-1] - start.spot.z[-1])
     if rise == 0.0:
         return None
     near = replace(
         wider,
-        span=(min(s, s + wider.options.error.beyond * rise), max(s, s + wider.options.error.beyond * rise)),
+        span=(
+            min(s, s + wider.options.error.span_factor * rise),
+            max(s, s + wider.options.error.span_factor * rise),
+        ),
         peaks_only=True,
     )
     spots, _ = follow_special_point(near, condition, beside, rise > 0.0)
     if not spots or not spots[-1].turn:
         return None
-    return _Found(wider, spots[-1])
+    return _RefinedPoint(wider, spots[-1])
 
 
-def _same(wider: Way, condition: Condition, spot: Spot, start: _Found) -> bool:
+def _same_kind(wider: TrackingRun, condition: Condition, spot: TrackedPoint, start: _RefinedPoint) -> bool:
     """Whether a peak stays one, and a trough one."""
     if condition.kind is not Kind.PEAK:
         return True

@@ -22,7 +22,7 @@ from fcm.harmonic_balance.dense_jacobian import Amplitude, jacobian_of
 from fcm.model.scene import FloatArray
 from fcm.tracking.onset_functions import onset, values
 from fcm.tracking.options import TRACKING, TrackingOptions
-from fcm.tracking.parameter_line import Varied
+from fcm.tracking.parameter_line import VariedBalance
 
 
 class Kind(Enum):
@@ -58,11 +58,11 @@ class Evaluation(NamedTuple):
     growth: FloatArray  # (unknown + 2,)
 
 
-class Tracked(Problem):
+class ExtendedSystem(Problem):
     """See the module; y, s are the numbers z (unknown + 2,) of a problem, s the last."""
 
     def __init__(
-        self, varied: Varied, condition: Condition, span: float, options: TrackingOptions = TRACKING
+        self, varied: VariedBalance, condition: Condition, span: float, options: TrackingOptions = TRACKING
     ) -> None:
         self.options = options
         self.varied, self.condition, self.span = varied, condition, span
@@ -76,7 +76,7 @@ class Tracked(Problem):
     def evaluate(self, z: FloatArray) -> int:
         """Residual and derivatives; no numbers where the response crosses itself: nothing is found there."""
         z = np.asarray(z)
-        self.varied.put(float(z[-1]))
+        self.varied.set_parameter(float(z[-1]))
         y, n = np.array(z[:-1]), self.n
         here = self._evaluated(y)
         residual, jacobian = np.asarray(self.residual), np.asarray(self.jacobian)
@@ -94,7 +94,7 @@ class Tracked(Problem):
     def surface(self, z: FloatArray) -> tuple[FloatArray, FloatArray, float]:
         """Residual and derivatives by z of the balance alone, scaled, and what is special of the point."""
         z, scale = np.asarray(z), np.asarray(self.scale)
-        self.varied.put(float(z[-1]))
+        self.varied.set_parameter(float(z[-1]))
         y, n = np.array(z[:-1]), self.n
         here = self._evaluated(y)
         matrix = np.concatenate((here.jacobian, here.by_s[:, None]), axis=1) * scale / scale[:n, None]
@@ -117,7 +117,7 @@ class Tracked(Problem):
         if self.condition.kind is Kind.PEAK:
             one = Amplitude(balance, self.condition.which)
             one.at(y, self.angles)
-            growth = np.append(one.slopes, by_s.of(one)) / max(one.value, self.options.special.smallest)
+            growth = np.append(one.slopes, by_s.of(one)) / max(one.value, self.options.special.min_amplitude)
         return Evaluation(jacobian_of(balance), by_s.residual, growth)
 
     def measure(self, z: FloatArray) -> int:
@@ -127,7 +127,7 @@ class Tracked(Problem):
         as theirs, as the amplitude has a kink where others become greater.
         """
         z = np.asarray(z)
-        self.varied.put(float(z[-1]))
+        self.varied.set_parameter(float(z[-1]))
         y, balance, scale = np.array(z[:-1]), self.varied.balance, np.asarray(self.scale)
         balance.measure(y)
         scale[:-1], scale[-1] = balance.scale, self.span
@@ -146,7 +146,7 @@ class Tracked(Problem):
         Where the response has a corner, it is that of the side that z is on.
         """
         z = np.asarray(z)
-        self.varied.put(float(z[-1]))
+        self.varied.set_parameter(float(z[-1]))
         y, balance = np.array(z[:-1]), self.varied.balance
         balance.evaluate(y)
         scale = np.asarray(self.scale)[:-1]
@@ -171,7 +171,7 @@ class Tracked(Problem):
             return (y[-1] - self.condition.omega) / self.varied.balance.span, gradient
         if kind is Kind.ONSET:
             return self._onset(y)
-        return self._turning(y, here)
+        return self._fold_or_peak(y, here)
 
     def _onset(self, y: FloatArray) -> tuple[float, FloatArray]:
         c, width = self.condition.which, self.varied.balance.width
@@ -185,7 +185,7 @@ class Tracked(Problem):
         unit = float(np.linalg.norm(gradient * np.asarray(self.scale))) or 1.0
         return found.value / unit - self.offset, gradient / unit
 
-    def _turning(self, y: FloatArray, here: Evaluation) -> tuple[float, FloatArray]:
+    def _fold_or_peak(self, y: FloatArray, here: Evaluation) -> tuple[float, FloatArray]:
         """Of a fold, or a peak: growth along the tangent, which row . t = 1 makes as long as it is."""
         scale = np.asarray(self.scale)[:-1]
         tangent = self._tangent(here.jacobian)
@@ -195,20 +195,28 @@ class Tracked(Problem):
         value = float(special[:-1] @ (scale * t))
         adjoint = np.linalg.solve(tangent.matrix.T, special[:-1] * scale)[:-1] / scale[:-1]
         ahead = scale * t / np.linalg.norm(t)
-        step = self._room(y, ahead)
-        gradient = self._aside(y + step * ahead, adjoint) - self._aside(y - step * ahead, adjoint)
+        step = self._difference_length(y, ahead)
+        gradient = self._special_beside(y + step * ahead, adjoint) - self._special_beside(
+            y - step * ahead, adjoint
+        )
         gradient *= np.linalg.norm(t) / (2.0 * step)
         return value, gradient
 
-    def _room(self, y: FloatArray, ahead: FloatArray) -> float:
+    def _difference_length(self, y: FloatArray, ahead: FloatArray) -> float:
         """How far to go along the tangent so that no margin changes its sign, not even nearly."""
-        signs, step = self._margins(y), self.options.special.distance
+        signs, step = self._margins(y), self.options.special.difference_length
         for there in (self._margins(y + step * ahead), self._margins(y - step * ahead)):
             crossed = signs * there < 0.0
             if crossed.any():
                 part = np.abs(signs[crossed] / (signs[crossed] - there[crossed])).min()
                 options = self.options.special
-                step = min(step, max(options.part * part * options.distance, options.least))
+                step = min(
+                    step,
+                    max(
+                        options.corner_fraction * part * options.difference_length,
+                        options.min_difference_fraction,
+                    ),
+                )
         return step
 
     def _margins(self, y: FloatArray) -> FloatArray:
@@ -219,14 +227,14 @@ class Tracked(Problem):
             return np.array(balance.margin)
         return values(balance.laws, y, self.varied.harmonics, self.options)
 
-    def _aside(self, y: FloatArray, adjoint: FloatArray) -> FloatArray:
+    def _special_beside(self, y: FloatArray, adjoint: FloatArray) -> FloatArray:
         """What changes along the tangent, (unknown + 2,), at a place on it."""
         here = self._evaluated(y)
         return here.growth - np.append(adjoint @ here.jacobian, adjoint @ here.by_s)
 
     def onset_at(self, z: FloatArray, condition: Condition) -> float:
         """The function of an onset."""
-        self.varied.put(float(z[-1]))
+        self.varied.set_parameter(float(z[-1]))
         c, width = condition.which, self.varied.balance.width
         block = np.ascontiguousarray(z[c * width : (c + 1) * width])
         return onset(
@@ -235,7 +243,7 @@ class Tracked(Problem):
 
     def amplitude_along(self, z: FloatArray, direction: FloatArray, dof: int) -> tuple[float, float]:
         """An amplitude, and its rate along a direction (unknown + 2,), what s does to it included."""
-        self.varied.put(float(z[-1]))
+        self.varied.set_parameter(float(z[-1]))
         y, balance = np.array(z[:-1]), self.varied.balance
         balance.evaluate(y)
         one = Amplitude(balance, dof)
@@ -252,7 +260,7 @@ def _direction(matrix: FloatArray, row: FloatArray, options: TrackingOptions = T
     except np.linalg.LinAlgError:
         t = np.full(row.size, np.inf)
     size = float(np.linalg.norm(t))
-    if size < options.special.tangent * float(np.linalg.norm(row)):
+    if size < options.special.max_tangent * float(np.linalg.norm(row)):
         return t / size
     last: FloatArray = np.linalg.svd(matrix)[2][-1]
     return last if last @ row >= 0.0 else -last

@@ -9,32 +9,32 @@ import numpy as np
 
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
-from fcm.tracking.corner import Corner, nearest
+from fcm.tracking.corner import Corner, nearest_onsets
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.kinks import Circle
 from fcm.tracking.onset_functions import values
-from fcm.tracking.tracked_point import Ending, Spot, Way, kinks
+from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingRun, kinks
 
 
-class Joints:
+class JointCrossing:
     """z, t: the point that the curve has come to, and the direction there in the problem's scale, a unit
-    vector; spots: all points until now; first: the first step of the next piece."""
+    vector; points: all points until now; first: the first step of the next piece."""
 
     z: FloatArray
     t: FloatArray
-    spots: list[Spot]
+    points: list[TrackedPoint]
 
-    def __init__(self, way: Way, condition: Condition) -> None:
+    def __init__(self, way: TrackingRun, condition: Condition) -> None:
         self.way, self.condition, self.options = way, condition, way.options.pieces
         self.smooth = way.tracked(condition)
         self.low, self.high = way.system.scene.frequency_range
         self.turns = condition.kind in (Kind.FOLD, Kind.PEAK)
         self.values = sorted({*way.span, *way.stations})
-        self.kinks, self.first = kinks(way), self.options.step.first
+        self.kinks, self.first = kinks(way), self.options.step.initial_step
         self.held = np.eye(self.smooth.n + 2)[-1]
-        self._use(None)
+        self._switch_equations(None)
 
-    def _use(self, at: Condition | None) -> None:
+    def _switch_equations(self, at: Condition | None) -> None:
         """Go on with the equation of a corner, or with that of the smooth curve."""
         self.corner = None if at is None else Corner(self.smooth, at)
         self.newton = Newton(self.smooth if self.corner is None else self.corner.problem)
@@ -67,33 +67,37 @@ class Joints:
         t = direction / np.asarray(self.newton.scale)
         self.t = t / np.linalg.norm(t)
 
-    def _spot(self, z: FloatArray, t: FloatArray) -> Spot:
+    def _point(self, z: FloatArray, t: FloatArray) -> TrackedPoint:
         at = None if self.corner is None else self.corner.at
-        return Spot(z, t * np.asarray(self.newton.scale), at)
+        return TrackedPoint(z, t * np.asarray(self.newton.scale), at)
 
     def _signs(self, z: FloatArray) -> FloatArray:
         """Signs of the functions of all onsets."""
         varied = self.smooth.varied
-        varied.put(float(z[-1]))
+        varied.set_parameter(float(z[-1]))
         return np.sign(values(varied.balance.laws, z, varied.harmonics, self.way.options))
 
     def _outside(self, s: float) -> bool:
         low, high = self.way.span
         return (
-            not low - self.options.kink * self.smooth.span < s < high + self.options.kink * self.smooth.span
+            not low - self.options.kink_length * self.smooth.span
+            < s
+            < high + self.options.kink_length * self.smooth.span
         )
 
     def _corners_near(self, z: FloatArray) -> Iterator[Condition]:
         """The corners of the response that a point is near to, the nearest first."""
         if self.turns:
-            for off, at in nearest(self.smooth.varied, z, np.array(self.newton.scale), self.way.options):
-                if off > self.options.near:
+            for off, at in nearest_onsets(
+                self.smooth.varied, z, np.array(self.newton.scale), self.way.options
+            ):
+                if off > self.options.corner_distance:
                     break
                 yield at
 
     def _past_kink(self, z: FloatArray, row: FloatArray) -> FloatArray:
         """A point just beyond a kink."""
-        beyond: FloatArray = z + self.options.kink * self.smooth.span * row
+        beyond: FloatArray = z + self.options.kink_length * self.smooth.span * row
         return beyond
 
     def _pass_kink(self) -> bool | Ending:
@@ -102,55 +106,56 @@ class Joints:
         if self._solve(self._past_kink(self.z, row), row) and self._holds():
             self._accept()
             return True
-        return self._round()
+        return self._pass_on_circle()
 
-    def _way_on(self) -> bool | Ending:
+    def _continue_from_here(self) -> bool | Ending:
         """Go on from where the equations do not hold any more, or no step leads on; or how the curve ends."""
-        return self._meet() or self._round()
+        return self._reach_corner() or self._pass_on_circle()
 
-    def _meet(self) -> bool | Ending:
+    def _reach_corner(self) -> bool | Ending:
         """Go on from a corner of the response: it is tracked from there on, or crossed; or how the curve ends
         before that. False if the curve comes to none."""
         if self.corner is not None:
             return False
-        z, before, known = self.z, float(self.t[-1]), list(self.spots)
+        z, before, known = self.z, float(self.t[-1]), list(self.points)
         came = self.t * np.asarray(self.newton.scale)
         for at in self._corners_near(z):
-            self._use(at)
+            self._switch_equations(at)
             self._measure(z)
             assert self.corner is not None
             self.corner.problem.evaluate(z)
             side = int(self.corner.problem.residual[-1] > 0.0)
-            there = self.corner.zero(z, side)
+            there = self.corner.special_root(z, side)
             if there is None or not self._is_ahead(there):
                 continue
-            self._back_before(there)
-            ending = self._until(there, at)
+            self._retreat_before(there)
+            ending = self._keep_until(there, at)
             if isinstance(ending, Ending):
                 return ending
-            if ending and self._go_on(there, side, came, before):
+            if ending and self._leave_corner(there, side, came, before):
                 return True
-            self.spots[:] = known
-        self._use(None)
+            self.points[:] = known
+        self._switch_equations(None)
         self._measure(z)
         return False
 
-    def _back_before(self, corner: FloatArray) -> None:
+    def _retreat_before(self, corner: FloatArray) -> None:
         """Forget the points just beyond a corner: steps that are shorter than it is known may pass it."""
         scale = np.asarray(self.newton.scale)
         while (
-            len(self.spots) > 1 and 0.0 <= (self.spots[-1].z - corner) / scale @ self.t < self.options.reached
+            len(self.points) > 1
+            and 0.0 <= (self.points[-1].z - corner) / scale @ self.t < self.options.reached_distance
         ):
-            self.spots.pop()
+            self.points.pop()
 
-    def _until(self, corner: FloatArray, at: Condition) -> Ending | bool:
-        """As `_passed`, by the equations of the smooth curve, up to a corner."""
+    def _keep_until(self, corner: FloatArray, at: Condition) -> Ending | bool:
+        """As `_keep_values`, by the equations of the smooth curve, up to a corner."""
         if not any(self._values_between(self.z, corner)):
             return True
-        self._use(None)
+        self._switch_equations(None)
         self._measure(self.z)
-        ending = self._passed(self.options.near, corner)
-        self._use(at)
+        ending = self._keep_values(self.options.corner_distance, corner)
+        self._switch_equations(at)
         self._measure(self.z)
         return ending
 
@@ -158,16 +163,16 @@ class Joints:
         """Whether a corner lies where the curve leads."""
         off = (corner - self.z) / np.asarray(self.newton.scale)
         far = float(np.linalg.norm(off))
-        return far < self.options.near and (
-            far < self.options.reached or bool(off @ self.t > self.options.ahead * far)
+        return far < self.options.corner_distance and (
+            far < self.options.reached_distance or bool(off @ self.t > self.options.min_cosine_ahead * far)
         )
 
-    def _go_on(self, there: FloatArray, side: int, came: FloatArray, before: float) -> bool:
+    def _leave_corner(self, there: FloatArray, side: int, came: FloatArray, before: float) -> bool:
         """Go on from a corner that was come to from a side: along it, or on its other side."""
         assert self.corner is not None
-        if abs(self.corner.sides(there)[1 - side]) > self.options.continuous:
+        if abs(self.corner.sides(there)[1 - side]) > self.options.max_jump:
             return self._along(there, came, before)
-        exact = self.corner.zero(there, None)
+        exact = self.corner.special_root(there, None)
         return exact is not None and self._beyond(exact, came, before, 1 - 2 * side)
 
     def _along(self, z: FloatArray, came: FloatArray, before: float) -> bool:
@@ -179,11 +184,11 @@ class Joints:
         scale, t = np.array(self.newton.scale), found[1]
         ways = [t, -t] if t @ (came / scale) > 0.0 else [-t, t]
         for way in ways:
-            if self._solve(z + scale * self.options.leaps[1] * way, way) and self._holds():
+            if self._solve(z + scale * self.options.departure_lengths[1] * way, way) and self._holds():
                 self.newton.z[:], self.newton.tangent[:] = z, way
                 self._accept()
-                self.first = self.options.step.first
-                self.spots.append(replace(self._spot(z, way), switch=True, turn=before * way[-1] < 0.0))
+                self.first = self.options.step.initial_step
+                self.points.append(replace(self._point(z, way), switch=True, turn=before * way[-1] < 0.0))
                 return True
         return False
 
@@ -191,44 +196,44 @@ class Joints:
         """Go on with the smooth curve from a corner, to the side where its function has a sign."""
         corner = self.corner
         assert corner is not None
-        for leap in self.options.leaps:
-            self._use(corner.at)
+        for leap in self.options.departure_lengths:
+            self._switch_equations(corner.at)
             self._measure(z)
-            there = self.corner.zero(z, None, sign * leap) if self.corner is not None else None
+            there = self.corner.special_root(z, None, sign * leap) if self.corner is not None else None
             if there is None:
                 continue
-            self._use(None)
+            self._switch_equations(None)
             self._measure(there)
             row = (there - z) / np.asarray(self.newton.scale)
-            if self._solve(there, row / np.linalg.norm(row)) and self.newton.moved < self.options.there:
+            if self._solve(there, row / np.linalg.norm(row)) and self.newton.moved < self.options.max_move:
                 self._accept()
                 self.first = leap
                 turn = bool(before * self.t[-1] < 0.0)
-                self.spots += [Spot(z, came, None, turn, switch=True), self._spot(self.z, self.t)]
+                self.points += [TrackedPoint(z, came, None, turn, switch=True), self._point(self.z, self.t)]
                 return True
-        self._use(corner.at)
+        self._switch_equations(corner.at)
         self._measure(z)
         return False
 
-    def _leave(self) -> bool | Ending:
+    def _leave_along_smooth(self) -> bool | Ending:
         """The corner is no more what is tracked: go on with the smooth curve on the side that has it."""
         assert self.corner is not None
         z, before = self.z, float(self.t[-1])
         came = self.t * np.asarray(self.newton.scale)
         for side in np.argsort(np.abs(self.corner.sides(z))):
-            there = self.corner.zero(z, int(side))
+            there = self.corner.special_root(z, int(side))
             if there is not None and self._beyond(there, came, before, 2 * int(side) - 1):
                 return True
         return Ending.STALLED
 
-    def _round(self) -> bool | Ending:
+    def _pass_on_circle(self) -> bool | Ending:
         """Go on from a kink of the curve, on a circle about the point; or why it cannot be gone on.
 
         Where what a contact does changes with continuous derivatives, second ones jump, and so does the
         direction of a curve of folds or peaks. Where the derivatives jump the response has a corner.
         """
         problem, ending = self.smooth if self.corner is None else self.corner.problem, Ending.STALLED
-        for radius in self.options.radii:
+        for radius in self.options.kink_radii:
             back = self._back(radius)
             if back is None:
                 break
@@ -242,7 +247,7 @@ class Joints:
     def _back(self, radius: float) -> FloatArray | None:
         """The point on the way back at a distance, by the chord; None if that is further than it was come."""
         scale, near = np.asarray(self.newton.scale), self.z
-        for spot in reversed(self.spots):
+        for spot in reversed(self.points):
             far = float(np.linalg.norm((spot.z - self.z) / scale))
             if far > radius:
                 short = float(np.linalg.norm((near - self.z) / scale))
@@ -252,37 +257,37 @@ class Joints:
 
     def _turn_to(self, there: FloatArray, radius: float) -> bool | Ending | None:
         """Go on to a point on a circle; None if it is none of the curve."""
-        came, last = float(self.t[-1]), self.spots[-1]
+        came, last = float(self.t[-1]), self.points[-1]
         row = (there - self.z) / np.asarray(self.newton.scale)
         row /= np.linalg.norm(row)
-        if not self._solve(there, row) or self.newton.moved > self.options.off * radius:
+        if not self._solve(there, row) or self.newton.moved > self.options.radius_tolerance * radius:
             return None
-        if np.asarray(self.newton.tangent) @ row < self.options.across:
+        if np.asarray(self.newton.tangent) @ row < self.options.min_radial_cosine:
             return None
         z, t = np.array(self.newton.z), np.array(self.newton.tangent)
-        self.spots[-1] = replace(last, turn=last.turn or came * t[-1] < 0.0)
-        ending = self._passed(radius, z)
+        self.points[-1] = replace(last, turn=last.turn or came * t[-1] < 0.0)
+        ending = self._keep_values(radius, z)
         if ending is True:
-            self.spots.append(self._spot(z, t))
-            self._go_to(z, self.spots[-1].direction)
+            self.points.append(self._point(z, t))
+            self._go_to(z, self.points[-1].direction)
             self.first = radius
             return True
         return ending or None
 
-    def _passed(self, step: float, other: FloatArray) -> Ending | bool:
+    def _keep_values(self, step: float, other: FloatArray) -> Ending | bool:
         """Keep what lies on the short way to a point; how the curve ends there, if it does. Else whether that
         could be: an end that is passed must be landed on."""
-        one, known = self.z, len(self.spots)
+        one, known = self.z, len(self.points)
         for part, i, value in sorted(self._values_between(one, other)):
             ending = self._ends(i, value, other[i] - one[i])
             guess, row = one + part * (other - one), np.zeros(one.size)
             guess[i], row[i] = value, np.sign(other[i] - one[i])
             if not self._solve(guess, row) or self.newton.moved > step:
-                del self.spots[known:]
+                del self.points[known:]
                 return False
-            spot = self._spot(np.array(self.newton.z), np.array(self.newton.tangent))
+            spot = self._point(np.array(self.newton.z), np.array(self.newton.tangent))
             spot.z[i] = value
-            self.spots.append(replace(spot, station=i == -1))
+            self.points.append(replace(spot, station=i == -1))
             if ending is not None:
                 return ending
         return True

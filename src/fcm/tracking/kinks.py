@@ -15,10 +15,10 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fcm.model.scene import FloatArray
-from fcm.tracking.extended_system import Tracked
+from fcm.tracking.extended_system import ExtendedSystem
 
 
-class Change(NamedTuple):
+class SignChange(NamedTuple):
     """Where what is special changes its sign on a circle, by a jump or through zero."""
 
     angle: float  # from straight ahead
@@ -29,7 +29,7 @@ class Change(NamedTuple):
 class Circle:
     """A circle on the surface of the balance's solutions, about a point of a curve with a direction."""
 
-    def __init__(self, problem: Tracked, z: FloatArray, t: FloatArray, radius: float) -> None:
+    def __init__(self, problem: ExtendedSystem, z: FloatArray, t: FloatArray, radius: float) -> None:
         self.problem, self.z, self.radius, self.options = problem, z, radius, problem.options.kink
         self.scale = np.array(problem.scale)
         plane = np.linalg.svd(problem.surface(z)[1])[2][-2:]
@@ -37,14 +37,14 @@ class Circle:
         ahead /= np.linalg.norm(ahead)
         self.axes = np.stack((ahead @ plane, np.array([-ahead[1], ahead[0]]) @ plane))
 
-    def changes(self, back: FloatArray) -> list[Change]:
+    def changes(self, back: FloatArray) -> list[SignChange]:
         """All changes of sign but that nearest to a point on the way back, the furthest from it first.
 
         None where there is no motion on a part of the circle.
         """
         way = self.axes @ ((back - self.z) / self.scale)
         came = float(np.arctan2(way[1], way[0]))
-        closest, widest = self.options.closest, self.options.widest
+        closest, widest = self.options.min_angle, self.options.max_angle
         aside = np.append(np.geomspace(closest, widest, 6), np.arange(2.0 * widest, np.pi, 0.25))
         angles = came + np.concatenate((aside, 2.0 * np.pi - aside[::-1], [2.0 * np.pi + closest]))
         values = np.array([self.special(angle) for angle in angles])
@@ -67,7 +67,7 @@ class Circle:
     def at(self, angle: float) -> tuple[FloatArray, float]:
         """The point at an angle, 0 is straight ahead, and what is special there; NaN where there is none."""
         z = self.z + self.radius * self.scale * (np.array([np.cos(angle), np.sin(angle)]) @ self.axes)
-        for _ in range(self.options.steps):
+        for _ in range(self.options.max_iterations):
             try:
                 residual, matrix, special = self.problem.surface(z)
             except np.linalg.LinAlgError:  # the response has no one direction there
@@ -78,9 +78,13 @@ class Circle:
             z = z + self.scale * step
         return z, np.nan
 
-    def _change(self, low: float, high: float, most: float) -> Change:
+    def _change(self, low: float, high: float, most: float) -> SignChange:
         """The change of sign between two angles."""
-        angle = float(brentq(self.special, low, high, xtol=self.options.angle, rtol=self.options.angle))
-        sides = [self.at(angle + side * self.options.angle) for side in (-1.0, 1.0)]
-        jump = max(abs(special) for _, special in sides) > self.options.jump * most
-        return Change(angle, self.at(angle)[0], jump)
+        angle = float(
+            brentq(
+                self.special, low, high, xtol=self.options.angle_tolerance, rtol=self.options.angle_tolerance
+            )
+        )
+        sides = [self.at(angle + side * self.options.angle_tolerance) for side in (-1.0, 1.0)]
+        jump = max(abs(special) for _, special in sides) > self.options.jump_fraction * most
+        return SignChange(angle, self.at(angle)[0], jump)

@@ -12,21 +12,21 @@ import numpy.typing as npt
 
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
-from fcm.tracking.curve import Track
+from fcm.tracking.curve import SpecialPointCurve
 from fcm.tracking.extended_system import Condition
 from fcm.tracking.options import TRACKING, TrackingOptions
-from fcm.tracking.tracked_point import Spot, Way
+from fcm.tracking.tracked_point import TrackedPoint, TrackingRun
 
 
-def passed(curve: Track, condition: Condition, spot: Spot, way: Way) -> bool:
+def passes(curve: SpecialPointCurve, condition: Condition, spot: TrackedPoint, way: TrackingRun) -> bool:
     """Whether a curve has passed a spot."""
     if curve.condition != condition:
         return False
     problem = way.tracked(condition)
     problem.measure(spot.z)
     scale = np.array(problem.scale)
-    points = (np.array([one.z for one in curve.spots]) - spot.z) / scale
-    if np.linalg.norm(points, axis=1).min() < way.options.known.same:
+    points = (np.array([one.z for one in curve.points]) - spot.z) / scale
+    if np.linalg.norm(points, axis=1).min() < way.options.known.point_tolerance:
         return True
     return any(_crosses(curve, i, spot, way, scale) for i in _nearest_chords(points, way.options))
 
@@ -39,15 +39,17 @@ def _nearest_chords(points: FloatArray, options: TrackingOptions = TRACKING) -> 
     part = np.clip(-(points[:-1] * chord).sum(axis=1) / square, 0.0, 1.0)
     off = np.linalg.norm(points[:-1] + part[:, None] * chord, axis=1)
     order = np.argsort(off)
-    near: npt.NDArray[np.intp] = order[off[order] < options.known.chord * length[order] + options.known.same][
-        : options.known.chords
-    ]
+    near: npt.NDArray[np.intp] = order[
+        off[order] < options.known.max_chord_part * length[order] + options.known.point_tolerance
+    ][: options.known.nearest_chords]
     return near
 
 
-def _crosses(curve: Track, i: int, spot: Spot, way: Way, scale: FloatArray) -> bool:
+def _crosses(
+    curve: SpecialPointCurve, i: int, spot: TrackedPoint, way: TrackingRun, scale: FloatArray
+) -> bool:
     """Whether the curve between a point and the next crosses, at a spot, the plane there across its chord."""
-    one, other = curve.spots[i], curve.spots[i + 1]
+    one, other = curve.points[i], curve.points[i + 1]
     problem = way.tracked((other.corner if one.switch else one.corner) or curve.condition)
     chord = (other.z - one.z) / scale
     row = chord / max(float(np.linalg.norm(chord)), 1e-300)
@@ -57,4 +59,4 @@ def _crosses(curve: Track, i: int, spot: Spot, way: Way, scale: FloatArray) -> b
     newton.scale[:], newton.z[:], newton.row[:] = scale, guess, row
     if not newton.correct(1e-3):
         return False
-    return bool(np.linalg.norm((np.asarray(newton.z) - spot.z) / scale) < way.options.known.same)
+    return bool(np.linalg.norm((np.asarray(newton.z) - spot.z) / scale) < way.options.known.point_tolerance)

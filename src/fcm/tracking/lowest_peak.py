@@ -19,46 +19,59 @@ from fcm.at_rest import at_rest
 from fcm.continuation.follow import Progress
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
-from fcm.tracking.curve import Track, whole
+from fcm.tracking.curve import SpecialPointCurve, both_ways
 from fcm.tracking.extended_system import Condition, Kind
-from fcm.tracking.known_curves import passed
+from fcm.tracking.known_curves import passes
 from fcm.tracking.nonsmooth_continuation import land
 from fcm.tracking.options import SEARCH, SearchOptions
-from fcm.tracking.parameter_line import Line
-from fcm.tracking.peak_envelope import UNFINISHED, Height, Least, Piece, Target, gaps, least, pieces_of
-from fcm.tracking.starts import moved, special_points
-from fcm.tracking.tracked_point import Spot, Way
+from fcm.tracking.parameter_line import ParameterLine
+from fcm.tracking.peak_envelope import (
+    INCOMPLETE,
+    EnvelopeMinimum,
+    MonotonePiece,
+    PieceHeight,
+    Target,
+    gaps,
+    least,
+    pieces_of,
+)
+from fcm.tracking.starts import for_scene, special_points
+from fcm.tracking.tracked_point import TrackedPoint, TrackingRun
 
-NOTHING = Height(0.0, 0.0, np.zeros(0), -1)
+MIN_HEIGHT = PieceHeight(0.0, 0.0, np.zeros(0), -1)
 
 
 @dataclass(frozen=True)
-class Lowest:
+class LowestPeak:
     """The least peak, None where there is none; what was followed; whether it is known to be least."""
 
-    best: Least | None
-    curves: tuple[Track, ...]
+    best: EnvelopeMinimum | None
+    curves: tuple[SpecialPointCurve, ...]
     checked: bool
     harmonics: tuple[int, ...]
 
 
 @dataclass
-class Search:
+class LowestPeakSearch:
     """Of one scene and its targets, with the curves that are known."""
 
     system: System
-    line: Line
+    line: ParameterLine
     span: tuple[float, float]
     targets: Sequence[Target]
     options: SearchOptions = SEARCH
-    curves: list[Track] = field(default_factory=list)
-    seen: dict[float, Height] = field(default_factory=dict)  # the greatest of the responses that were traced
-    met: dict[float, list[tuple[Condition, Height]]] = field(default_factory=dict)  # and all of them
+    curves: list[SpecialPointCurve] = field(default_factory=list)
+    visited_values: dict[float, PieceHeight] = field(
+        default_factory=dict
+    )  # the greatest of the responses that were traced
+    known_points: dict[float, list[tuple[Condition, PieceHeight]]] = field(
+        default_factory=dict
+    )  # and all of them
     visited: set[float] = field(default_factory=set)  # where what was met was followed, too
 
     def __post_init__(self) -> None:
         step = self.system.scene.max_step
-        self.way = Way(
+        self.way = TrackingRun(
             self.system, self.line, self.span, (), step, peaks_only=True, options=self.options.tracking
         )
 
@@ -69,113 +82,128 @@ class Search:
             found += [Condition(Kind.END, omega=w) for w in self.system.scene.frequency_range]
         return found
 
-    def run(self, known: Lowest | None = None, progress: Progress | None = None) -> Lowest:
+    def run(self, known: LowestPeak | None = None, progress: Progress | None = None) -> LowestPeak:
         """The least peak; from what was found with fewer harmonics, or else from both ends of the range."""
         checked = False
         if known is None:
             for value in self.span:
                 self.visit(value)
         else:
-            self.lift(known)
-        for count in range(self.options.visits):
+            self.refine_curves(known)
+        for count in range(self.options.max_visits):
             if progress is not None:
                 progress(count / (count + 2.0))
             best = self.best()
             if best is None:
                 break
             before = len(self.curves)
-            fine = self.way.options.envelope.fine * (self.span[1] - self.span[0])
-            seen = [one.value for value, one in self.seen.items() if abs(value - best.s) <= fine]
+            fine = self.way.options.envelope.value_tolerance * (self.span[1] - self.span[0])
+            seen = [one.value for value, one in self.visited_values.items() if abs(value - best.s) <= fine]
             top = seen[0] if seen else self.visit(best.s)
-            checked = top <= best.value * (1.0 + self.options.higher)
-            if checked and (top >= best.value * (1.0 - self.options.higher) or len(self.curves) == before):
+            checked = top <= best.value * (1.0 + self.options.height_tolerance)
+            if checked and (
+                top >= best.value * (1.0 - self.options.height_tolerance) or len(self.curves) == before
+            ):
                 break  # else a higher one is there; or lower ones, where the followed one ends
             if seen:
                 break  # a higher one that could not be followed
         checked = checked and not self._unknown(best) and not self._lower(best)
-        return Lowest(best, tuple(self.curves), checked, self.system.harmonics)
+        return LowestPeak(best, tuple(self.curves), checked, self.system.harmonics)
 
-    def best(self) -> Least | None:
+    def best(self) -> EnvelopeMinimum | None:
         """Of what was followed, and of what is met where nothing was."""
         while True:
             best = least(self.way, self.pieces())
             new = [s for s in (*self._unknown(best), *self._lower(best)) if s not in self.visited]
-            if not new or len(self.seen) >= self.options.visits:
+            if not new or len(self.visited_values) >= self.options.max_visits:
                 return best
             for value in new:
                 self.visit(value)
 
-    def _unknown(self, best: Least | None) -> list[float]:
+    def _unknown(self, best: EnvelopeMinimum | None) -> list[float]:
         """Values about which nothing is followed, but for those where all is far above the least."""
-        return [s for s in gaps(self.way, self.pieces()) if best is None or self._near(s, best)]
+        return [s for s in gaps(self.way, self.pieces()) if best is None or self._is_near(s, best)]
 
-    def _near(self, s: float, best: Least) -> bool:
-        if s not in self.seen and s not in self.span and len(self.seen) < self.options.visits:
+    def _is_near(self, s: float, best: EnvelopeMinimum) -> bool:
+        if (
+            s not in self.visited_values
+            and s not in self.span
+            and len(self.visited_values) < self.options.max_visits
+        ):
             self.greatest_at(s)
-        return s not in self.seen or 0.0 < self.options.high * self.seen[s].value <= best.value
+        return (
+            s not in self.visited_values
+            or 0.0 < self.options.high_fraction * self.visited_values[s].value <= best.value
+        )
 
-    def _lower(self, best: Least | None) -> list[float]:
+    def _lower(self, best: EnvelopeMinimum | None) -> list[float]:
         """Values at which the response was traced and is lower than the least of what was followed."""
-        below = 0.0 if best is None else best.value * (1.0 - self.options.higher)
-        return [s for s, top in self.seen.items() if 0.0 < top.value < below]
+        below = 0.0 if best is None else best.value * (1.0 - self.options.height_tolerance)
+        return [s for s, top in self.visited_values.items() if 0.0 < top.value < below]
 
-    def pieces(self) -> list[Piece]:
+    def pieces(self) -> list[MonotonePiece]:
         """The parts of the curves that count."""
         return [piece for target in self.targets for piece in pieces_of(self.way, self.curves, target)]
 
-    def so_far(self) -> tuple[FloatArray, Least] | None:
+    def least_traced(self) -> tuple[FloatArray, EnvelopeMinimum] | None:
         """The least of the responses traced until now, and its number; None where none has a peak."""
-        peaks = {s: top for s, top in self.seen.items() if top.value > 0.0}
+        peaks = {s: top for s, top in self.visited_values.items() if top.value > 0.0}
         if not peaks:
             return None
         s = min(peaks, key=lambda value: peaks[value].value)
-        return self.line.values(s), Least(s, peaks[s].value, (peaks[s],), UNFINISHED)
+        return self.line.values(s), EnvelopeMinimum(s, peaks[s].value, (peaks[s],), INCOMPLETE)
 
     def visit(self, value: float) -> float:
         """Trace the response at a value; follow what is high and not known; the greatest of it."""
         self.visited.add(value)
         found = self.greatest_at(value)
-        top = self.seen[value].value
+        top = self.visited_values[value].value
         for condition, height in found:
-            spot = land(self.way, condition, height.z) if height.value >= self.options.high * top else None
+            spot = (
+                land(self.way, condition, height.z)
+                if height.value >= self.options.high_fraction * top
+                else None
+            )
             if spot is not None:
                 self.follow(condition, spot)
         return top
 
-    def greatest_at(self, value: float) -> list[tuple[Condition, Height]]:
+    def greatest_at(self, value: float) -> list[tuple[Condition, PieceHeight]]:
         """What may be greatest of the response at a value, with its heights."""
-        if value not in self.met:
-            here = moved(self.system, self.line.scene(self.system.scene, value))
+        if value not in self.known_points:
+            here = for_scene(self.system, self.line.scene(self.system.scene, value))
             points = special_points(here, self.conditions(), self.way.options).points
-            self.met[value] = found = [(one, self.height(one, np.append(z, value))) for one, z in points]
-            self.seen[value] = max(
-                (height for _, height in found), key=lambda one: one.value, default=NOTHING
+            self.known_points[value] = found = [
+                (one, self.height(one, np.append(z, value))) for one, z in points
+            ]
+            self.visited_values[value] = max(
+                (height for _, height in found), key=lambda one: one.value, default=MIN_HEIGHT
             )
-        return self.met[value]
+        return self.known_points[value]
 
-    def follow(self, condition: Condition, spot: Spot) -> None:
+    def follow(self, condition: Condition, spot: TrackedPoint) -> None:
         """The curve through a spot, if it is not known."""
-        if not any(passed(curve, condition, spot, self.way) for curve in self.curves):
-            self.curves.append(whole(self.way, condition, spot))
+        if not any(passes(curve, condition, spot, self.way) for curve in self.curves):
+            self.curves.append(both_ways(self.way, condition, spot))
 
-    def height(self, condition: Condition, z: FloatArray) -> Height:
+    def height(self, condition: Condition, z: FloatArray) -> PieceHeight:
         """The greatest of the targets at a place; 0 where it is none of them."""
         problem = self.way.tracked(condition)
         problem.measure(z)
         amplitude = problem.along(z)[1]
         amplitude = np.where(at_rest(amplitude), 0.0, amplitude)
         heights = [
-            Height(float(amplitude[t.dof]), 0.0, z, t.dof)
+            PieceHeight(float(amplitude[t.dof]), 0.0, z, t.dof)
             for t in self.targets
             if condition.which == t.dof or (condition.kind is Kind.END and t.ends)
         ]
-        return max(heights, key=lambda one: one.value, default=NOTHING)
+        return max(heights, key=lambda one: one.value, default=MIN_HEIGHT)
 
-    def lift(self, known: Lowest) -> None:
+    def refine_curves(self, known: LowestPeak) -> None:
         """Follow curves found with fewer harmonics from both their ends and their middle."""
         for curve in known.curves:
-            for i in sorted({0, len(curve.spots) // 2, len(curve.spots) - 1}):
-                z = self.system.extended(curve.spots[i].z, known.harmonics)
+            for i in sorted({0, len(curve.points) // 2, len(curve.points) - 1}):
+                z = self.system.extended(curve.points[i].z, known.harmonics)
                 spot = land(self.way, curve.condition, z) if curve.greatest[i] else None
                 if spot is not None:
                     self.follow(curve.condition, spot)

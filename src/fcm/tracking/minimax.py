@@ -26,31 +26,31 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.scene.draft import Number
 from fcm.tracking.extended_system import Condition, Kind
-from fcm.tracking.lowest_peak import Search
+from fcm.tracking.lowest_peak import LowestPeakSearch
 from fcm.tracking.nonsmooth_continuation import follow_special_point, land
 from fcm.tracking.options import DESCENT, DescentOptions
-from fcm.tracking.parameter_line import Line
-from fcm.tracking.peak_envelope import UNFINISHED, Height, Least, Target
-from fcm.tracking.starts import moved, special_points
-from fcm.tracking.tracked_point import Ending, Spot, Way
+from fcm.tracking.parameter_line import ParameterLine
+from fcm.tracking.peak_envelope import INCOMPLETE, EnvelopeMinimum, PieceHeight, Target
+from fcm.tracking.starts import for_scene, special_points
+from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingRun
 from fcm.tracking.trials import by_trials
 
 Member = tuple[Condition, int, FloatArray]  # what is tracked, the degree of freedom, z = (x, omega)
 
 
-class OnLine(NamedTuple):
+class LineMinimum(NamedTuple):
     """The least over the range of one number, scaled; and whether all higher peaks could be followed."""
 
     q: FloatArray
     value: float
-    followed: bool
+    all_followed: bool
 
 
 class LeftRangeError(Exception):
     """A peak is beyond the end of the range of frequencies."""
 
 
-class Valley:
+class PeakEnvelope:
     """Peaks at numbers q (number,), scaled to 0 and 1 at their bounds."""
 
     def __init__(
@@ -65,13 +65,13 @@ class Valley:
         self.low, self.width = bounds[:, 0], bounds[:, 1] - bounds[:, 0]
         self.lowest: tuple[FloatArray, float, Member] | None = None  # of all that were traced until now
 
-    def line(self, q: FloatArray, direction: FloatArray) -> Line:
+    def line(self, q: FloatArray, direction: FloatArray) -> ParameterLine:
         """From q along a direction, both scaled."""
-        return Line(self.numbers, self.low + q * self.width, direction * self.width)
+        return ParameterLine(self.numbers, self.low + q * self.width, direction * self.width)
 
-    def way(self, q: FloatArray, direction: FloatArray) -> Way:
+    def way(self, q: FloatArray, direction: FloatArray) -> TrackingRun:
         """The same, to the end of the direction."""
-        return Way(
+        return TrackingRun(
             self.system,
             self.line(q, direction),
             (0.0, 1.0),
@@ -83,7 +83,7 @@ class Valley:
     def peaks(self, q: FloatArray) -> list[Member]:
         """All that counts for the targets of the response at q, by tracing it."""
         ends = [Condition(Kind.END, omega=w) for w in self.system.scene.frequency_range]
-        here = moved(self.system, self.line(q, np.zeros(q.size)).scene(self.system.scene, 0.0))
+        here = for_scene(self.system, self.line(q, np.zeros(q.size)).scene(self.system.scene, 0.0))
         way, found = self.way(q, np.zeros(q.size)), []
         for target in self.targets:
             conditions = [Condition(Kind.PEAK, target.dof), *(ends if target.ends else [])]
@@ -100,13 +100,13 @@ class Valley:
             self.lowest = q, value, top
         return value, [member for _, member in heights]
 
-    def so_far(self) -> tuple[FloatArray, Least] | None:
+    def least_traced(self) -> tuple[FloatArray, EnvelopeMinimum] | None:
         """The least of them, and its numbers; None where none has a peak."""
         if self.lowest is None:
             return None
         q, value, (_, dof, z) = self.lowest
-        top = Height(value, 0.0, np.append(z, np.nan), dof)
-        return self.low + q * self.width, Least(np.nan, value, (top,), UNFINISHED)
+        top = PieceHeight(value, 0.0, np.append(z, np.nan), dof)
+        return self.low + q * self.width, EnvelopeMinimum(np.nan, value, (top,), INCOMPLETE)
 
     def moved(self, member: Member, q: FloatArray, to: FloatArray) -> Member | None:
         """A member at other numbers; None where it is no more.
@@ -127,7 +127,7 @@ class Valley:
         last = spots[-1] if spots else start
         if ending is Ending.RANGE:
             raise LeftRangeError
-        whole = ending is Ending.SPAN and abs(last.z[-1] - 1.0) < self.options.counts
+        whole = ending is Ending.SPAN and abs(last.z[-1] - 1.0) < self.options.height_tolerance
         return (condition, dof, last.z[:-1]) if whole else None
 
     def height(self, member: Member, q: FloatArray) -> tuple[float, FloatArray]:
@@ -136,7 +136,9 @@ class Valley:
         slopes, value = np.empty(q.size), 0.0
         for k, direction in enumerate(np.eye(q.size)):
             way = self.way(q, direction)
-            spot = land(way, condition, np.append(z, 0.0)) or Spot(np.append(z, 0.0), np.zeros(z.size + 1))
+            spot = land(way, condition, np.append(z, 0.0)) or TrackedPoint(
+                np.append(z, 0.0), np.zeros(z.size + 1)
+            )
             problem = way.tracked(spot.corner or condition)
             problem.measure(spot.z)
             problem.evaluate(spot.z)
@@ -146,7 +148,9 @@ class Valley:
         return value, slopes
 
 
-def descend(valley: Valley, near: FloatArray | None = None) -> tuple[FloatArray, Least] | None:
+def descend(
+    valley: PeakEnvelope, near: FloatArray | None = None
+) -> tuple[FloatArray, EnvelopeMinimum] | None:
     """The optimum: the numbers, and what is least there; None where nothing has a peak.
 
     With numbers near it, as fewer harmonics find them, the way leads down from there.
@@ -155,10 +159,10 @@ def descend(valley: Valley, near: FloatArray | None = None) -> tuple[FloatArray,
     if not found:
         return None
     q, value, members = min(found, key=lambda one: one[1])
-    for _ in range(valley.options.rounds):
+    for _ in range(valley.options.max_rounds):
         lines = [_along(valley, q, k) for k in range(q.size)]
-        followed, beside = all(line.followed for line in lines), min(lines, key=lambda line: line.value)
-        if not beside.value < value * (1.0 - valley.options.further):
+        followed, beside = all(line.all_followed for line in lines), min(lines, key=lambda line: line.value)
+        if not beside.value < value * (1.0 - valley.options.min_improvement):
             break
         again = downhill(valley, beside.q)
         if not again[1] < value:
@@ -167,44 +171,44 @@ def descend(valley: Valley, near: FloatArray | None = None) -> tuple[FloatArray,
     active = []
     for member in members:
         height, _ = valley.height(member, q)
-        if height >= value * (1.0 - valley.options.equal):
-            active.append(Height(height, 0.0, np.append(member[2], np.nan), member[1]))
-    edge = bool(((q < valley.options.bound) | (q > 1.0 - valley.options.bound)).any())
+        if height >= value * (1.0 - valley.options.kink_tolerance):
+            active.append(PieceHeight(height, 0.0, np.append(member[2], np.nan), member[1]))
+    edge = bool(((q < valley.options.bound_tolerance) | (q > 1.0 - valley.options.bound_tolerance)).any())
     kind = "trials" if not followed else "kink" if len(active) > 1 else "bound" if edge else "smooth"
-    return valley.low + q * valley.width, Least(np.nan, value, tuple(active), kind)
+    return valley.low + q * valley.width, EnvelopeMinimum(np.nan, value, tuple(active), kind)
 
 
-def _starts(valley: Valley, near: FloatArray | None) -> list[FloatArray]:
+def _starts(valley: PeakEnvelope, near: FloatArray | None) -> list[FloatArray]:
     """Numbers from which the way leads down: the lowest of a coarse grid where none are known."""
     if near is not None:
         return [np.clip((near - valley.low) / valley.width, 0.0, 1.0)]
-    grid = map(np.array, product(valley.options.levels, repeat=len(valley.numbers)))
+    grid = map(np.array, product(valley.options.grid, repeat=len(valley.numbers)))
     tried = [(valley.traced(q)[0], tuple(q)) for q in grid]
     return [np.array(q) for value, q in sorted(tried)[: valley.options.starts] if value < np.inf]
 
 
-def _along(valley: Valley, q: FloatArray, k: int) -> OnLine:
+def _along(valley: PeakEnvelope, q: FloatArray, k: int) -> LineMinimum:
     """The least over the range of one number, the others as they are."""
     origin, direction = np.array(q), np.eye(q.size)[k]
     origin[k] = 0.0
     line, options = valley.line(origin, direction), valley.options.search
-    search = Search(valley.system, line, (0.0, 1.0), valley.targets, options)
+    search = LowestPeakSearch(valley.system, line, (0.0, 1.0), valley.targets, options)
     found = search.run()
     best = found.best if found.checked else by_trials(search)
     if best is None:
-        return OnLine(q, np.inf, found.checked)
-    return OnLine(origin + best.s * direction, best.value, found.checked)
+        return LineMinimum(q, np.inf, found.checked)
+    return LineMinimum(origin + best.s * direction, best.value, found.checked)
 
 
-def downhill(valley: Valley, q: FloatArray) -> tuple[FloatArray, float, list[Member]]:
+def downhill(valley: PeakEnvelope, q: FloatArray) -> tuple[FloatArray, float, list[Member]]:
     """Down from q until there is nothing lower at the end of the way, nor nearer and nearer on it."""
     value, members = valley.traced(q)
-    for _ in range(valley.options.rounds):
+    for _ in range(valley.options.max_rounds):
         end = _minimax(valley, q, members, value)
-        for _ in range(valley.options.halves):
+        for _ in range(valley.options.max_halvings):
             there = valley.traced(end)
-            lower = there[0] < value * (1.0 - valley.options.counts)
-            if lower or there[0] <= value * (1.0 + valley.options.counts):
+            lower = there[0] < value * (1.0 - valley.options.height_tolerance)
+            if lower or there[0] <= value * (1.0 + valley.options.height_tolerance):
                 break
             end = 0.5 * (q + end)
         if not lower:
@@ -213,7 +217,7 @@ def downhill(valley: Valley, q: FloatArray) -> tuple[FloatArray, float, list[Mem
     return q, value, members
 
 
-def _minimax(valley: Valley, q: FloatArray, members: list[Member], unit: float) -> FloatArray:
+def _minimax(valley: PeakEnvelope, q: FloatArray, members: list[Member], unit: float) -> FloatArray:
     """Where the greatest of some members is least."""
     memory: dict[bytes, tuple[FloatArray, FloatArray]] = {}
     here: tuple[FloatArray, list[Member | None]] = (q, list(members))
@@ -226,7 +230,7 @@ def _minimax(valley: Valley, q: FloatArray, members: list[Member], unit: float) 
                 followed = [None if one is None else valley.moved(one, here[0], to) for one in here[1]]
             except LeftRangeError:
                 memory[to.tobytes()] = (
-                    np.full(len(members), valley.options.too_high),
+                    np.full(len(members), valley.options.out_of_range_height),
                     np.zeros((len(members), q.size)),
                 )
                 return memory[to.tobytes()]
@@ -248,7 +252,7 @@ def _minimax(valley: Valley, q: FloatArray, members: list[Member], unit: float) 
             "jac": lambda x: np.column_stack((-heights(x[:-1])[1], np.ones(len(members)))),
         },
         method="SLSQP",
-        options={"ftol": valley.options.smallest, "maxiter": valley.options.iterations},
+        options={"ftol": valley.options.min_change, "maxiter": valley.options.max_iterations},
     )
     chosen: FloatArray = np.clip(found.x[:-1], 0.0, 1.0)
-    return np.where(np.abs(chosen - chosen.round()) < valley.options.rounding, chosen.round(), chosen)
+    return np.where(np.abs(chosen - chosen.round()) < valley.options.value_rounding, chosen.round(), chosen)

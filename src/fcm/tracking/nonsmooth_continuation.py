@@ -2,7 +2,7 @@
 
 Each piece is followed by `fcm.continuation.follow`. It ends where its equations do not hold any more: at a
 value of the number where they have a kink, at a corner of the response, where another extreme of the cycle
-becomes the greatest. `Joints` finds the way on from there, as `corner` and `circle` say.
+becomes the greatest. `JointCrossing` finds the way on from there, as `corner` and `circle` say.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ import numpy as np
 from fcm.continuation import End, Events, FollowOptions, Mark, Path, Status, follow
 from fcm.model.scene import FloatArray
 from fcm.tracking.extended_system import Condition
-from fcm.tracking.joints import Joints
+from fcm.tracking.joints import JointCrossing
 from fcm.tracking.peak_check import is_top, overtaken
-from fcm.tracking.tracked_point import Ending, Spot, Way
+from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingRun
 
 
 def follow_special_point(
-    way: Way, condition: Condition, start: Spot, forward: bool
-) -> tuple[list[Spot], Ending]:
+    way: TrackingRun, condition: Condition, start: TrackedPoint, forward: bool
+) -> tuple[list[TrackedPoint], Ending]:
     """The curve from a spot, which is the first of the list, with s rising or falling at first."""
     return Pieces(way, condition).run(start, forward)
 
 
-def land(way: Way, condition: Condition, z: FloatArray) -> Spot | None:
+def land(way: TrackingRun, condition: Condition, z: FloatArray) -> TrackedPoint | None:
     """The spot near z = (x, omega, s) at the same s; at a corner if there is one that holds."""
     return Pieces(way, condition).land(z)
 
@@ -40,10 +40,10 @@ class _End:
     then: Callable[[], bool | Ending]
 
 
-class Pieces(Joints):
+class Pieces(JointCrossing):
     """The smooth pieces of one curve, one after the other."""
 
-    def land(self, z: FloatArray) -> Spot | None:
+    def land(self, z: FloatArray) -> TrackedPoint | None:
         """See `land`."""
         spot = self._landed(z)
         if spot is not None and overtaken(self.smooth, spot.z):
@@ -52,27 +52,31 @@ class Pieces(Joints):
                 return None
         return spot
 
-    def _landed(self, z: FloatArray) -> Spot | None:
+    def _landed(self, z: FloatArray) -> TrackedPoint | None:
         self._measure(z)
         for at in self._corners_near(z):
-            self._use(at)
+            self._switch_equations(at)
             self._measure(z)
-            if self._solve(z, self.held) and self.newton.moved < self.options.near and self._holds():
+            if (
+                self._solve(z, self.held)
+                and self.newton.moved < self.options.corner_distance
+                and self._holds()
+            ):
                 return self._held(z)
-        self._use(None)
+        self._switch_equations(None)
         self._measure(z)
-        if self._solve(z, self.held) and self.newton.moved < self.options.far:
+        if self._solve(z, self.held) and self.newton.moved < self.options.max_correction:
             return self._held(z)
         return None
 
-    def _held(self, z: FloatArray) -> Spot:
+    def _held(self, z: FloatArray) -> TrackedPoint:
         """The point found with s held, which is as it was but for rounding."""
         self.newton.z[-1] = z[-1]
-        return self._spot(np.array(self.newton.z), np.array(self.newton.tangent))
+        return self._point(np.array(self.newton.z), np.array(self.newton.tangent))
 
-    def run(self, start: Spot, forward: bool) -> tuple[list[Spot], Ending]:
+    def run(self, start: TrackedPoint, forward: bool) -> tuple[list[TrackedPoint], Ending]:
         """See `follow_special_point`."""
-        self._use(start.corner)
+        self._switch_equations(start.corner)
         self._measure(start.z)
         row, beside = self.held if forward else -self.held, np.array(start.z)
         if beside[-1] in self.kinks:
@@ -82,31 +86,34 @@ class Pieces(Joints):
         self.newton.z[-1] = beside[-1]
         self._accept()
         first, heading = self.z, self.t * np.asarray(self.newton.scale)
-        self.spots = [self._spot(self.z, self.t)]
+        self.points = [self._point(self.z, self.t)]
         if beside[-1] != start.z[-1]:
-            self.spots.insert(0, start)
-        if self._outside(self.z[-1] + self.t[-1] * self.options.step.shortest * self.smooth.span):
-            return self.spots, Ending.SPAN
-        for _ in range(self.options.pieces):
-            known = len(self.spots)
+            self.points.insert(0, start)
+        if self._outside(self.z[-1] + self.t[-1] * self.options.step.min_step * self.smooth.span):
+            return self.points, Ending.SPAN
+        for _ in range(self.options.max_pieces):
+            known = len(self.points)
             ending = self._piece()
             if self.way.peaks_only:
-                turned = [i for i in range(known, len(self.spots)) if self.spots[i].turn]
+                turned = [i for i in range(known, len(self.points)) if self.points[i].turn]
                 if turned:
-                    return self.spots[: turned[0] + 1], Ending.TURNED
+                    return self.points[: turned[0] + 1], Ending.TURNED
             at = self._closed(first, heading, known) if known > 2 else None
             if at is not None:
-                last = self.spots[at - 1].z
+                last = self.points[at - 1].z
                 same = (
                     np.linalg.norm((last - first) / np.asarray(self.newton.scale))
-                    < self.options.step.shortest
+                    < self.options.step.min_step
                 )
-                return [*self.spots[: at - bool(same)], self.spots[0]], Ending.CLOSED
-            if ending is Ending.STALLED and np.linalg.norm(self._off(self.z - first)) < self.options.short:
-                return self.spots[:1], ending  # short steps about a kink, which lead nowhere
-            if isinstance(ending, Ending) or len(self.spots) > self.options.points:
-                return self.spots, ending if isinstance(ending, Ending) else Ending.LONG
-        return self.spots, Ending.LONG
+                return [*self.points[: at - bool(same)], self.points[0]], Ending.CLOSED
+            if (
+                ending is Ending.STALLED
+                and np.linalg.norm(self._off(self.z - first)) < self.options.short_step
+            ):
+                return self.points[:1], ending  # short steps about a kink, which lead nowhere
+            if isinstance(ending, Ending) or len(self.points) > self.options.max_points:
+                return self.points, ending if isinstance(ending, Ending) else Ending.LONG
+        return self.points, Ending.LONG
 
     def _piece(self) -> bool | Ending:
         """Follow the equations in force to where they hold no more; whether a way leads on, or the end."""
@@ -119,17 +126,17 @@ class Pieces(Joints):
             ends=[end.holds for end in ends],
             last=Mark.FOLD if self.way.peaks_only else 0,
         )
-        slow, short = self.first < self.options.short, 0.999 * self.options.short
+        slow, short = self.first < self.options.short_step, 0.999 * self.options.short_step
         control = (
-            replace(self.options.step, most=self.options.few)
+            replace(self.options.step, max_steps=self.options.short_steps)
             if slow
-            else replace(self.options.step, shortest=short)
+            else replace(self.options.step, min_step=short)
         )
-        options = FollowOptions(max_step=self.way.step, step=replace(control, first=self.first))
+        options = FollowOptions(max_step=self.way.step, step=replace(control, initial_step=self.first))
         direction = self.t * np.asarray(self.newton.scale)
         path = follow(problem, self.z, (low, high), events, options, direction=direction)
         if not len(path.z):
-            return self._way_on()
+            return self._continue_from_here()
         self._keep(path)
         if path.status in (Status.COMPLETE, Status.RETURNED):
             return Ending.SPAN if self.z[-1] in self.way.span else self._pass_kink()
@@ -138,17 +145,17 @@ class Pieces(Joints):
         if path.status is Status.EVENT:
             return Ending.TURNED if path.ended_by < 0 else ends[path.ended_by].then()
         if path.status is Status.TOO_LONG and slow:
-            self.first = self.options.growth * float(np.linalg.norm(self._off(path.z[-1] - path.z[-2])))
+            self.first = self.options.max_factor * float(np.linalg.norm(self._off(path.z[-1] - path.z[-2])))
             return True
         if path.status is Status.STALLED:
-            return self._way_on() if slow else self._slowly()
+            return self._continue_from_here() if slow else self._slowly()
         return Ending.LONG
 
     def _slowly(self) -> bool | Ending:
         """Go on from where a step was too long: along a corner of the response ahead, or by short steps."""
-        ending = self._meet()
+        ending = self._reach_corner()
         if not ending:
-            self.first = 0.25 * self.options.short
+            self.first = 0.25 * self.options.short_step
         return ending or True
 
     def _ends_of_piece(self) -> list[_End]:
@@ -159,11 +166,13 @@ class Pieces(Joints):
         ]
         if self.corner is not None:
             corner = self.corner
-            return [*ends, _End(End(lambda z: 2.0 * corner.holds(z) - 1.0), self._leave)]
+            return [*ends, _End(End(lambda z: 2.0 * corner.holds(z) - 1.0), self._leave_along_smooth)]
         ends.append(_End(End(lambda z: 1.0 - 2.0 * overtaken(self.smooth, z)), self._overtaken))
         if self.turns:
             signs = self._signs(self.z)
-            same = End(lambda z: 1.0 - 2.0 * (self._signs(z) * signs < 0.0).any(), 0.25 * self.options.short)
+            same = End(
+                lambda z: 1.0 - 2.0 * (self._signs(z) * signs < 0.0).any(), 0.25 * self.options.short_step
+            )
             ends.append(_End(same, self._slowly))
         return ends
 
@@ -172,9 +181,9 @@ class Pieces(Joints):
         at = None if self.corner is None else self.corner.at
         for z, way, mark in zip(path.z[1:], path.direction[1:], path.mark[1:].tolist(), strict=True):
             station = z[-1] in self.values and bool(mark & (Mark.STATION | Mark.END))
-            self.spots.append(Spot(z, way, at, turn=bool(mark & Mark.FOLD), station=station))
+            self.points.append(TrackedPoint(z, way, at, turn=bool(mark & Mark.FOLD), station=station))
         self._go_to(path.z[-1], path.direction[-1])
-        self.first = self.options.step.first
+        self.first = self.options.step.initial_step
 
     def _off(self, way: FloatArray) -> FloatArray:
         """A way in the problem's scale."""
@@ -187,10 +196,10 @@ class Pieces(Joints):
         row[-2] = np.sign(self.t[-2]) or 1.0
         guess = np.array(self.z)
         guess[-2] = omega
-        if self._solve(guess, row) and self.newton.moved < self.options.step.first:
-            spot = self._spot(np.array(self.newton.z), np.array(self.newton.tangent))
+        if self._solve(guess, row) and self.newton.moved < self.options.step.initial_step:
+            spot = self._point(np.array(self.newton.z), np.array(self.newton.tangent))
             spot.z[-2] = omega
-            self.spots[-1] = replace(spot, turn=self.spots[-1].turn, station=self.spots[-1].station)
+            self.points[-1] = replace(spot, turn=self.points[-1].turn, station=self.points[-1].station)
         return Ending.RANGE
 
     def _overtaken(self) -> Ending:
@@ -198,7 +207,7 @@ class Pieces(Joints):
 
         There the amplitude has a kink that is a trough: it meets a peak, and takes the place of a trough.
         """
-        return Ending.MET if is_top(self.smooth, self.spots[-1]) else Ending.TROUGH
+        return Ending.MET if is_top(self.smooth, self.points[-1]) else Ending.TROUGH
 
     def _closed(self, first: FloatArray, heading: FloatArray, known: int) -> int | None:
         """The first point, of those beyond so many, that is past the one where the curve began, in the same
@@ -206,12 +215,12 @@ class Pieces(Joints):
         scale = np.asarray(self.newton.scale)
         heading = heading / scale
         heading = heading / np.linalg.norm(heading)
-        for i in range(max(known, 3), len(self.spots)):
-            one, other = ((spot.z - first) / scale for spot in self.spots[i - 1 : i + 1])
+        for i in range(max(known, 3), len(self.points)):
+            one, other = ((spot.z - first) / scale for spot in self.points[i - 1 : i + 1])
             length = np.linalg.norm(other - one)
             if min(np.linalg.norm(one), np.linalg.norm(other)) > length:
                 continue
-            way = self.spots[i].direction / scale
+            way = self.points[i].direction / scale
             if one @ heading < 0.0 <= other @ heading and way @ heading > 0.5 * np.linalg.norm(way):
                 return i
         return None

@@ -26,7 +26,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.harmonic_balance.contact_law import Law
-from fcm.harmonic_balance.planar_contact import Planar
+from fcm.harmonic_balance.planar_contact import PlanarLaw
 from fcm.model.scene import FloatArray
 from fcm.structure.layout import Layout
 from fcm.tracking.options import TRACKING, TrackingOptions
@@ -51,7 +51,7 @@ def onset(
     law: Law, x: FloatArray, kind: str, harmonics: tuple[int, ...], options: TrackingOptions = TRACKING
 ) -> Onset:
     """One of `kinds_of` a contact at its unknowns."""
-    if isinstance(law, Planar) and kind in ("slip", START):
+    if isinstance(law, PlanarLaw) and kind in ("slip", START):
         return _in_plane(law, x, kind, harmonics)
     load = _polynomial(x, law, NORMAL) * law.k_v
     load[0] += law.n_0
@@ -91,7 +91,7 @@ def values(
     """
     if not laws:
         return np.zeros(0)
-    if isinstance(laws[0], Planar):
+    if isinstance(laws[0], PlanarLaw):
         return np.concatenate([_values_in_plane(law, x, i, harmonics, options) for i, law in enumerate(laws)])
     blocks = x[: len(laws) * laws[0].width].reshape(len(laws), -1)
     numbers = np.array([(law.mu, law.k_u, law.k_v, law.n_0) for law in laws])
@@ -119,9 +119,14 @@ def _all_least(
     h, wave = np.array(harmonics), c[:, 1:]
     if h.size == 1:
         return c[:, 0].real - np.abs(wave[:, 0])
-    theta = 2.0 * np.pi * np.arange(options.onset.samples * h[-1]) / (options.onset.samples * h[-1])
+    theta = (
+        2.0
+        * np.pi
+        * np.arange(options.onset.samples_per_period * h[-1])
+        / (options.onset.samples_per_period * h[-1])
+    )
     at = theta[(wave @ np.exp(1j * np.outer(h, theta))).real.argmin(axis=1)]
-    for _ in range(options.onset.steps):
+    for _ in range(options.onset.max_iterations):
         turned = np.exp(1j * np.outer(at, h)) * wave
         bend = (h * h * turned).real.sum(axis=1)
         step = (h * turned).imag.sum(axis=1) / np.where(bend < 0.0, bend, 1.0)
@@ -138,7 +143,7 @@ def _values_in_plane(
     return np.array([open_, shut, slip, start if slip > 0.0 else 1.0])
 
 
-def _in_plane(law: Planar, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Onset:
+def _in_plane(law: PlanarLaw, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Onset:
     """Of the discs that hold a slider in a plane.
 
     Those that hold the place which all miss least do so with weights by which their directions vanish, and
@@ -182,7 +187,7 @@ def _weights(e: FloatArray) -> FloatArray:
 
 def kinds_of(law: Law) -> tuple[str, ...]:
     """Those that a contact can have."""
-    if isinstance(law, Planar):
+    if isinstance(law, PlanarLaw):
         return (*(KINDS[:2] if law.k_v > 0.0 else ()), *(("slip", START) if law.mu * law.k_u > 0.0 else ()))
     return (*(KINDS[:2] if law.k_v > 0.0 else ()), *((*KINDS[2:], *LIMITS) if law.mu * law.k_u > 0.0 else ()))
 
@@ -213,9 +218,14 @@ def _least(
     h, wave = np.array(harmonics), c[1:]
     if h.size == 1:
         return float(c[0].real - abs(wave[0])), float(np.pi - np.angle(wave[0]))
-    theta = 2.0 * np.pi * np.arange(options.onset.samples * h[-1]) / (options.onset.samples * h[-1])
+    theta = (
+        2.0
+        * np.pi
+        * np.arange(options.onset.samples_per_period * h[-1])
+        / (options.onset.samples_per_period * h[-1])
+    )
     at = float(theta[(np.exp(1j * np.outer(theta, h)) @ wave).real.argmin()])
-    for _ in range(options.onset.steps):
+    for _ in range(options.onset.max_iterations):
         turned = np.exp(1j * h * at) * wave
         bend = float((h * h * turned).real.sum())
         if bend >= 0.0:

@@ -10,183 +10,269 @@ from dataclasses import dataclass
 from fcm.continuation.options import StepOptions
 from fcm.stability.options import STABILITY, StabilityOptions
 
-PIECE_STEPS = StepOptions(first=1e-3, shortest=1e-7, most=3000, back=())
+PIECE_STEPS = StepOptions(initial_step=1e-3, min_step=1e-7, max_steps=3000, retreats=())
 
 
 @dataclass(frozen=True)
 class PieceOptions:
     """Of the smooth pieces of a tracked curve, and how they are joined. Lengths are in the problem's scale.
 
-    step: first, shortest and most of a piece. points, pieces: of a curve, at most. far: a start that is
-    corrected by more is none. few: steps in a row that may be short. short: a step below which
-    a corner of the response is looked for ahead. growth: of a step to the next after short ones, at most.
-
-    reached: distance to a corner that has been reached, or passed by a step too short to tell. near: a corner
-    further away does not end a piece. leaps: beyond a corner at which what is tracked is looked for again.
-    continuous: of what is special; less is no jump at a corner. ahead: cosine of the angle with the direction
-    of what lies ahead. there: what is found beside a corner is moved by less.
-
-    kink: of the span of the number, by which a kink is passed. radii: of circles about a kink on which the
-    curve is looked for. off: of such a radius, by which the point found there may be wrong. across: cosine of
-    the angle of the way on with its radius; other lines cross the circle anyhow.
+    Attributes
+    ----------
+    step : StepOptions
+        First, shortest and most of a piece.
+    max_points, max_pieces : int
+        Of a curve, at most.
+    max_correction : float
+        A start that is corrected by more is none.
+    short_steps : int
+        Steps in a row that may be short.
+    short_step : float
+        A step below which a corner of the response is looked for ahead.
+    max_factor : float
+        Of a step to the next after short ones, at most.
+    reached_distance : float
+        Distance to a corner that has been reached, or passed by a step too short to tell.
+    corner_distance : float
+        A corner further away does not end a piece.
+    departure_lengths : tuple of float
+        Beyond a corner at which what is tracked is looked for again.
+    max_jump : float
+        Of what is special; less is no jump at a corner.
+    min_cosine_ahead : float
+        Cosine of the angle with the direction of what lies ahead.
+    max_move : float
+        What is found beside a corner is moved by less.
+    kink_length : float
+        Of the span of the number, by which a kink is passed.
+    kink_radii : tuple of float
+        Of circles about a kink on which the curve is looked for.
+    radius_tolerance : float
+        Of such a radius, by which the point found there may be wrong.
+    min_radial_cosine : float
+        Cosine of the angle of the way on with its radius; other lines cross the circle anyhow.
     """
 
     step: StepOptions = PIECE_STEPS
-    points: int = 3000
-    pieces: int = 300
-    far: float = 0.3
-    few: int = 4
-    short: float = 1e-3
-    growth: float = 2.5
-    reached: float = 1e-5
-    near: float = 1e-2
-    leaps: tuple[float, ...] = (1e-5, 1e-4, 1e-6, 1e-3)
-    continuous: float = 1e-4
-    ahead: float = 0.5
-    there: float = 1e-6
-    kink: float = 1e-9
-    radii: tuple[float, ...] = (1e-6, 1e-5, 1e-4, 1e-3)
-    off: float = 0.1
-    across: float = 0.7
+    max_points: int = 3000
+    max_pieces: int = 300
+    max_correction: float = 0.3
+    short_steps: int = 4
+    short_step: float = 1e-3
+    max_factor: float = 2.5
+    reached_distance: float = 1e-5
+    corner_distance: float = 1e-2
+    departure_lengths: tuple[float, ...] = (1e-5, 1e-4, 1e-6, 1e-3)
+    max_jump: float = 1e-4
+    min_cosine_ahead: float = 0.5
+    max_move: float = 1e-6
+    kink_length: float = 1e-9
+    kink_radii: tuple[float, ...] = (1e-6, 1e-5, 1e-4, 1e-3)
+    radius_tolerance: float = 0.1
+    min_radial_cosine: float = 0.7
 
 
 @dataclass(frozen=True)
 class SpecialPointOptions:
     """The equations of a special point of a response.
 
-    smallest: amplitude; lower ones count as this in a division. distance: along the response, of its extent,
-    by which its Jacobian is evaluated for a difference. least: of that distance, where a corner is near.
-    part: of the way to a corner, which the distance is at most, as derivatives change there like a root.
-    tangent: times as long as the row; a longer one is nearly across it.
+    Attributes
+    ----------
+    min_amplitude : float
+        Amplitude; lower ones count as this in a division.
+    difference_length : float
+        Along the response, of its extent, by which its Jacobian is evaluated for a difference.
+    min_difference_fraction : float
+        Of that distance, where a corner is near.
+    corner_fraction : float
+        Of the way to a corner, which the distance is at most, as derivatives change there like a root.
+    max_tangent : float
+        Times as long as the row; a longer one is nearly across it.
     """
 
-    smallest: float = 1e-150
-    distance: float = 1e-5
-    least: float = 1e-9
-    part: float = 0.05
-    tangent: float = 1e3
+    min_amplitude: float = 1e-150
+    difference_length: float = 1e-5
+    min_difference_fraction: float = 1e-9
+    corner_fraction: float = 0.05
+    max_tangent: float = 1e3
 
 
 @dataclass(frozen=True)
 class CornerOptions:
     """Special points that are corners of a response. Lengths are in the problem's scale.
 
-    steps: of Newton's method, and of the secant, at most. tolerance: length of a step that ends them.
-    first: step of the secant. furthest: along a corner, that what is special of it is sought. side: distance
-    from a corner at which its two sides are evaluated.
+    Attributes
+    ----------
+    max_iterations : int
+        Of Newton's method, and of the secant, at most.
+    tolerance : float
+        Length of a step that ends them.
+    first_step : float
+        Step of the secant.
+    max_distance : float
+        Along a corner, that what is special of it is sought.
+    side_distance : float
+        Distance from a corner at which its two sides are evaluated.
     """
 
-    steps: int = 20
+    max_iterations: int = 20
     tolerance: float = 1e-13
-    first: float = 1e-6
-    furthest: float = 0.1
-    side: float = 1e-13
+    first_step: float = 1e-6
+    max_distance: float = 0.1
+    side_distance: float = 1e-13
 
 
 @dataclass(frozen=True)
 class KinkOptions:
     """The way on from a kink, on a circle about it.
 
-    closest, widest: [rad] angles from the way back, with which the way on may make a narrow one. steps: of
-    Newton's method to the surface. tolerance: length of a step that ends them. angle: [rad] to which the
-    change of a sign is found. jump: part of the greatest value on the circle; what is more on a side of a
-    change is no zero.
+    Attributes
+    ----------
+    min_angle, max_angle : float
+        [rad] angles from the way back, with which the way on may make a narrow one.
+    max_iterations : int
+        Of Newton's method to the surface.
+    tolerance : float
+        Length of a step that ends them.
+    angle_tolerance : float
+        [rad] to which the change of a sign is found.
+    jump_fraction : float
+        Part of the greatest value on the circle; what is more on a side of a change is no zero.
     """
 
-    closest: float = 1e-3
-    widest: float = 0.2
-    steps: int = 8
+    min_angle: float = 1e-3
+    max_angle: float = 0.2
+    max_iterations: int = 8
     tolerance: float = 1e-12
-    angle: float = 1e-10
-    jump: float = 1e-3
+    angle_tolerance: float = 1e-10
+    jump_fraction: float = 1e-3
 
 
 @dataclass(frozen=True)
 class OnsetOptions:
     """The extremes within a cycle of what a contact does.
 
-    samples: of a period of the highest harmonic, among which an extreme is sought. steps: of Newton's method
-    from there.
+    Attributes
+    ----------
+    samples_per_period : int
+        Of a period of the highest harmonic, among which an extreme is sought.
+    max_iterations : int
+        Of Newton's method from there.
     """
 
-    samples: int = 24
-    steps: int = 4
+    samples_per_period: int = 24
+    max_iterations: int = 4
 
 
 @dataclass(frozen=True)
 class CurveOptions:
     """All curves over a range of the number.
 
-    starts: values of the number, evenly spaced, at which ordinary curves are traced. same: part of the range,
-    by which values of the number are one. frequency: part of it, to which a point is on a curve. peaks:
-    curves of peaks along which onsets are looked for. lowest: part of the greatest amplitude of a degree of
-    freedom; lower peaks are not tracked. cusp: part of the frequency's rate next to a turn; at a turn where
-    the frequency turns back, too, it is less.
+    Attributes
+    ----------
+    start_values : int
+        Values of the number, evenly spaced, at which ordinary curves are traced.
+    value_tolerance : float
+        Part of the range, by which values of the number are one.
+    frequency_tolerance : float
+        Part of it, to which a point is on a curve.
+    max_peaks : int
+        Curves of peaks along which onsets are looked for.
+    min_height : float
+        Part of the greatest amplitude of a degree of freedom; lower peaks are not tracked.
+    cusp_tolerance : float
+        Part of the frequency's rate next to a turn; at a turn where the frequency turns back, too, it is
+        less.
     """
 
-    starts: int = 13
-    same: float = 1e-9
-    frequency: float = 1e-3
-    peaks: int = 3
-    lowest: float = 1e-3
-    cusp: float = 1e-3
+    start_values: int = 13
+    value_tolerance: float = 1e-9
+    frequency_tolerance: float = 1e-3
+    max_peaks: int = 3
+    min_height: float = 1e-3
+    cusp_tolerance: float = 1e-3
 
 
 @dataclass(frozen=True)
 class KnownCurveOptions:
     """Whether a curve passes a point that was found otherwise.
 
-    same: distance in the problem's scale; points nearer than this are one. chord: part of a chord; what is
-    further from it is not on its part of the curve, which turns by 90 degrees. chords: nearest ones that are
-    looked at.
+    Attributes
+    ----------
+    point_tolerance : float
+        Distance in the problem's scale; points nearer than this are one.
+    max_chord_part : float
+        Part of a chord; what is further from it is not on its part of the curve, which turns by 90
+        degrees.
+    nearest_chords : int
+        Nearest ones that are looked at.
     """
 
-    same: float = 1e-5
-    chord: float = 0.5
-    chords: int = 4
+    point_tolerance: float = 1e-5
+    max_chord_part: float = 0.5
+    nearest_chords: int = 4
 
 
 @dataclass(frozen=True)
 class TurnErrorOptions:
     """The error at a turn of the number.
 
-    points: before a turn, from which the turn with more harmonics is sought. beyond: times the way of the
-    number from there to the turn, up to which it is sought.
+    Attributes
+    ----------
+    points_before : int
+        Before a turn, from which the turn with more harmonics is sought.
+    span_factor : float
+        Times the way of the number from there to the turn, up to which it is sought.
     """
 
-    points: int = 3
-    beyond: float = 3.0
+    points_before: int = 3
+    span_factor: float = 3.0
 
 
 @dataclass(frozen=True)
 class EnvelopeOptions:
     """The greatest of several peaks over the number, and its least value.
 
-    brackets: of the lowest points, in which the least value is sought. fine: part of the range, to which the
-    number is known. rough: part of the highest by the chords; what is lower is not looked at. gap: part of
-    the range, in which no piece is known. equal: relative; peaks nearer than this are one at a crossing.
-    unknown: times the highest; counts where no peak is known, as differences of infinities are none.
-    overtaken: relative; extremes of a cycle nearer than this are one.
+    Attributes
+    ----------
+    brackets : int
+        Of the lowest points, in which the least value is sought.
+    value_tolerance : float
+        Part of the range, to which the number is known.
+    chord_fraction : float
+        Part of the highest by the chords; what is lower is not looked at.
+    min_gap : float
+        Part of the range, in which no piece is known.
+    height_tolerance : float
+        Relative; peaks nearer than this are one at a crossing.
+    unknown_factor : float
+        Times the highest; counts where no peak is known, as differences of infinities are none.
+    extreme_tolerance : float
+        Relative; extremes of a cycle nearer than this are one.
     """
 
     brackets: int = 4
-    fine: float = 1e-9
-    rough: float = 0.7
-    gap: float = 1e-3
-    equal: float = 1e-7
-    unknown: float = 10.0
-    overtaken: float = 1e-12
+    value_tolerance: float = 1e-9
+    chord_fraction: float = 0.7
+    min_gap: float = 1e-3
+    height_tolerance: float = 1e-7
+    unknown_factor: float = 10.0
+    extreme_tolerance: float = 1e-12
 
 
 @dataclass(frozen=True)
-class LimitOptions:
+class TrackedStabilityOptions:
     """Where stability changes along a tracked curve.
 
-    side: part of the response's extent to either side of a corner, where it may turn back. halvings: of a
-    step between points, within which the motion ceases to be stable.
+    Attributes
+    ----------
+    corner_side : float
+        Part of the response's extent to either side of a corner, where it may turn back.
+    halvings : int
+        Of a step between points, within which the motion ceases to be stable.
     """
 
-    side: float = 1e-6
+    corner_side: float = 1e-6
     halvings: int = 14
 
 
@@ -194,13 +280,19 @@ class LimitOptions:
 class TrialOptions:
     """The least peak by trials.
 
-    values: over the range, both ends among them. closer: values about the lowest of those. nearest: part of
-    the range, between two values that are tried.
+    Attributes
+    ----------
+    values : int
+        Over the range, both ends among them.
+    closer_values : int
+        Values about the lowest of those.
+    min_distance : float
+        Part of the range, between two values that are tried.
     """
 
     values: int = 5
-    closer: int = 4
-    nearest: float = 1e-4
+    closer_values: int = 4
+    min_distance: float = 1e-4
 
 
 @dataclass(frozen=True)
@@ -216,7 +308,7 @@ class TrackingOptions:
     known: KnownCurveOptions = KnownCurveOptions()
     error: TurnErrorOptions = TurnErrorOptions()
     envelope: EnvelopeOptions = EnvelopeOptions()
-    stability: LimitOptions = LimitOptions()
+    stability: TrackedStabilityOptions = TrackedStabilityOptions()
     trials: TrialOptions = TrialOptions()
     floquet: StabilityOptions = STABILITY
 
@@ -225,14 +317,21 @@ class TrackingOptions:
 class SearchOptions:
     """Over the range of one number, see `fcm.tracking.lowest_peak`.
 
-    visits: of lowest points, and of values about which nothing is followed, at most. higher: a peak that is
-    this much higher, relative, was not followed. high: of the highest, relative; peaks from there on are
-    followed from where they are met. tracking: of the curves.
+    Attributes
+    ----------
+    max_visits : int
+        Of lowest points, and of values about which nothing is followed, at most.
+    height_tolerance : float
+        A peak that is this much higher, relative, was not followed.
+    high_fraction : float
+        Of the highest, relative; peaks from there on are followed from where they are met.
+    tracking : TrackingOptions
+        Of the curves.
     """
 
-    visits: int = 12
-    higher: float = 1e-5
-    high: float = 0.9
+    max_visits: int = 12
+    height_tolerance: float = 1e-5
+    high_fraction: float = 0.9
     tracking: TrackingOptions = TrackingOptions()
 
 
@@ -240,32 +339,48 @@ class SearchOptions:
 class DescentOptions:
     """Over two or three numbers, see `fcm.tracking.minimax`.
 
-    levels: of each range, at which the first responses are traced. starts: of the lowest of them, from which
-    the way leads down. rounds: of descending and tracing anew, at most. halves: of a way at whose end other
-    peaks are higher, at most. iterations: of one descent, after which the responses are traced anew, as at
-    some kinks it goes to and fro. smallest: change of the greatest height, relative, that ends a descent.
-
-    further: less of it along a single number, relative, is worth another way down. counts: what is higher
-    than this, relative, has not been followed. too_high: relative height of a peak that has left the range of
-    frequencies, so that no step leads there. equal: peaks within this, relative, are one kink.
-
-    rounding: of a range of numbers. bound: of a range; a number nearer to its end is there.
-
-    search: along a single number.
+    Attributes
+    ----------
+    grid : tuple of float
+        Of each range, at which the first responses are traced.
+    starts : int
+        Of the lowest of them, from which the way leads down.
+    max_rounds : int
+        Of descending and tracing anew, at most.
+    max_halvings : int
+        Of a way at whose end other peaks are higher, at most.
+    max_iterations : int
+        Of one descent, after which the responses are traced anew, as at some kinks it goes to and fro.
+    min_change : float
+        Change of the greatest height, relative, that ends a descent.
+    min_improvement : float
+        Less of it along a single number, relative, is worth another way down.
+    height_tolerance : float
+        What is higher than this, relative, has not been followed.
+    out_of_range_height : float
+        Relative height of a peak that has left the range of frequencies, so that no step leads there.
+    kink_tolerance : float
+        Peaks within this, relative, are one kink.
+    value_rounding : float
+        Of a range of numbers.
+    bound_tolerance : float
+        Of a range; a number nearer to its end is there.
+    search : SearchOptions
+        Along a single number.
     """
 
-    levels: tuple[float, ...] = (0.1, 0.5, 0.9)
+    grid: tuple[float, ...] = (0.1, 0.5, 0.9)
     starts: int = 2
-    rounds: int = 6
-    halves: int = 8
-    iterations: int = 20
-    smallest: float = 1e-10
-    further: float = 1e-5
-    counts: float = 1e-6
-    too_high: float = 10.0
-    equal: float = 1e-5
-    rounding: float = 1e-12
-    bound: float = 1e-6
+    max_rounds: int = 6
+    max_halvings: int = 8
+    max_iterations: int = 20
+    min_change: float = 1e-10
+    min_improvement: float = 1e-5
+    height_tolerance: float = 1e-6
+    out_of_range_height: float = 10.0
+    kink_tolerance: float = 1e-5
+    value_rounding: float = 1e-12
+    bound_tolerance: float = 1e-6
     search: SearchOptions = SearchOptions()
 
 

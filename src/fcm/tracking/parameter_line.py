@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic_balance.dense_jacobian import Amplitude, answer
+from fcm.harmonic_balance.dense_jacobian import Amplitude, apply_compliance
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.scene.draft import LEVEL, Number
@@ -19,7 +19,7 @@ from fcm.structure.linear import linear_of
 ComplexArray = npt.NDArray[np.complex128]
 
 
-class Line(NamedTuple):
+class ParameterLine(NamedTuple):
     """Numbers of a scene and how they move together with the parameter s."""
 
     numbers: tuple[Number, ...]
@@ -45,12 +45,12 @@ class Line(NamedTuple):
         return replace(moved, draft=scene.draft.fixed(scene, every))  # of which the rates there are taken
 
 
-def along(number: Number) -> Line:
+def along(number: Number) -> ParameterLine:
     """The line on which the parameter is the number itself."""
-    return Line((number,), np.zeros(1), np.ones(1))
+    return ParameterLine((number,), np.zeros(1), np.ones(1))
 
 
-class ByNumber(NamedTuple):
+class ParameterRates(NamedTuple):
     """Rates by s: of residual and contacts' forces (unknown,); by a structure of X (harmonic, dof)."""
 
     residual: FloatArray
@@ -64,20 +64,20 @@ class ByNumber(NamedTuple):
         return float((one.weights @ self.shown[:, one.dof]).real)
 
 
-def _excitation(system: System, line: Line) -> list[tuple[ComplexArray, ComplexArray]]:
+def _excitation(system: System, line: ParameterLine) -> list[tuple[ComplexArray, ComplexArray]]:
     """Of the forces on the modes, and of those that grow with omega^2: at s = 0, and their rates by s."""
     origin, one = (linear_of(line.scene(system.scene, s)) for s in (0.0, 1.0))
     return [(origin.force, one.force - origin.force), (origin.square, one.square - origin.square)]
 
 
-class Varied:
-    """The balance of a system (of one curve) that `put` moves along a line, with the rates by s.
+class VariedBalance:
+    """The balance of a system (of one curve) that `set_parameter` moves along a line, with the rates by s.
 
     A number of a contact is changed in the balance as it is, and so are the forces that a level multiplies;
     another number of the structure makes another balance.
     """
 
-    def __init__(self, system: System, line: Line) -> None:
+    def __init__(self, system: System, line: ParameterLine) -> None:
         self.base, self.line, self.s = system, line, np.nan
         tables = {address[0] for number in line.numbers for address in number.addresses}
         fields = {address[-1] for number in line.numbers for address in number.addresses}
@@ -88,7 +88,7 @@ class Varied:
         excited = tables <= {"force", "base"} and fields <= {"amplitude", "acceleration"}
         self._excitation = _excitation(system, line) if excited else None
         self._system: System | None = system
-        self.balance = system.balance()
+        self.balance = system.new_balance()
         self.contacts, self.harmonics = len(system.scene.contacts), system.harmonics
         self._rates: list[Rates] = []
         self._contact_rates: FloatArray | None = None
@@ -103,7 +103,7 @@ class Varied:
                 object.__setattr__(self._system, "linear", linear_of(self._system.scene))
         return self._system
 
-    def put(self, s: float) -> None:
+    def set_parameter(self, s: float) -> None:
         """Move the numbers."""
         if s == self.s:
             return
@@ -114,7 +114,7 @@ class Varied:
             self.balance.largest[:] = 0.0  # units are of the motion there, as of a balance of its own
             return
         if self.structure:
-            self.balance = self.system.balance()
+            self.balance = self.system.new_balance()
         for law, contact in zip(self.balance.laws, self.system.scene.contacts, strict=True):
             law.mu, law.k_u, law.k_v, law.n_0 = contact.mu, contact.k_u, contact.k_v, contact.n_0
         if self.structure or not self._constant:
@@ -122,18 +122,18 @@ class Varied:
         if not self._constant:
             self._contact_rates = None
 
-    def by_s(self, z: FloatArray) -> ByNumber:
+    def by_s(self, z: FloatArray) -> ParameterRates:
         """Rates by s at fixed z, where the balance was evaluated last."""
         force = self._forces_by_s(z)
         if not self.structure:
-            return ByNumber(answer(self.balance, force), force, None)
+            return ParameterRates(apply_compliance(self.balance, force), force, None)
         residual = np.zeros(self.balance.unknowns)
         shown = np.zeros((len(self.harmonics), self.balance.outputs), dtype=np.complex128)
         for rate, weight in zip(self.rates, self.line.direction, strict=True):
             if weight:
                 of_residual, of_shown = rate.here(self.balance, z)
                 residual, shown = residual + weight * of_residual, shown + weight * of_shown
-        return ByNumber(residual, force, shown)
+        return ParameterRates(residual, force, shown)
 
     def _forces_by_s(self, z: FloatArray) -> FloatArray:
         """Rates of the contacts' forces, (unknown,); of a preload alone they are those of a mean load."""

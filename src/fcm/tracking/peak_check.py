@@ -7,11 +7,11 @@ import numpy as np
 from fcm.harmonic_balance.dense_jacobian import Amplitude
 from fcm.model.scene import FloatArray
 from fcm.tracking.corner import Corner
-from fcm.tracking.extended_system import Tracked
-from fcm.tracking.tracked_point import Spot
+from fcm.tracking.extended_system import ExtendedSystem
+from fcm.tracking.tracked_point import TrackedPoint
 
 
-def is_top(problem: Tracked, spot: Spot) -> bool:
+def is_top(problem: ExtendedSystem, spot: TrackedPoint) -> bool:
     """Whether a tracked peak that was measured is one, and not a trough: growth falls along the response."""
     if spot.corner is None or spot.switch:
         problem.evaluate(spot.z)  # no numbers where the response crosses itself, and a peak meets a trough
@@ -24,15 +24,15 @@ def is_top(problem: Tracked, spot: Spot) -> bool:
     return bool(before > after)
 
 
-def overtaken(problem: Tracked, z: FloatArray) -> bool:
+def overtaken(problem: ExtendedSystem, z: FloatArray) -> bool:
     """Whether other extremes than those of the place that was measured last are the greatest of a cycle."""
     if problem.angles is None:
         return False
-    problem.varied.put(float(z[-1]))
+    problem.varied.set_parameter(float(z[-1]))
     y, balance = np.array(z[:-1]), problem.varied.balance
     balance.evaluate(y)
     one = Amplitude(balance, problem.condition.which)
     one.at(y)
     greatest = one.value
     one.at(y, problem.angles)
-    return not one.value >= greatest * (1.0 - problem.options.envelope.overtaken)
+    return not one.value >= greatest * (1.0 - problem.options.envelope.extreme_tolerance)

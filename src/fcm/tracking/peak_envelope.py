@@ -16,11 +16,11 @@ from scipy.optimize import brentq, minimize_scalar
 
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
-from fcm.tracking.curve import Track
-from fcm.tracking.extended_system import Condition, Kind, Tracked
-from fcm.tracking.tracked_point import Way
+from fcm.tracking.curve import SpecialPointCurve
+from fcm.tracking.extended_system import Condition, ExtendedSystem, Kind
+from fcm.tracking.tracked_point import TrackingRun
 
-UNFINISHED = "unfinished"  # what the least so far is of, where it was still sought
+INCOMPLETE = "unfinished"  # what the least so far is of, where it was still sought
 
 
 class Target(NamedTuple):
@@ -30,7 +30,7 @@ class Target(NamedTuple):
     ends: bool = False
 
 
-class Height(NamedTuple):
+class PieceHeight(NamedTuple):
     """A piece at a value of the number."""
 
     value: float
@@ -40,25 +40,25 @@ class Height(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Least:
+class EnvelopeMinimum:
     """The optimum on a line: the value of s, the greatest amplitude there, and which pieces have it."""
 
     s: float
     value: float
-    active: tuple[Height, ...]
+    active: tuple[PieceHeight, ...]
     kind: str  # "smooth", "kink" of equal peaks, "corner", "end" of a higher, "bound", "trials", "unfinished"
     between: tuple[float, float] | None = None  # values of s next to it, if it was found by trials
 
 
-class Piece:
+class MonotonePiece:
     """A part of a tracked curve along which s is monotone; its height is that of a degree of freedom."""
 
-    def __init__(self, way: Way, track: Track, places: Sequence[int], dof: int) -> None:
+    def __init__(self, way: TrackingRun, track: SpecialPointCurve, places: Sequence[int], dof: int) -> None:
         order = list(places) if track.s[places[0]] <= track.s[places[-1]] else list(places)[::-1]
         self.way, self.condition, self.dof = way, track.condition, dof
-        self.spots = [track.spots[i] for i in order]
+        self.spots = [track.points[i] for i in order]
         self.s, self.height = track.s[order], track.amplitude[order, dof]
-        self._problems: dict[Condition | None, Tracked] = {}
+        self._problems: dict[Condition | None, ExtendedSystem] = {}
 
     def covers(self, s: float) -> bool:
         """Whether it is a function there."""
@@ -68,7 +68,7 @@ class Piece:
         """The height between two points, by the chord."""
         return float(np.interp(s, self.s, self.height))
 
-    def at(self, s: float) -> Height:
+    def at(self, s: float) -> PieceHeight:
         """Exactly, or by the chord where Newton's method does not come to it."""
         i = int(np.clip(np.searchsorted(self.s, s) - 1, 0, len(self.s) - 2))
         one, other = self.spots[i], self.spots[i + 1]
@@ -83,39 +83,39 @@ class Piece:
         newton.row[:] = np.eye(guess.size)[-1]
         if not newton.correct(1e-3):
             slope = (self.height[i + 1] - self.height[i]) / max(self.s[i + 1] - self.s[i], 1e-300)
-            return Height(
+            return PieceHeight(
                 float(self.height[i] + part * (self.height[i + 1] - self.height[i])), slope, guess, self.dof
             )
         return self._height(problem, newton)
 
-    def _problem(self, corner: Condition | None) -> Tracked:
+    def _problem(self, corner: Condition | None) -> ExtendedSystem:
         if corner not in self._problems:
             self._problems[corner] = self.way.tracked(corner or self.condition)
         return self._problems[corner]
 
-    def _height(self, problem: Tracked, newton: Newton) -> Height:
+    def _height(self, problem: ExtendedSystem, newton: Newton) -> PieceHeight:
         """The amplitude, and its rate by s along the curve."""
         z, t = np.array(newton.z), np.asarray(newton.tangent) * np.asarray(newton.scale)
         value, slope = problem.amplitude_along(z, t / t[-1], self.dof)
-        return Height(value, slope, z, self.dof)
+        return PieceHeight(value, slope, z, self.dof)
 
 
-def pieces_of(way: Way, tracks: Sequence[Track], target: Target) -> list[Piece]:
+def pieces_of(way: TrackingRun, tracks: Sequence[SpecialPointCurve], target: Target) -> list[MonotonePiece]:
     """The monotone pieces of the curves that count for a target, of peaks where they are greatest."""
     found = []
     for track in tracks:
         kind, which = track.condition.kind, track.condition.which
         if not (kind is Kind.PEAK and which == target.dof) and not (kind is Kind.END and target.ends):
             continue
-        found += [Piece(way, track, places, target.dof) for places in _monotone(track)]
+        found += [MonotonePiece(way, track, places, target.dof) for places in _monotone(track)]
     return found
 
 
-def _monotone(track: Track) -> list[list[int]]:
+def _monotone(track: SpecialPointCurve) -> list[list[int]]:
     """Indices of points of which s rises or falls, and that are greatest."""
     parts: list[list[int]] = [[]]
     for i in range(len(track.s)):
-        if not track.greatest[i] and not track.spots[i].turn:
+        if not track.greatest[i] and not track.points[i].turn:
             parts.append([])
             continue
         last = parts[-1]
@@ -127,7 +127,7 @@ def _monotone(track: Track) -> list[list[int]]:
     return [part for part in parts if len(part) > 1]
 
 
-def least(way: Way, pieces: Sequence[Piece]) -> Least | None:
+def least(way: TrackingRun, pieces: Sequence[MonotonePiece]) -> EnvelopeMinimum | None:
     """The optimum; None where there is no piece."""
     if not pieces:
         return None
@@ -142,10 +142,10 @@ def least(way: Way, pieces: Sequence[Piece]) -> Least | None:
     return min(found, key=lambda one: one.value)
 
 
-def gaps(way: Way, pieces: Sequence[Piece]) -> list[float]:
+def gaps(way: TrackingRun, pieces: Sequence[MonotonePiece]) -> list[float]:
     """Values of s about which no piece says anything: the ends of the span, or the middle of a gap."""
     low, high = way.span
-    least, found, last = way.options.envelope.gap * (high - low), [], low
+    least, found, last = way.options.envelope.min_gap * (high - low), [], low
     if not pieces:
         return [low, high]
     for piece in sorted(pieces, key=lambda piece: float(piece.s[0])):
@@ -155,7 +155,7 @@ def gaps(way: Way, pieces: Sequence[Piece]) -> list[float]:
     return [*found, high] if high - last > least else found
 
 
-def _around(pieces: Sequence[Piece], grid: FloatArray, i: int) -> tuple[float, float, float]:
+def _around(pieces: Sequence[MonotonePiece], grid: FloatArray, i: int) -> tuple[float, float, float]:
     """A value of s between its neighbours, among which those of the highest piece itself."""
     s = float(grid[i])
     top = max((p for p in pieces if p.covers(s)), key=lambda p: p.roughly(s))
@@ -166,20 +166,24 @@ def _around(pieces: Sequence[Piece], grid: FloatArray, i: int) -> tuple[float, f
     return low, s, high
 
 
-def _refined(pieces: Sequence[Piece], way: Way, low: float, middle: float, high: float) -> Least:
+def _refined(
+    pieces: Sequence[MonotonePiece], way: TrackingRun, low: float, middle: float, high: float
+) -> EnvelopeMinimum:
     """The least value between two values of s."""
     span, options = way.span[1] - way.span[0], way.options.envelope
 
-    def highest(s: float) -> tuple[Height, Piece]:
+    def highest(s: float) -> tuple[PieceHeight, MonotonePiece]:
         rough = {piece: piece.roughly(s) for piece in pieces if piece.covers(s)}
         if not rough:  # nothing is known there
-            return Height(np.inf, 0.0, np.zeros(0), -1), pieces[0]
+            return PieceHeight(np.inf, 0.0, np.zeros(0), -1), pieces[0]
         top = max(rough.values())
-        heights = [(piece.at(s), piece) for piece, height in rough.items() if height >= options.rough * top]
+        heights = [
+            (piece.at(s), piece) for piece, height in rough.items() if height >= options.chord_fraction * top
+        ]
         return max(heights, key=lambda pair: pair[0].value)
 
     if high > low:
-        most = options.unknown * max(float(piece.height.max()) for piece in pieces)
+        most = options.unknown_factor * max(float(piece.height.max()) for piece in pieces)
         bounded = minimize_scalar(
             lambda s: min(highest(s)[0].value, most),
             bounds=(low, high),
@@ -201,16 +205,20 @@ def _refined(pieces: Sequence[Piece], way: Way, low: float, middle: float, high:
     else:
         s = left if before.value <= after.value else right
     top = highest(s)[0]
-    active = [h for p in pieces if p.covers(s) and (h := p.at(s)).value >= top.value * (1.0 - options.equal)]
+    active = [
+        h
+        for p in pieces
+        if p.covers(s) and (h := p.at(s)).value >= top.value * (1.0 - options.height_tolerance)
+    ]
     kind = "kink" if len(active) > 1 else kind
     if kind == "corner" and any(
-        _ends_higher(piece, s, top.value * (1.0 + options.equal), width) for piece in pieces
+        _ends_higher(piece, s, top.value * (1.0 + options.height_tolerance), width) for piece in pieces
     ):
         kind = "end"
-    return Least(s, top.value, tuple(active), kind)
+    return EnvelopeMinimum(s, top.value, tuple(active), kind)
 
 
-def _ends_higher(piece: Piece, s: float, value: float, width: float) -> bool:
+def _ends_higher(piece: MonotonePiece, s: float, value: float, width: float) -> bool:
     """Whether a piece that is not there ends higher than a value close by."""
     ends = ((piece.s[0], piece.height[0]), (piece.s[-1], piece.height[-1]))
     near = any(abs(end - s) < width and height > value for end, height in ends)
@@ -218,14 +226,14 @@ def _ends_higher(piece: Piece, s: float, value: float, width: float) -> bool:
 
 
 def _turned(
-    highest: Callable[[float], tuple[Height, Piece]],
-    pieces: tuple[Piece, Piece],
+    highest: Callable[[float], tuple[PieceHeight, MonotonePiece]],
+    pieces: tuple[MonotonePiece, MonotonePiece],
     between: tuple[float, float],
-    way: Way,
+    way: TrackingRun,
 ) -> tuple[str, float]:
     """Where the greatest turns between two values of s: where pieces cross, or one has its least value."""
     (one, other), span = pieces, way.span[1] - way.span[0]
-    fine = way.options.envelope.fine * span
+    fine = way.options.envelope.value_tolerance * span
     if one is not other:
         crossing = _root(lambda s: one.at(s).value - other.at(s).value, *between, fine)
         if one.covers(crossing) and other.covers(crossing):

@@ -11,38 +11,38 @@ from fcm.harmonic_balance.dense_jacobian import jacobian_of
 from fcm.model.scene import FloatArray
 from fcm.stability.floquet import multipliers_of
 from fcm.stability.multipliers import Multipliers
-from fcm.tracking.curve import Track, with_spots
-from fcm.tracking.extended_system import Kind, Tracked
-from fcm.tracking.tracked_point import Spot, Way
+from fcm.tracking.curve import SpecialPointCurve, with_points
+from fcm.tracking.extended_system import ExtendedSystem, Kind
+from fcm.tracking.tracked_point import TrackedPoint, TrackingRun
 
-Seen = tuple[Spot, float]  # a point, and what is said of it
+Seen = tuple[TrackedPoint, float]  # a point, and what is said of it
 
 
-def stability_along(way: Way, track: Track) -> tuple[Track, FloatArray]:
+def stability_along(way: TrackingRun, track: SpecialPointCurve) -> tuple[SpecialPointCurve, FloatArray]:
     """(point,): 1 where small disturbances die out, 0 where one grows, NaN where it cannot be told.
 
     As along a response: a fold counts to its stable side, and so does a corner at which it turns back. The
     curve is that with two more points wherever this changes, one on either side.
     """
-    return _Along(way, track).run()
+    return _StabilityAlongCurve(way, track).run()
 
 
-class _Along:
+class _StabilityAlongCurve:
     """The points of one curve."""
 
-    def __init__(self, way: Way, track: Track) -> None:
+    def __init__(self, way: TrackingRun, track: SpecialPointCurve) -> None:
         self.way, self.track, self.problem = way, track, way.tracked(track.condition)
         self.highest = way.system.scene.frequency_range[1]
         self.known: Multipliers | None = None
 
-    def run(self) -> tuple[Track, FloatArray]:
-        seen = [(spot, self._at(spot)) for spot in self.track.spots]
+    def run(self) -> tuple[SpecialPointCurve, FloatArray]:
+        seen = [(spot, self._at(spot)) for spot in self.track.points]
         found = seen[:1]
         for one, other in pairwise(seen):
             found += [*self._limit(one, other), other]
         track, spots = self.track, [spot for spot, _ in found]
         if len(found) > len(seen):
-            track = with_spots(self.way, track, spots)
+            track = with_points(self.way, track, spots)
         return track, np.array([stable for _, stable in found])
 
     def _limit(self, one: Seen, other: Seen) -> list[Seen]:
@@ -58,7 +58,7 @@ class _Along:
             ends[0 if _same(stable, before) else 1] = middle, stable
         return [end for end, old in zip(ends, (one, other), strict=True) if end is not old]
 
-    def _middle(self, one: Spot, other: Spot) -> Spot | None:
+    def _middle(self, one: TrackedPoint, other: TrackedPoint) -> TrackedPoint | None:
         """The point of the curve between two, on the plane half way across their chord."""
         at = other.corner if one.switch else one.corner
         problem = self.way.tracked(at or self.track.condition)
@@ -76,9 +76,9 @@ class _Along:
                 return None
         except np.linalg.LinAlgError:
             return None
-        return Spot(np.array(newton.z), np.array(newton.tangent) * np.asarray(problem.scale), at)
+        return TrackedPoint(np.array(newton.z), np.array(newton.tangent) * np.asarray(problem.scale), at)
 
-    def _at(self, spot: Spot) -> float:
+    def _at(self, spot: TrackedPoint) -> float:
         problem = self.problem
         problem.measure(spot.z)
         fold = self.track.condition.kind is Kind.FOLD
@@ -104,15 +104,15 @@ def _same(one: float, other: float) -> bool:
     return one == other or bool(np.isnan(one) and np.isnan(other))
 
 
-def _signs(problem: Tracked, spot: Spot) -> set[float]:
+def _signs(problem: ExtendedSystem, spot: TrackedPoint) -> set[float]:
     """Of the balance's determinant at a point; at a corner of the response those on both sides."""
     scale, y = np.asarray(problem.scale)[:-1], np.array(spot.z[:-1])
-    ahead = problem.options.stability.side * scale * np.asarray(problem.row)
+    ahead = problem.options.stability.corner_side * scale * np.asarray(problem.row)
     places = [y] if spot.corner is None and not spot.switch else [y - ahead, y + ahead]
     return {_sign(problem, place, scale[:-1]) for place in places}
 
 
-def _sign(problem: Tracked, y: FloatArray, scale: FloatArray) -> float:
+def _sign(problem: ExtendedSystem, y: FloatArray, scale: FloatArray) -> float:
     balance = problem.varied.balance
     balance.evaluate(y)
     own = jacobian_of(balance)[:, :-1]

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from fcm.at_rest import at_rest
 from fcm.branches.search import every_branch
 from fcm.continuation import Mark, Path
-from fcm.harmonic_balance.reported_quantities import reported
+from fcm.harmonic_balance.reported_quantities import reported_quantities
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.structure.linear import linear_of
@@ -21,17 +21,17 @@ from fcm.tracking.onset_functions import onset
 from fcm.tracking.options import TRACKING, TrackingOptions
 
 
-class Special(NamedTuple):
+class SpecialPoints(NamedTuple):
     """Points z (unknown + 1,) at which conditions nearly hold; what is wrong with their curves; and
     at which frequencies [rad/s] the level, or a fold of it, was not followed to its end, so that branches may
     be missing."""
 
     points: list[tuple[Condition, FloatArray]]
-    wrong: str
-    unsure: tuple[float, ...]
+    faults: str
+    uncertain: tuple[float, ...]
 
 
-def moved(system: System, scene: Scene) -> System:
+def for_scene(system: System, scene: Scene) -> System:
     """The system of another scene of the same contacts."""
     other = copy(system)
     object.__setattr__(other, "scene", scene)
@@ -41,7 +41,7 @@ def moved(system: System, scene: Scene) -> System:
 
 def special_points(
     system: System, conditions: list[Condition], options: TrackingOptions = TRACKING
-) -> Special:
+) -> SpecialPoints:
     """Those of a system's curves.
 
     Conditions that differ in which degree of freedom are sought one by one; onsets of every contact.
@@ -55,16 +55,16 @@ def special_points(
         for condition in conditions:
             found += [(condition, z) for z in _points(system, path, amplitude, condition, options)]
     if not branches.paths:
-        return Special(found, "no solution was found at either end of the range", unsure)
+        return SpecialPoints(found, "no solution was found at either end of the range", unsure)
     wrong = "" if branches.status.name == "COMPLETE" else branches.status.value
-    return Special(found, wrong, unsure)
+    return SpecialPoints(found, wrong, unsure)
 
 
 def _amplitudes(system: System, paths: Sequence[Path], conditions: list[Condition]) -> list[FloatArray]:
     """Along each path, (point, dof), 0 of what moves by rounding alone; none where no peak is sought."""
     if not paths or all(condition.kind is not Kind.PEAK for condition in conditions):
         return [np.zeros((len(path.z), 0)) for path in paths]
-    every = [reported(system, path).amplitude for path in paths]
+    every = [reported_quantities(system, path).amplitude for path in paths]
     moves = ~at_rest(np.max([one.max(axis=0) for one in every], axis=0))
     return [one * moves for one in every]
 
@@ -90,7 +90,9 @@ def _tops(amplitude: FloatArray, options: TrackingOptions = TRACKING) -> npt.NDA
     """Points higher than their neighbours."""
     inner = amplitude[1:-1]
     tops = 1 + np.flatnonzero((inner >= amplitude[:-2]) & (inner > amplitude[2:]))
-    high: npt.NDArray[np.intp] = tops[amplitude[tops] > options.curves.lowest * amplitude.max(initial=0.0)]
+    high: npt.NDArray[np.intp] = tops[
+        amplitude[tops] > options.curves.min_height * amplitude.max(initial=0.0)
+    ]
     return high
 
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
-from fcm.tracking.extended_system import Condition, Tracked
+from fcm.tracking.extended_system import Condition, ExtendedSystem
 from fcm.tracking.options import TRACKING, TrackingOptions
-from fcm.tracking.parameter_line import Line, Varied
+from fcm.tracking.parameter_line import ParameterLine, VariedBalance
 
 
 class Ending(Enum):
@@ -34,7 +34,7 @@ class Ending(Enum):
 
 
 @dataclass(frozen=True)
-class Spot:
+class TrackedPoint:
     """A point of a tracked curve: z = (x, omega, s), its direction in units of z, and what it is."""
 
     z: FloatArray
@@ -46,23 +46,25 @@ class Spot:
 
 
 @dataclass(frozen=True)
-class Way:
+class TrackingRun:
     """What all curves of one run share."""
 
     system: System
-    line: Line
+    line: ParameterLine
     span: tuple[float, float]  # of s
     stations: tuple[float, ...] = ()
     step: float = 0.05  # longest
     peaks_only: bool = False  # a peak ends where it meets a trough, and the number turns back
     options: TrackingOptions = TRACKING
 
-    def tracked(self, condition: Condition) -> Tracked:
+    def tracked(self, condition: Condition) -> ExtendedSystem:
         """The problem of a condition, with a balance of its own."""
-        return Tracked(Varied(self.system, self.line), condition, self.span[1] - self.span[0], self.options)
+        return ExtendedSystem(
+            VariedBalance(self.system, self.line), condition, self.span[1] - self.span[0], self.options
+        )
 
 
-def kinks(way: Way) -> list[float]:
+def kinks(way: TrackingRun) -> list[float]:
     """Values of s at which a preload changes sign: what the structure at rest bears has a kink there."""
     loads = np.array([[c.n_0 for c in way.line.scene(way.system.scene, s).contacts] for s in way.span])
     found = set()

@@ -9,11 +9,11 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from fcm.tracking.lowest_peak import Search
-from fcm.tracking.peak_envelope import Least
+from fcm.tracking.lowest_peak import LowestPeakSearch
+from fcm.tracking.peak_envelope import EnvelopeMinimum
 
 
-def by_trials(search: Search) -> Least | None:
+def by_trials(search: LowestPeakSearch) -> EnvelopeMinimum | None:
     """The least of the greatest at the values that were tried; None where nothing has a peak."""
     low, high = search.span
     options = search.options.tracking.trials
@@ -21,32 +21,34 @@ def by_trials(search: Search) -> Least | None:
         _greatest(search, value)
     minimize_scalar(
         lambda value: _greatest(search, float(value)),
-        bounds=_neighbours(search, _lowest(search)),
+        bounds=_neighbours(search, _values_about_lowest(search)),
         method="bounded",
-        options={"xatol": options.nearest * (high - low), "maxiter": options.closer},
+        options={"xatol": options.min_distance * (high - low), "maxiter": options.closer_values},
     )
-    s = _lowest(search)
-    top = search.seen[s]
+    s = _values_about_lowest(search)
+    top = search.visited_values[s]
     if not top.value > 0.0:
         return None
     kind = "bound" if s in search.span else "trials"
-    return Least(s, top.value, (top,), kind, _neighbours(search, s))
+    return EnvelopeMinimum(s, top.value, (top,), kind, _neighbours(search, s))
 
 
-def _greatest(search: Search, value: float) -> float:
+def _greatest(search: LowestPeakSearch, value: float) -> float:
     """The greatest at a value; where there is no peak, none that could be least."""
-    if value not in search.seen:
+    if value not in search.visited_values:
         search.greatest_at(value)
-    unknown = search.options.tracking.envelope.unknown * max(height.value for height in search.seen.values())
-    return search.seen[value].value or unknown
+    unknown = search.options.tracking.envelope.unknown_factor * max(
+        height.value for height in search.visited_values.values()
+    )
+    return search.visited_values[value].value or unknown
 
 
-def _lowest(search: Search) -> float:
-    return min(search.seen, key=lambda value: search.seen[value].value or np.inf)
+def _values_about_lowest(search: LowestPeakSearch) -> float:
+    return min(search.visited_values, key=lambda value: search.visited_values[value].value or np.inf)
 
 
-def _neighbours(search: Search, s: float) -> tuple[float, float]:
+def _neighbours(search: LowestPeakSearch, s: float) -> tuple[float, float]:
     """The values on either side of one that were tried."""
-    tried = sorted(search.seen)
+    tried = sorted(search.visited_values)
     i = tried.index(s)
     return tried[max(i - 1, 0)], tried[min(i + 1, len(tried) - 1)]
