@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import netCDF4
@@ -11,6 +12,7 @@ import xarray
 
 from fcm.compare import MEASURES, comparison, exact, methods
 from fcm.compare import startup as startups
+from fcm.compare.options import ExactLineOptions
 from fcm.scene import load_scene
 from fcm.shooting import periodic
 
@@ -155,7 +157,8 @@ def test_where_the_exact_motion_is_not_found_the_closed_form_remains(fcm, quick,
 
 
 def test_an_exact_curve_that_takes_too_long_is_given_up(fcm, quick, monkeypatch):
-    monkeypatch.setattr(exact, "LIMIT", 0.0)
+    at_once = partial(exact.exact_lines, options=ExactLineOptions(limit=0.0))
+    monkeypatch.setattr(methods, "exact_lines", at_once)
     run = fcm("respond", quick, "--compare")
     assert run.code == 0 and "the curve: not finished in 0 s of processor time" in run.err
 

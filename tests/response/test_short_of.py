@@ -15,7 +15,8 @@ def scene_at(*dofs):
 def test_it_is_said_whose_peaks_fall_short():
     """One that hardly moves may: nothing is to be said of what does not move at all."""
     found = SimpleNamespace(
-        reached=False, folds=np.empty(0), peak=np.array([1e-3, 2e-2, 9.0, 3e-2]), max_error=3e-2, max_known_error=3e-2,
+        reached=False, folds=np.empty(0), peak=np.array([1e-3, 2e-2, 9.0, 3e-2]),
+        max_error=3e-2, max_known_error=3e-2,
         further=(), system=SimpleNamespace(harmonics=(1,), scene=scene_at("tip", "root", "still", "axis")),
         shown=[SimpleNamespace(amplitude=np.array([[1.0, 0.1, 1e-9, 1e-5]]))],
     )  # fmt: skip
@@ -26,7 +27,8 @@ def test_it_is_said_whose_peaks_fall_short():
 def test_an_error_within_the_accuracy_is_no_reason(accuracy, remains):
     """Folds whose errors cannot be told keep the curve from it; its peaks only where they are far off."""
     found = SimpleNamespace(
-        reached=False, folds=np.array([np.nan, 1e-3]), peak=np.array([2.8e-2]), max_error=np.nan, max_known_error=2.8e-2,
+        reached=False, folds=np.array([np.nan, 1e-3]), peak=np.array([2.8e-2]),
+        max_error=np.nan, max_known_error=2.8e-2,
         further=(), system=SimpleNamespace(harmonics=(1, 2, 3), scene=scene_at("u")),
         shown=[SimpleNamespace(amplitude=np.ones((2, 1)))],
     )  # fmt: skip
