@@ -40,9 +40,9 @@ OFF = {
     "levels where nothing is stable": [
         (refined, "with_levels_where_unstable", lambda found, stable, accuracy: (found, False))
     ],
-    "narrow resonances": [(branch_trace, "narrow", lambda system: [])],
+    "narrow resonances": [(branch_trace, "narrow_resonances", lambda system: [])],
     "peaks between points": [(curve_trace, "with_tops", lambda peaks, found: peaks)],
-    "stages that ask for more harmonics": [(refined, "finer", lambda *args: None)],
+    "stages that ask for more harmonics": [(refined, "retraced", lambda *args: None)],
     "low harmonics": [(refinement, "with_low_harmonics", lambda system, found: system.harmonics)],
 }
 

@@ -439,13 +439,13 @@ fcm.response.scheduled.histories = stop
 AT = ("respond", "sweep.toml", "--method", "exact", "--at", "1.15:1.3:12", "-o", "a.nc")
 VISITED = """
 import fcm.response.stepped_sweep as visit, time
-real = visit.Visitor._go
+real = visit.SteppedSweep._step_to
 def go(self, omega, sweep):
     with open("visits", "a") as file:
         file.write(f"{sweep} {omega} {self.scene.parameters}\\n")
     time.sleep(0.02)
     real(self, omega, sweep)
-visit.Visitor._go = go
+visit.SteppedSweep._step_to = go
 """
 
 

@@ -2,8 +2,10 @@
 
 import json
 from dataclasses import replace
+from importlib import import_module
 
 import netCDF4
+import numpy as np
 import pytest
 
 from fcm.accuracy import outline, stability_validity
@@ -160,6 +162,8 @@ def test_what_misses_the_accuracy_says_so(fcm, tmp_path, monkeypatch, analysis):
 def test_where_stability_is_not_told_no_peak_is_without_that_word(fcm, tmp_path, monkeypatch, analysis):
     for module in (stability_validity, level, tracked_work):
         monkeypatch.setattr(module, "VALIDITY", ValidityOptions(max_error=0.0))
+    of_curves = import_module("fcm.response.trace")  # not the function of that name
+    monkeypatch.setattr(of_curves, "confirmed_stable", lambda _, z, doubted: np.zeros_like(doubted))
     extra, options = ANALYSES[analysis]
     (tmp_path / "s.toml").write_text(PAIR + extra)
     said = fcm("respond", "s.toml", *FEW, *options).out
