@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fcm import load_scene, room
-from fcm.cli.limits import SentenceOptions
+from fcm.cli.limits import RemarkOptions
 from fcm.cli.messages import Messages
 from fcm.harmonic_balance.cost_model import seconds_of_curve
 from fcm.response import trace
@@ -56,7 +56,7 @@ def test_more_of_anything_takes_more():
 
 def test_results_that_memory_does_not_hold_are_refused(fcm, monkeypatch):
     monkeypatch.setattr(room, "memory", lambda: 5_000.0)
-    monkeypatch.setattr("fcm.cli.room_needed.SENTENCES", SentenceOptions(memory=1_000.0))
+    monkeypatch.setattr("fcm.cli.room_needed.SENTENCES", RemarkOptions(memory=1_000.0))
     done = fcm("respond", SCENE, "--max-step", "0.001", "-o", "a.nc")
     assert len(done.err.splitlines()) == 1  # what is refused is not told before
     assert (
@@ -79,7 +79,7 @@ def test_results_that_the_disk_does_not_hold_are_refused(fcm, monkeypatch, optio
 
 
 def test_what_takes_much_is_told(fcm, monkeypatch):
-    monkeypatch.setattr("fcm.cli.room_needed.SENTENCES", SentenceOptions(memory=1_000.0))
+    monkeypatch.setattr("fcm.cli.room_needed.SENTENCES", RemarkOptions(memory=1_000.0))
     done = fcm("respond", SCENE, "--harmonics", "1", "--max-step", "0.5")
     assert done.code == 0 and "1 curve of 1 contact takes at least" in done.err
 
@@ -128,7 +128,7 @@ def test_a_curve_that_takes_long_is_told_before_it_is_begun(fcm, monkeypatch):
         (("--harmonics", "1"), "less with fewer contacts or fewer modes"),
     ):
         assert "processor time" not in fcm("respond", SCENE, "--harmonics", "1").err
-        monkeypatch.setattr("fcm.cli.room_needed.SENTENCES", SentenceOptions(long_curve=0.0))
+        monkeypatch.setattr("fcm.cli.room_needed.SENTENCES", RemarkOptions(long_curve=0.0))
         with monkeypatch.context() as within:
             within.setattr("fcm.cli.respond.calculated", lambda *_: (_ for _ in ()).throw(MemoryError))
             first = fcm("respond", SCENE, *options).err.splitlines()[0]
@@ -137,7 +137,7 @@ def test_a_curve_that_takes_long_is_told_before_it_is_begun(fcm, monkeypatch):
             and said in first
         )
         monkeypatch.undo()
-    monkeypatch.setattr("fcm.cli.room_needed.SENTENCES", SentenceOptions(long_curve=0.0))
+    monkeypatch.setattr("fcm.cli.room_needed.SENTENCES", RemarkOptions(long_curve=0.0))
     assert "processor time" not in fcm("respond", SCENE, "--level", "0.5:1", "--at", "1.1").err
 
 

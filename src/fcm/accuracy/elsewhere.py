@@ -25,9 +25,8 @@ from fcm.harmonic_balance.system import System
 if TYPE_CHECKING:
     from fcm.accuracy.embedded_pair import Errors
 
-DAMPED = DampedOptions(
-    min_contacts=0
-)  # whatever their number: the motions lie far from those that are sought
+# of any number of contacts, as the motions lie far from those that are sought
+OF_FAR_MOTIONS = DampedOptions(min_contacts=0)
 
 
 def partner_elsewhere(
@@ -115,7 +114,7 @@ def _stretches(system: System, path: Path, more: tuple[int, ...], options: PairO
     """Of the partner of a path, sought from motions that lie far from it."""
     finer = system.with_harmonics(more)
     lifted = Prolongation(
-        finer.new_balance(), list(system.harmonics), list(more), options.newton_tolerance, DAMPED
+        finer.new_balance(), list(system.harmonics), list(more), options.newton_tolerance, OF_FAR_MOTIONS
     )
     rough = replace(options, following=options.coarse_following)
     return StretchFollower(system, finer, lifted, path, rough, Budget(0.0))

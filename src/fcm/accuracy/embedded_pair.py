@@ -43,8 +43,9 @@ class Errors:
 
     amplitude (point, dof): by how much the partner differs at the same frequency.
     truncation (point,): the greatest difference of an amplitude over the greatest amplitude.
-    met (point,): whether the partner's own branch comes to that frequency. Where it does not, as beside a
-    fold that it has elsewhere, errors are the distance to the nearest motion that the partner has there.
+    is_same_curve (point,): whether the partner's own branch comes to that frequency. Where it does not, as
+    beside a fold that it has elsewhere, errors are the distance to the nearest motion that the partner has
+    there.
     peak (dof,): of the height of the greatest amplitude.
     height (dof,): the greatest amplitude of the partner, as an amplitude.
     fold (fold,): of the frequencies of the folds, in their order.

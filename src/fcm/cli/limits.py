@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class SentenceOptions:
+class RemarkOptions:
     """How much sentences, tables and pictures of the command line show."""
 
     harmonics: int = 10  # of which it is said what they meet
@@ -51,5 +51,5 @@ class RequestOptions:
     least_memory: int = 240_000_000  # bytes of addresses (`ulimit -v`) that numpy, scipy and HDF5 take
 
 
-SENTENCES = SentenceOptions()
+SENTENCES = RemarkOptions()
 REQUESTS = RequestOptions()

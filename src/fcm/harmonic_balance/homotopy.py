@@ -1,7 +1,8 @@
 """Problems whose solutions lead from what is known to what is asked for, along a parameter of their own.
 
-The parameter is the level of the forces, from a structure at rest (`ForceLevel`); or the part of a guess's
-residual that is taken off, F(z) - taken F(guess) = 0, which the guess solves with taken = 1 (`Homotopy`).
+The parameter is the level of the forces, from a structure at rest (`ForceLevelProblem`); or the part of a
+guess's residual that is taken off, F(z) - taken F(guess) = 0, which the guess solves with taken = 1
+(`Homotopy`).
 """
 
 from __future__ import annotations

@@ -203,10 +203,8 @@ class HarmonicBalanceOptions:
 
     Attributes
     ----------
-    extremes, spectrum, digits, stiff, rest, rigid, cost, workspace, units : ExtremeOptions, SpectrumOptions,\
- DigitOptions, StiffContactOptions, StaticLoadOptions, RigidMotionOptions, EvaluationCost, WorkspaceOptions,\
- UnitOptions
-        Of the parts.
+    extremes, spectrum, digits, stiff, rest, rigid, cost, workspace, units
+        Of the parts, each of a class of its own.
     samples : int
         Of a cycle for each period of the highest harmonic, at least, where a contact's own law is sampled.
     """

@@ -79,7 +79,7 @@ TRACTION = TractionOptions()
 class FixedTractionContact(Law):
     """A contact; one that is held always sticks, with a mean friction force that is given.
 
-    held, mean (direction,): whether it is, and that force.
+    is_fixed, mean (direction,): whether it is, and that force.
     """
 
     def __init__(self, law: LineLaw | PlanarLaw) -> None:

@@ -29,7 +29,7 @@ class LinearModeOptions:
 
 
 @dataclass(frozen=True)
-class UnitOptions:
+class ModeUnitOptions:
     """Units of the unknowns, in which lengths along a mode are measured.
 
     Attributes
@@ -139,15 +139,14 @@ class NonlinearModeOptions:
 
     Attributes
     ----------
-    linear, units, many, restart, rounding, truncation : LinearModeOptions, UnitOptions, ManyContactsOptions,\
- RestartOptions, RoundingOptions, TruncationOptions
-        Of the parts.
+    linear, units, many, restart, rounding, truncation
+        Of the parts, each of a class of its own.
     resonance : float
         Part of a step along the mode, to which a resonance is found.
     """
 
     linear: LinearModeOptions = field(default_factory=LinearModeOptions)
-    units: UnitOptions = field(default_factory=UnitOptions)
+    units: ModeUnitOptions = field(default_factory=ModeUnitOptions)
     many: ManyContactsOptions = field(default_factory=ManyContactsOptions)
     restart: RestartOptions = field(default_factory=RestartOptions)
     rounding: RoundingOptions = field(default_factory=RoundingOptions)

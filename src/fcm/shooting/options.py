@@ -300,7 +300,7 @@ class PeakOptions:
 
 
 @dataclass(frozen=True)
-class TractionOptions:
+class ResidualFrictionOptions:
     """The friction force of a contact that always sticks.
 
     margin: distance from its limit, relative to the forces. rounding: part of that; a contact this near to
@@ -437,7 +437,7 @@ class ShootingOptions:
     linear: LinearOrbitOptions = LinearOrbitOptions()
     partly_sticking: PartlyStickingOptions = PartlyStickingOptions()
     peaks: PeakOptions = PeakOptions()
-    traction: TractionOptions = TractionOptions()
+    traction: ResidualFrictionOptions = ResidualFrictionOptions()
     family: FamilyOptions = FamilyOptions()
     stability: StabilityChangeOptions = StabilityChangeOptions()
     search: BranchSearchOptions = BranchSearchOptions()

@@ -1,6 +1,6 @@
 """Motions in which some contacts stick all through, on residual friction of their own, while others slip.
 
-Like those of `linear_motion` they may be far from every motion that a curve has: with other residual friction
+Like those of `linear_orbits` they may be far from every motion that a curve has: with other residual friction
 the contacts that stick would open or slip. Residual friction that may hold them is found as if the others
 stuck, slid without friction or were open; with it held, the others are simulated from there.
 """

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.model.scene import Contact, FloatArray, Scene
-from fcm.shooting.options import SHOOTING, TractionOptions
+from fcm.shooting.options import SHOOTING, ResidualFrictionOptions
 from fcm.shooting.period_derivative import derivative_at
 from fcm.time_domain.cycle_measures import Extreme, extremes_by
 from fcm.time_domain.segments import NEGATIVE_SLIP, POSITIVE_SLIP, SEPARATED, STICKING, Segments
@@ -70,7 +70,7 @@ def choices(
     segments: Segments,
     wanted: FloatArray,
     stuck: list[int],
-    options: TractionOptions = SHOOTING.traction,
+    options: ResidualFrictionOptions = SHOOTING.traction,
 ) -> list[Choice]:
     """The choices for the contacts that stick all through the segments; wanted: the w of all, (contact,)."""
     if not stuck:
@@ -114,14 +114,14 @@ def _choice(
     )  # fmt: skip
 
 
-def _margin(system: System, y: FloatArray, j: int, options: TractionOptions) -> float:
+def _margin(system: System, y: FloatArray, j: int, options: ResidualFrictionOptions) -> float:
     contact = system.contacts[j]
     limit = contact.mu * (abs(contact.n_0) + abs(y[system.n.start + j]))
     return options.margin * float(abs(y[system.f.start + j]) + limit)
 
 
 def one_sided_slips(
-    system: System, segments: Segments, seen: list[int], options: TractionOptions = SHOOTING.traction
+    system: System, segments: Segments, seen: list[int], options: ResidualFrictionOptions = SHOOTING.traction
 ) -> list[tuple[int, float]]:
     """Contacts that slip in one direction only, with what their gap lacks to continue that of a `Choice`.
 

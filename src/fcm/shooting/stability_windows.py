@@ -56,7 +56,7 @@ class Window(NamedTuple):
 
 
 class _PathSamples(NamedTuple):
-    """What is known of the points of a path, (point,) each: see `Seen`."""
+    """What is known of the points of a path, (point,) each: see `MultiplierSample`."""
 
     length: FloatArray
     stable: npt.NDArray[np.bool_]

@@ -68,10 +68,12 @@ class _BifurcationSearch:
         self.path, self.verdicts, self.options = path, PathVerdicts(system, path, options), options
         self.many = len(system.scene.contacts) >= self.options.structure.many_contacts
         self.step_span = (
-            options.path.interval_many_contacts if self.many else options.path.interval_several_harmonics
+            options.sampling.interval_many_contacts
+            if self.many
+            else options.sampling.interval_several_harmonics
         )
         if len(system.harmonics) == 1:
-            self.step_span = options.path.interval_one_harmonic
+            self.step_span = options.sampling.interval_one_harmonic
 
     def run(self, beyond: npt.NDArray[np.bool_]) -> Stability:
         even = self._is_even()
@@ -107,7 +109,7 @@ class _BifurcationSearch:
         """Enough points of a run."""
         parts = max(-(-(last - first) // self.step_span), 1)
         angle = self.verdicts.rotation[first : last + 1]
-        passed = np.floor((angle - angle[0]) / self.options.path.max_phase)
+        passed = np.floor((angle - angle[0]) / self.options.sampling.max_phase)
         some = (first + k * (last - first) // parts for k in range(parts + 1))
         nodes = sorted({*some, *(first + 1 + (passed[1:] != passed[:-1]).nonzero()[0]).tolist()})
         for i in nodes:
@@ -146,7 +148,11 @@ class _BifurcationSearch:
     ) -> float | None:
         """A place between two, with its verdict, at which stability may be another; None if there is none."""
         one, other = self.verdicts[ends[0]], self.verdicts[ends[1]]
-        if one.passive or other.passive or max(one.growth, other.growth) < self.options.path.sufficient_decay:
+        if (
+            one.passive
+            or other.passive
+            or max(one.growth, other.growth) < self.options.sampling.sufficient_decay
+        ):
             return None
         if max(len(one.values), len(other.values)) > self.options.windows.max_multipliers:
             return None
@@ -226,21 +232,21 @@ class _BifurcationSearch:
         """Where the growth changes sign between two places."""
         first, found, enough = int(a), None, self.verdicts.sufficient(a, b)
         curve = self.verdicts.curve(first)
-        before, after = (max(self.verdicts[t].growth, self.options.path.sufficient_decay) for t in (a, b))
+        before, after = (max(self.verdicts[t].growth, self.options.sampling.sufficient_decay) for t in (a, b))
         kind = self.verdicts[a if before > 0.0 else b].kind
         sides = SignChange(a - first, b - first, before, after, may_jump=True)
-        fine = self.options.path.tolerance if enough else self.options.path.confirmed_tolerance
-        for _ in range(self.options.path.max_evaluations):
+        fine = self.options.sampling.tolerance if enough else self.options.sampling.confirmed_tolerance
+        for _ in range(self.options.sampling.max_evaluations):
             at = sides.at
             if sides.width < fine or not curve.find(at):
                 break
             verdict = self.verdicts.judge(curve.z, enough)
-            now = max(verdict.growth, self.options.path.sufficient_decay)
+            now = max(verdict.growth, self.options.sampling.sufficient_decay)
             if math.isnan(now):
                 break
             kind = verdict.kind if now > 0.0 else kind
             found = Crossing(first + at, curve.z, curve.direction, curve.orientation, kind=kind)
-            if abs(now) < self.options.path.growth_tolerance:
+            if abs(now) < self.options.sampling.growth_tolerance:
                 break
             sides.update(at, now)
         return found
@@ -264,13 +270,13 @@ def _growth_is_linear(
         and min(one.before_flip, middle.before_flip, other.before_flip) < options.verdict.flip_angle
     ):
         return False
-    safe = max(growth) < options.path.safe_growth
+    safe = max(growth) < options.sampling.safe_growth
     if not many and not safe and not one.held == middle.held == other.held:
         return False
     if stable[0] == 1.0 and (safe or one.passive or middle.passive or other.passive):
         return True
-    a, b, c = (max(size, options.path.sufficient_decay) for size in growth)
-    return abs(b - 0.5 * (a + c)) < options.path.max_deviation * min(abs(a), abs(b), abs(c))
+    a, b, c = (max(size, options.sampling.sufficient_decay) for size in growth)
+    return abs(b - 0.5 * (a + c)) < options.sampling.max_deviation * min(abs(a), abs(b), abs(c))
 
 
 def _nearer(at: IntArray, first: int, last: int) -> IntArray:

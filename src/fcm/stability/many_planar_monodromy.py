@@ -118,7 +118,7 @@ class _Period:
         """The matrix."""
         events = self._events()
         start, first = self._start(events)
-        held = [self._remembers(int(c), start) for c in self.moving]
+        held = [self.sequence.remembers(int(c), start) for c in self.moving]
         m = len(self.of.natural)
         columns = 2 * m + sum(held)
         lost: FloatArray = np.full((1, 1), np.nan)
@@ -130,7 +130,7 @@ class _Period:
         for column, (k, i) in enumerate(rows, 2 * m):
             self.memory[k, i, column] = 1.0
         self.g = np.zeros((self.moving.size, 3, columns))
-        self.state = np.array([self.sequence.state_of(int(c), start) for c in self.moving], dtype=np.intp)
+        self.state = np.array([self.sequence.state_at(int(c), start) for c in self.moving], dtype=np.intp)
         self.fresh = np.zeros(self.moving.size, dtype=bool)
         self._rest()
         now = start
@@ -139,7 +139,7 @@ class _Period:
             if not self._propagate(now, angle - now, opens):
                 return lost
             now = angle if angle - now > self.options.event_tolerance else now
-            self._happen(k, i)
+            self._apply_event(k, i)
         if not self._propagate(now, start + TWO_PI - now, False):
             return lost
         kept = np.array([self.memory[k, i] for k, i in rows]).reshape(len(rows), columns)
@@ -162,17 +162,12 @@ class _Period:
         gap = np.diff(at, append=at[0] + TWO_PI)
         wide = np.flatnonzero(gap > self.options.min_gap)
         middle = at + 0.5 * gap
-        counts = {j: sum(self._remembers(int(c), middle[j]) for c in self.moving) for j in wide.tolist()}
+        counts = {
+            j: sum(self.sequence.remembers(int(c), middle[j]) for c in self.moving) for j in wide.tolist()
+        }
         best = min(counts, key=lambda j: (counts[j], -gap[j]))
         start = float(middle[best])
         return (start, best + 1) if start < TWO_PI else (start - TWO_PI, 0)
-
-    def _remembers(self, c: int, theta: float) -> int:
-        """How many numbers a contact remembers at an angle: the place of its slider, or its direction."""
-        state = self.sequence.state_of(c, theta)
-        if self.sequence.count[c] == 1:
-            return 1 if state == SLIP else 0
-        return {STICK: 2, SLIP: 1}.get(state, 0)
 
     def _rest(self) -> None:
         """Which contacts slip, are open, and stick, and the places of their unknowns."""
@@ -205,7 +200,7 @@ class _Period:
                 by = (options.tolerance / max(rest, 1e-300)) ** (1.0 / s)
                 if rest <= options.tolerance:
                     break
-                h *= min(max(options.safety * by, options.min_factor), 0.7)
+                h *= min(max(options.safety * by, options.min_factor), options.max_retry_factor)
                 refused = True
             following = h * min(max(options.safety * by, options.min_factor), options.max_factor)
             self.next = following if refused else max(following, wanted)  # an event alone cut it
@@ -336,7 +331,7 @@ class _Period:
         self.memory[self.slips, 0] = self.strain[sigma]
         self.fresh[:] = False
 
-    def _happen(self, k: int, i: int) -> None:
+    def _apply_event(self, k: int, i: int) -> None:
         """State i of a moving contact begins: what it remembers of the disturbances."""
         sequence, c = self.sequence, int(self.moving[k])
         before, now = int(self.state[k]), int(sequence.state[c, i])

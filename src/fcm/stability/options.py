@@ -162,7 +162,7 @@ class WindowOptions:
 
 
 @dataclass(frozen=True)
-class PathOptions:
+class SamplingOptions:
     """Which points of a path are looked at, and where stability changes between them.
 
     Attributes
@@ -229,7 +229,8 @@ class PlanarStabilityOptions:
     coefficient_floor: of the last coefficient but one, what the last is taken for at least, as it may
     vanish by chance. end_factor: times the tolerance, what steps may leave out that end where a slipping
     contact opens, or begin where it closes. max_step: step [rad]. min_factor, max_factor, safety: limits of
-    the ratio of two steps, and what it is multiplied by.
+    the ratio of two steps, and what it is multiplied by. max_retry_factor: the same limit of a step that is
+    taken again, shorter.
 
     max_disturbances, most_of_many: disturbances that are followed, of few and of many contacts; with more,
     stability is not told. initial_panels: of slip that are recorded
@@ -245,6 +246,7 @@ class PlanarStabilityOptions:
     min_factor: float = 0.2
     max_factor: float = 2.5
     safety: float = 0.8
+    max_retry_factor: float = 0.7
     max_disturbances: int = 160
     most_of_many: int = 800
     initial_panels: int = 200
@@ -260,7 +262,7 @@ class StabilityOptions:
     structure: StructureOptions = StructureOptions()
     confirmation: ConfirmationOptions = ConfirmationOptions()
     windows: WindowOptions = WindowOptions()
-    path: PathOptions = PathOptions()
+    sampling: SamplingOptions = SamplingOptions()
     hill: HillOptions = HillOptions()
     planar: PlanarStabilityOptions = PlanarStabilityOptions()
 

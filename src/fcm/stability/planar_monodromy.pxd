@@ -3,9 +3,10 @@ from fcm.stability.planar_sequence cimport PlanarSequence
 cdef class PlanarMonodromy:
     cdef public PlanarSequence sequence
     cdef readonly int modes, contacts, stages, columns, events, steps
-    cdef int most, actives, first, unknowns
+    cdef int max_disturbances, actives, first, unknowns
     cdef bint modal, remote
-    cdef double tolerance, before, shrink, grow, safety, ends, same, apart, longest, period, taken, next
+    cdef double tolerance, coefficient_floor, max_step, min_factor, max_factor, safety, end_factor, max_retry_factor
+    cdef double event_tolerance, min_gap, period, taken, next
     cdef object filled
     cdef double[:, ::1] shapes, soft, butcher, slopes, inner, tail, system, seen
     cdef double[::1] natural, damping, node, angle, scale, fore, aft
@@ -16,8 +17,7 @@ cdef class PlanarMonodromy:
     cdef int[::1] state, order, whose, which, active, held, fresh
     cpdef int follow(self, double omega) except -1
     cdef void find(self) noexcept
-    cdef double start(self) noexcept
-    cdef int remembers(self, int c, double theta) noexcept
+    cdef double start(self) except -1
     cdef bint begin(self, double start) except -1
     cdef bint propagate(self, double theta, double length, bint opens) noexcept
     cdef void apply_event(self, int c, int i) noexcept

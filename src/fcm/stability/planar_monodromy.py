@@ -73,14 +73,15 @@ class PlanarMonodromy:
     ) -> None:
         options = sequence.options
         self.sequence = sequence
-        self.tolerance, self.before, self.longest = (
+        self.tolerance, self.coefficient_floor, self.max_step = (
             options.tolerance,
             options.coefficient_floor,
             options.max_step,
         )
-        self.shrink, self.grow, self.safety = options.min_factor, options.max_factor, options.safety
-        self.ends, self.same = options.end_factor, options.event_tolerance
-        self.apart, self.most = options.min_gap, options.max_disturbances
+        self.min_factor, self.max_factor, self.safety = options.min_factor, options.max_factor, options.safety
+        self.end_factor, self.event_tolerance = options.end_factor, options.event_tolerance
+        self.max_retry_factor = options.max_retry_factor
+        self.min_gap, self.max_disturbances = options.min_gap, options.max_disturbances
         self.shapes = np.ascontiguousarray(shapes[~far])
         self.natural, self.damping = natural[~far], damping[~far]
         self.soft = (shapes[far].T * natural[far] ** -2.0) @ shapes[far]
@@ -133,7 +134,7 @@ class PlanarMonodromy:
         """Fill the matrix for a frequency."""
         e: cython.int
         i: cython.int
-        self.period, self.taken, self.next, self.steps = 1.0 / omega, -1.0, self.longest, 0
+        self.period, self.taken, self.next, self.steps = 1.0 / omega, -1.0, self.max_step, 0
         self.find()
         start: cython.double = self.start()
         now: cython.double = start
@@ -143,7 +144,7 @@ class PlanarMonodromy:
             at: cython.double = self.angle[e] if e >= 0 else start + TWO_PI
             if at < start:
                 at += TWO_PI
-            if found and at - now > self.same:
+            if found and at - now > self.event_tolerance:
                 opens: cython.bint = e >= 0 and self.state[self.whose[e]] == SLIP
                 opens = opens and self.sequence.state[self.whose[e], self.which[e]] == SEPARATION
                 found = self.propagate(now, at - now, opens)
@@ -195,18 +196,11 @@ class PlanarMonodromy:
             middle: float = 0.5 * (begin + end)
             count = 0
             for c in range(self.contacts):
-                count += self.remembers(c, middle)
-            if end - begin > self.apart and (count < fewest or (count == fewest and end - begin > widest)):
+                count += self.sequence.remembers(c, middle)
+            if end - begin > self.min_gap and (count < fewest or (count == fewest and end - begin > widest)):
                 fewest, widest, found = count, end - begin, middle
                 self.first = 0 if last else i + 1
         return found
-
-    def remembers(self, c: cython.int, theta: float) -> cython.int:
-        """How many numbers a contact remembers at an angle: the place of its slider, or its direction."""
-        state: cython.int = self.sequence.state_at(c, theta)
-        if self.sequence.count[c] == 1:
-            return 1 if state == SLIP else 0
-        return 2 if state == STICK else 1 if state == SLIP else 0
 
     def begin(self, start: float) -> bool:
         """The disturbances to be followed, and the states; false if there are too many."""
@@ -216,9 +210,9 @@ class PlanarMonodromy:
         columns: cython.int = 2 * self.modes
         for c in range(self.contacts):
             self.state[c], self.fresh[c] = self.sequence.state_at(c, start), 0
-            self.held[c] = self.remembers(c, start)
+            self.held[c] = self.sequence.remembers(c, start)
             columns += self.held[c]
-        if columns > self.most:
+        if columns > self.max_disturbances:
             return False
         if columns != self.columns:
             self._room(columns)
@@ -267,22 +261,22 @@ class PlanarMonodromy:
         for c in range(self.contacts):
             closed = closed or self.fresh[c] != 0
         while left > 0.0:
-            h: float = min(self.next, self.longest)
+            h: float = min(self.next, self.max_step)
             if h >= left:
                 h = left
             elif h > 0.5 * left:
                 h = 0.5 * left
             while True:
-                if h < self.same:
+                if h < self.event_tolerance:
                     return False
                 rest: float = 1e300
                 if self.step(theta + length - left, h):
-                    rest = self.rest() / (self.ends if closed or (opens and h == left) else 1.0)
+                    rest = self.rest() / (self.end_factor if closed or (opens and h == left) else 1.0)
                 by: float = (self.tolerance / max(rest, 1e-300)) ** (1.0 / self.stages)
                 if rest <= self.tolerance:
                     break
-                h *= min(max(self.safety * by, self.shrink), 0.7)
-            self.next = h * min(max(self.safety * by, self.shrink), self.grow)
+                h *= min(max(self.safety * by, self.min_factor), self.max_retry_factor)
+            self.next = h * min(max(self.safety * by, self.min_factor), self.max_factor)
             self.accept()
             closed = False
             left = left - h if h < left else 0.0
@@ -755,7 +749,7 @@ class PlanarMonodromy:
                     value += self.rest_to[2 * m + i, 1] * self.p[m, j]
                     for k in range(self.stages):
                         value += self.rest_by[2 * m + i, k] * self.push[k * self.modes + m, j]
-                    value = fabs(value) if i == 1 else self.before * fabs(value)
+                    value = fabs(value) if i == 1 else self.coefficient_floor * fabs(value)
                     most = max(most, value / self.scale[j])
         return most
 

@@ -17,7 +17,8 @@ cdef class PlanarSequence:
     cdef bint look(self, double[::1] x, int c) except -1
     cdef bint keep(self, int c) except -1
     cdef double length(self, int p) noexcept nogil
-    cdef int state_at(self, int c, double theta) noexcept nogil
+    cpdef int state_at(self, int c, double theta) except -1
+    cpdef int remembers(self, int c, double theta) except -1
     cdef void rates(self, int c, double theta) noexcept nogil
     cdef int panel(self, int c, double theta, bint before) noexcept nogil
     cdef void direction(self, int p, double theta) noexcept nogil

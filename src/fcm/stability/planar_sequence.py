@@ -183,9 +183,12 @@ class PlanarSequence:
             i -= 1
         return self.state[c, i]
 
-    def state_of(self, c: cython.int, theta: cython.double) -> int:
-        """`state_at` for other modules."""
-        return int(self.state_at(c, theta))
+    def remembers(self, c: cython.int, theta: float) -> cython.int:
+        """How many numbers a contact remembers at an angle: the place of its slider, or its direction."""
+        state: cython.int = self.state_at(c, theta)
+        if self.count[c] == 1:
+            return 1 if state == SLIP else 0
+        return 2 if state == STICK else 1 if state == SLIP else 0
 
     def slip_at(
         self, c: cython.int, angles: cython.double[::1], before: cython.bint = False

@@ -33,7 +33,7 @@ class DampingOptions:
 
 
 @dataclass(frozen=True)
-class ReductionOptions:
+class RetainedModeOptions:
     """Which modes of a structure are kept, and what is told of them."""
 
     fewest: int = 10  # modes that are kept at least, where none are asked for
@@ -86,5 +86,5 @@ class RigidBodyOptions:
 
 FLEXIBILITY = FlexibilityOptions()
 DAMPING = DampingOptions()
-REDUCTION = ReductionOptions()
+REDUCTION = RetainedModeOptions()
 RIGID_BODY = RigidBodyOptions()

@@ -1,4 +1,4 @@
-"""From transition to transition: a combination of states ends (`lookout`), another follows (`successor`).
+"""From transition to transition: a combination of states ends, another follows (`Successor`).
 
 Which one follows, or lasts from the start of a motion, is decided by the sign of the first derivative that
 does not vanish of each exit function. So coinciding transitions, grazing ones and contacts released at rest

@@ -18,7 +18,7 @@ from fcm.model.scene import FloatArray
 from fcm.tracking.extended_system import ExtendedSystem
 
 
-class SignChange(NamedTuple):
+class CircleCrossing(NamedTuple):
     """Where what is special changes its sign on a circle, by a jump or through zero."""
 
     angle: float  # from straight ahead
@@ -37,7 +37,7 @@ class Circle:
         ahead /= np.linalg.norm(ahead)
         self.axes = np.stack((ahead @ plane, np.array([-ahead[1], ahead[0]]) @ plane))
 
-    def changes(self, back: FloatArray) -> list[SignChange]:
+    def changes(self, back: FloatArray) -> list[CircleCrossing]:
         """All changes of sign but that nearest to a point on the way back, the furthest from it first.
 
         None where there is no motion on a part of the circle.
@@ -78,7 +78,7 @@ class Circle:
             z = z + self.scale * step
         return z, np.nan
 
-    def _change(self, low: float, high: float, most: float) -> SignChange:
+    def _change(self, low: float, high: float, most: float) -> CircleCrossing:
         """The change of sign between two angles."""
         angle = float(
             brentq(
@@ -87,4 +87,4 @@ class Circle:
         )
         sides = [self.at(angle + side * self.options.angle_tolerance) for side in (-1.0, 1.0)]
         jump = max(abs(special) for _, special in sides) > self.options.jump_fraction * most
-        return SignChange(angle, self.at(angle)[0], jump)
+        return CircleCrossing(angle, self.at(angle)[0], jump)
