@@ -24,7 +24,7 @@ from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.partner import partner_of
 from fcm.accuracy.partner_curve import FollowedStretch, Indices, PartnerCurve
 from fcm.accuracy.partner_pieces import CurvePiece, distinct, lengths, nearest, piece_of
-from fcm.accuracy.peaks import heights, rise_beside
+from fcm.accuracy.peaks import heights, rise_between_points
 from fcm.continuation import Mark, Path
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
@@ -118,7 +118,7 @@ def errors_along(
         there = partner.amplitude_at_frequency(end)
         at_ends = at_ends if there is None else np.where(tops == end, there, at_ends)
     height = np.where(inside, heights(partner, change[:, 1:], followed, tops), at_ends)
-    rise = rise_beside(partner, np.zeros_like(unit), tops)  # no error
+    rise = rise_between_points(partner, np.zeros_like(unit), tops)  # no error
     now = shown.amplitude[tops, d] + np.where(inside, rise, 0.0)
     settles = inside | ~partner.linear[tops]
     told = settles & np.isfinite(height)
@@ -335,8 +335,8 @@ def _with_nearest_folds(
 
 def _side(parameter: FloatArray, fold: int) -> float:
     """How far a fold lies above the points beside it, in the parameter."""
-    beside = parameter[[max(fold - 1, 0), min(fold + 1, len(parameter) - 1)]].mean()
-    return float(parameter[fold] - beside)
+    neighbours = parameter[[max(fold - 1, 0), min(fold + 1, len(parameter) - 1)]].mean()
+    return float(parameter[fold] - neighbours)
 
 
 def _medians(values: FloatArray) -> FloatArray:

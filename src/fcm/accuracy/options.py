@@ -54,7 +54,7 @@ class PairOptions:
         not at all.
     max_point_seconds : float
         The same that all points may take that are moved to the partner, those that are found too.
-    beyond : float
+    span_margin : float
         Times the width of a stretch, how far beyond it the partner is followed.
     end_tries : int
         Points at an end of a stretch, from which the partner is sought.

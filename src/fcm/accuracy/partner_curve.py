@@ -223,7 +223,7 @@ class PartnerCurve:
         nothing, known = np.zeros(self.amplitude.shape[1]), None
         if self.linear[top]:
             return np.stack((nothing, nothing))
-        for i in self._points_beside_peak(top) if inside else (top,):
+        for i in self._points_around_peak(top) if inside else (top,):
             if not self._has_point(i, inside):
                 continue
             lifted = self.finding.lifted
@@ -241,10 +241,10 @@ class PartnerCurve:
         left = nothing if known is None else changes_left_out(self.stretches.finer, known, self.options)
         return np.stack((nothing, left))
 
-    def _points_beside_peak(self, top: int) -> list[int]:
+    def _points_around_peak(self, top: int) -> list[int]:
         """A top and points to either side of it, as long as contacts slip or separate there."""
-        beside = (0, *(way * step for step in self.options.peak_offsets for way in (-1, 1)))
-        places = [top + step for step in beside if 0 <= top + step < len(self.linear)]
+        neighbours = (0, *(way * step for step in self.options.peak_offsets for way in (-1, 1)))
+        places = [top + step for step in neighbours if 0 <= top + step < len(self.linear)]
         return [i for i in places if not self.linear[i]]
 
     def _has_point(self, i: int, normal: bool) -> bool:
@@ -389,7 +389,7 @@ class PartnerCurve:
         now, even = compared.value[rows], self.path.orientation[rows] * sign
         dofs = self.amplitude.shape[1]  # by which the same motion is known
         by = np.ascontiguousarray(now[:, :dofs])
-        for way in (map(self._of_piece, one.pieces), self._beside(compared, one.first, one.end)):
+        for way in (map(self._of_piece, one.pieces), self._pieces_near(compared, one.first, one.end)):
             new, own = shift[rows], np.isnan(shift[rows]).any(axis=1) & (number > -2)
             for other in way:
                 found = (other.values_at(omega, even, by, number) - now) / compared.unit[rows]
@@ -399,7 +399,7 @@ class PartnerCurve:
                 new[nearer] = found[nearer]
             shift[rows], number = new, np.minimum(number, -1)
 
-    def _beside(self, compared: ComparedQuantities, first: int, end: int) -> Iterator[CurvePiece]:
+    def _pieces_near(self, compared: ComparedQuantities, first: int, end: int) -> Iterator[CurvePiece]:
         """The partner at the points before a stretch, and behind it, as far as it is known there."""
         missed = np.flatnonzero(np.isnan(compared.change).any(axis=1))
         low = max(missed[missed < first], default=-1) + 1
@@ -469,8 +469,8 @@ def _passes(parameter: FloatArray, omega: FloatArray) -> Mask:
 
 def _with_ends(path: Path, linear: Mask) -> Mask:
     """With the corners at which linear parts end: there rounding decides what a point is."""
-    beside = np.zeros_like(linear)
-    beside[1:] |= linear[:-1]
-    beside[:-1] |= linear[1:]
-    ends: Mask = linear | (beside & ((path.mark & Mark.CORNER) > 0))
+    neighbours = np.zeros_like(linear)
+    neighbours[1:] |= linear[:-1]
+    neighbours[:-1] |= linear[1:]
+    ends: Mask = linear | (neighbours & ((path.mark & Mark.CORNER) > 0))
     return ends

@@ -102,7 +102,7 @@ class StretchFollower:
         """The partner both ways from the frequency of a point, as far as it stays in a span and the work
         allows; nothing where no motion of it is found there."""
         before = self.lifted.newton.evaluations
-        begin = self._passed_beside(i, False) if by_level else self._same_frequency(i)
+        begin = self._nearest_passed(i, False) if by_level else self._same_frequency(i)
         new = int(self.lifted.newton.evaluations - before)
         self.evaluations += new
         self.budget.seconds -= new * self.each
@@ -130,9 +130,9 @@ class StretchFollower:
 
     def _alike(self, i: int) -> StretchEnd | None:
         """At the frequency of a point: what its motion leads to, or one as even that the level passes."""
-        return self._same_frequency(i) or self._passed_beside(i, True)
+        return self._same_frequency(i) or self._nearest_passed(i, True)
 
-    def _passed_beside(self, i: int, alike: bool) -> StretchEnd | None:
+    def _nearest_passed(self, i: int, alike: bool) -> StretchEnd | None:
         """At the frequency of a point the nearest motion that the level of the forces passes; alike with an
         odd or even number of real multipliers above 1 as it has."""
         lifted, curve = self.lifted, self.curve

@@ -24,7 +24,7 @@ def heights(
     now = amplitude[tops, d]
     change, highest = _highest(partner, change)
     greatest: FloatArray = amplitude[highest, d] + partner.unit[highest, d] * change[highest, d]
-    greatest += rise_beside(partner, partner.unit * change, highest)
+    greatest += rise_between_points(partner, partner.unit * change, highest)
     for top in np.unique(tops[(partner.path.mark[tops] & Mark.CORNER) > 0]).tolist():
         if _gap(partner, top):
             for piece in partner.stretches.between(top - 1, top + 1):
@@ -39,7 +39,7 @@ def heights(
     return greatest
 
 
-def rise_beside(partner: PartnerCurve, moved: FloatArray, places: Indices) -> FloatArray:
+def rise_between_points(partner: PartnerCurve, moved: FloatArray, places: Indices) -> FloatArray:
     """By how much (dof,) a curve whose amplitudes are moved (point, dof) is higher between its highest points
     and the next; places: the indices of the highest.
 
@@ -78,13 +78,13 @@ def _gap(partner: PartnerCurve, top: int) -> bool:
 
     Of the two pieces of the partner beside it one then goes on beyond what is displaced to it.
     """
-    path, growth, beside = partner.path, partner.shown.growth, np.array([top - 1, top + 1])
+    path, growth, neighbours = partner.path, partner.shown.growth, np.array([top - 1, top + 1])
     if top == 0 or top == len(path.z) - 1:
         return False
-    partner.find(beside)
-    moved = path.parameter[beside] * partner.change[beside, 0]
-    slope = np.abs(growth[beside] / path.direction[beside, -1][:, None]).min(axis=0)
+    partner.find(neighbours)
+    moved = path.parameter[neighbours] * partner.change[neighbours, 0]
+    slope = np.abs(growth[neighbours] / path.direction[neighbours, -1][:, None]).min(axis=0)
     higher = np.abs(moved[1] - moved[0]) * slope
-    changed = np.abs(partner.change[beside, 1:]).max(axis=0) * partner.unit[top]
+    changed = np.abs(partner.change[neighbours, 1:]).max(axis=0) * partner.unit[top]
     top_of = partner.amplitude[top] >= partner.amplitude.max(axis=0)
     return bool((higher > partner.options.gap_fraction * changed)[top_of].any())

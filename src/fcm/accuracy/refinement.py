@@ -109,8 +109,8 @@ def retraced(found: RefinedResponse, harmonics: tuple[int, ...], accuracy: float
     than is worth it."""
     if found.seconds_with(harmonics) > MAX_SECONDS_REPEATED:
         return None
-    beside = near(found, harmonics)
-    then = unchecked_response(found.system.with_harmonics(harmonics), None, found.traced.found, beside)
+    nearby = near(found, harmonics)
+    then = unchecked_response(found.system.with_harmonics(harmonics), None, found.traced.found, nearby)
     return with_errors(then, accuracy) if then.shown else None
 
 

@@ -116,8 +116,8 @@ def _places(
         rivals = (most > options.rival_fraction * height) & (height > options.min_amplitude * height.max())
         for top in np.unique(tops[rivals]).tolist():
             counts = np.append(False, rivals & (tops == top))
-            beside = (0, *(way * step for step in options.peak_offsets for way in (-1, 1)))
-            tries = [top + step for step in beside if 0 <= top + step < len(path.z)]
+            steps = (0, *(way * step for step in options.peak_offsets for way in (-1, 1)))
+            tries = [top + step for step in steps if 0 <= top + step < len(path.z)]
             found.append(_SpecialPoint(path, amplitude, tries, counts))
         folds = path.where(Mark.FOLD)
         for fold in folds[:: -(-len(folds) // options.max_folds) or 1].tolist():

@@ -107,7 +107,7 @@ def reaches_level_one(problem: ProblemAtLevel, newton: Newton, turn: LevelFold) 
     return True
 
 
-def solutions_beside(newton: Newton) -> list[FloatArray]:
+def solutions_past_fold(newton: Newton) -> list[FloatArray]:
     """Solutions on both sides of the one that was found last, in its plane or a little along its curve."""
     middle, along = np.array(newton.z), np.array(newton.tangent)
     found = [middle]

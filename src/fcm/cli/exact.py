@@ -222,16 +222,16 @@ def _stuck(response: Response) -> list[str]:
     """The first of the motions that no point is of, how many there are, and what leads to it."""
     from fcm.units import in_unit
 
-    beside = [(curve, one) for curve in response.curves if curve.orbits for one in curve.orbits.stuck]
-    if not beside:
+    stuck = [(curve, one) for curve in response.curves if curve.orbits for one in curve.orbits.stuck]
+    if not stuck:
         return []
-    (curve, first), unit = beside[0], response.frequency_unit
+    (curve, first), unit = stuck[0], response.frequency_unit
     pairs = zip(response.contacts, first.states, strict=True)
     does = ", ".join(f"{name} {_DOES.get(one, one)}" for name, one in pairs)
     start = ", ".join(f"{force:.5g}" for force in first.friction)
     swept = "".join(f"{key} = {value:g}, " for key, value in curve.parameters.items())
     return [
-        f"motions beside the curves, in which a contact never slips: {len(beside)}; at "
+        f"motions beside the curves, in which a contact never slips: {len(stuck)}; at "
         f"{swept}{float(in_unit(first.frequency, unit)):.6g} {unit} one with {does}: "
         f"[start] friction = [{start}] leads to it (stuck_beside with --json has all)"
     ]

@@ -29,7 +29,7 @@ class Harmonic(NamedTuple):
     def name(self, length: str) -> Name:
         """As it is written, in a picture and in a message, with the unit of length if there is one."""
         phase = f"at {math.degrees(self.phase):.4g}°"
-        plain = f"= {_beside(f'{self.amplitude:.4g}', length)} {phase}"
+        plain = f"= {_with_unit(f'{self.amplitude:.4g}', length)} {phase}"
         drawn = plain.replace("-", "−").replace("$", r"\$")
         return Name(f"${self.motion}_{{{self.order}}}$ {drawn}", f"{self.motion}_{self.order} {plain}")
 
@@ -69,10 +69,10 @@ def _lines(names: Iterable[Name], most: int) -> list[str]:
 def named(key: str, value: float, unit: str = "") -> Name:
     number = f"{value:.4g}"
     drawn = f"{_SYMBOL[key]} = {number}".replace("-", "−")
-    return Name(_beside(drawn, unit.replace("$", r"\$")), _beside(f"{key} = {number}", unit))
+    return Name(_with_unit(drawn, unit.replace("$", r"\$")), _with_unit(f"{key} = {number}", unit))
 
 
-def _beside(text: str, unit: str) -> str:
+def _with_unit(text: str, unit: str) -> str:
     return f"{text} {unit}" if unit else text
 
 

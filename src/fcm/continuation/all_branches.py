@@ -112,7 +112,7 @@ def _nearest_chords(points: FloatArray, options: PathOptions) -> list[tuple[int,
     return [
         (i, float(part[i]))
         for i in near
-        if options.same < np.sqrt(square[i]) and off[i] < options.beside * np.sqrt(square[i])
+        if options.same < np.sqrt(square[i]) and off[i] < options.max_distance_ratio * np.sqrt(square[i])
     ]
 
 

@@ -145,10 +145,10 @@ class LabelledSwitching:
 
     def goes_straight(self) -> bool:
         """Whether a step went straight on; what it misses by more than the turn explains is beside it."""
-        beside = (
+        allowed_miss = (
             2.0 * (1.0 - self.options.straight_cosine)
         ) ** 0.5  # by which a step that turns as much misses it
-        return self.stepper.cosine > self.options.straight_cosine and self.stepper.miss < beside
+        return self.stepper.cosine > self.options.straight_cosine and self.stepper.miss < allowed_miss
 
     def hides_fold_pair(self) -> bool:
         """Whether the parameter went against the direction at both ends: there are two folds between."""
@@ -261,10 +261,10 @@ def direction_beyond(
 
     Parameters
     ----------
-    came : (unknown + 1,)
+    incoming : (unknown + 1,)
         Direction in which the curve came to the corner.
-    leads_on : callable
-        Whether a way at an angle of that cosine to it is another, the problem being bound there.
+    is_new_direction : callable
+        Whether a direction at an angle of that cosine to it is another; the problem is bound there.
     """
     for length in stepper.options.labels.departure_lengths:
         for probe, offset in _guesses(stepper.options.labels, length, incoming):

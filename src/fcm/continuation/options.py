@@ -374,7 +374,7 @@ class PathOptions:
     ----------
     same : float
         In the problem's scale: solutions closer than this are one.
-    beside : float
+    max_distance_ratio : float
         Part of a chord: what is further from it is not on its part of a path.
     chords : int
         Nearest ones that are looked at.
@@ -383,7 +383,7 @@ class PathOptions:
     """
 
     same: float = 1e-5
-    beside: float = 0.5
+    max_distance_ratio: float = 0.5
     chords: int = 4
     flat: float = 0.1
 

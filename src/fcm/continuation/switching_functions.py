@@ -214,10 +214,10 @@ def next_extrapolated_root(stepper: Stepper) -> cython.double:
     for k in range(stepper.problem.margins):
         if stepper.here.margin[k] * stepper.here.slope[k] < 0.0:
             here: cython.double = stepper.here.margin[k]
-            beside: cython.double = here + DIFFERENCE_LENGTH * stepper.here.slope[k]
+            ahead: cython.double = here + DIFFERENCE_LENGTH * stepper.here.slope[k]
             # the square of such a root falls half as fast along the tangent as it does along the curve
-            at: cython.double = 2.0 * DIFFERENCE_LENGTH * here * here / (here * here - beside * beside)
-            if here * beside > 0.0 and (first == 0.0 or at < first):
+            at: cython.double = 2.0 * DIFFERENCE_LENGTH * here * here / (here * here - ahead * ahead)
+            if here * ahead > 0.0 and (first == 0.0 or at < first):
                 first = at
     return first
 

@@ -77,8 +77,8 @@ def seconds_of_curve(scene: Scene, harmonics: int, cost: CurveCost | None = None
     modes, many = int((scene.modal.frequency <= highest).sum()), layout.unknowns >= CONDENSATION.min_unknowns
     few = many and scene.ring is None and modes < CONDENSATION.max_fraction * layout.ports
     each = _evaluation(layout, modes * (1 + 2 * harmonics) if few else 0, cost.each)
-    beside = cost.overhead * layout.contacts * (1 + harmonics)
-    return max(cost.evaluations, cost.evaluations_per_point / scene.max_step) * (each + beside)
+    further = cost.overhead * layout.contacts * (1 + harmonics)
+    return max(cost.evaluations, cost.evaluations_per_point / scene.max_step) * (each + further)
 
 
 def seconds_with(system: System, evaluations: int, harmonics: int) -> float:

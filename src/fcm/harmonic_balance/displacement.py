@@ -131,9 +131,9 @@ class Extremes:
         rate: cython.double = 0.0
         for k in range(self.samples):
             here: cython.double = sign * self.wave[k]
-            beside: cython.double = sign * self.wave[k - 1 if k > 0 else last]
-            beside = max(beside, sign * self.wave[k + 1 if k < last else 0])
-            if here < beside or here + between < max(most, value):
+            neighbour: cython.double = sign * self.wave[k - 1 if k > 0 else last]
+            neighbour = max(neighbour, sign * self.wave[k + 1 if k < last else 0])
+            if here < neighbour or here + between < max(most, value):
                 continue
             self.extreme(d, k)
             if sign * self.value > value:

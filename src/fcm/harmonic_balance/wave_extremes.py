@@ -33,8 +33,8 @@ def greatest(
     waves = np.exp(1j * np.outer(h, step * np.arange(samples)))
     x = np.einsum("ht,phd->tpd", waves, X).real
     between = np.einsum("h,phd->pd", 0.125 * (h * step) ** 2, np.abs(X))
-    beside = np.maximum(np.roll(x, 1, axis=0), np.roll(x, -1, axis=0))
-    k, p, d = np.nonzero((x >= beside) & (x + between >= x.max(axis=0)))
+    neighbour = np.maximum(np.roll(x, 1, axis=0), np.roll(x, -1, axis=0))
+    k, p, d = np.nonzero((x >= neighbour) & (x + between >= x.max(axis=0)))
     found: FloatArray = x.max(axis=0)
     np.maximum.at(found, (p, d), _extreme(X[p, :, d], h, step * k, step, options.steps))
     return found

@@ -160,12 +160,12 @@ def free_height(ring: Ring, x: float, end: float, top: float) -> float:
 
     Below the end, if the axis does not go so far.
     """
-    beside_one, below, above = _NUMBER
+    room_of_number, below, above = _NUMBER
     modes = [
         frequency
         for diameter, *both in zip(ring.diameters, ring.opened, ring.stuck, strict=True)
         for frequency in np.concatenate(both).tolist()
-        if abs(diameter - x) < beside_one
+        if abs(diameter - x) < room_of_number
     ]
     height = min(end, LAYOUT.campbell_labelled * top)
     for direction in (1.0, -1.0):
@@ -180,7 +180,7 @@ def free_height(ring: Ring, x: float, end: float, top: float) -> float:
 
 def _placed(ring: Ring, x: float, bars: list[Bar]) -> list[tuple[Bar, float, float]]:
     """The bars at a diameter, with their middles and widths."""
-    lanes = beside([(bar.low, bar.high) for bar in bars])
+    lanes = lanes_of([(bar.low, bar.high) for bar in bars])
     count = max(lanes) + 1
     room = min(LAYOUT.campbell_bar * (ring.sectors // 2 + 1), LAYOUT.campbell_filled / count)
     return [
@@ -202,10 +202,10 @@ def _met(
     return met
 
 
-def beside(spans: Sequence[tuple[float, float]]) -> list[int]:
+def lanes_of(spans: Sequence[tuple[float, float]]) -> list[int]:
     """A lane for each of some spans, so that those in one lane do not overlap; as few lanes as that takes.
 
-    >>> beside([(1, 2), (1, 2), (2, 4), (1.5, 3)])
+    >>> lanes_of([(1, 2), (1, 2), (2, 4), (1.5, 3)])
     [0, 1, 0, 2]
     """
     ends: list[float] = []  # of what is last in each lane

@@ -189,9 +189,9 @@ def _parts(curves: Sequence[DrawnCurve]) -> Iterator[tuple[DrawnCurve, str, Bool
 
 def _masked(curve: DrawnCurve, rows: BoolArray, column: int) -> FloatArray:
     """The amplitude at some points and at their neighbours, so that parts meet; NaN elsewhere."""
-    beside = rows.copy()
-    beside[1:] |= rows[:-1]
-    return np.where(beside, curve.amplitude[:, column], np.nan)
+    drawn = rows.copy()
+    drawn[1:] |= rows[:-1]
+    return np.where(drawn, curve.amplitude[:, column], np.nan)
 
 
 def _mode(y: FloatArray) -> str:

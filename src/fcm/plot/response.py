@@ -188,10 +188,10 @@ def doubtful(curve: DrawnCurve) -> BoolArray:
 
 def _split(amplitude: FloatArray, unstable: BoolArray) -> tuple[FloatArray, FloatArray]:
     """The stable and the unstable parts, NaN elsewhere; the unstable reach to their stable neighbours."""
-    beside = unstable.copy()
-    beside[1:] |= unstable[:-1]
-    beside[:-1] |= unstable[1:]
-    return np.where(unstable, np.nan, amplitude), np.where(beside, amplitude, np.nan)
+    drawn = unstable.copy()
+    drawn[1:] |= unstable[:-1]
+    drawn[:-1] |= unstable[1:]
+    return np.where(unstable, np.nan, amplitude), np.where(drawn, amplitude, np.nan)
 
 
 def _named(curve: DrawnCurve, units: Mapping[str, str], names: bool = True) -> str:

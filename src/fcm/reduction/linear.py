@@ -22,7 +22,7 @@ def all_springs(scene: Scene) -> FloatArray:
 def telling_frequencies(scene: Scene, springs: FloatArray) -> FloatArray:
     """Frequencies spread over the range, and those in it at which a driven harmonic is in resonance."""
     low, high = scene.frequency_range
-    natural = resonances(scene, springs) * (1.0 + REDUCTION.beside)
+    natural = resonances(scene, springs) * (1.0 + REDUCTION.resonance_offset)
     at = np.concatenate([natural / harmonic for harmonic in driven_harmonics(scene)])
     return np.concatenate((np.linspace(low, high, REDUCTION.spread), at[(at > low) & (at < high)]))
 

@@ -14,7 +14,7 @@ class ReductionOptions:
     # times the highest mode: a stiffer spring would lose digits that the contact's force keeps
     stiff: float = 100.0
     spread: int = 24  # frequencies of the range at which linear responses are looked at, besides resonances
-    beside: float = 1e-7  # relative distance from a resonance, where nothing is infinite
+    resonance_offset: float = 1e-7  # relative distance from a resonance, where nothing is infinite
     curves: int = 8  # of a sweep, of which points are looked at
     points: int = 4  # of a curve, those of its peaks first
     tolerance: float = 1e-5  # of the response, for modes that are replaced

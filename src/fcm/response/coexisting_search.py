@@ -22,7 +22,7 @@ class CoexistingMotions:
     least: FloatArray  # (point, dof) nan where the amplitude is unique
     greatest: FloatArray  # (point, dof)
     whole: FloatArray  # (point,) 1 if it is that of all residual friction, 0 if not, nan where there is none
-    beside: list[Stuck]  # motions that no extent holds
+    isolated: list[Stuck]  # motions that no extent holds
 
     @classmethod
     def unknown(cls, frequency: float, amplitude: FloatArray) -> CoexistingMotions:

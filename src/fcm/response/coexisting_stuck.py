@@ -34,9 +34,9 @@ def coexisting_stuck(
         across = (frequency[:-1] - omega) * (frequency[1:] - omega) < 0.0
         near = here | np.append(across, False) | np.append(False, across)
         known = {tuple(states) for states in regime[near].tolist()}
-        beside = [one for one in others.beside if one.frequency == omega]
-        least = np.array([*others.least[here], *(one.least for one in beside)])
-        greatest = np.array([*others.greatest[here], *(one.greatest for one in beside)])
+        isolated = [one for one in others.isolated if one.frequency == omega]
+        least = np.array([*others.least[here], *(one.least for one in isolated)])
+        greatest = np.array([*others.greatest[here], *(one.greatest for one in isolated)])
         for one in linear_motions(scene, omega):
             amplitude = half_peak_to_peak(
                 (-1j * one.wave @ scene.modal.shapes)[None], driven_harmonics(scene)

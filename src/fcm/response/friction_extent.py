@@ -30,7 +30,7 @@ class FrictionExtent:
     least: FloatArray  # (point, dof)
     greatest: FloatArray  # (point, dof)
     whole: FloatArray  # (point,) 1 if it is that of all residual friction, 0 if not, nan where there is one
-    beside: list[Stuck] = field(default_factory=list)  # motions that no extent holds
+    isolated: list[Stuck] = field(default_factory=list)  # motions that no extent holds
 
 
 def friction_extent(
@@ -52,7 +52,7 @@ def friction_extent(
             found = _told(scene, samples, CoexistingMotions.unknown(omega, amplitude[here]), search)
             search.keep(found)
         out.least[here], out.greatest[here], out.whole[here] = found.least, found.greatest, found.whole
-        out.beside += found.beside
+        out.isolated += found.isolated
     return out
 
 
@@ -90,7 +90,7 @@ def _told(
     for one in others:
         if all(set(one.family.contacts).isdisjoint(found.contacts) for found in families.values()):
             extent = one.family.least, one.family.greatest
-            out.beside.append(Stuck(out.frequency, one.states, 0.0 - one.residual, *extent))
+            out.isolated.append(Stuck(out.frequency, one.states, 0.0 - one.residual, *extent))
     return out
 
 

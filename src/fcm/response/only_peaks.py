@@ -150,10 +150,10 @@ def _peaks(curve: Curve, dof: int) -> list[int]:
 
 def _guess(scene: Scene, curve: Curve, k: int, dof: int | None) -> Guess:
     there = np.flatnonzero(np.isfinite(curve.frequency))
-    beside = min((int(i) for i in (k - 1, k + 1) if i in there), default=k)
-    z = unknowns(curve, scene, np.array([k, beside]), curve.harmonics)
+    neighbour = min((int(i) for i in (k - 1, k + 1) if i in there), default=k)
+    z = unknowns(curve, scene, np.array([k, neighbour]), curve.harmonics)
     one, other = (state_of(scene, curve.harmonics, row) for row in z)
-    return Guess(float(curve.frequency[k]), one, (float(curve.frequency[beside]), other), dof)
+    return Guess(float(curve.frequency[k]), one, (float(curve.frequency[neighbour]), other), dof)
 
 
 def _jump(scene: Scene, jump: Jump, fold: OrbitRecord | None) -> Jump | None:

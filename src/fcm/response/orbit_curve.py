@@ -167,7 +167,7 @@ def _orbits(
         family_least=others.least,
         family_greatest=others.greatest,
         family_complete=others.whole,
-        stuck=[*others.beside, *stuck],
+        stuck=[*others.isolated, *stuck],
     )
 
 

@@ -35,17 +35,17 @@ class Refined:
 
     Attributes
     ----------
-    found : Accurate
+    found : RefinedResponse
         The response, of the degrees of freedom that it was followed by.
     stable : list of array (point,)
         For each path; 1 stable, 0 not, NaN not known.
-    lost : list of Lost
+    lost : list of StabilityLimit
         How far the frequencies are off at which stability changes without a fold, where harmonics are chosen.
     exceeded : bool
         Whether more harmonics have a higher branch, where they are given.
     bifurcations : list of (str, float)
         How stability changes without a fold, and where [rad/s].
-    every : Accurate
+    every : RefinedResponse
         The response of all degrees of freedom.
     """
 

@@ -144,15 +144,15 @@ def scene_from_dict(
         mistakes.add("", "is empty; a scene has [modal], [[contact]], [[force]] and [response]")
         mistakes.raise_if_any()
     top.only(*names(""))
-    beside = Files(Path(folder), largest_file)
-    fields = _read(top, beside, _Reading(every_row, solved))
+    files = Files(Path(folder), largest_file)
+    fields = _read(top, files, _Reading(every_row, solved))
     mistakes.raise_if_any()
     try:
         scene = _made(name, fields, told)
     except MistuningError as error:
         mistakes.add(MISTUNING, str(error))
         mistakes.raise_if_any()
-    scene = replace(scene, files=tuple(dict.fromkeys(beside.read)))
+    scene = replace(scene, files=tuple(dict.fromkeys(files.read)))
     _check_curves(scene, mistakes)
     return scene
 

@@ -35,13 +35,13 @@ def load_pairs(path_or_name: str | Path, *, largest_file: int = FILES.largest) -
     ()
     """
     path, name = path_of(path_or_name), str(path_or_name)
-    mistakes, beside = Mistakes(name), Files(path.parent, largest_file)
+    mistakes, inputs = Mistakes(name), Files(path.parent, largest_file)
     top = Section(read_toml(path, name), "", mistakes)
     given = top.data.get("frequency_unit")
     unit = given if isinstance(given, str) and given in UNITS else "rad/s"
-    modal, _ = read_linear(top, beside, unit, read_cyclic(top))
-    read_contacts(top, modal["dofs"], beside)
+    modal, _ = read_linear(top, inputs, unit, read_cyclic(top))
+    read_contacts(top, modal["dofs"], inputs)
     length, _ = read_units(top)
     mistakes.raise_if_any()
-    files = (path, *dict.fromkeys(beside.read))
-    return Pairs(tuple(beside.interfaces), tuple(beside.noted), length, files)
+    files = (path, *dict.fromkeys(inputs.read))
+    return Pairs(tuple(inputs.interfaces), tuple(inputs.noted), length, files)

@@ -125,7 +125,7 @@ def _followed(
         lambda: problem, there, span, FollowOptions(options.level.max_step), None, along, rest
     )
     turns = [turn for path in curves.paths for turn in level_folds(path, omega)]
-    found.extend(_beside_level_folds(problem.scene, turns, poll, options))
+    found.extend(_beyond_level_folds(problem.scene, turns, poll, options))
     return curves.status is Status.COMPLETE
 
 
@@ -173,18 +173,18 @@ def _from_rest(
     return None
 
 
-def _beside_level_folds(
+def _beyond_level_folds(
     scene: Scene, turns: Sequence[LevelFold], poll: Poll, options: ShootingOptions = SHOOTING
 ) -> Iterator[FloatArray]:
     """Stable motions (unknown + 1,) beside turns below the level 1, at frequencies within the range."""
-    from fcm.branches.level_turns import reaches_level_one, solutions_beside
+    from fcm.branches.level_turns import reaches_level_one, solutions_past_fold
 
     problem, (low, high) = ProblemAtLevel(scene, options=options), scene.frequency_range
     newton = Newton(problem)
     for turn in turns:
         poll()
         if turn.may_reach_level_one and reaches_level_one(problem, newton, turn):
-            for z in (one for one in solutions_beside(newton) if low <= one[-1] <= high):
+            for z in (one for one in solutions_past_fold(newton) if low <= one[-1] <= high):
                 shot = problem.shot(z)
                 if shot is not None and within_unit_circle(shot.multipliers, options):
                     yield z

@@ -63,8 +63,10 @@ def states_of_branches(
     """The height of each end and top of a balance's branches, itself, and guesses beside it, the nearest
     first."""
     for path, shown in zip(found.traced.branches.paths, found.shown, strict=True):
-        beside = [(top, _around(even, top, options)) for top, even in _tops(path, shown.amplitude, options)]
-        for top, points in [(0, iter([0])), (-1, iter([-1])), *beside]:
+        around_tops = [
+            (top, _around(even, top, options)) for top, even in _tops(path, shown.amplitude, options)
+        ]
+        for top, points in [(0, iter([0])), (-1, iter([-1])), *around_tops]:
             guesses = (path.z[i] for i in points)
             yield (
                 float(shown.amplitude[top].max()),
@@ -184,7 +186,7 @@ def _single_harmonic(whole: Scene, poll: Poll) -> System:
 
 
 def _branches_with_few_harmonics(one: System, options: ShootingOptions = SHOOTING) -> UncheckedResponse:
-    """The branches of `SOME` harmonics, or of one where there are many contacts."""
+    """The branches of a few harmonics, or of one where there are many contacts."""
     from fcm.accuracy.outline import unchecked_response
 
     return unchecked_response(

@@ -25,7 +25,7 @@ class Guess:
 
     frequency: float  # [rad/s]
     state: State
-    beside: tuple[float, State]
+    neighbour: tuple[float, State]
     dof: int | None  # whose peak is sought; a fold if None
 
 
@@ -51,7 +51,7 @@ def located(problem: OrbitProblem, guess: Guess, known: list[OrbitRecord]) -> Or
 def _on_curve(problem: OrbitProblem, guess: Guess) -> FloatArray | None:
     """The point of the curve in the plane through a guess, across the curve; else at its frequency."""
     z = problem.z(guess.state, guess.frequency)
-    other = problem.z(guess.beside[1], guess.beside[0])
+    other = problem.z(guess.neighbour[1], guess.neighbour[0])
     newton = Newton(problem)
     problem.measure(z)
     scale = np.array(problem.scale)

@@ -26,7 +26,7 @@ Poll = Callable[[], None]  # called now and then; raises what ends the search
 
 
 def never_interrupt() -> None:
-    """A `Look` that lets the search take as long as it does."""
+    """A `Poll` that lets the search take as long as it does."""
 
 
 @dataclass(frozen=True)

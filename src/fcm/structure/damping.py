@@ -108,8 +108,8 @@ def _places(matrix: FloatArray, damper: FloatArray, low: float, high: float) -> 
     natural = np.sqrt(np.maximum(value, 0.0))
     width = 0.5 * np.einsum("ij,ij->j", turn.conj(), damper @ turn).real
     inside = np.flatnonzero((natural > low) & (natural < high))[: DAMPING.most_resonances]
-    own, beside = natural[inside], width[inside]
-    ends = np.unique(np.clip([low, high, *own, *(own - beside), *(own + beside)], low, high))
+    own, half_width = natural[inside], width[inside]
+    ends = np.unique(np.clip([low, high, *own, *(own - half_width), *(own + half_width)], low, high))
     gaps = ends.size - 1
     each = int(np.clip(DAMPING.work / (max(gaps, 1) * len(matrix) ** 3), 1, DAMPING.between))
     places: FloatArray = np.interp(np.arange(gaps * each + 1) / each, np.arange(ends.size), ends)

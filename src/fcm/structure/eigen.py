@@ -205,20 +205,20 @@ def of_shapes(system: System, shapes: FloatArray) -> Modes:
     return Modes(stiffness[order], shapes[:, order])
 
 
-def _lanczos(system: System, count: int, beside: FloatArray | None = None, near: float = 0.0) -> FloatArray:
+def _lanczos(system: System, count: int, known: FloatArray | None = None, near: float = 0.0) -> FloatArray:
     """The shapes of the lowest modes; of those that are orthogonal to some shapes of mass 1."""
     rows, kind = system.rows, system.K.dtype
     start = _start(rows)
-    if beside is None:
+    if known is None:
         inverse = LinearOperator((rows, rows), matvec=system.solve, dtype=kind)
     else:
-        heavy, left = system.M @ beside, beside.conj().T
-        start = start - beside @ (heavy.conj().T @ start)
+        heavy, left = system.M @ known, known.conj().T
+        start = start - known @ (heavy.conj().T @ start)
 
         def solve(loads: FloatArray) -> FloatArray:
             loads = np.ravel(loads)
             answer = system.solve(loads - heavy @ (left @ loads))
-            pure: FloatArray = answer - beside @ (heavy.conj().T @ answer)
+            pure: FloatArray = answer - known @ (heavy.conj().T @ answer)
             return pure
 
         inverse = LinearOperator((rows, rows), matvec=solve, dtype=kind)

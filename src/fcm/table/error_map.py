@@ -41,8 +41,8 @@ def error_map(coefficient: str, plane: Plane, table: Interpolant, steps: tuple[i
     error = error_at(n0[None, :], b[:, None])
     step = (n0[1] - n0[0], b[1] - b[0])
     starts = _peaks(error, *np.broadcast_arrays(n0[None, :], b[:, None]))
-    beside = _beside_boundaries(plane)
-    starts += _peaks(error_at(*beside), *beside)
+    places = _points_near_boundaries(plane)
+    starts += _peaks(error_at(*places), *places)
     worst, largest = max((_zoomed(error_at, plane, at, step) for at in starts), key=lambda one: one[1])
     return ErrorMap(coefficient, plane, *plane.nodes(steps), error, edges(plane), worst, largest)
 
@@ -65,7 +65,7 @@ def _zoomed(
     return at, largest
 
 
-def _beside_boundaries(plane: Plane) -> tuple[FloatArray, FloatArray]:
+def _points_near_boundaries(plane: Plane) -> tuple[FloatArray, FloatArray]:
     """Points (j, i) that crowd towards b_bar = 1 and the lines between the regimes, where ridges are."""
     low, high = plane.b_range
     rows = np.concatenate([np.linspace(low, high, MAP_OPTIONS.rows), 1.0 + CORNER, 1.0 - CORNER])

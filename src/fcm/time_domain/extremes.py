@@ -158,7 +158,7 @@ class Scan(Walk):
         return count
 
     def values(self, slot: cython.Py_ssize_t) -> None:
-        """What `_look` tells of the state vectors `ahead`."""
+        """Displacements and velocities that the state vectors `ahead` have."""
         n: cython.Py_ssize_t = self.flows.linear
         rows, y = np.asarray(self._rows.dense), np.asarray(self.ahead)
         out, forces = np.asarray(self._values), np.zeros((2 * self.flows.waves, 2, self.flows.size))

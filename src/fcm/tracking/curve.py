@@ -47,10 +47,10 @@ class SpecialPointCurve:
         omega' vanishes with s', as w . R_omega does not; else it is w . R_omega that vanishes, and the
         response has an isolated point, or crosses itself. At a corner the frequency turns back, or does not.
         """
-        beside = [self.points[j].direction[-2] for j in (i - 1, i + 1) if 0 <= j < len(self.points)]
-        if self.points[i].switch and len(beside) == 2:
-            return "cusp" if beside[0] * beside[1] < 0.0 else "isola"
-        still = abs(self.points[i].direction[-2]) < cusp * max(map(abs, beside), default=0.0)
+        neighbours = [self.points[j].direction[-2] for j in (i - 1, i + 1) if 0 <= j < len(self.points)]
+        if self.points[i].switch and len(neighbours) == 2:
+            return "cusp" if neighbours[0] * neighbours[1] < 0.0 else "isola"
+        still = abs(self.points[i].direction[-2]) < cusp * max(map(abs, neighbours), default=0.0)
         return "cusp" if still else "isola"
 
 

@@ -107,11 +107,11 @@ def _landed(
     wider: TrackingRun, condition: Condition, start: _RefinedPoint, turn: TrackedPoint, turns: bool
 ) -> _RefinedPoint | None:
     """The point with more harmonics: that beside the start, or the turn that follows it."""
-    beside = land(wider, condition, wider.system.extended(start.spot.z, start.way.system.harmonics))
-    if beside is None or not _same_kind(wider, condition, beside, start):
+    landed = land(wider, condition, wider.system.extended(start.spot.z, start.way.system.harmonics))
+    if landed is None or not _same_kind(wider, condition, landed, start):
         return None
     if not turns:
-        return _RefinedPoint(wider, beside)
+        return _RefinedPoint(wider, landed)
     s, rise = float(start.spot.z[-1]), float(turn.z[-1] - start.spot.z[-1])
     if rise == 0.0:
         return None
@@ -123,7 +123,7 @@ def _landed(
         ),
         peaks_only=True,
     )
-    spots, _ = follow_special_point(near, condition, beside, rise > 0.0)
+    spots, _ = follow_special_point(near, condition, landed, rise > 0.0)
     if not spots or not spots[-1].turn:
         return None
     return _RefinedPoint(wider, spots[-1])

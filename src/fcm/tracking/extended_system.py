@@ -196,9 +196,7 @@ class ExtendedSystem(Problem):
         adjoint = np.linalg.solve(tangent.matrix.T, special[:-1] * scale)[:-1] / scale[:-1]
         ahead = scale * t / np.linalg.norm(t)
         step = self._difference_length(y, ahead)
-        gradient = self._special_beside(y + step * ahead, adjoint) - self._special_beside(
-            y - step * ahead, adjoint
-        )
+        gradient = self._special_at(y + step * ahead, adjoint) - self._special_at(y - step * ahead, adjoint)
         gradient *= np.linalg.norm(t) / (2.0 * step)
         return value, gradient
 
@@ -227,7 +225,7 @@ class ExtendedSystem(Problem):
             return np.array(balance.margin)
         return values(balance.laws, y, self.varied.harmonics, self.options)
 
-    def _special_beside(self, y: FloatArray, adjoint: FloatArray) -> FloatArray:
+    def _special_at(self, y: FloatArray, adjoint: FloatArray) -> FloatArray:
         """What changes along the tangent, (unknown + 2,), at a place on it."""
         here = self._evaluated(y)
         return here.growth - np.append(adjoint @ here.jacobian, adjoint @ here.by_s)

@@ -161,10 +161,10 @@ def descend(
     q, value, members = min(found, key=lambda one: one[1])
     for _ in range(valley.options.max_rounds):
         lines = [_along(valley, q, k) for k in range(q.size)]
-        followed, beside = all(line.all_followed for line in lines), min(lines, key=lambda line: line.value)
-        if not beside.value < value * (1.0 - valley.options.min_improvement):
+        followed, lowest = all(line.all_followed for line in lines), min(lines, key=lambda line: line.value)
+        if not lowest.value < value * (1.0 - valley.options.min_improvement):
             break
-        again = downhill(valley, beside.q)
+        again = downhill(valley, lowest.q)
         if not again[1] < value:
             break
         q, value, members = again

@@ -78,16 +78,16 @@ class Pieces(JointCrossing):
         """See `follow_special_point`."""
         self._switch_equations(start.corner)
         self._measure(start.z)
-        row, beside = self.held if forward else -self.held, np.array(start.z)
-        if beside[-1] in self.kinks:
-            beside = self._past_kink(beside, row)
-        if not self._solve(beside, row):
+        row, z = self.held if forward else -self.held, np.array(start.z)
+        if z[-1] in self.kinks:
+            z = self._past_kink(z, row)
+        if not self._solve(z, row):
             return [], Ending.STALLED
-        self.newton.z[-1] = beside[-1]
+        self.newton.z[-1] = z[-1]
         self._accept()
         first, heading = self.z, self.t * np.asarray(self.newton.scale)
         self.points = [self._point(self.z, self.t)]
-        if beside[-1] != start.z[-1]:
+        if z[-1] != start.z[-1]:
             self.points.insert(0, start)
         if self._outside(self.z[-1] + self.t[-1] * self.options.step.min_step * self.smooth.span):
             return self.points, Ending.SPAN

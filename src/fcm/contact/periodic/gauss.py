@@ -18,6 +18,6 @@ def gauss(count: int) -> tuple[FloatArray, FloatArray]:
     True
     """
     k = np.arange(1.0, count)
-    beside = k / np.sqrt(4.0 * k * k - 1.0)
-    points, vectors = np.linalg.eigh(np.diag(beside, 1) + np.diag(beside, -1))
+    off_diagonal = k / np.sqrt(4.0 * k * k - 1.0)
+    points, vectors = np.linalg.eigh(np.diag(off_diagonal, 1) + np.diag(off_diagonal, -1))
     return 0.5 * (1.0 + points), vectors[0] ** 2

@@ -47,11 +47,11 @@ def radau(stages: int) -> Radau:
     (True, 1.0)
     """
     k = np.arange(1.0, stages)
-    beside = k / np.sqrt(4.0 * k * k - 1.0)
-    free = np.diag(beside[:-1], 1) + np.diag(beside[:-1], -1)
+    off_diagonal = k / np.sqrt(4.0 * k * k - 1.0)
+    free = np.diag(off_diagonal[:-1], 1) + np.diag(off_diagonal[:-1], -1)
     last = np.zeros(stages - 1)
-    last[-1] = beside[-1] ** 2
-    jacobi = np.diag(beside, 1) + np.diag(beside, -1)
+    last[-1] = off_diagonal[-1] ** 2
+    jacobi = np.diag(off_diagonal, 1) + np.diag(off_diagonal, -1)
     jacobi[-1, -1] = 1.0 + np.linalg.solve(free - np.eye(stages - 1), last)[-1]
     points, vectors = np.linalg.eigh(jacobi)
     nodes = 0.5 * (1.0 + points)

@@ -33,10 +33,10 @@ def read_calculix(path: Path, largest: int) -> dict[str, Labelled]:
 
 def _rows(path: Path) -> tuple[str, ...]:
     """The names of the rows in the .dof file of the job; none if there is no such file."""
-    beside = path.with_suffix(".dof")
-    if not beside.is_file():
+    names = path.with_suffix(".dof")
+    if not names.is_file():
         return ()
-    return tuple(calculix_names(beside.read_text("utf-8-sig").splitlines(), beside.name))
+    return tuple(calculix_names(names.read_text("utf-8-sig").splitlines(), names.name))
 
 
 def calculix_names(lines: list[str], file: str) -> list[str]:
