@@ -306,6 +306,22 @@ def test_a_curve_that_is_lost_to_a_closed_one_goes_around_it_once():
     assert passed == pytest.approx([high, 3.0 - np.sqrt(3.0), high], abs=1e-10)
 
 
+def test_a_curve_that_is_lost_to_a_closed_one_ends_at_a_corner_that_it_comes_to_again():
+    """The same without a station: two corners of each round, at x = 2.5, are all that is known again."""
+    loop = circle().f
+
+    def joined(x, p):
+        return (x - 5.0, 1.0, 0.0) if p < 2.0 and x > 5.0 - 1e-4 else loop(x, p)
+
+    problem = Planar(joined, lambda x: x - 2.5)
+    path = follow(problem, start(5.0, -1.0), (-1.0, 5.0), options=FollowOptions(0.05))
+    assert path.status is Status.AROUND
+    corners = path.z[path.where(Mark.CORNER)]
+    half = np.sqrt(4.0 - 0.25)
+    assert corners[:, 0] == pytest.approx([2.5, 2.5, 2.5], abs=1e-6)
+    assert corners[:, -1] == pytest.approx([2.0 + half, 2.0 - half, 2.0 + half], abs=1e-6)
+
+
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("back", [1e-2, 1e-3, 1e-4])
 @pytest.mark.parametrize("middle", [2.0, 2.03, 2.1])

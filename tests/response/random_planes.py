@@ -10,6 +10,9 @@ frequencies, the middle one where the balance has its own, and by another one ha
 the peak is a corner. Where one of the three is on another branch, and at the ends of the range, its motion at
 the balance's peak is compared.
 
+A contact that never slips may rest at any place of a range, and the motion is another with each. What the
+motion pushes its slider before it is steady is therefore undone, in the first half of the periods.
+
 A peak is stable by the march where the motion that begins with the balance's state stays there, and one that
 is disturbed comes back to it.
 """
@@ -51,7 +54,7 @@ MODES, CONTACTS = 6, 3  # at most
 
 
 class Traced(NamedTuple):
-    """The highest peak of a scene, and the state of the modes there."""
+    """The highest peak of a scene, and the state of the modes and sliders there."""
 
     amplitude: float
     frequency: float
@@ -61,6 +64,7 @@ class Traced(NamedTuple):
     q: FloatArray
     p: FloatArray
     w: FloatArray  # (contact, 2), the sliders
+    rests: FloatArray  # (contact,), 1 of one that never slips
 
 
 def random_plane(seed: int) -> Scene:
@@ -103,8 +107,8 @@ def traced(seed: int) -> Traced:
     return Traced(top.amplitude, top.frequency, top.error, top.stable, scene.modal.shapes[:, d], *state)
 
 
-def _start(scene: Scene, curve: Curve, row: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Displacements and velocities of the modes as a period begins, and the places of the sliders."""
+def _start(scene: Scene, curve: Curve, row: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Displacements and velocities of the modes as a period begins, places of the sliders, and which rest."""
     omega = curve.frequency[row]
     if curve.harmonic is None:
         X = (curve.amplitude[row] * np.exp(1j * curve.phase[row]))[None]
@@ -116,11 +120,10 @@ def _start(scene: Scene, curve: Curve, row: int) -> tuple[FloatArray, FloatArray
     # x = mean + Im sum X_h exp(i h theta) = Re sum X_h / i exp(i h theta)
     whole = np.zeros((max(order) + 1, X.shape[1]), complex)
     whole[0], whole[order] = curve.mean[row], X / 1j
-    w = np.zeros((len(scene.contacts), 2))
-    for place, c in zip(w, scene.contacts, strict=True):
-        u = whole @ np.array(c.directions).T
-        place[:] = planar_loop(*u.T, c.mu, c.k_u, c.k_v, c.n_0).slider(0.0)
-    return back @ x, back @ rate, w
+    motions = [(whole @ np.array(c.directions).T).T for c in scene.contacts]
+    loops = [planar_loop(*u, c.mu, c.k_u, c.k_v, c.n_0) for u, c in zip(motions, scene.contacts, strict=True)]
+    rests = np.array([float(loop.sequence == "E") for loop in loops])
+    return back @ x, back @ rate, np.array([loop.slider(0.0) for loop in loops]), rests
 
 
 def padded(rows: list[FloatArray], *shape: int) -> FloatArray:
@@ -171,9 +174,12 @@ class March:
                 found[:, i, 0, : len(scene.modal.mass)] += np.outer(wave, scene.modal.shapes @ one.direction)
         return found
 
-    def run(self, omega: FloatArray, steps: int, state: State) -> tuple[FloatArray, list[State]]:
+    def run(
+        self, omega: FloatArray, steps: int, state: State, place: FloatArray
+    ) -> tuple[FloatArray, list[State]]:
         """From a state at omega (scene, motion): half the peak-to-peak of the last period (scene, motion),
-        and the states at the beginnings of all and at the end of the last."""
+        and the states at the beginnings of all and at the end of the last. Sliders are brought back to their
+        place (scene, 1, contact, 2), if it is not NaN, in the first half of the periods."""
         q, p, w = state
         h = 2.0 * pi / omega[..., None] / steps
         damped, stiff = self.damping * self.frequency * h, self.frequency**2
@@ -203,7 +209,9 @@ class March:
             return force.reshape(*q.shape[:2], 3 * CONTACTS) @ back
 
         g = push[0] - stiff * q - contact(q)
-        for _ in range(PERIODS):
+        for period in range(PERIODS):
+            if period < PERIODS // 2:
+                w = np.where(np.isnan(place), w, place)
             states.append(State(q, p, w))
             for k in range(steps):
                 p = p * (1.0 - damped) + 0.5 * h * g
@@ -227,11 +235,13 @@ def beyond(low: FloatArray, here: FloatArray, high: FloatArray) -> FloatArray:
     return np.where(bend > 0.0, (high - low) ** 2 / (8.0 * np.maximum(bend, 1e-300)), 0.0)
 
 
-def halved(march: March, omega: FloatArray, state: State) -> tuple[FloatArray, FloatArray, list[State]]:
+def halved(
+    march: March, omega: FloatArray, state: State, place: FloatArray
+) -> tuple[FloatArray, FloatArray, list[State]]:
     """Amplitudes (scene, motion) of steps halved twice, their last change, states of the longest step."""
     heights, first = [], list[State]()
     for times in (1, 2, 4):
-        height, states = march.run(omega, times * STEPS, state)
+        height, states = march.run(omega, times * STEPS, state, place)
         first = first or states
         heights.append(height)
         state = states[-1]
@@ -243,6 +253,8 @@ def marched(seeds: list[int], found: list[Traced]) -> tuple[FloatArray, FloatArr
     told, amplitude = (np.array([getattr(one, key) for one in found]) for key in ("frequency", "amplitude"))
     shape, q, p = (padded([getattr(one, key) for one in found], MODES) for key in ("shape", "q", "p"))
     w = padded([one.w for one in found], CONTACTS, 2)
+    rests = padded([one.rests for one in found], CONTACTS)
+    place = np.where(rests[..., None] > 0.0, w, np.nan)[:, None]
     march = March([random_plane(seed) for seed in seeds], shape)
     balance = State(q[:, None], p[:, None], w[:, None])
 
@@ -252,7 +264,7 @@ def marched(seeds: list[int], found: list[Traced]) -> tuple[FloatArray, FloatArr
     state, rng = balance.of(0, omega.shape[1]), np.random.default_rng(0)
     for one in state[:2]:
         one[:, 1] *= 1.0 + LITTLE * rng.standard_normal(one[:, 1].shape)
-    height, change, states = halved(march, omega, state)
+    height, change, states = halved(march, omega, state, place)
     apart = np.array([np.abs(one.q[:, 1] - one.q[:, 0]).max(axis=-1) for one in states])
     apart += np.array([np.abs(one.w[:, 1] - one.w[:, 0]).max(axis=(-2, -1)) for one in states])
     middle = height[:, 0]

@@ -323,6 +323,9 @@ class Follower:
     def leave_corner(self, point: Point, at: cython.double, past: cython.double = 0.0) -> object:
         """Go on from a corner, a point at a length from here; past: where to look if it is labelled."""
         self.nonsmooth.pass_corner(point, at, past or self.options.switching.departure_length)
+        if self.labelled is None and self.recorder.revisits_corner():
+            self.recorder.came_around = True
+            return self.recorder.end_status()
         resumed: cython.double = (
             self.options.step.resumed_fraction * self.step if self.problem.costly else 0.0
         )

@@ -187,6 +187,8 @@ class EventOptions(Options):
         So many are many.
     point_tolerance : float
         Part of the greatest unknown: points closer than this are one.
+    far_tolerance : float
+        The same, beyond which the curve has been elsewhere before it came to a corner again.
     closing_cosine : float
         Cosine beyond which a curve closes, and does not cross itself.
     landing_tolerance : float
@@ -205,6 +207,7 @@ class EventOptions(Options):
     peak_tolerance_of_many: cython.double = 5e-7
     many_outputs: cython.int = 24
     point_tolerance: cython.double = 1e-6
+    far_tolerance: cython.double = 1e-4
     closing_cosine: cython.double = 0.5
     landing_tolerance: cython.double = 0.25
 

@@ -6,7 +6,7 @@ cdef class Recorder:
     cdef readonly Stepper stepper
     cdef readonly PointStore store
     cdef readonly Py_ssize_t n
-    cdef readonly double low, high, same
+    cdef readonly double low, high, same, far
     cdef readonly bint interior, came_around, stopped
     cdef long last
     cdef int ended_by
@@ -16,6 +16,7 @@ cdef class Recorder:
     cdef double[::1] first, initial_direction
     cdef bint keep_events(self, double limit) except -1
     cdef bint revisits_station(self) except -1
+    cdef bint revisits_corner(self) except -1
     cdef int add(self, long mark) except -1
     cdef int add_corner(self, Point point) except -1
     cdef void update_greatest(self) noexcept

@@ -49,6 +49,7 @@ class Recorder:
             np.zeros(self.n + 1),
             np.zeros(self.n + 1),
         )
+        self.far = stepper.options.events.far_tolerance  # and these two are not
         self.interior = self.came_around = self.stopped = False
         self.last, self.ended_by = wanted.last, -1
         self.same = (
@@ -127,6 +128,27 @@ class Recorder:
             again: cython.bint = stopped and store.z[i, n] == store.z[last, n]
             if again and store.direction[i, n] * rise > 0.0 and store.same(i, last, self.same):
                 return True
+        return False
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def revisits_corner(self) -> cython.bint:
+        """Whether the last point, a corner, was passed before in its direction, and the curve was elsewhere
+        in between: it then goes around for ever."""
+        store: PointStore = self.store
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        last: cython.Py_ssize_t = store.count - 1
+        elsewhere: cython.bint = False
+        for i in range(last - 1, -1, -1):
+            if not elsewhere:
+                elsewhere = not store.same(i, last, self.far)
+            elif store.mark[i] & CORNER and store.same(i, last, self.same):
+                along: cython.double = 0.0
+                for j in range(self.n + 1):
+                    along += store.direction[i, j] * store.direction[last, j]
+                if along > 0.0:
+                    return True
         return False
 
     @cython.cfunc

@@ -29,12 +29,23 @@ def acceptable(stepper: Stepper) -> cython.bint:
         back: cython.bint = (
             stepper.problem.rooted and not keeps_orientation(stepper) and stepper.cosine < options.min_cosine
         )
-        return stepper.cosine > 0.0 and not back
+        return stepper.cosine > 0.0 and not back and within_turn(stepper)
     if not (
         keeps_orientation(stepper) and stepper.miss < options.max_miss and stepper.cosine > options.min_cosine
     ):
         return False
     return output_error(stepper) < options.max_output_error_ratio * options.target_output_error
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def within_turn(stepper: Stepper) -> cython.bint:
+    """Whether a short step misses the curve by no more than its turn explains: otherwise it is another part.
+
+    By the tangent of the turn, where the corner is at the start; by twice that, where it bends as a root.
+    """
+    turned: cython.double = sqrt(max(1.0 - stepper.cosine * stepper.cosine, 0.0))
+    return stepper.cosine * stepper.miss < 2.0 * turned + stepper.options.step.max_miss
 
 
 @cython.cfunc
