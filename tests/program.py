@@ -13,6 +13,8 @@ from typing import NamedTuple
 from click.testing import CliRunner
 
 from fcm.cli import main
+from fcm.cli.messages import Messages
+from fcm.cli.settings import Settings
 
 AS_A_MODULE = ("-m", "fcm.cli")
 
@@ -25,9 +27,11 @@ class Run(NamedTuple):
     err: str
 
 
-def called(*args):
-    """The program called in this process; a defect is raised."""
-    done = CliRunner().invoke(main, [str(arg) for arg in args], prog_name="fcm", catch_exceptions=False)
+def called(*args, messages=None, **settings):
+    """The program called in this process, with settings of its own or messages; a defect is raised."""
+    messages = messages or Messages(settings=Settings(**settings))
+    words = [str(arg) for arg in args]
+    done = CliRunner().invoke(main, words, obj=messages, prog_name="fcm", catch_exceptions=False)
     assert "Traceback" not in done.output
     return Run(done.exit_code, done.stdout, done.stderr)
 

@@ -7,22 +7,24 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fcm.accuracy import outline, refinement
 from fcm.accuracy.options import RefinementOptions
-from fcm.accuracy.outline import UncheckedResponse, unchecked_response
+from fcm.accuracy.outline import near, unchecked_response, with_more
 from fcm.accuracy.refinement import enlarged, refined_response, with_errors, with_estimated_errors
-from fcm.branches import force_level, shared_levels, trace
-from fcm.continuation import follow
+from fcm.branches import force_level, shared_levels
 from fcm.continuation.all_branches import contains
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.modal_condensation import CONDENSATION
-from fcm.harmonic_balance.options import HARMONIC_BALANCE
+from fcm.harmonic_balance.options import HARMONIC_BALANCE, HarmonicBalanceOptions, WorkOptions
 from fcm.harmonic_balance.system import System
-from fcm.harmonic_balance.work_budget import WorkLimitError
-from fcm.response.request import Request
-from fcm.response.trace import traced_curve
+from fcm.response.accuracy_shortfall import shortfall
 
 from ..harmonic_balance.truth import scene
+
+
+def limited(seconds):
+    """Options by which more harmonics may take so long."""
+    return HarmonicBalanceOptions(work=WorkOptions(max_seconds=seconds))
+
 
 EXACT = {
     300: 7.517e-5,
@@ -33,15 +35,13 @@ EXACT = {
 }  # peaks of 40z, exact motion
 
 
-def test_a_linear_response_takes_one_harmonic_and_one_pass(monkeypatch):
-    passes = []
-    traced = outline.traced
-    monkeypatch.setattr(outline, "traced", lambda *args: passes.append(args) or traced(*args))
-    found = refined_response(System(scene("yang1998", 100)), 1e-6)
+def test_a_linear_response_takes_one_harmonic_and_one_pass():
+    kept = []
+    found = refined_response(System(scene("yang1998", 100)), 1e-6, keep=lambda *told: kept.append(told))
     assert found.system.harmonics == (1,)
     assert found.reached
     assert found.max_error == 0.0
-    assert len(passes) == 1
+    assert not kept  # it is told what was traced before more is
 
 
 @pytest.mark.slow
@@ -108,114 +108,68 @@ def test_harmonics_are_chosen_by_need():
     assert len(found.system.harmonics) < 9
 
 
-def test_folds_that_cannot_be_told_ask_for_no_more_harmonics(monkeypatch):
-    """The same harmonics as where they can, and this is said."""
-    system = System(scene("yang1998", 5))
-    known, real = refined_response(system, 1e-2), refinement.with_nearest
-
-    def untold(*args):
-        return tuple(
-            replace(one, fold=np.where(np.arange(one.fold.size) == 0, np.nan, one.fold))
-            for one in real(*args)
-        )
-
-    monkeypatch.setattr(refinement, "with_nearest", untold)
-    found = refined_response(system, 1e-2)
-    assert known.reached and not found.reached
-    assert found.system.harmonics == known.system.harmonics
-    assert np.isnan(found.max_error) and not found.further
-    assert np.count_nonzero(np.isnan(found.folds)) == 1
-    assert found.max_known_error == max(found.peak.max(), np.nanmax(found.folds)) <= 1e-2
+def test_folds_that_cannot_be_told_ask_for_no_more_harmonics():
+    """Peaks that cannot be told do."""
+    known = refined_response(System(scene("yang1998", 5)), 1e-2)
+    assert known.reached and known.agrees
+    folds = replace(known, max_error=np.nan)
+    peaks = replace(folds, peak=np.full_like(known.peak, np.nan))
+    assert not folds.reached and folds.agrees and not peaks.agrees
+    assert not replace(folds, max_known_error=2e-2).agrees
 
 
-def test_levels_are_followed_with_the_last_harmonics_and_lead_to_no_branch_that_is_missed(monkeypatch):
+def test_levels_are_followed_with_the_last_harmonics_and_lead_to_no_branch_that_is_missed():
     """The rounds between go on from the branches of fewer harmonics; every solution is on a branch."""
-    followed, passes = [], []
-    found_at, led = trace.solutions_at, outline.traced_from
-    monkeypatch.setattr(
-        trace, "solutions_at", lambda one, *a: followed.append(one.harmonics) or found_at(one, *a)
-    )
-    monkeypatch.setattr(outline, "traced_from", lambda one, *a: passes.append(one.harmonics) or led(one, *a))
-    found = refined_response(System(scene("yang1998", 5)), 1e-4)
-    last = found.system.harmonics
-    assert found.reached and len(passes) == 2 and passes[-1] == last
-    assert followed == [(1,), last]
+    kept = []
+    found = refined_response(System(scene("yang1998", 5)), 1e-4, keep=lambda one, *_: kept.append(one))
+    first, between = kept
+    assert found.reached and set(first.system.harmonics) < set(between.system.harmonics)
+    assert set(between.system.harmonics) < set(found.system.harmonics)
+    assert first.before is None and between.before is first and found.before is None
+    assert {one.harmonics for one in found.traced.found} == {found.system.harmonics}
     for omega in force_level.level_frequencies(found.system):
         for z in force_level.solutions(found.system, omega).solutions:
             assert any(contains(path, z, found.system.new_balance()) for path in found.traced.branches.paths)
 
 
-def test_a_branch_that_fewer_harmonics_do_not_lead_to_is_found_by_the_level_at_last(monkeypatch):
-    """As if there were no other way to a closed branch: that is another to be chosen for, too."""
-    known = refined_response(System(scene("isola")), 1e-2)
-    led, ahead = outline.traced_from, refinement.required_harmonics
-    asked: list[int] = []
-
-    def the_first_alone(*args):
-        response = led(*args)
-        asked.clear()
-        return replace(response, branches=replace(response.branches, paths=response.branches.paths[:1]))
-
-    monkeypatch.setattr(outline, "traced_from", the_first_alone)
-    monkeypatch.setattr(
-        refinement, "required_harmonics", lambda one, *a: asked.append(len(one.shown)) or ahead(one, *a)
-    )
-    found = refined_response(System(scene("isola")), 1e-2)
-    assert asked == [1] and len(known.shown) == 2
-    assert found.reached and found.system.harmonics == known.system.harmonics
-    assert found.peak == pytest.approx(known.peak, rel=1e-3)
+def test_a_branch_that_fewer_harmonics_do_not_lead_to_is_found_by_the_level_at_last():
+    first, more = unchecked_response(System(scene("isola"))), (1, 2, 3)
+    known = unchecked_response(first.system.with_harmonics(more))
+    led = first.prolongated(more, near(first, more), None)
+    found = led.with_levels()
+    assert len(led.shown) == 1 and len(found.shown) == len(known.shown) == 2
     assert sorted(one.amplitude.max() for one in found.shown) == pytest.approx(
         sorted(one.amplitude.max() for one in known.shown), rel=1e-6
     )
 
 
-def test_where_the_levels_take_too_long_the_response_is_that_of_fewer_harmonics_and_says_so(monkeypatch):
-    system = System(scene("yang1998", 5))
-    last = refined_response(system, 1e-4).system.harmonics
-
-    def too_long(one, before):
-        if one.harmonics == last:
-            raise WorkLimitError
-        return with_levels(one, before)
-
-    with_levels = outline.with_levels
-    monkeypatch.setattr(outline, "with_levels", too_long)
-    found = refined_response(System(system.scene), 1e-4)
-    assert found.further == last and found.begun and not found.reached
-    assert {1} < set(found.system.harmonics) < set(last)
-    assert all(one.harmonics == found.system.harmonics for one in found.traced.found)
+def test_where_the_levels_take_too_long_the_response_is_that_of_fewer_harmonics_and_says_so():
+    first, more = unchecked_response(System(scene("yang1998", 5))), (1, 2, 3)
+    then = first.prolongated(more, near(first, more), None)
+    work = then.system.work
+    found = then.with_levels(1.001 * work.seconds)
+    assert found.further == more and found.begun and found.system.harmonics == (1,)
+    assert work.limit == np.inf
+    assert then.with_levels().system.harmonics == more
 
 
-def test_what_has_been_taken_counts_in_what_takes_too_long(monkeypatch):
+def test_what_has_been_taken_counts_in_what_takes_too_long():
     """A round that alone is not too long is not begun after others."""
-    system = System(scene("yang1998", 5))
-    enough, taken = refined_response(system, 1e-4), system.work.seconds
-    assert enough.reached and not enough.begun
-    monkeypatch.setattr(outline, "MAX_SECONDS", taken)
-    monkeypatch.setattr(UncheckedResponse, "seconds_with", lambda *_: 0.9 * taken)
-    found = refined_response(System(system.scene), 1e-4)
-    assert not found.reached and not found.begun
-    assert set(found.system.harmonics) > {1}
-    assert set(found.further) > set(found.system.harmonics)
+    first, more = unchecked_response(System(scene("yang1998", 5))), (1, 2, 3)
+    most, work = first.system.options.work.max_seconds, first.system.work
+    then, further, _ = with_more(first, more, told=True)
+    assert then.system.harmonics == more and not further
+    work.add(most - work.seconds - 0.5 * first.seconds_with(more))
+    assert with_more(first, more, told=True) == (None, more, False)
 
 
-def test_what_is_taken_is_levels_branches_and_error_points(monkeypatch):
-    """Of levels and branches as counted from outside, by evaluations of balances of their sizes; curves of
-    folds, which are followed in the level as well, take no more than these again."""
+def test_what_is_taken_is_levels_branches_and_error_points():
+    """Of branches no less than counted from outside, by evaluations of balances of their size."""
     shared_levels.clear()  # those that another test has followed
     system = System(scene("yang1998", 5), (1, 2, 3))
-    paths = {}
-    for module in (force_level, trace):
-        some = paths[module] = []
-        keep = some.append
-        monkeypatch.setattr(
-            module, "follow", lambda *a, keep=keep, **k: keep(path := follow(*a, **k)) or path
-        )
     found = unchecked_response(system)
-    assert paths[force_level] and paths[trace]
-    evaluations = sum(path.evaluations for some in paths.values() for path in some)
-    counted = seconds_of(system, evaluations, 3)
-    assert counted <= found.seconds < 2.0 * counted
+    evaluations = sum(path.evaluations for path in found.traced.branches.paths)
+    assert found.seconds == system.work.seconds > seconds_of(system, evaluations, 3) > 0.0
     with_errors(found, 1e-3)
     assert system.work.seconds > found.seconds
     assert found.seconds_with((1, 2, 3)) == pytest.approx(found.seconds)
@@ -247,26 +201,26 @@ def test_an_evaluation_takes_what_was_measured(contacts, modes, taken):
     assert np.log(told) == pytest.approx(np.log(taken), abs=np.log(1.3))
 
 
-def test_a_round_that_takes_longer_than_was_foreseen_is_given_up(monkeypatch):
+def test_a_round_that_takes_longer_than_was_foreseen_is_given_up():
     """And that of fewer harmonics before it stays, with its error."""
-    system = System(scene("yang1998", 5))
-    first = unchecked_response(system)
-    monkeypatch.setattr(UncheckedResponse, "seconds_with", lambda *_: 0.0)
-    monkeypatch.setattr(outline, "MAX_SECONDS", 1.01 * first.seconds)
-    found = refined_response(System(system.scene), 1e-3)
-    assert found.begun and set(found.further) > {1, 2, 3}
-    assert found.system.harmonics == (1,) and not found.reached
-    assert found.max_error == pytest.approx(0.062, rel=0.1)
-    assert found.system.work.limit == np.inf
-    curve = traced_curve(system.scene, Request(harmonics=None, accuracy=1e-3))
-    assert "with 1 harmonic an estimated error of 6" in curve.short_of
-    assert "; more were given up after" in curve.short_of
-    assert {int(h) for h in re.split("[, ]", curve.short_of.split("--harmonics ")[1])} <= set(found.further)
+    first, more = unchecked_response(System(scene("yang1998", 5))), (1, 2, 3)
+    first.prolongated(more, near(first, more), None)
+    system = System(first.system.scene, options=limited(0.99 * first.system.work.seconds))
+    foreseen = replace(unchecked_response(system), seconds=0.0)
+    assert with_more(foreseen, more, told=True) == (None, more, True)
+    assert system.work.limit == np.inf
 
 
-def test_what_would_take_too_long_is_said(monkeypatch):
-    monkeypatch.setattr(outline, "MAX_SECONDS", 0.0)
-    found = refined_response(System(scene("yang1998", 5)), 1e-3)
+def test_what_was_given_up_is_said():
+    found = refined_response(System(scene("yang1998", 5), options=limited(0.0)), 1e-3)
+    said = shortfall(replace(found, begun=True), (), 1e-3)
+    assert "with 1 harmonic an estimated error of 6" in said
+    assert "; more were given up after some 0 s of work" in said
+    assert {int(h) for h in re.split("[, ]", said.split("--harmonics ")[1])} <= set(found.further)
+
+
+def test_what_would_take_too_long_is_said():
+    found = refined_response(System(scene("yang1998", 5), options=limited(0.0)), 1e-3)
     assert not found.reached
     assert found.system.harmonics == (1,)
     assert found.max_error == found.max_known_error == pytest.approx(0.062, rel=0.1)
@@ -285,18 +239,15 @@ def test_no_more_harmonics_are_added_than_some_seconds_allow():
     assert enlarged(found, 1e-4, 0.0) == (1,)
 
 
-def test_where_nothing_is_told_of_more_harmonics_they_take_no_longer_than_some_seconds(monkeypatch):
+def test_where_nothing_is_told_of_more_harmonics_they_take_no_longer_than_some_seconds():
     """The lowest three are added all the same: one harmonic may have a branch of no motion at all."""
-    own = refinement.required_harmonics
-    monkeypatch.setattr(
-        refinement, "required_harmonics", lambda *a: replace(own(*a), change=0.0, is_known=False)
-    )
-    monkeypatch.setattr(outline, "REFINEMENT", RefinementOptions(max_doubtful_seconds=0.0))
-    found = refined_response(System(scene("yang1998", 5)), 1e-4)
-    assert found.system.harmonics == (1, 2, 3) and not found.reached
-    assert set(found.further) > {1, 2, 3} and not found.begun
-    monkeypatch.setattr(outline, "REFINEMENT", RefinementOptions(max_doubtful_seconds=np.inf))
-    assert set(refined_response(System(scene("yang1998", 5)), 1e-4).system.harmonics) > {1, 2, 3}
+    first, more = unchecked_response(System(scene("yang1998", 5))), (1, 2, 3, 4, 5)
+    for seconds, harmonics in ((0.0, (1, 2, 3)), (np.inf, more)):
+        options = RefinementOptions(max_doubtful_seconds=seconds)
+        found, further, _ = with_more(first, more, told=False, options=options)
+        assert found.system.harmonics == harmonics and not further
+    none = RefinementOptions(max_doubtful_seconds=0.0)
+    assert with_more(found, (*more, 7), told=False, options=none) == (None, (*more, 7), False)
 
 
 def test_the_highest_of_more_harmonics_are_left_out_where_they_take_too_long():

@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import netCDF4
@@ -10,30 +9,30 @@ import numpy as np
 import pytest
 import xarray
 
-from fcm.compare import MEASURES, comparison, exact, methods
-from fcm.compare import startup as startups
-from fcm.compare.options import ExactLineOptions
+from fcm.compare import MEASURES
+from fcm.compare.options import CompareOptions, ExactLineOptions, StartupOptions
 from fcm.scene import load_scene
 from fcm.shooting import periodic
 
+from ..interrupted import Interrupting
 from ..report.evidence import evidence as page
 
 RANGE = "[0.8, 1.6]"
+# fewer runs than one waits for, and fewer still, of which no program's start is timed
+SHORT = CompareOptions(steps=(2.0, 1.0), exact_steps=(1.0,), finest_step=0.25)
+QUICK = CompareOptions(startup=StartupOptions(repeats=0), steps=(1.0,), exact_steps=(1.0,), finest_step=0.25)
 
 
 @pytest.fixture
-def short(scene, monkeypatch):
-    """A part of the scene, and fewer runs."""
+def short(scene):
+    """A part of the scene."""
     scene.write_text(scene.read_text().replace(RANGE, "[1.36, 1.46]\nmax_step = 0.5"))
-    monkeypatch.setattr(comparison, "STEPS", (2.0, 1.0))
-    monkeypatch.setattr(comparison, "STEPS_EXACT", (1.0,))
-    monkeypatch.setattr(comparison, "FINEST", 0.25)
     return scene
 
 
 @pytest.mark.slow
 def test_every_method_with_its_errors_and_costs(fcm, short):
-    run = fcm("respond", short, "--compare", "--json", "-o", "c.nc")
+    run = fcm("respond", short, "--compare", "--json", "-o", "c.nc", compare=SHORT)
     assert run.code == 0, run.err
     result = json.loads(run.out)
     assert result["complete"] and not result["without_exact"] and not result["notes"]
@@ -103,64 +102,31 @@ def _the_file_holds_the_same(result):
             assert error < 10.0 * own if stated is None else error == pytest.approx(stated)
 
 
-@pytest.fixture
-def quick(short, monkeypatch):
-    """Fewer still, and no programs started."""
-    monkeypatch.setattr(comparison, "STEPS", (1.0,))
-    monkeypatch.setattr(comparison, "startup", lambda *_: startups.Startup(1.0, 0.5))
-    return short
-
-
 @pytest.mark.slow
-def test_swept_values_are_coordinates_whatever_the_contact_is_called(fcm, quick):
-    named = quick.read_text().replace("shroud", "left shroud")
-    quick.write_text(f'{named}[sweep]\n"contact.left shroud.n_0" = [20.0]\n')
-    assert fcm("respond", quick, "--compare", "-o", "c.nc").code == 0
+def test_swept_values_are_coordinates_whatever_the_contact_is_called(fcm, short):
+    named = short.read_text().replace("shroud", "left shroud")
+    short.write_text(f'{named}[sweep]\n"contact.left shroud.n_0" = [20.0]\n')
+    assert fcm("respond", short, "--compare", "-o", "c.nc", compare=QUICK).code == 0
     with xarray.open_dataset("c.nc") as data:
         swept = data["contact.left_shroud.n_0"]
         assert swept.attrs["key"] == "contact.left shroud.n_0" and swept.name in data["error"].coords
 
 
 @pytest.mark.slow
-def test_an_interruption_keeps_what_is_finished(fcm, quick, monkeypatch):
-    done = []
-
-    def interrupted(method, scene, tolerance, progress=None):
-        if len(done) == 4:  # two of the references, two methods
-            raise KeyboardInterrupt
-        done.append(method)
-        return whole(method, scene, tolerance, progress)
-
-    whole = comparison.run
-    monkeypatch.setattr(comparison, "run", interrupted)
-    run = fcm("respond", quick, "--compare", "--json", "-o", "c.nc")
+def test_an_interruption_keeps_what_is_finished(fcm, short):
+    third = Interrupting("max_step x", 3, compare=QUICK)
+    run = fcm("respond", short, "--compare", "--json", "-o", "c.nc", messages=third)
     assert run.code == 3 and "interrupted" in run.err and "Traceback" not in run.err
     result = json.loads(run.out)
-    assert not result["complete"] and len(result["runs"]) == 4
+    assert not result["complete"] and len(result["runs"]) == 4  # two of the references, two methods
     assert fcm("plot", "accuracy", "c.nc").code == 0
 
 
-def test_where_the_exact_motion_is_not_found_the_closed_form_remains(fcm, quick, monkeypatch):
-    reason = "the motion grows without end"
-
-    def none(scene, progress=None):
-        line = methods.solve(methods.Method(methods.CLOSED_FORM), scene, None)[0]
-        return [replace(line, complete=False, reason=reason)]
-
-    monkeypatch.setattr(methods, "exact_lines", none)
-    run = fcm("respond", quick, "--compare")
-    assert (
-        run.code == 0
-        and f"no exact reference, compared with the closed form alone: the curve: {reason}" in run.err
-    )
+def test_without_an_exact_curve_in_time_the_closed_form_remains(fcm, short):
+    run = fcm("respond", short, "--compare", compare=replace(QUICK, exact=ExactLineOptions(limit=0.0)))
+    why = "the curve: not finished in 0 s of processor time"
+    assert run.code == 0 and f"no exact reference, compared with the closed form alone: {why}" in run.err
     assert "errors against harmonic balance, closed form" in run.out
-
-
-def test_an_exact_curve_that_takes_too_long_is_given_up(fcm, quick, monkeypatch):
-    at_once = partial(exact.exact_lines, options=ExactLineOptions(limit=0.0))
-    monkeypatch.setattr(methods, "exact_lines", at_once)
-    run = fcm("respond", quick, "--compare")
-    assert run.code == 0 and "the curve: not finished in 0 s of processor time" in run.err
 
 
 @pytest.mark.slow

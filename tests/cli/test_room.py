@@ -6,14 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fcm import load_scene, room
+from fcm import load_scene
 from fcm.cli.limits import RemarkOptions
 from fcm.cli.messages import Messages
+from fcm.cli.settings import Settings
 from fcm.harmonic_balance.cost_model import seconds_of_curve
 from fcm.response import trace
 from fcm.results.size import SizeOptions, bytes_of_matrices, bytes_of_results, least_points
 from fcm.scene import scene_from_dict
-from fcm.scene.draft import Draft
 from fcm.scene.options import MessageOptions
 
 SCENE = "yang1998-n5"
@@ -54,33 +54,31 @@ def test_more_of_anything_takes_more():
     assert bytes_of_matrices(scene, range(1, 51)) == 3 * 8 * 202**2
 
 
-def test_results_that_memory_does_not_hold_are_refused(fcm, monkeypatch):
-    monkeypatch.setattr(room, "memory", lambda: 5_000.0)
-    monkeypatch.setattr("fcm.cli.room_needed.SENTENCES", RemarkOptions(memory=1_000.0))
-    done = fcm("respond", SCENE, "--max-step", "0.001", "-o", "a.nc")
+def test_results_that_memory_does_not_hold_are_refused(fcm):
+    little = {"memory": lambda: 5_000.0, "remarks": RemarkOptions(memory=1_000.0)}
+    done = fcm("respond", SCENE, "--max-step", "0.001", "-o", "a.nc", **little)
     assert len(done.err.splitlines()) == 1  # what is refused is not told before
     assert (
         done.code == 2
         and "takes at least 2" in done.err
         and "5 kB are free: write the peaks alone" in done.err
     )
-    done = fcm("respond", SCENE, "--harmonics", "20", "--peaks-only")
+    done = fcm("respond", SCENE, "--harmonics", "20", "--peaks-only", **little)
     assert done.code == 2 and "give fewer harmonics" in done.err
     assert not list(Path().iterdir())
 
 
 @pytest.mark.parametrize("option", ["-o", "--csv"])
-def test_results_that_the_disk_does_not_hold_are_refused(fcm, monkeypatch, option):
-    monkeypatch.setattr(room, "disk", lambda _folder: 1_000.0)
+def test_results_that_the_disk_does_not_hold_are_refused(fcm, option):
     name = "a.nc" if option == "-o" else "a.csv"
-    done = fcm("respond", SCENE, option, name)
+    done = fcm("respond", SCENE, option, name, disk=lambda _folder: 1_000.0)
     assert done.code == 2 and f"{name} takes at least" in done.err and "or write to another disk" in done.err
     assert not list(Path().iterdir())
 
 
-def test_what_takes_much_is_told(fcm, monkeypatch):
-    monkeypatch.setattr("fcm.cli.room_needed.SENTENCES", RemarkOptions(memory=1_000.0))
-    done = fcm("respond", SCENE, "--harmonics", "1", "--max-step", "0.5")
+def test_what_takes_much_is_told(fcm):
+    few = ("--harmonics", "1", "--max-step", "0.5")
+    done = fcm("respond", SCENE, *few, remarks=RemarkOptions(memory=1_000.0))
     assert done.code == 0 and "1 curve of 1 contact takes at least" in done.err
 
 
@@ -122,29 +120,25 @@ def test_modes_far_above_the_range_take_no_time():
     assert seconds_of_curve(far, 1) == seconds_of_curve(many(200, 10), 1)
 
 
-def test_a_curve_that_takes_long_is_told_before_it_is_begun(fcm, monkeypatch):
+def test_a_curve_that_takes_long_is_told_before_it_is_begun(fcm):
+    every, one = RemarkOptions(long_curve=0.0), ("--harmonics", "1")
+    assert "processor time" not in fcm("respond", SCENE, *one).err
     for options, said in (
         ((), "less with one harmonic (--harmonics 1), fewer contacts"),
-        (("--harmonics", "1"), "less with fewer contacts or fewer modes"),
+        (one, "less with fewer contacts or fewer modes"),
     ):
-        assert "processor time" not in fcm("respond", SCENE, "--harmonics", "1").err
-        monkeypatch.setattr("fcm.cli.room_needed.SENTENCES", RemarkOptions(long_curve=0.0))
-        with monkeypatch.context() as within:
-            within.setattr("fcm.cli.respond.calculated", lambda *_: (_ for _ in ()).throw(MemoryError))
-            first = fcm("respond", SCENE, *options).err.splitlines()[0]
+        first = fcm("respond", SCENE, *options, remarks=every).err.splitlines()[0]
         assert (
             first.startswith("1 curve of 1 contact takes at least about 0 s of processor time")
             and said in first
         )
-        monkeypatch.undo()
-    monkeypatch.setattr("fcm.cli.room_needed.SENTENCES", RemarkOptions(long_curve=0.0))
-    assert "processor time" not in fcm("respond", SCENE, "--level", "0.5:1", "--at", "1.1").err
+    level = fcm("respond", SCENE, "--level", "0.5:1", "--at", "1.1", remarks=every)
+    assert "processor time" not in level.err
 
 
-def test_a_million_draws_without_room_for_them_are_refused_when_read(fcm, monkeypatch):
-    monkeypatch.setattr(room, "memory", lambda: 5e8)
+def test_a_million_draws_without_room_for_them_are_refused_when_read(fcm):
     Path("a.toml").write_text(DRAWN)
-    done = fcm("respond", "a.toml")
+    done = fcm("respond", "a.toml", memory=lambda: 5e8)
     assert done.code == 2
     assert "asks for 1000000 curves, which take 1 GB of memory before they are traced" in done.err
     assert "500 MB are free: sweep or draw fewer values at a time" in done.err
@@ -158,43 +152,40 @@ def test_a_limit_on_addresses_is_one_on_memory(program):
 
 
 @pytest.mark.parametrize("options", [(), ("--peaks-only",)])
-def test_a_million_draws_are_counted_before_their_curves_are_made(fcm, monkeypatch, options):
+def test_a_million_draws_are_counted_before_their_curves_are_made(fcm, options):
     """Which alone takes half a minute."""
-    monkeypatch.setattr(room, "disk", lambda _folder: 1e6)
-    monkeypatch.setattr(Draft, "curve", lambda *_: pytest.fail("a curve was made"))
     Path("a.toml").write_text(DRAWN)
-    done = fcm("respond", "a.toml", *options, "-o", "a.nc")
+    done = fcm("respond", "a.toml", *options, "-o", "a.nc", disk=lambda _folder: 1e6)
     assert done.code == 2 and "1000000 curves of 0 contacts take at least" in done.err
     assert "1 MB are free on its disk" in done.err
 
 
-def test_draws_that_take_long_are_told_before_they_are_drawn(fcm, monkeypatch):
+def test_draws_that_take_long_are_told_before_they_are_drawn(fcm):
     slow = DRAWN.replace(
         "normal = [1.0, 0.01], count = 1000000", 'distribution = "lognorm", s = 0.1, count = 9'
     )
     Path("a.toml").write_text(slow)
     assert "take about" not in fcm("respond", "a.toml").err
-    monkeypatch.setattr("fcm.scene.draws.MESSAGES", MessageOptions(seconds_of_draws=0.0))
-    monkeypatch.setattr("fcm.scene.draws.Draws.values", lambda _self: (_ for _ in ()).throw(MemoryError))
-    done = fcm("respond", "a.toml")
+    done = fcm("respond", "a.toml", reading=MessageOptions(seconds_of_draws=0.0))
     said = done.err.splitlines()[0]
     assert said == 'sweep."force.u.amplitude": 9 draws of this distribution take about 0 s'
 
 
-def test_the_time_of_curves_is_not_told_by_a_first_one_that_loads_what_all_need(monkeypatch, capsys):
-    now = iter([0.0, 3.0, 5.5])
-    monkeypatch.setattr("fcm.cli.messages.time.monotonic", lambda: next(now))
-    messages = Messages()
+def timed(*seconds):
+    """Messages by a clock that shows one after the other."""
+    return Messages(settings=Settings(clock=iter(seconds).__next__))
+
+
+def test_the_time_of_curves_is_not_told_by_a_first_one_that_loads_what_all_need(capsys):
+    messages = timed(0.0, 3.0, 5.5)
     messages.expect(40)
     for share in (1 / 40, 30 / 40):
         messages.progress(share)
     assert not capsys.readouterr().err
 
 
-def test_how_long_all_curves_take_is_said_once_by_the_first(monkeypatch, capsys):
-    now = iter([0.0, 1.0, 30.0, 40.0, 50.0])
-    monkeypatch.setattr("fcm.cli.messages.time.monotonic", lambda: next(now))
-    messages = Messages()
+def test_how_long_all_curves_take_is_said_once_by_the_first(capsys):
+    messages = timed(0.0, 1.0, 30.0, 40.0, 50.0)
     messages.expect(100)
     for share in (0.001, 0.02, 0.03, 0.04):
         messages.progress(share)
@@ -202,11 +193,9 @@ def test_how_long_all_curves_take_is_said_once_by_the_first(monkeypatch, capsys)
     assert capsys.readouterr().err.splitlines() == [said]
 
 
-def test_the_time_of_few_or_fast_curves_is_not_said(monkeypatch, capsys):
+def test_the_time_of_few_or_fast_curves_is_not_said(capsys):
     for curves, last in ((1, 1e4), (100, 0.1)):
-        now = iter([0.0, 0.0, last])
-        monkeypatch.setattr("fcm.cli.messages.time.monotonic", lambda now=now: next(now))
-        messages = Messages()
+        messages = timed(0.0, 0.0, last)
         messages.expect(curves)
         messages.progress(0.0)
         messages.progress(0.02)
@@ -235,14 +224,13 @@ frequency = [0.1, 0.5]
 """
 
 
-def test_flexibility_along_directions_that_memory_does_not_hold_is_refused(fcm, monkeypatch):
+def test_flexibility_along_directions_that_memory_does_not_hold_is_refused(fcm):
     Path("a.toml").write_text(CHAIN)
-    monkeypatch.setattr("fcm.scene.linear.MESSAGES", MessageOptions(memory=1_000.0))
-    done = fcm("plot", "modes", "a.toml")
+    little = MessageOptions(memory=1_000.0)
+    done = fcm("plot", "modes", "a.toml", reading=little)
     assert done.code == 0 and "takes" not in done.err  # there is no one to tell
-    done = fcm("respond", "a.toml")
+    done = fcm("respond", "a.toml", reading=little)
     said = "structure: its flexibility along 3 directions of contacts and forces, at 3 rows, takes about 1 kB"
     assert done.code == 0 and done.err.splitlines()[0] == f"{said} of memory"
-    monkeypatch.setattr(room, "memory", lambda: 1_000.0)
-    done = fcm("respond", "a.toml")
+    done = fcm("respond", "a.toml", memory=lambda: 1_000.0)
     assert done.code == 2 and "takes 1 kB of memory, and 1 kB are free: reduce it to the rows" in done.err

@@ -10,17 +10,18 @@ from fcm.branches.trace import traced
 from fcm.cli.track import as_table
 from fcm.continuation import FollowOptions, Mark, Status, follow
 from fcm.continuation.corrector import Newton
+from fcm.harmonic_balance.options import HarmonicBalanceOptions, WorkOptions
 from fcm.harmonic_balance.response_quantities import recorded
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Aim, Optimum
-from fcm.response import least_peak
 from fcm.response.optimum import optimise
-from fcm.response.options import OptimumOptions
+from fcm.response.options import OptimumOptions, ResponseOptions
 from fcm.response.tracked_work import conditions_of
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
 from fcm.tracking.curves import tracked_curves
 from fcm.tracking.extended_system import Condition, Kind
+from fcm.tracking.options import SearchOptions
 from fcm.tracking.parameter_line import along
 from fcm.tracking.starts import for_scene
 from fcm.tracking.tracked_point import TrackingRun
@@ -86,34 +87,40 @@ def test_onsets(scene, what, span):
         assert found == pytest.approx(np.sort(z[np.abs(off) < 1e-9, -1]), rel=EXACT)
 
 
+def limited(seconds):
+    """Options by which more harmonics in a search may take so long."""
+    return HarmonicBalanceOptions(work=WorkOptions(max_seconds_repeated=seconds))
+
+
 @pytest.mark.slow
-def test_an_optimum_short_of_the_accuracy_says_so(scene, monkeypatch):
+def test_an_optimum_short_of_the_accuracy_says_so(scene):
     aimed = replace(scene, optimum=Optimum((PRELOAD,), ((2.0, 20.0),), (Aim("u"),)))
     enough = optimise(aimed, accuracy=1e-3)
     assert enough.tracking.optima[0].error <= 1e-3 and not enough.curves[0].short_of
-    monkeypatch.setattr(least_peak, "MAX_SECONDS_REPEATED", 0.0)
-    short = optimise(aimed, accuracy=1e-3)
+    short = optimise(aimed, accuracy=1e-3, options=ResponseOptions(limited(0.0)))
     assert short.tracking.harmonics == (1,) and short.tracking.optima[0].error > 1e-3
     assert "with 1 harmonic the error of the least peak" in short.curves[0].short_of
 
 
 @pytest.mark.slow
-def test_an_optimum_short_of_the_accuracy_says_what_fewer_harmonics_found(scene, monkeypatch):
+def test_an_optimum_short_of_the_accuracy_says_what_fewer_harmonics_found(scene):
     aimed = replace(scene, optimum=Optimum((PRELOAD,), ((2.0, 20.0),), (Aim("u"),)))
     (fewer,) = optimise(aimed, harmonics=1).tracking.optima
-    monkeypatch.setattr(least_peak, "OPTIMUM", OptimumOptions(max_rounds=2))
-    monkeypatch.setattr(least_peak, "MAX_SECONDS_REPEATED", 0.2)
-    short = optimise(aimed, accuracy=1e-7)
+    options = ResponseOptions(limited(0.2), optimum=OptimumOptions(max_rounds=2))
+    short = optimise(aimed, accuracy=1e-7, options=options)
     assert short.tracking.optima[0].error > 1e-7 and len(short.tracking.harmonics) > 1
     found = f"with 1 harmonic it is {fewer.value:.6g} at {PRELOAD} = {fewer.values[PRELOAD]:.6g}"
     assert short.curves[0].short_of.endswith(found)
 
 
-def test_what_cannot_be_followed_is_found_by_trials(scene, monkeypatch):
+# no peak is high enough to be followed
+UNFOLLOWED = ResponseOptions(optimum=OptimumOptions(search=SearchOptions(high_fraction=np.inf)))
+
+
+def test_what_cannot_be_followed_is_found_by_trials(scene):
     aimed = replace(scene, optimum=Optimum((PRELOAD,), ((2.0, 30.0),), (Aim("u"),)))
     followed = optimise(aimed, harmonics=1).tracking.optima[0]
-    monkeypatch.setattr("fcm.tracking.lowest_peak.land", lambda *_: None)
-    tried = optimise(aimed, harmonics=1)
+    tried = optimise(aimed, harmonics=1, options=UNFOLLOWED)
     (found,) = tried.tracking.optima
     low, high = found.between
     assert found.kind == "trials" and low < followed.values[PRELOAD] < high < low + 8.0
@@ -128,10 +135,9 @@ def test_what_cannot_be_followed_is_found_by_trials(scene, monkeypatch):
     assert f"by trials alone, between {low:.6g} and {high:.6g}" in as_table(result, "rad/s")
 
 
-def test_trials_that_are_least_at_a_bound_say_both(scene, monkeypatch):
-    monkeypatch.setattr("fcm.tracking.lowest_peak.land", lambda *_: None)
+def test_trials_that_are_least_at_a_bound_say_both(scene):
     aimed = replace(scene, optimum=Optimum((PRELOAD,), ((20.0, 60.0),), (Aim("u"),)))
-    (found,) = optimise(aimed, harmonics=1).tracking.optima
+    (found,) = optimise(aimed, harmonics=1, options=UNFOLLOWED).tracking.optima
     assert (found.kind, found.values[PRELOAD], found.between[0]) == ("bound", 20.0, 20.0)
 
 

@@ -11,13 +11,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from fcm.accuracy.options import REFINEMENT
+from fcm.accuracy.options import REFINEMENT, RefinementOptions
 from fcm.branches.force_level import LevelSolutions
 from fcm.branches.prolongation import prolongated
 from fcm.branches.trace import Traced, traced, traced_from, with_levels
 from fcm.continuation import Path
 from fcm.continuation.follow import Progress
-from fcm.harmonic_balance.cost_model import MAX_SECONDS, seconds_of
+from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
 from fcm.harmonic_balance.system import System
 from fcm.harmonic_balance.work_budget import WorkLimitError
@@ -53,12 +53,14 @@ class UncheckedResponse:
         grown = seconds_of(self.system, 1, many) / seconds_of(self.system, 1, few)
         return seconds * grown * many / few
 
-    def limited_harmonics(self, seconds: float, more: tuple[int, ...]) -> tuple[int, ...]:
+    def limited_harmonics(
+        self, seconds: float, more: tuple[int, ...], options: RefinementOptions = REFINEMENT
+    ) -> tuple[int, ...]:
         """More harmonics without the highest of those that are new, until following them takes no longer.
 
         The lowest stay: a branch of one harmonic may be of no motion at all.
         """
-        least = {*self.system.harmonics, *range(1, REFINEMENT.complete_harmonics + 1)}
+        least = {*self.system.harmonics, *range(1, options.complete_harmonics + 1)}
         while self.seconds_with(more) > seconds and not least.issuperset(more):
             highest = max(set(more) - least)
             more = tuple(h for h in more if h != highest)
@@ -80,15 +82,17 @@ class UncheckedResponse:
             system, response, _shown(system, response.branches.paths), seconds, before=self
         )
 
-    def with_levels(self, most: float = MAX_SECONDS) -> UncheckedResponse:
+    def with_levels(self, most: float | None = None) -> UncheckedResponse:
         """With the branches that the level of the forces leads to and those of fewer harmonics do not.
 
-        Where all comes to more seconds than the most, the response of fewer harmonics, which says so.
+        Where all comes to more seconds than the most, which is that of the system's options where nothing
+        else is said, the response of fewer harmonics, which says so.
         """
         if self.before is None:
             return self
         system, known = self.system, len(self.shown)
         begin = system.work.seconds
+        most = system.options.work.max_seconds if most is None else most
         try:
             with system.work.limited_to(most):
                 response = with_levels(system, self.traced)
@@ -117,20 +121,24 @@ def _shown(system: System, paths: Sequence[Path]) -> tuple[ReportedQuantities, .
 
 
 def with_more(
-    found: UncheckedResponse, more: tuple[int, ...], told: bool, progress: Progress | None
+    found: UncheckedResponse,
+    more: tuple[int, ...],
+    told: bool,
+    progress: Progress | None = None,
+    options: RefinementOptions = REFINEMENT,
 ) -> tuple[UncheckedResponse | None, tuple[int, ...], bool]:
     """The response with more harmonics; if there is none, those that take too long, and whether they had
     been begun. told: whether something tells that they bring the accuracy nearer."""
-    work, wanted = found.system.work, more
+    work, wanted, most = found.system.work, more, found.system.options.work.max_seconds
     if not told:
-        more = found.limited_harmonics(REFINEMENT.max_doubtful_seconds - work.seconds, more)
+        more = found.limited_harmonics(options.max_doubtful_seconds - work.seconds, more, options)
     if more == found.system.harmonics:
         return None, () if more == wanted else wanted, False
-    if work.seconds + found.seconds_with(more) > MAX_SECONDS:
+    if work.seconds + found.seconds_with(more) > most:
         return None, more, False
     stable = near(found, more)
     try:
-        with work.limited_to(MAX_SECONDS):
+        with work.limited_to(most):
             then = found.prolongated(more, stable, progress)
     except WorkLimitError:
         return None, more, True

@@ -15,7 +15,6 @@ from fcm.accuracy.outline import UncheckedResponse, near, unchecked_response, wi
 from fcm.accuracy.required_harmonics import needed, required_harmonics
 from fcm.branches.force_level import few_harmonics, with_low_harmonics
 from fcm.continuation.follow import Progress
-from fcm.harmonic_balance.cost_model import MAX_SECONDS_REPEATED
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
@@ -67,9 +66,9 @@ def refined_response(
     (relative), the harmonics are added that the spectrum names, and all is traced again: from what the
     branches before, and their stable peaks, lead to with more. Only with what is foreseen to be enough the
     level of the forces is followed, which may lead to branches that fewer harmonics do not have. What would
-    take longer, with all before it, than anyone waits is not begun, see `PATIENCE`, and what does take longer
-    is given up. Whether the branches are complete is another question, see their status. What has been traced
-    is told to keep, before more is.
+    take longer, with all before it, than anyone waits is not begun, see `WorkOptions`, and what does take
+    longer is given up. Whether the branches are complete is another question, see their status. What has been
+    traced is told to keep, before more is.
     """
     found: UncheckedResponse = unchecked_response(system, progress)
     sure: RefinedResponse | None = None
@@ -93,7 +92,7 @@ def refined_response(
             more = needed(ahead, found.system.harmonics, accuracy, options)
         if keep is not None:
             keep(sure or found, ahead.change if ahead.is_known else np.nan, more)
-        then, further, begun = with_more(found, more, ahead.is_known, progress)
+        then, further, begun = with_more(found, more, ahead.is_known, progress, options)
         if then is None:
             break
         found, sure = then, None
@@ -107,7 +106,7 @@ def refined_response(
 def retraced(found: RefinedResponse, harmonics: tuple[int, ...], accuracy: float) -> RefinedResponse | None:
     """The response traced again with more harmonics; None where no solution is found, or that takes longer
     than is worth it."""
-    if found.seconds_with(harmonics) > MAX_SECONDS_REPEATED:
+    if found.seconds_with(harmonics) > found.system.options.work.max_seconds_repeated:
         return None
     nearby = near(found, harmonics)
     then = unchecked_response(found.system.with_harmonics(harmonics), None, found.traced.found, nearby)

@@ -28,17 +28,18 @@ def calculated(messages: Messages, scene: Scene, asked: Asked, place: Any, keep:
 
 
 def _response(messages: Messages, scene: Scene, asked: Asked, run: dict[str, Any]) -> Response:
+    balanced = {**_balanced(asked), "options": messages.settings.response}
     if asked.track is not None:
         return _tracked(messages, scene, asked, run)
     if asked.mode is not None:
         return _mode(messages, scene, asked, run["keep"])
     if scene.optimum is not None:
         table = _opened(asked.table)
-        response = track.optimised(messages, scene, asked.method, {**run, **_balanced(asked), "table": table})
+        response = track.optimised(messages, scene, asked.method, {**run, **balanced, "table": table})
         _say_outside(messages, asked.table, table)
         return response
     if scene.fit is not None:
-        balanced = _balanced(asked) | {key: run[key] for key in ("jobs", "place", "keep")}
+        balanced |= {key: run[key] for key in ("jobs", "place", "keep")}
         return fit.fitted(messages, scene, asked.method, balanced)
     if asked.method == "exact" and (scene.has_range or asked.at):
         options = {**run, "tolerance": _tolerance(asked), "only": asked.only}
@@ -48,7 +49,7 @@ def _response(messages: Messages, scene: Scene, asked: Asked, run: dict[str, Any
     if asked.level is not None:
         return _levels(messages, scene, asked, run["keep"])
     if scene.has_range:
-        return _traced(messages, scene, asked, {**run, **_balanced(asked)})
+        return _traced(messages, scene, asked, {**run, **balanced})
     from fcm.response import Response
 
     return Response.without_curves(scene)
@@ -72,6 +73,7 @@ def _tracked(messages: Messages, scene: Scene, asked: Asked, run: dict[str, Any]
     assert asked.track is not None and asked.over is not None  # --track needs the others
     assert asked.low is not None and asked.high is not None
     options = {**run, "harmonics": asked.harmonics, "accuracy": asked.accuracy}
+    options["options"] = messages.settings.response
     return track.tracked(messages, scene, asked.track, asked.over, (asked.low, asked.high), options)
 
 
@@ -83,6 +85,7 @@ def _mode(messages: Messages, scene: Scene, asked: Asked, keep: Any) -> Response
         "force_levels": asked.force_levels or (1.0,),
         "progress": messages.progress,
         "keep": keep,
+        "options": messages.settings.response,
     }
     response = nonlinear_mode.traced(scene, asked.mode, asked.level, chosen)
     messages.clear()
@@ -94,6 +97,7 @@ def _levels(messages: Messages, scene: Scene, asked: Asked, keep: Any) -> Respon
 
     assert asked.level is not None and asked.at is not None  # --level needs --at
     chosen: dict[str, Any] = {"harmonics": asked.harmonics, "accuracy": asked.accuracy, "keep": keep}
+    chosen["options"] = messages.settings.response
     response = trace_levels(scene, asked.at, asked.level, progress=messages.progress, **chosen)
     messages.clear()
     return response

@@ -54,10 +54,13 @@ def write_comparison(
     if not scene.has_range:
         raise click.UsageError(f"--compare needs curves; {scene.name} has no [response] frequency.")
     from fcm.compare import IncomparableError, compare
+    from fcm.compare.options import COMPARE
     from fcm.compare.output import summary, write_netcdf
 
     try:
-        comparison = compare(scene, None if table is None else Path(table), messages.progress, tolerance)
+        options = messages.settings.compare or COMPARE
+        own = None if table is None else Path(table)
+        comparison = compare(scene, own, messages.progress, tolerance, options)
     except IncomparableError as error:
         messages.error(f"error: {error}")
         click.get_current_context().exit(NOT_COMPLETED)

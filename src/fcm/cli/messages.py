@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import sys
-import time
 from contextlib import suppress
 from dataclasses import dataclass, field
 
 import click
 
-from fcm.cli.limits import SENTENCES
+from fcm.cli.settings import SETTINGS, Settings
 from fcm.room import duration
 
 
 @dataclass
 class Messages:
-    """``verbosity``: -1 errors only, 0 as usual, 1 and more with details."""
+    """``verbosity``: -1 errors only, 0 as usual, 1 and more with details; settings of the whole run."""
 
     verbosity: int = 0
+    settings: Settings = SETTINGS
     _drawn: float = field(default=0.0, repr=False)
     _width: int = field(default=0, repr=False)
     _share: float = field(default=0.0, repr=False)
@@ -41,18 +41,18 @@ class Messages:
 
     def expect(self, curves: int) -> None:
         """So many curves begin: by the first of them it is said, once, how long all take."""
-        self._curves, self._begun = curves if curves > 1 else 0, time.monotonic()
+        self._curves, self._begun = curves if curves > 1 else 0, self.settings.clock()
 
     def progress(self, fraction: float, text: str = "") -> None:
         """Redraw the progress line, on a terminal only and not too often; it never goes back."""
-        now = time.monotonic()
+        now, remarks = self.settings.clock(), self.settings.remarks
         self._share = min(max(fraction, self._share), 1.0)
-        if self._share * self._curves >= 1.0 and now - self._begun >= SENTENCES.time_told:
+        if self._share * self._curves >= 1.0 and now - self._begun >= remarks.time_told:
             self._say_time(now - self._begun)
-        if self.verbosity < 0 or now - self._drawn < SENTENCES.redraw or not sys.stderr.isatty():
+        if self.verbosity < 0 or now - self._drawn < remarks.redraw or not sys.stderr.isatty():
             return
-        full = int(SENTENCES.bar * self._share)
-        line = f"[{'#' * full}{'.' * (SENTENCES.bar - full)}] {int(100 * self._share):3d} %  {text}"
+        full = int(remarks.bar * self._share)
+        line = f"[{'#' * full}{'.' * (remarks.bar - full)}] {int(100 * self._share):3d} %  {text}"
         self._draw(line.ljust(self._width))
         self._drawn, self._width = now, len(line)
 
@@ -60,7 +60,7 @@ class Messages:
         """How long all curves take, where that is long."""
         curves, self._curves = self._curves, 0
         first = int(self._share * curves)
-        if (every := taken / self._share) > SENTENCES.long_run and first < curves:
+        if (every := taken / self._share) > self.settings.remarks.long_run and first < curves:
             those = "first of them" if first == 1 else f"first {first} of them"
             self.info(f"{curves} curves take about {duration(every)}: the {those} took {duration(taken)}")
 

@@ -116,13 +116,15 @@ def _loaded(messages: Messages, name: str, asked: Asked) -> tuple[Scene, export.
     """The scene at the degrees of freedom in use, and what is to be exported of it."""
     from fcm.response.visible_dofs import check_solvable
     from fcm.scene import load_scene
+    from fcm.scene.options import MESSAGES
     from fcm.scene.told import Told
 
     def before(scene: Scene, count: int) -> None:
         if not asked.compare:
             check_room(messages, _with_step(scene.in_use(), asked), count, asked)
 
-    told = Told(messages.info, before)
+    settings = messages.settings
+    told = Told(messages.info, before, settings.memory, settings.reading or MESSAGES)
     every_row = asked.export is not None
     whole = load_scene(name, largest_file=asked.largest_file, every_row=every_row, told=told)
     exporting = export.exporting(messages, whole, asked)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fcm import room
-from fcm.cli.limits import REQUESTS, SENTENCES
+from fcm.cli.limits import REQUESTS
 from fcm.cli.messages import Messages
 from fcm.cli.respond_options import Asked
 from fcm.files import real
@@ -28,26 +28,27 @@ def check_room(messages: Messages, scene: Scene, count: int, asked: Asked) -> No
     from fcm.response.request import ResponseError
     from fcm.results.size import bytes_of_matrices, bytes_of_results
 
+    settings = messages.settings
     harmonics = asked.harmonics or scene.harmonics or (1,)
     results = bytes_of_results(scene, harmonics, asked.peaks_only, curves=count)
     matrices = bytes_of_matrices(scene, harmonics) if scene.has_range else 0.0
     contacts = len(scene.contacts)
     said = f"{count} curve{'s' * (count > 1)} of {contacts} contact{'s' * (contacts != 1)}"
     take = "take" if count > 1 else "takes"
-    if results + matrices > (free := room.memory()):
+    if results + matrices > (free := settings.memory()):
         raise ResponseError(
             f"{said} {take} at least {room.size(results + matrices)} of memory, and {room.size(free)} are "
             f"free: {_remedy(matrices > results, asked)}"
         )
-    if results + matrices > SENTENCES.memory:
+    if results + matrices > settings.remarks.memory:
         messages.info(f"{said} {take} at least {room.size(results + matrices)} of memory")
-    if (seconds := _seconds_of_curve(scene, len(harmonics), asked)) > SENTENCES.long_curve:
+    if (seconds := _seconds_of_curve(scene, len(harmonics), asked)) > settings.remarks.long_curve:
         messages.info(
             f"{'each of ' * (count > 1)}{said} takes at least about {room.duration(seconds)} of processor "
             f"time: less with {_lighter(harmonics, asked)}; --time-limit ends it"
         )
     for path, times in ((asked.output, 1.0), (asked.csv, REQUESTS.csv_size)):
-        if path is not None and times * results > (left := room.disk(_folder(path))):
+        if path is not None and times * results > (left := settings.disk(_folder(path))):
             raise ResponseError(
                 f"{path} takes at least {room.size(times * results)}, and {room.size(left)} are free on its "
                 f"disk: {_remedy(False, asked)}, or write to another disk"

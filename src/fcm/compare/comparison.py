@@ -9,6 +9,7 @@ from pathlib import Path
 
 from fcm.compare.errors import Errors, Reference, Shown, reference, worst
 from fcm.compare.methods import CLOSED_FORM, EXACT, Method, Run, run, solve, with_step
+from fcm.compare.options import COMPARE, CompareOptions
 from fcm.compare.startup import Startup, startup
 from fcm.model.scene import Scene
 from fcm.reduction.options import REDUCTION
@@ -19,10 +20,6 @@ from fcm.table import open_table
 from fcm.table.seam import seam
 from fcm.table.shipped import DEFAULT
 
-STEPS = (4.0, 2.0, 1.0, 0.5, 0.25)  # of harmonic balance, in the scene's longest steps
-STEPS_EXACT = (2.0, 1.0)  # of the exact motion, whose points are exact with any
-FINEST, FINEST_EXACT = 1.0 / 16.0, 0.25  # of the references
-FLOOR = {CLOSED_FORM: 1e-9, EXACT: 1e-8}  # to which points are solved and peaks located, relative
 Progress = Callable[[float, str], None]
 
 
@@ -35,6 +32,7 @@ class Comparison:
     """Every run with its errors against both references; each list of errors is in the order of the runs."""
 
     scene: Scene
+    options: CompareOptions = COMPARE
     references: dict[str, Reference] = field(default_factory=dict)
     startups: dict[str, Startup] = field(default_factory=dict)
     runs: list[Run] = field(default_factory=list)
@@ -97,7 +95,7 @@ class Comparison:
     def shown(self, against: str, number: int, measure: str) -> Shown:
         """The greatest error of a run over the curves, or a limit below which it is."""
         own = self.references[against].own
-        return worst(self.errors[against][number][measure], own[measure])
+        return worst(self.errors[against][number][measure], own[measure], self.options.margin)
 
     def find(
         self, method: str, corrected: bool = True, left_out: bool = True, share: float = 1.0
@@ -126,6 +124,7 @@ def compare(
     table: Path | None = None,
     progress: Progress | None = None,
     tolerance: float = REDUCTION.tolerance,
+    options: CompareOptions = COMPARE,
 ) -> Comparison:
     """Run a scene by every method and measure error against run time.
 
@@ -144,6 +143,8 @@ def compare(
         Called with the finished fraction and a text.
     tolerance : float
         Of what is left out, as in `fcm.response.trace`.
+    options : CompareOptions
+        Longest steps, and all tolerances and limits.
 
     Raises
     ------
@@ -165,7 +166,7 @@ def compare(
     """
     refuse_in_time(scene, "a comparison with the exact motion")
     begin = time.perf_counter()
-    out = Comparison(scene)
+    out = Comparison(scene, options)
     show = progress or (lambda _share, _text: None)
     tables = {"default table": DEFAULT, "fast table": DEFAULT.with_name("fast.nc")}
     if table is not None:
@@ -173,7 +174,7 @@ def compare(
     methods = [Method(name, open_table(path)) for name, path in tables.items()]
     out.seams = {one.name: float(seam(one.table).max()) for one in methods if one.table is not None}
     methods += [Method(CLOSED_FORM), Method(EXACT)]
-    first = trace(with_step(scene, max(STEPS)), tolerance=tolerance)
+    first = trace(with_step(scene, max(options.steps)), tolerance=tolerance)
     if first.interrupted:
         raise KeyboardInterrupt
     if not any(curve.complete for curve in first.curves):
@@ -181,14 +182,14 @@ def compare(
             f"no curve is complete, so there is nothing to compare: {first.curves[0].reason}"
         )
     out.left_out = first.left_out
-    jobs = list(_jobs(methods, tolerance))
+    jobs = list(_jobs(methods, tolerance, options))
     _references(out, show)
     try:
         for number, (method, share, kept) in enumerate(jobs):
             show(0.4 + 0.6 * number / len(jobs), f"{method.name}, max_step x {share:g}")
-            out.add(_same(out, method, share) or run(method, with_step(scene, share), kept))
+            out.add(_same(out, method, share) or run(method, with_step(scene, share), kept, options=options))
         for one in methods:
-            out.startups[one.name] = startup(one.name, tables.get(one.name))
+            out.startups[one.name] = startup(one.name, tables.get(one.name), options.startup)
     except KeyboardInterrupt:
         out.interrupted = True
     out.seconds = time.perf_counter() - begin
@@ -201,17 +202,19 @@ def _same(out: Comparison, method: Method, share: float) -> Run | None:
     return None if number is None or out.left_out else replace(out.runs[number], left_out=True)
 
 
-def _jobs(methods: list[Method], tolerance: float) -> Iterator[tuple[Method, float, float | None]]:
+def _jobs(
+    methods: list[Method], tolerance: float, options: CompareOptions
+) -> Iterator[tuple[Method, float, float | None]]:
     """Method, share of the longest step, tolerance of what is left out; the most wanted first."""
     for method in methods:
         yield method, 1.0, tolerance
         if method.name != EXACT:  # of exact it is there already
             yield method, 1.0, None
     for method in methods:
-        for share in STEPS_EXACT if method.name == EXACT else STEPS:
+        for share in options.exact_steps if method.name == EXACT else options.steps:
             if share != 1.0:
                 yield method, share, tolerance
-            if method.table is not None and (share == 1.0 or share in STEPS[::2]):
+            if method.table is not None and (share == 1.0 or share in options.steps[::2]):
                 yield Method(method.name, method.table, corrected=False), share, None
 
 
@@ -219,13 +222,20 @@ def _references(out: Comparison, show: Progress) -> None:
     """Both references, each with its own error from a run with longer steps."""
     made = []
     # name, shares of the longest step, and shares of the whole time at which it begins and ends
-    wanted = (CLOSED_FORM, FINEST, 4.0 * FINEST, 0.0, 0.1), (EXACT, FINEST_EXACT, 1.0, 0.1, 0.4)
+    options, finest_step = out.options, out.options.finest_step
+    wanted = (
+        (CLOSED_FORM, finest_step, 4.0 * finest_step, 0.0, 0.1),
+        (EXACT, options.finest_exact_step, 1.0, 0.1, 0.4),
+    )
+    floor = {CLOSED_FORM: options.floor, EXACT: options.exact_floor}
     for name, finest, coarse, begins, ends in wanted:
         middle = 0.6 * begins + 0.4 * ends
-        coarser = run(Method(name), with_step(out.scene, coarse), None, _part(show, begins, middle, name))
+        coarser = run(
+            Method(name), with_step(out.scene, coarse), None, _part(show, begins, middle, name), options
+        )
         scene = with_step(out.scene, finest)
-        lines = solve(Method(name), scene, None, _part(show, middle, ends, name))
-        out.references[name] = reference(name, scene.max_step, lines, coarser.lines, FLOOR[name])
+        lines = solve(Method(name), scene, None, _part(show, middle, ends, name), options)
+        out.references[name] = reference(name, scene.max_step, lines, coarser.lines, floor[name])
         made.append(coarser)
     for one in made:
         out.add(one)
@@ -246,5 +256,8 @@ def contributions(out: Comparison) -> dict[str, tuple[str, int | None]]:
     rows["step and tolerance"] = CLOSED_FORM, out.find(CLOSED_FORM, left_out=False)
     if out.left_out:
         rows["step, and what was left out"] = CLOSED_FORM, out.find(CLOSED_FORM)
-    rows["single harmonic"] = EXACT, out.find(CLOSED_FORM, left_out=False, share=4.0 * FINEST)
+    rows["single harmonic"] = (
+        EXACT,
+        out.find(CLOSED_FORM, left_out=False, share=4.0 * out.options.finest_step),
+    )
     return rows

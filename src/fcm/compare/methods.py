@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from fcm.compare.exact import exact_lines
 from fcm.compare.lines import Line, line_of
+from fcm.compare.options import COMPARE, CompareOptions
 from fcm.model.scene import Scene
 from fcm.reduction.negligible_parts import leave_out
 from fcm.response.request import Request
@@ -46,15 +47,21 @@ class Run:
         return sum(line.points for line in self.lines)
 
 
-def run(method: Method, scene: Scene, tolerance: float | None, progress: Progress | None = None) -> Run:
+def run(
+    method: Method,
+    scene: Scene,
+    tolerance: float | None,
+    progress: Progress | None = None,
+    options: CompareOptions = COMPARE,
+) -> Run:
     """Solve the scene by a method and time it.
 
     tolerance : of what is left out; None for leaving nothing out.
     """
     if method.name != EXACT:  # once, so that it is warm
-        solve(method, scene, tolerance)
+        solve(method, scene, tolerance, options=options)
     begin, processor = time.perf_counter(), time.process_time()
-    lines = solve(method, scene, tolerance, progress)
+    lines = solve(method, scene, tolerance, progress, options)
     seconds, processor = time.perf_counter() - begin, time.process_time() - processor
     evaluations = sum(line.evaluations for line in lines)
     step, left_out = scene.each_curve()[0].max_step, tolerance is not None
@@ -68,12 +75,16 @@ def with_step(scene: Scene, share: float) -> Scene:
 
 
 def solve(
-    method: Method, scene: Scene, tolerance: float | None, progress: Progress | None = None
+    method: Method,
+    scene: Scene,
+    tolerance: float | None,
+    progress: Progress | None = None,
+    options: CompareOptions = COMPARE,
 ) -> list[Line]:
     """The curves of a scene by a method; the arguments are those of `run`."""
     lighter = _lighter(scene, tolerance)
     if method.name == EXACT:
-        return exact_lines(lighter, progress)
+        return exact_lines(lighter, progress, options.exact)
     if not method.corrected:
         wanted = Request(table=method.table, corrected=False)
         curves = [traced_curve(curve, wanted) for curve in lighter.each_curve()]

@@ -51,7 +51,7 @@ class StartupOptions:
     Attributes
     ----------
     repeats : int
-        Of which the faster counts.
+        Of which the faster counts; with 0 none is timed.
     timeout : float
         [s] after which the time is not known.
     """
@@ -70,12 +70,25 @@ class CompareOptions:
         Of the parts.
     margin : float
         A shown error is at least this many times the reference's own.
+    steps, exact_steps : tuple of float
+        Longest steps of the runs, in those of the scene: of harmonic balance, and of the exact motion, whose
+        points are exact with any.
+    finest_step, finest_exact_step : float
+        The same of the references.
+    floor, exact_floor : float
+        Relative, to which points of a reference are solved and its peaks located.
     """
 
     chain: ChainOptions = field(default_factory=ChainOptions)
     exact: ExactLineOptions = field(default_factory=ExactLineOptions)
     startup: StartupOptions = field(default_factory=StartupOptions)
     margin: float = 10.0
+    steps: tuple[float, ...] = (4.0, 2.0, 1.0, 0.5, 0.25)
+    exact_steps: tuple[float, ...] = (2.0, 1.0)
+    finest_step: float = 1.0 / 16.0
+    finest_exact_step: float = 0.25
+    floor: float = 1e-9
+    exact_floor: float = 1e-8
 
 
 COMPARE = CompareOptions()  # where nothing else is said

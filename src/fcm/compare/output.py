@@ -13,7 +13,6 @@ from fcm.compare.comparison import Comparison, contributions
 from fcm.compare.errors import MEANINGS, MEASURES, Shown
 from fcm.compare.lines import Line
 from fcm.compare.methods import CLOSED_FORM, EXACT, Run
-from fcm.compare.options import COMPARE
 from fcm.compare.startup import Startup
 from fcm.files import replacing
 from fcm.results.variable_names import variable_names
@@ -164,7 +163,9 @@ def write_netcdf(out: Comparison, path: str | Path) -> None:
         own = [[out.references[name].own[measure] for measure in MEASURES] for name in references]
         put("own_error", ("reference", "measure", "curve"), own, long_name="error of the reference itself")
         errors = [[[e[measure] for e in out.errors[name]] for measure in MEASURES] for name in references]
-        meaning = f"error against the reference; unknown where it is below {COMPARE.margin:g} times own_error"
+        meaning = (
+            f"error against the reference; unknown where it is below {out.options.margin:g} times own_error"
+        )
         put("error", ("reference", "measure", "run", "curve"), errors, long_name=meaning, units="1")
         folds = [[len(line.folds) for line in one.lines] for one in out.runs]
         put("folds", ("run", "curve"), folds, long_name="number of folds", units="1")

@@ -27,13 +27,16 @@ class Startup(NamedTuple):
     table: float  # of these, to open the table
 
 
+UNKNOWN = Startup(float("nan"), float("nan"))
+
+
 def startup(method: str, table: Path | None, options: StartupOptions = COMPARE.startup) -> Startup:
     """Least times of some programs that begin as one with this method does, and then end."""
     imports = _IMPORTS.get(method, "import fcm.scene, fcm.response")
     opening = f"import fcm; fcm.open_table({str(table)!r})" if table else "pass"
     program = _PROGRAM.format(imports=imports, opening=opening)
     tries = [_one(program, options.timeout) for _ in range(options.repeats)]
-    return min(tries)
+    return min(tries, default=UNKNOWN)
 
 
 def _one(program: str, timeout: float) -> Startup:
@@ -44,4 +47,4 @@ def _one(program: str, timeout: float) -> Startup:
         )
         return Startup(time.perf_counter() - begin, float(done.stdout))
     except (subprocess.SubprocessError, OSError, ValueError):
-        return Startup(float("nan"), float("nan"))
+        return UNKNOWN

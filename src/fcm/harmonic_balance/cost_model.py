@@ -20,10 +20,6 @@ from fcm.scene.options import LIMITS
 from fcm.scene.rules import harmonics_up_to
 from fcm.structure.layout import Layout, layout_of
 
-MAX_SECONDS = 30.0  # seconds that all rounds of more and more harmonics may take: levels, branches, errors
-# where they are followed a dozen times, as in a search, or with one harmonic more each time
-MAX_SECONDS_REPEATED = 3.0
-
 
 def seconds_of(system: System, evaluations: int, harmonics: int) -> float:
     """About what evaluations of the balance with so many harmonics take, each solved for a step.
@@ -97,7 +93,8 @@ def with_twice_as_many(system: System, evaluations: int) -> System | None:
     """
     highest = system.harmonics[-1]
     more = min(2 * highest + 1, LIMITS.harmonics)
-    if more == highest or seconds_with(system, evaluations, more) > MAX_SECONDS_REPEATED:
+    most = system.options.work.max_seconds_repeated
+    if more == highest or seconds_with(system, evaluations, more) > most:
         return None
     return system.with_harmonics(harmonics_up_to(more))
 

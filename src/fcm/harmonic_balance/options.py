@@ -162,6 +162,22 @@ class EvaluationCost:
 
 
 @dataclass(frozen=True)
+class WorkOptions:
+    """What may be taken for more harmonics, in seconds of the core that `EvaluationCost` is of.
+
+    Attributes
+    ----------
+    max_seconds : float
+        [s] of all rounds of more and more harmonics: levels, branches, errors.
+    max_seconds_repeated : float
+        [s] where they are followed a dozen times, as in a search, or with one harmonic more each time.
+    """
+
+    max_seconds: float = 30.0
+    max_seconds_repeated: float = 3.0
+
+
+@dataclass(frozen=True)
 class WorkspaceOptions:
     """Which workspaces are kept for the next system, as in a sweep.
 
@@ -203,7 +219,7 @@ class HarmonicBalanceOptions:
 
     Attributes
     ----------
-    extremes, spectrum, digits, stiff, rest, rigid, cost, workspace, units
+    extremes, spectrum, digits, stiff, rest, rigid, cost, work, workspace, units
         Of the parts, each of a class of its own.
     samples : int
         Of a cycle for each period of the highest harmonic, at least, where a contact's own law is sampled.
@@ -216,6 +232,7 @@ class HarmonicBalanceOptions:
     rest: StaticLoadOptions = field(default_factory=StaticLoadOptions)
     rigid: RigidMotionOptions = field(default_factory=RigidMotionOptions)
     cost: EvaluationCost = field(default_factory=EvaluationCost)
+    work: WorkOptions = field(default_factory=WorkOptions)
     workspace: WorkspaceOptions = field(default_factory=WorkspaceOptions)
     units: UnitOptions = field(default_factory=UnitOptions)
     samples: int = 8

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fcm.model.scene import Scene
 from fcm.response.request import ResponseError
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
     import xarray
 
+    from fcm.response.options import ResponseOptions
+
 __all__ = ["METHODS", "Curve", "Response", "ResponseError", "respond", "trace"]
 
 
@@ -32,6 +34,7 @@ def respond(
     max_step: float | None = None,
     executor: Executor | None = None,
     sensitivity: bool = False,
+    options: ResponseOptions | None = None,
 ) -> xarray.Dataset:
     """Response curves of a scene, and the motion of its schedule, as the dataset of ``fcm respond``.
 
@@ -55,6 +58,8 @@ def respond(
         Where the curves of a sweep are computed, in batches; its owner ends it. In this process by default.
     sensitivity : bool
         Whether to add the derivatives of each peak, its height and frequency, by the numbers of the scene.
+    options : fcm.response.options.ResponseOptions, optional
+        Tolerances and limits of the balance; of no use with "exact".
 
     Returns
     -------
@@ -98,7 +103,8 @@ def respond(
     if scene.schedule:
         refuse_own_laws(scene, "the motion of a schedule")
     place = None if executor is None else place_of(executor)
-    response = _curves(scene, method, at, harmonics, accuracy, place)
+    asked = {"harmonics": harmonics, "accuracy": accuracy, "options": options}
+    response = _curves(scene, method, at, asked, place)
     if sensitivity:
         from fcm.response.sensitivity import add_sensitivities
 
@@ -122,8 +128,7 @@ def _curves(
     scene: Scene,
     method: str,
     at: Sequence[float] | None,
-    harmonics: int | Sequence[int] | None,
-    accuracy: float | None,
+    asked: dict[str, Any],
     place: Factory | None,
 ) -> Response:
     if method not in (*METHODS, "exact"):
@@ -131,36 +136,32 @@ def _curves(
     if at is not None and method != "exact":
         raise ResponseError(f"frequencies to visit need the method 'exact'; the method is {method!r}")
     if scene.fit is not None:
-        return _fit(scene, method, harmonics, accuracy)
+        return _fit(scene, method, asked)
     if scene.optimum is not None:
-        return _optimum(scene, method, harmonics, accuracy)
+        return _optimum(scene, method, asked)
     if at is None and not scene.has_range and scene.schedule:
         return Response.without_curves(scene)
     if method == "exact":
-        if harmonics is not None or accuracy is not None:
+        if asked["harmonics"] is not None or asked["accuracy"] is not None:
             raise ResponseError("harmonics and accuracy are of no use with the method 'exact'")
         from fcm.response.exact import trace_exact
 
         return trace_exact(scene, at, place=place)
-    return trace(scene, method, harmonics=harmonics, accuracy=accuracy, place=place)
+    return trace(scene, method, place=place, **asked)
 
 
-def _fit(
-    scene: Scene, method: str, harmonics: int | Sequence[int] | None, accuracy: float | None
-) -> Response:
+def _fit(scene: Scene, method: str, asked: dict[str, Any]) -> Response:
     from fcm.response.fit import fit
 
     if method == "exact":
         raise ResponseError("the method 'exact' is of no use with [fit]")
-    return fit(scene, harmonics=harmonics, accuracy=accuracy, method=method)
+    return fit(scene, method=method, **asked)
 
 
-def _optimum(
-    scene: Scene, method: str, harmonics: int | Sequence[int] | None, accuracy: float | None
-) -> Response:
+def _optimum(scene: Scene, method: str, asked: dict[str, Any]) -> Response:
     from fcm.response.optimum import optimise
 
     if method == "exact" or scene.schedule:
         what = "the method 'exact'" if method == "exact" else "[[schedule]]"
         raise ResponseError(f"{what} is of no use with [optimum]")
-    return optimise(scene, harmonics=harmonics, accuracy=accuracy, method=method)
+    return optimise(scene, method=method, **asked)

@@ -9,7 +9,6 @@ import numpy as np
 from fcm.accuracy.options import REFINEMENT
 from fcm.accuracy.refinement import RefinedResponse
 from fcm.accuracy.stability_limits import StabilityLimit
-from fcm.harmonic_balance.cost_model import MAX_SECONDS
 from fcm.response.options import SENTENCES
 from fcm.scene.errors import counted
 from fcm.units import in_unit
@@ -44,7 +43,8 @@ def _of_harmonics(found: RefinedResponse, accuracy: float) -> str:
     more = found.further
     which = str(more[-1]) if more[-1] == len(more) else ",".join(map(str, more))
     if found.begun:
-        return f"{said}; more were given up after some {MAX_SECONDS:.0f} s of work: --harmonics {which}"
+        most = found.system.options.work.max_seconds
+        return f"{said}; more were given up after some {most:.0f} s of work: --harmonics {which}"
     return f"{said}; more would take some {found.seconds_with(more):.0f} s: --harmonics {which}"
 
 

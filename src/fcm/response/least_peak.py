@@ -8,10 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.accuracy.refinement import enlarged, with_estimated_errors
-from fcm.harmonic_balance.cost_model import MAX_SECONDS_REPEATED
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
-from fcm.response.options import OPTIMUM
+from fcm.response.options import RESPONSE, ResponseOptions
 from fcm.response.request import ResponseError
 from fcm.response.tracked_work import as_curve
 from fcm.results.tracked import Optimal, TrackedCurve
@@ -42,14 +41,20 @@ def with_values(scene: Scene, numbers: list[Number], values: FloatArray) -> Scen
 class PeakTask:
     """One scene (of one curve) with what is to be chosen."""
 
-    def __init__(self, scene: Scene, numbers: list[Number], accuracy: float) -> None:
+    def __init__(
+        self, scene: Scene, numbers: list[Number], accuracy: float, options: ResponseOptions = RESPONSE
+    ) -> None:
         assert scene.optimum is not None
-        self.scene, self.numbers, self.accuracy = scene, numbers, accuracy
+        self.scene, self.numbers, self.accuracy, self.options = scene, numbers, accuracy, options
         self.bounds = np.array(scene.optimum.bounds)
         dofs = scene.modal.dofs
         self.targets = [Target(dofs.index(aim.dof), aim.ends) for aim in scene.optimum.minimise]
         self.seeking: LowestPeakSearch | PeakEnvelope | None = None  # what is at work,
         self.fewer: Optimal | None = None  # and what was found before, with fewer harmonics
+
+    def system(self, scene: Scene, harmonics: tuple[int, ...]) -> System:
+        """The balance of a scene."""
+        return System(scene, harmonics, options=self.options.balance)
 
     def with_values(self, values: FloatArray) -> Scene:
         """The scene with values of the numbers."""
@@ -65,11 +70,12 @@ class PeakTask:
 
 def optimum(task: PeakTask, harmonics: tuple[int, ...] | None, progress: Progress | None) -> Found:
     """With given harmonics, or with those that the accuracy takes at the optimum itself."""
-    chosen, seconds = harmonics or (1,), MAX_SECONDS_REPEATED
+    rounds = task.options.optimum.max_rounds
+    chosen, seconds = harmonics or (1,), task.options.balance.work.max_seconds_repeated
     known: LowestPeak | None = None
     task.fewer = None
-    for i in range(OPTIMUM.max_rounds):
-        shown = part(progress, i / OPTIMUM.max_rounds, (i + 1) / OPTIMUM.max_rounds)
+    for i in range(rounds):
+        shown = part(progress, i / rounds, (i + 1) / rounds)
         if len(task.numbers) == 1:
             task.seeking = search = _search(task, chosen)
             known = search.run(known, _sharing(shown))
@@ -92,7 +98,7 @@ def _sharing(progress: Progress | None) -> Callable[[float], None] | None:
 
 
 def harmonics_for_peaks(
-    task: PeakTask, found: Optimal, harmonics: tuple[int, ...], seconds: float = MAX_SECONDS_REPEATED
+    task: PeakTask, found: Optimal, harmonics: tuple[int, ...], seconds: float
 ) -> tuple[tuple[int, ...], float]:
     """The harmonics that the accuracy of the peaks to be least takes at an optimum, from some on.
 
@@ -101,9 +107,11 @@ def harmonics_for_peaks(
     scene, taken = task.with_values(np.array(list(found.values.values()))), 0.0
     dofs = [target.dof for target in task.targets]
     while True:
-        there = with_estimated_errors(System(scene, harmonics), task.accuracy)
+        there = with_estimated_errors(task.system(scene, harmonics), task.accuracy)
         height = np.max([one.amplitude.max(axis=0) for one in there.shown], axis=0, initial=0.0)[dofs]
-        worst = float(there.peak[dofs][height > OPTIMUM.min_height * height.max()].max(initial=0.0))
+        worst = float(
+            there.peak[dofs][height > task.options.optimum.min_height * height.max()].max(initial=0.0)
+        )
         there = replace(there, max_error=worst)
         if worst <= task.accuracy:
             return harmonics, taken
@@ -115,7 +123,8 @@ def harmonics_for_peaks(
 
 def _search(task: PeakTask, harmonics: tuple[int, ...]) -> LowestPeakSearch:
     (number,), span = task.numbers, (float(task.bounds[0, 0]), float(task.bounds[0, 1]))
-    return LowestPeakSearch(System(task.scene, harmonics), along(number), span, task.targets)
+    system, options = task.system(task.scene, harmonics), task.options.optimum.search
+    return LowestPeakSearch(system, along(number), span, task.targets, options)
 
 
 def _on_line(task: PeakTask, found: LowestPeak, harmonics: tuple[int, ...]) -> Found:
@@ -130,7 +139,7 @@ def _on_line(task: PeakTask, found: LowestPeak, harmonics: tuple[int, ...]) -> F
 def _downhill(task: PeakTask, harmonics: tuple[int, ...]) -> Found:
     """Of several numbers; from what was found with fewer harmonics."""
     task.seeking = valley = PeakEnvelope(
-        System(task.scene, harmonics), task.numbers, task.bounds, task.targets
+        task.system(task.scene, harmonics), task.numbers, task.bounds, task.targets
     )
     found = descend(valley, None if task.fewer is None else np.array(list(task.fewer.values.values())))
     if found is None:

@@ -29,7 +29,7 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.groups import anonymous, lost_curve
 from fcm.response.incomplete import no_steady_states, reason_for
-from fcm.response.options import INPUT_LIMITS
+from fcm.response.options import INPUT_LIMITS, ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_modes
 from fcm.response.serial_sweep import one_by_one
@@ -54,6 +54,7 @@ def trace_levels(
     accuracy: float | None = None,
     progress: Progress | None = None,
     keep: Checkpoint | None = None,
+    options: ResponseOptions | None = None,
 ) -> Response:
     """A curve for each curve of the scene and each frequency, in the scene's unit.
 
@@ -76,7 +77,7 @@ def trace_levels(
     if not all(np.isfinite(f) and f > 0.0 for f in at):
         raise ResponseError("a frequency must be finite and greater than 0")
     begin = time.perf_counter()
-    wanted = request_of(scene, harmonics, accuracy)
+    wanted = request_of(scene, harmonics, accuracy, options)
     check_modes(scene, wanted)
     ways = [
         (curve, frequency * UNIT[scene.frequency_unit]) for curve in scene.each_curve() for frequency in at
@@ -124,7 +125,7 @@ def _without(scene: Scene, omega: float, reason: str, cause: Cause = Cause.CALCU
 def _level_curve(scene: Scene, wanted: Request, omega: float, span: tuple[float, float]) -> Curve:
     """With the harmonics that are wanted; with ever more until they are enough for the accuracy."""
     begin, stopped = time.perf_counter(), ""
-    system = System(scene, wanted.harmonics or (1,))
+    system = System(scene, wanted.harmonics or (1,), options=wanted.options.balance)
     curve = _followed(system, omega, span)
     while wanted.harmonics is None and curve.complete and not _worst(curve) <= wanted.accuracy:
         more = with_twice_as_many(system, curve.evaluations)

@@ -47,7 +47,8 @@ def _modes(linear: Linear) -> tuple[FloatArray, FloatArray]:
 
 def with_all_dofs(found: RefinedResponse, scene: Scene, accuracy: float) -> RefinedResponse:
     """What was found of a scene that leads, of all degrees of freedom of another."""
-    system = System(scene, found.system.harmonics, found.system.table, found.system.corrected)
+    of = found.system
+    system = System(scene, of.harmonics, of.table, of.corrected, of.condensation, of.options)
     shown = tuple(reported_quantities(system, path) for path in found.traced.branches.paths)
     every = with_errors(UncheckedResponse(system, found.traced, shown, found.seconds), accuracy)
     return replace(every, further=found.further, begun=found.begun)

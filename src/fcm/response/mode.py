@@ -22,7 +22,7 @@ from fcm.nonlinear_modes.backbone import Mode, ModeError, nonlinear_mode, trunca
 from fcm.nonlinear_modes.forced_response import flanks, modal_force, resonances, resonant_level
 from fcm.response.groups import anonymous, lost_curve
 from fcm.response.incomplete import no_steady_states, reason_for
-from fcm.response.options import INPUT_LIMITS
+from fcm.response.options import INPUT_LIMITS, ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_other_harmonics, refuse_own_laws
 from fcm.response.serial_sweep import one_by_one
@@ -48,6 +48,7 @@ def trace_modes(
     force_levels: Sequence[float] = (1.0,),
     progress: Progress | None = None,
     keep: Checkpoint | None = None,
+    options: ResponseOptions | None = None,
 ) -> Response:
     """The mode of each curve of the scene over a span of modal amplitudes.
 
@@ -74,7 +75,7 @@ def trace_modes(
         raise ResponseError("a level of the forces must be finite and greater than 0")
     check_free(scene)
     begin = time.perf_counter()
-    wanted = request_of(scene, harmonics, accuracy)
+    wanted = request_of(scene, harmonics, accuracy, options)
     levels = tuple(float(level) for level in force_levels)
     of_curves = (number, span, wanted, levels, anonymous(scene.each_curve()))
     mark = b"" if keep is None else fingerprint("mode", *of_curves)
@@ -112,7 +113,7 @@ def _curve(
     scene: Scene, number: int, span: tuple[float, float], wanted: Request, levels: tuple[float, ...]
 ) -> Curve:
     begin = time.perf_counter()
-    system = System(scene, wanted.harmonics or (1,))
+    system = System(scene, wanted.harmonics or (1,), options=wanted.options.balance)
     mode = nonlinear_mode(system, number, span, scene.max_step)
     (error, theirs), stopped = truncation(mode), ""
     while wanted.harmonics is None and not _worst(error) <= wanted.accuracy:

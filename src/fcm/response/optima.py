@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 from fcm.response.least_peak import Found, PeakTask, harmonics_for_peaks, optimum
-from fcm.response.options import OPTIMUM
 from fcm.results.tracked import Optimal, TrackedCurve
 from fcm.run import Checkpoint, Progress, Results, fingerprint
 from fcm.run.progress import part
@@ -59,7 +58,9 @@ def _optima(
 def _kept(tasks: list[PeakTask], harmonics: tuple[int, ...] | None, checkpoint: Checkpoint) -> Results:
     """What is finished of these tasks; they are known by all that decides their optima."""
     scenes = [replace(task.scene, name="", title="", curves=()) for task in tasks]
-    mark = fingerprint("optima", harmonics, [(task.numbers, task.accuracy) for task in tasks], scenes)
+    mark = fingerprint(
+        "optima", harmonics, [(task.numbers, task.accuracy, task.options) for task in tasks], scenes
+    )
     return checkpoint.results(mark, KINDS, lambda i, found: _fits(tasks, i, found))
 
 
@@ -79,13 +80,14 @@ def _with_the_same(tasks: list[PeakTask], found: list[Found], checkpoint: Checkp
     every = {h for one, _ in found for h in one.harmonics}
     if all(len(one.harmonics) == len(every) for one, _ in found):
         return found
-    for _ in range(OPTIMUM.max_rounds):
+    for _ in range(tasks[0].options.optimum.max_rounds):
         chosen = tuple(sorted(every))
         others = [task for task, one in zip(tasks, found, strict=True) if one[0].harmonics != chosen]
         again = _optima(others, chosen, checkpoint, None)
         found = [one if one[0].harmonics == chosen else next(again) for one in found]
         for task, one in zip(tasks, found, strict=True):
-            every |= set(harmonics_for_peaks(task, one[0], chosen)[0])
+            seconds = task.options.balance.work.max_seconds_repeated
+            every |= set(harmonics_for_peaks(task, one[0], chosen, seconds)[0])
         if len(every) == len(chosen):
             break
     return found

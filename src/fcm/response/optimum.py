@@ -14,7 +14,7 @@ from fcm.model.scene import Optimum, Scene
 from fcm.response.curve_sweep import checkpoint_of
 from fcm.response.least_peak import Found, PeakTask, with_values
 from fcm.response.optima import optima
-from fcm.response.options import OPTIMUM
+from fcm.response.options import OPTIMUM, ResponseOptions
 from fcm.response.request import ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.sweep import trace
@@ -40,7 +40,8 @@ def optimise(
     keep: Path | Checkpoint | None = None,
     resume: bool = False,
     peaks_only: bool = False,
-    **options: Any,
+    options: ResponseOptions | None = None,
+    **more: Any,
 ) -> Response:
     """The optima of a scene with an [optimum], one for each curve of its sweep, and the responses there.
 
@@ -52,7 +53,9 @@ def optimise(
         As of `trace`: what is kept are the optima that are found, and then the curves of the response.
     peaks_only
         Whether to keep of the curves no points, once they have told what the optima are.
-    options
+    options : ResponseOptions, optional
+        Tolerances and limits.
+    more
         What else `trace` takes, for the response.
 
     Raises
@@ -67,8 +70,8 @@ def optimise(
     refuse_own_laws(scene, "an optimum")
     begin = time.perf_counter()
     numbers, free = _freed(scene, scene.optimum.vary)
-    wanted = request_of(scene, harmonics, accuracy)
-    tasks = [PeakTask(curve, numbers, wanted.accuracy) for curve in free.each_curve()]
+    wanted = request_of(scene, harmonics, accuracy, options)
+    tasks = [PeakTask(curve, numbers, wanted.accuracy, wanted.options) for curve in free.each_curve()]
     with checkpoint_of(keep, resume) as checkpoint:
         found, stopped = optima(
             tasks, wanted.harmonics, checkpoint, part(progress, 0.0, OPTIMUM.search_share)
@@ -76,9 +79,9 @@ def optimise(
         tracking = _tracking(scene.optimum, found)
         if stopped:
             return _unfinished(free, tracking, len(tasks), begin)
-        there, options = _at(free, numbers, tracking.optima), {**options, "keep": checkpoint}
+        there, more = _at(free, numbers, tracking.optima), {**more, "keep": checkpoint, "options": options}
         shown = part(progress, OPTIMUM.search_share, 1.0)
-        response = trace(there, progress=shown, harmonics=tracking.harmonics, **options)
+        response = trace(there, progress=shown, harmonics=tracking.harmonics, **more)
         if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
             checkpoint.done()
     for one, curve in zip(tracking.optima, response.curves, strict=True):

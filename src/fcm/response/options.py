@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from fcm.accuracy.options import REFINEMENT, RefinementOptions
+from fcm.harmonic_balance.options import HARMONIC_BALANCE, HarmonicBalanceOptions
+from fcm.tracking.options import SEARCH, SearchOptions
+
 
 @dataclass(frozen=True)
 class InputLimits:
@@ -258,6 +262,8 @@ class OptimumOptions:
         Relative difference of frequencies at which a peak was tracked and traced.
     max_dofs : int
         Degrees of freedom, up to which a curve is followed by all: their peaks are points of it.
+    search : SearchOptions
+        How the least over a range of one number is found.
     """
 
     max_rounds: int = 4
@@ -265,6 +271,29 @@ class OptimumOptions:
     search_share: float = 0.8
     frequency_tolerance: float = 1e-6
     max_dofs: int = 50
+    search: SearchOptions = SEARCH
 
 
 OPTIMUM = OptimumOptions()
+
+
+@dataclass(frozen=True)
+class ResponseOptions:
+    """Tolerances and limits of a response, for `fcm.respond` and for what traces, follows and optimises.
+
+    Attributes
+    ----------
+    balance : HarmonicBalanceOptions
+        Of the balance, and what more harmonics may take.
+    refinement : RefinementOptions
+        How harmonics are added for an accuracy.
+    optimum : OptimumOptions
+        How the least peak is found.
+    """
+
+    balance: HarmonicBalanceOptions = HARMONIC_BALANCE
+    refinement: RefinementOptions = REFINEMENT
+    optimum: OptimumOptions = OPTIMUM
+
+
+RESPONSE = ResponseOptions()

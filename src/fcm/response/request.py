@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from fcm.model.scene import Scene
-from fcm.response.options import INPUT_LIMITS
+from fcm.response.options import INPUT_LIMITS, RESPONSE, ResponseOptions
 from fcm.scene.rules import harmonics_fault, harmonics_up_to
 from fcm.table import Table
 
@@ -31,12 +31,18 @@ class Request:
     accuracy: float = INPUT_LIMITS.accuracy
     table: Table | None = None
     corrected: bool = True
+    options: ResponseOptions = RESPONSE
 
 
 ONE_HARMONIC = Request()
 
 
-def request_of(scene: Scene, harmonics: int | Sequence[int] | None, accuracy: float | None) -> Request:
+def request_of(
+    scene: Scene,
+    harmonics: int | Sequence[int] | None,
+    accuracy: float | None,
+    options: ResponseOptions | None = None,
+) -> Request:
     """What was asked for: by a caller, else by the scene, else the default accuracy.
 
     Raises
@@ -53,11 +59,11 @@ def request_of(scene: Scene, harmonics: int | Sequence[int] | None, accuracy: fl
         if not isinstance(accuracy, Real) or not 0.0 < accuracy < 1.0:
             value = f"{accuracy:g}" if isinstance(accuracy, Real) else repr(accuracy)
             raise ResponseError(f"accuracy is {value}, but it is a relative error between 0 and 1")
-        return Request(None, accuracy)
+        return Request(None, accuracy, options=options or RESPONSE)
     chosen = _numbers(harmonics)
     if fault := harmonics_fault(chosen):
         raise ResponseError(f"harmonics must be {fault}")
-    return Request(chosen)
+    return Request(chosen, options=options or RESPONSE)
 
 
 def _numbers(harmonics: object) -> tuple[Any, ...]:

@@ -18,7 +18,7 @@ from fcm.reduction.restore import checked, restored
 from fcm.response.blades import with_blades
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.groups import Work
-from fcm.response.options import SWEEP
+from fcm.response.options import SWEEP, ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_modes, unknown
 from fcm.response.trace import METHODS
@@ -50,6 +50,7 @@ def trace(
     tolerance: float | None = REDUCTION.tolerance,
     keep: Path | Checkpoint | None = None,
     resume: bool = False,
+    options: ResponseOptions | None = None,
 ) -> Response:
     """Trace the response curves of a scene.
 
@@ -83,6 +84,8 @@ def trace(
         a checkpoint is the caller's, to be kept until the response is written.
     resume : bool
         Take from that file what is finished already.
+    options : ResponseOptions, optional
+        Tolerances and limits.
 
     Raises
     ------
@@ -100,7 +103,7 @@ def trace(
     if not scene.has_range:
         raise ResponseError("the scene has no [response] with frequency = [from, to], so no curve to trace")
     begin = time.perf_counter()
-    wanted = request_of(scene, harmonics, accuracy)
+    wanted = request_of(scene, harmonics, accuracy, options)
     check_own_laws(scene)
     check_modes(scene, wanted)
     with checkpoint_of(keep, resume) as checkpoint:
@@ -110,7 +113,13 @@ def trace(
             checkpoint.done()
     if scene.tuned is not None and not response.interrupted:
         own = partial(
-            trace, method=method, table=table, harmonics=harmonics, accuracy=accuracy, tolerance=tolerance
+            trace,
+            method=method,
+            table=table,
+            harmonics=harmonics,
+            accuracy=accuracy,
+            tolerance=tolerance,
+            options=options,
         )
         response = with_blades(response, scene, own)
     response.defects = curves.defects
@@ -162,7 +171,7 @@ class _Sweep:
         self.wanted, self.peaks_only = wanted, peaks_only
         self.table_idle = method == "table" and table is None  # until it is opened
         # of the table before it is used, for it counts its look-ups
-        options = (method, table, wanted.harmonics, wanted.accuracy, peaks_only)
+        options = (method, table, wanted.harmonics, wanted.accuracy, peaks_only, wanted.options)
         self.mark = b"" if curves.checkpoint is None else fingerprint(*options)
 
     def run(self, lighter: Lighter, progress: Progress | None) -> Response:

@@ -91,12 +91,18 @@ def _unfinished(so_far: BestSoFar, scene: Scene) -> Curve:
 def _traced_curve(scene: Scene, wanted: Request, poll: Callable[[], None] | None, so_far: BestSoFar) -> Curve:
     from fcm.response.groups import lost_curve
 
-    system = System(with_master_dofs(scene), wanted.harmonics or (1,), wanted.table, wanted.corrected)
+    system = System(
+        with_master_dofs(scene),
+        wanted.harmonics or (1,),
+        wanted.table,
+        wanted.corrected,
+        options=wanted.options.balance,
+    )
     system.work.poll = poll or system.work.poll
     by_need = wanted.harmonics is None
     try:
         found = (
-            refined_response(system, wanted.accuracy, keep=so_far)
+            refined_response(system, wanted.accuracy, options=wanted.options.refinement, keep=so_far)
             if by_need
             else with_given_harmonics(system, keep=so_far)
         )

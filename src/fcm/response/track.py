@@ -17,7 +17,7 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import Scene
 from fcm.response.curve_sweep import checkpoint_of
 from fcm.response.master_dofs import with_master_dofs
-from fcm.response.options import INPUT_LIMITS
+from fcm.response.options import INPUT_LIMITS, ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.tracked_work import KINDS, STATES, TrackedScene, TrackedWork
@@ -68,6 +68,7 @@ def track(
     place: Factory | None = None,
     keep: Path | Checkpoint | None = None,
     resume: bool = False,
+    options: ResponseOptions | None = None,
 ) -> Response:
     """Curves of special points of the response against a number of the scene.
 
@@ -81,6 +82,8 @@ def track(
     span : (from, to)
     jobs, place, keep, resume
         As in `fcm.response.trace`: where the curves of a sweep are followed, and what is finished is kept.
+    options : ResponseOptions, optional
+        Tolerances and limits.
 
     Returns
     -------
@@ -103,7 +106,7 @@ def track(
     _check(scene, number, span)
     begin = time.perf_counter()
     free = number.freed(scene)
-    wanted = request_of(scene, harmonics, accuracy)
+    wanted = request_of(scene, harmonics, accuracy, options)
     tracked = with_master_dofs(free)
     curves = tracked.each_curve()
     chosen = wanted.harmonics or needed(curves, number, span, wanted)
@@ -113,7 +116,7 @@ def track(
     with checkpoint_of(keep, resume) as checkpoint:
         if what == "peaks":
             response.left_out = _untracked(len(free.modal.dofs), len(tracked.modal.dofs))
-        work = TrackedWork(number, what, span, chosen)
+        work = TrackedWork(number, what, span, chosen, wanted.options)
         outcome = _swept(work, curves, checkpoint, place, progress)
         for i, one in enumerate(curves):
             _add(response, one, next(iter(outcome.of(i)), None))
@@ -226,5 +229,7 @@ def needed(
     found = {1}
     for curve in (curves[0], curves[-1]) if len(curves) > 1 else curves:
         for value in np.linspace(*span, 3).tolist():
-            found |= set(refined_response(System(number.put(curve, value)), wanted.accuracy).system.harmonics)
+            system = System(number.put(curve, value), options=wanted.options.balance)
+            there = refined_response(system, wanted.accuracy, options=wanted.options.refinement)
+            found |= set(there.system.harmonics)
     return tuple(sorted(found))

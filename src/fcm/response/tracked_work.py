@@ -21,6 +21,7 @@ from fcm.harmonic_balance.response_quantities import cycles, loops
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.incomplete import no_steady_states, reason_for
+from fcm.response.options import RESPONSE, ResponseOptions
 from fcm.response.undetermined_traction import undetermined
 from fcm.results.result import INTERRUPTED
 from fcm.results.tracked import TrackedCurve, TrackedError
@@ -70,12 +71,14 @@ class TrackedWork:
     what: str
     span: tuple[float, float]
     harmonics: tuple[int, ...]
+    options: ResponseOptions = RESPONSE
 
     def __call__(self, scenes: Sequence[Scene], report: Report) -> list[TrackedScene]:
         return [self._one(scene, report) for scene in scenes]
 
     def _one(self, scene: Scene, report: Report) -> TrackedScene:
-        system, line, once = System(scene, self.harmonics), along(self.number), _SavedSteps(report)
+        system = System(scene, self.harmonics, options=self.options.balance)
+        line, once = along(self.number), _SavedSteps(report)
         shown = partial(report, text=self.number.key)
         way = TrackingRun(system, line, self.span, (), scene.max_step)
         found = tracked_curves(way, conditions_of(scene, self.what), (), shown, once)

@@ -20,7 +20,7 @@ from fcm import room
 from fcm.model.scene import FloatArray
 from fcm.scene.errors import counted, kind, quoted
 from fcm.scene.keys import names
-from fcm.scene.options import LIMITS, MESSAGES, TOLERANCES
+from fcm.scene.options import LIMITS, TOLERANCES
 from fcm.scene.rules import ANY, POSITIVE
 from fcm.scene.section import Section
 
@@ -105,8 +105,9 @@ def read_draws(table: Section, form: str, key: str, integer: Callable[..., int |
             f"{int(count * LIMITS.draws_seconds / seconds)} at most, or another distribution",
         )
         return None
-    if seconds > MESSAGES.seconds_of_draws:
-        table.mistakes.say(f"{table.path}: {long}")
+    told = table.mistakes.told
+    if seconds > told.options.seconds_of_draws:
+        told.say(f"{table.path}: {long}")
     return found
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 
 from fcm.scene.options import MESSAGES
+from fcm.scene.told import Told
 
 
 class SceneError(ValueError):
@@ -39,10 +40,10 @@ class Mistakes:
     fcm.scene.errors.SceneError: fan.toml: contact[0].ku: unknown key; did you mean "k_u"?
     """
 
-    def __init__(self, source: str, say: Callable[[str], None] | None = None) -> None:
+    def __init__(self, source: str, told: Told | None = None) -> None:
         """Of a file; what takes long to read is said at once, where there is someone to say it to."""
         self.source = source
-        self.say = say or (lambda _text: None)
+        self.told = told or Told()
         self.count = 0
         self._lines: list[str] = []
 

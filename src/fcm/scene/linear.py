@@ -18,7 +18,7 @@ from fcm.scene.files import Files
 from fcm.scene.mistuning import energy_of_matrices
 from fcm.scene.modal import KEYS, UNITS, read_modal
 from fcm.scene.names import Names, RowNames
-from fcm.scene.options import LIMITS, MESSAGES
+from fcm.scene.options import LIMITS
 from fcm.scene.section import Part, Parts, Section, described
 from fcm.structure.rigid_body import MOST, rigid_by_gap
 
@@ -79,15 +79,16 @@ def _room_for(top: Section, directions: int, rows: int) -> bool:
     """Whether memory holds what the flexibility along directions takes; else it is noted."""
     taken = float(LIMITS.bytes_of_direction * directions * rows)
     said = f"its flexibility along {directions} directions of contacts and forces, at {rows} rows, takes"
-    if taken > (free := room.memory()):
+    told = top.mistakes.told
+    if taken > (free := told.memory()):
         top.wrong(
             "structure",
             f"{said} {room.size(taken)} of memory, and {room.size(free)} are free: reduce it to the rows of "
             "the contacts and forces first, as by Craig and Bampton, or give fewer contacts",
         )
         return False
-    if taken > MESSAGES.memory:
-        top.mistakes.say(f"structure: {said} about {room.size(taken)} of memory")
+    if taken > told.options.memory:
+        told.say(f"structure: {said} about {room.size(taken)} of memory")
     return True
 
 

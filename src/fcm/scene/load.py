@@ -138,7 +138,7 @@ def scene_from_dict(
     >>> scene_from_dict(data).frequency_range
     (0.5, 1.5)
     """
-    mistakes = Mistakes(name, None if told is None else told.say)
+    mistakes = Mistakes(name, told)
     top = Section(data, "", mistakes)
     if not data:
         mistakes.add("", "is empty; a scene has [modal], [[contact]], [[force]] and [response]")

@@ -4,13 +4,36 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from fcm.model.scene import Scene
+from fcm import room
+from fcm.scene.options import MESSAGES, MessageOptions
+
+if TYPE_CHECKING:
+    from fcm.model.scene import Scene
+
+
+def _ignored(*_: object) -> None:
+    """Nobody hears of it."""
 
 
 @dataclass(frozen=True)
 class Told:
-    """What hears of a scene while it is read."""
+    """What hears of a scene while it is read.
 
-    say: Callable[[str], None]  # a sentence
-    curves: Callable[[Scene, int], None]  # the scene without its curves, and how many; may raise
+    Attributes
+    ----------
+    say : callable
+        Takes a sentence.
+    curves : callable
+        Takes the scene without its curves, and how many there are; may raise.
+    memory : callable
+        [byte] that can still be taken: a scene that takes more is a mistake.
+    options : MessageOptions
+        From when on something is said.
+    """
+
+    say: Callable[[str], None] = _ignored
+    curves: Callable[[Scene, int], None] = _ignored
+    memory: Callable[[], float] = room.memory
+    options: MessageOptions = MESSAGES

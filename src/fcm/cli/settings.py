@@ -1,0 +1,51 @@
+"""What commands are run with beside their options, for who calls them from Python."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fcm import room
+from fcm.cli.limits import SENTENCES, RemarkOptions
+
+if TYPE_CHECKING:
+    from fcm.compare.options import CompareOptions
+    from fcm.response.options import ResponseOptions
+    from fcm.scene.options import MessageOptions
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What no option of the command line says: ``main(args, obj=Messages(settings=Settings(...)))``.
+
+    Attributes
+    ----------
+    remarks : RemarkOptions
+        How much is said.
+    reading : MessageOptions, optional
+        How much of it while a scene is read; the default where nothing is given.
+    response : ResponseOptions, optional
+        Tolerances and limits of responses.
+    compare : CompareOptions, optional
+        Those of ``--compare``.
+    memory : callable
+        [byte] that this process can still take.
+    disk : callable
+        [byte] that files in a folder can still take.
+    clock : callable
+        [s] since some moment.
+    """
+
+    remarks: RemarkOptions = SENTENCES
+    reading: MessageOptions | None = None
+    response: ResponseOptions | None = None
+    compare: CompareOptions | None = None
+    memory: Callable[[], float] = room.memory
+    disk: Callable[[Path], float] = room.disk
+    clock: Callable[[], float] = time.monotonic
+
+
+SETTINGS = Settings()
