@@ -345,3 +345,14 @@ def test_the_bundled_ring_is_told_in_words_and_numbers(tmp_path):
 def file_sectors(curves):
     """Sectors of the names of peaks."""
     return 1 + max(int(name.partition("@")[2]) for name in curves[0]["peak"])
+
+
+@pytest.mark.parametrize("key", ["cyclic.mistuning.scale", "contact.shroud@3.n_0"])
+def test_numbers_of_a_ring_that_another_mistake_keeps_from_being_made_are_none(key):
+    """They were said not to be there."""
+    data = sector(6, 1) | {"schedule": [{"frequency": 1.0, "cycles": 2}], "sweep": {key: [1.0, 2.0]}}
+    with pytest.raises(SceneError, match="schedule: cannot be beside") as caught:
+        scene_from_dict(data)
+    assert caught.value.count == 1
+    del data["schedule"]
+    assert [curve.parameters[key] for curve in scene_from_dict(data).curves] == [1.0, 2.0]

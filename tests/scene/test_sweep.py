@@ -280,3 +280,44 @@ def test_what_is_wrong_with_every_curve_is_said_once(data, mistakes):
         force["amplitude"] = 0.0
     said = mistakes(data | {"sweep": {"contact.shroud.n_0": [1.0, 2.0, 3.0]}})
     assert said == "test.toml: the forces move no mode, so the response is zero"
+
+
+def renamed(data, table, key, to):
+    """The key of a table misspelled."""
+    data[table][0][to] = data[table][0].pop(key)
+
+
+HIDDEN = {  # a mistake elsewhere, and a number that is there without it
+    "contacts under another key": (
+        lambda data: data.update(contacts=data.pop("contact")),
+        "contact.shroud.mu",
+    ),
+    "one contact as a table": (lambda data: data.update(contact=data["contact"][0]), "contact.shroud.mu"),
+    "no name": (lambda data: renamed(data, "contact", "name", "nmae"), "contact.shroud.mu"),
+    "nodes of no file": (lambda data: data["contact"][0].update(nodes="no.csv"), "contact.shroud_2.mu"),
+    "forces under another key": (lambda data: data.update(froce=data.pop("force")), "force.u.amplitude"),
+    "no direction": (lambda data: renamed(data, "force", "dof", "dfo"), "force.u.amplitude"),
+    "a base under another key": (lambda data: data.update(bse={"acceleration": 1.0}), "base.acceleration"),
+}
+
+
+@pytest.mark.parametrize("case", HIDDEN)
+@pytest.mark.parametrize("table", ["sweep", "optimum", "fit"])
+def test_a_number_that_another_mistake_hides_is_no_mistake(data, mistakes, case, table):
+    """It was said that there is no such number in the scene."""
+    spoil, key = HIDDEN[case]
+    spoil(data)
+    del data["schedule"], data["sweep"]
+    tables = {
+        "sweep": {key: [1.0]},
+        "optimum": {"vary": key, "bounds": [0.1, 1.0], "minimise": "peak.u"},
+        "fit": {"vary": key, "data": []},
+    }
+    said = mistakes(data | {table: tables[table]})
+    assert "no such number" not in said and said
+
+
+def test_a_misspelled_number_is_said_beside_other_mistakes(data, mistakes):
+    data["contact"][0]["mu"] = "x"
+    data["sweep"] = {"contact.shrod.n_0": [1.0]}
+    assert 'no such number in the scene to sweep; did you mean "contact.shroud.n_0"?' in mistakes(data)

@@ -1,17 +1,26 @@
 """A search for optima that is interrupted: what was found is not sought again, and comes out the same."""
 
+import tomllib
 from unittest.mock import Mock
 
 import netCDF4
 import numpy as np
 import pytest
 
+from fcm.cli.track import as_table
 from fcm.response import optima
 from fcm.response.least_peak import PeakTask, optimum
+from fcm.response.optimum import optimise
 from fcm.response.sweep import trace
+from fcm.response.track import track
+from fcm.results.output import write_netcdf
 from fcm.results.tracked import Optimal
 from fcm.run import Checkpoint
 from fcm.scene import load_scene
+from fcm.scene.load import scene_from_dict
+from fcm.tracking.options import SEARCH
+from fcm.tracking.peak_envelope import PieceHeight
+from fcm.tracking.trials import by_trials
 
 from ..oscillator import oscillator
 
@@ -120,3 +129,78 @@ def test_where_the_forces_may_vanish_they_do(fcm, tmp_path):
         and "least greatest.u: 0 " in done.out + done.err
         and "with level = 0" in done.out + done.err
     )
+
+
+FLAT = '[optimum]\nvary = {}\nbounds = {}\nminimise = "greatest.u"\n'
+
+
+def of_range(vary, bounds):
+    rest = "[response]\nfrequency = [0.7, 0.9]\n" + FLAT.format(vary, bounds).replace("'", '"')
+    return scene_from_dict(tomllib.loads(oscillator(rest)))
+
+
+def dynamic_stiffness(omega):
+    """Of the structure and the spring across the contact, in u and v."""
+    inverse, own = np.linalg.inv(np.array([[0.707, 0.707], [1.0, -0.5]])), np.array([1.0, 10.0])
+    modal = own**2 + 2j * 0.01 * own * omega - omega**2
+    return inverse @ np.diag(modal) @ inverse.T + np.diag([0.0, 1.0])
+
+
+def stuck():
+    """Displacements u and v at the upper end of the range of a contact that sticks."""
+    return np.linalg.solve(dynamic_stiffness(0.9) + np.diag([1.0, 0.0]), [1.0, 0.0])
+
+
+def test_a_peak_that_does_not_depend_on_the_number_over_a_part_of_its_range():
+    """It was said to be at a corner of the response, at one of the values, by chance.
+
+    The contact sticks while -mu (n + v) < u + f < mu (n + v) in all of a cycle, with some mean force f of
+    friction. The last that does is half of |u + mu v| - |u - mu v|, with mu n half of their sum. That force
+    moves v, so that n is not n_0.
+    """
+    u, v = stuck()
+    less, more = abs(u - 0.4 * v), abs(u + 0.4 * v)
+    _, moved = np.linalg.solve(dynamic_stiffness(0.0).real, [-(more - less) / 2, 0.0])
+    onset = (less + more) / (2 * 0.4) - moved
+    (found,) = optimise(of_range(["contact.shroud.n_0"], [[0.2, 40.0]]), harmonics=1).tracking.optima
+    assert found.kind == "flat" and found.value == pytest.approx(abs(u), rel=1e-12)
+    low, high = found.flat["contact.shroud.n_0"]
+    assert low == pytest.approx(onset, rel=1e-5) and high == 40.0
+    assert found.values["contact.shroud.n_0"] == pytest.approx((low + high) / 2)
+
+
+def test_a_peak_that_depends_on_none_of_several_numbers(fcm, tmp_path):
+    scene = of_range(["contact.shroud.n_0", "contact.shroud.mu"], [[5.0, 40.0], [0.2, 0.6]])
+    response = optimise(scene, harmonics=1)
+    (found,) = response.tracking.optima
+    assert found.kind == "flat" and found.value == pytest.approx(abs(stuck()[0]), rel=1e-9)
+    assert found.flat == {"contact.shroud.n_0": (5.0, 40.0), "contact.shroud.mu": (0.2, 0.6)}
+    said = as_table({"optimum": [found.summary("rad/s")], "tracked": {"what": "optimum"}}, "rad/s")
+    assert (
+        "; it does not depend on contact.shroud.n_0 from 5 to 40, nor on contact.shroud.mu from 0.2 to 0.6\n"
+        in said
+    )
+    write_netcdf(response, tmp_path / "flat.nc")
+    with netCDF4.Dataset(tmp_path / "flat.nc") as data:
+        assert data["optimum_flat"][0].tolist() == [[5.0, 40.0], [0.2, 0.6]]
+
+
+def test_trials_as_high_say_that_the_number_does_not_matter():
+    heights = {0.0: 2.0, 0.25: 1.0, 0.5: 1.0, 0.75: 1.0, 1.0: 3.0}
+
+    class Tried:
+        span, options, visited_values = (0.0, 1.0), SEARCH, {}
+
+        def greatest_at(self, value):
+            self.visited_values[value] = PieceHeight(heights.get(value, 1.0), 0.0, np.zeros(0), 0)
+
+    found = by_trials(Tried())
+    ((number, low, high),) = found.flat
+    assert (found.kind, number, high) == ("flat", 0, 0.75) and 0.0 < low <= 0.25
+
+
+def test_a_curve_that_runs_along_the_frequency_at_the_end_of_its_range_has_ended_there():
+    """It was said to have stopped where no further point could be found."""
+    scene = scene_from_dict(tomllib.loads(oscillator("[response]\nfrequency = [0.7, 1.7]\n")))
+    tracked = track(scene, "slip", "contact.shroud.n_0", (2.0, 200.0), harmonics=1).tracking
+    assert [one.reason for one in tracked.curves] == [""] and tracked.complete

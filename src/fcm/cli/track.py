@@ -141,7 +141,7 @@ def _optimum(one: Mapping[str, Any], unit: str) -> str:
     swept = ", ".join(f"{plain(key)} = {value:g}" for key, value in one["parameters"].items())
     kind = {
         "smooth": "", "kink": ", where peaks are equal", "corner": ", at a corner of the response",
-        "end": ", where a higher peak ends", "bound": ", at a bound: beyond it there may be less",
+        "end": ", where a higher peak ends", "bound": ", at a bound: beyond it there may be less", "flat": "",
         "trials": "", "unfinished": ", the least so far: the search was interrupted",
     }[one["kind"]]  # fmt: skip
     if one["between"]:
@@ -157,7 +157,13 @@ def _optimum(one: Mapping[str, Any], unit: str) -> str:
         f"least {' and '.join(map(plain, one['minimise']))}: {one['value']:.6g}{_stays(one)} "
         f"(error {short(one['error'])}{_ranges(one)})"
     )
-    return f"{least} with {where}{kind}\n{at}{f'; {swept}' if swept else ''}{said}"
+    return f"{least} with {where}{kind}{_flat(one)}\n{at}{f'; {swept}' if swept else ''}{said}"
+
+
+def _flat(one: Mapping[str, Any]) -> str:
+    """On which numbers the least peak does not depend, and from where to where."""
+    found = [f"{plain(key)} from {low:.6g} to {high:.6g}" for key, (low, high) in one["flat"].items()]
+    return f"; it does not depend on {', nor on '.join(found)}" if found else ""
 
 
 def _stays(one: Mapping[str, Any]) -> str:

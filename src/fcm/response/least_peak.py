@@ -168,5 +168,6 @@ def _optimal(
         active=tuple(sorted(active, key=lambda pair: pair[1])),
         kind=best.kind,
         between=best.between,
+        flat={task.numbers[k].key: (low, high) for k, low, high in best.flat},
         harmonics=harmonics,
     )

@@ -104,13 +104,16 @@ class Optimal:
     minimised: tuple[str, ...]
     value: float
     active: tuple[tuple[str, float], ...]  # degrees of freedom with the greatest peaks, and their frequencies
-    kind: str  # "smooth", "kink", "corner", "end", "bound", "trials", "unfinished"
+    kind: str  # "smooth", "kink", "corner", "end", "bound", "flat", "trials", "unfinished"
     harmonics: tuple[int, ...]
     error: float = np.nan  # of the value, estimated, relative
     between: tuple[float, float] | None = None  # the numbers next to it, if it was found by trials
     stable: tuple[float, ...] = ()  # of each of the active, as of a `Peak`
     residual: tuple[float, ...] = ()  # likewise
     fewer: Optimal | None = None  # what was found with fewer harmonics before
+    flat: dict[str, tuple[float, float]] = field(
+        default_factory=dict
+    )  # between which the peaks do not depend
 
     def summary(self, unit: str) -> dict[str, Any]:
         """For JSON."""
@@ -134,6 +137,7 @@ class Optimal:
             "harmonics": list(self.harmonics),
             "error": self.error,
             "between": None if self.between is None else list(self.between),
+            "flat": {key: list(ends) for key, ends in self.flat.items()},
         }
 
 

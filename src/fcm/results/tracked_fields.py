@@ -108,6 +108,15 @@ def _optima(response: Response, tracking: Tracking) -> dict[str, Field]:
 
     numbers = np.array([list(one.values.values()) for one in optima])
     add("number", ("varied",), numbers, "number with which the greatest peak is least")
+    if any(one.flat for one in optima):
+        none = (np.nan, np.nan)
+        flat = np.array([[one.flat.get(key, none) for key in one.values] for one in optima])
+        add(
+            "flat",
+            ("varied", "end"),
+            flat,
+            "values of the number between which that peak does not depend on it",
+        )
     add("peak", (), np.array([one.value for one in optima]), f"the greatest of {minimised} with it")
     errors = np.array([one.error for one in optima])
     add("error", (), errors, "estimated relative error of that peak", units="1")
@@ -119,7 +128,12 @@ def _optima(response: Response, tracking: Tracking) -> dict[str, Field]:
     residual = padded([np.array(one.residual) for one in optima])
     ranges = "greatest change of that peak by the residual friction of contacts that never slip, relative"
     add("residual_change", ("equal",), residual, ranges, units="1")
-    add("kind", (), np.array([one.kind for one in optima], dtype=str), f"{KINDS}, bound, trials, unfinished")
+    add(
+        "kind",
+        (),
+        np.array([one.kind for one in optima], dtype=str),
+        f"{KINDS}, bound, flat, trials, unfinished",
+    )
     return out
 
 

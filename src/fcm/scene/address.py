@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from fnmatch import fnmatchcase
 from typing import Any
@@ -12,6 +13,8 @@ from fcm.model.scene import Address
 from fcm.scene.errors import Mistakes, quoted
 
 VECTORS = ("mass", "frequency", "damping")  # of the modal table
+SCALE = "cyclic.mistuning.scale"
+OF_SECTOR = re.compile(r"@\d+")  # in the name of a contact of a mistuned ring
 NUMBERS = {  # of each kind of table
     "contact": ("n_0", "gap", "mu", "k_u", "k_v"),
     "force": ("amplitude", "phase"),
@@ -89,6 +92,12 @@ class Addresses:
         dofs = self.parts["modal"]["dofs"]
         return dofs is not None and "structure" in dofs.key
 
+    def _of_ring(self, key: str) -> bool:
+        """Whether it is a number of a mistuned ring that is not made, as something else is wrong."""
+        mistuned = any("mistuning" in one for one in self.parts.get("cyclic", ()))
+        known = key == SCALE or OF_SECTOR.sub("", key) in self.numbers
+        return mistuned and not self.parts.get("whole") and known
+
     def _excused(self, key: str, path: str, mistakes: Mistakes) -> bool:
         """Keys with a better explanation than that they are not there."""
         if key.startswith("structure.") and self._of_matrices():
@@ -99,6 +108,8 @@ class Addresses:
             mistakes.add(path, "the range, the step and the schedule cannot be swept")
         elif key.endswith((".n_0", ".gap")) and (other := _other_load(key)) in self.numbers:
             mistakes.add(path, f"the contact is given by {other.rpartition('.')[2]}; sweep {quoted(other)}")
+        elif key.partition(".")[0] in self.parts.get("unread", ()) or self._of_ring(key):
+            return True  # what is wrong with its table is said already
         else:
             needed = (self.parts["modal"][part] for part in ("dofs", *VECTORS, "shapes"))
             return key.startswith("modal.") and any(part is None for part in needed)
@@ -137,7 +148,7 @@ def _numbers(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:
         yield "cyclic.engine_order", ("cyclic", 0, "engine_order")
     if parts.get("whole"):  # of a mistuned ring
         yield "cyclic.engine_order", ("whole", 0, "engine_order")
-        yield "cyclic.mistuning.scale", ("whole", 0, "scale")
+        yield SCALE, ("whole", 0, "scale")
     for draft in parts["base"]:
         yield from ((f"base.{key}", ("base", 0, key)) for key in ("acceleration", "phase") if key in draft)
     for kind, keys in NUMBERS.items():

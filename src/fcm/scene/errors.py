@@ -66,13 +66,23 @@ def suggestion(word: str, among: Iterable[str]) -> str:
     >>> suggestion("frequncy", ["frequency", "damping"])
     '; did you mean "frequency"?'
     """
+    close = nearest(word, among)
+    return f"; did you mean {quoted(close)}?" if close else ""
+
+
+def nearest(word: str, among: Iterable[str]) -> str:
+    """The name that a word may be a misspelling of; empty when none is close.
+
+    >>> nearest("frequncy", ["frequency", "damping"]), nearest("x", ["frequency"])
+    ('frequency', '')
+    """
     if not word or len(word) > MESSAGES.longest_value:
         return ""
     names = {name.casefold(): name for name, _ in zip(among, range(MESSAGES.names_compared), strict=False)}
     from difflib import get_close_matches
 
     close = get_close_matches(word.casefold(), names, n=1)
-    return f"; did you mean {quoted(names[close[0]])}?" if close else ""
+    return names[close[0]] if close else ""
 
 
 def counted(count: int, what: str) -> str:

@@ -45,6 +45,7 @@ from fcm.scene.parts import (
     read_response,
     read_units,
     response_table,
+    unread_tables,
 )
 from fcm.scene.plane import check_plane, notes_of_planes
 from fcm.scene.questionable_values import questions
@@ -259,6 +260,7 @@ def _parts(
     parts["force"] = read_forces(top, modal["dofs"], reading.solved)
     ends = (ends[0], ends[1] * max((one["harmonic"] for one in parts["force"]), default=1))
     parts["load"] = read_loads(top, files, modal["dofs"], "structure" in top.data)
+    parts["unread"] = unread_tables(top, parts)
     parts["base"] = read_base(top, own_names(modal["dofs"]), "structure" in top.data)
     if cyclic:
         only_own(top, parts, modal["dofs"])

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from math import nan
 from typing import Any
 
 from fcm.model.scene import NO_RANGE, Contact, Force
-from fcm.scene.errors import quoted, shown
+from fcm.scene.errors import nearest, quoted, shown
 from fcm.scene.files import Files
 from fcm.scene.keys import names
 from fcm.scene.modal import UNITS
@@ -80,6 +80,24 @@ def _contacts(section: Section, dofs: Dofs, files: Files) -> list[dict[str, Any]
         | {key: along(weights, pair, dofs) for key, weights in directions.items()}
         for i, pair in enumerate(table.pairs)
     ]
+
+
+def unread_tables(top: Section, parts: Mapping[str, Any]) -> tuple[str, ...]:
+    """Tables of which a mistake hides numbers: those under another key, and those with parts without a name.
+
+    A number that is not found there is no mistake of its own.
+    """
+    hidden = [table for key in top.data if key not in names("") and (table := nearest(str(key), names("")))]
+    for table, key in (("contact", "name"), ("force", "dof"), ("load", "dof")):
+        written = top.data.get(table, ())
+        drafts = parts[table]
+        named = {draft[name] for draft in drafts for name in ("name", "group") if name in draft}
+        if not isinstance(written, list | tuple) or not all(
+            isinstance(one, Mapping) and (isinstance(one.get(key), Mapping) or one.get(key) in named)
+            for one in written
+        ):
+            hidden.append(table)
+    return tuple(hidden)
 
 
 def contact_of(draft: dict[str, Any]) -> Contact:

@@ -85,6 +85,15 @@ class JointCrossing:
             < high + self.options.kink_length * self.smooth.span
         )
 
+    def _leaves(self) -> bool:
+        """Whether the way leads out of the span from an end of it, however little the number changes."""
+        low, high = self.way.span
+        near = self.options.kink_length * self.smooth.span
+        return bool(
+            (self.t[-1] < 0.0 and self.z[-1] <= low + near)
+            or (self.t[-1] > 0.0 and self.z[-1] >= high - near)
+        )
+
     def _corners_near(self, z: FloatArray) -> Iterator[Condition]:
         """The corners of the response that a point is near to, the nearest first."""
         if self.turns:

@@ -44,6 +44,7 @@ class LineMinimum(NamedTuple):
     q: FloatArray
     value: float
     all_followed: bool
+    flat: tuple[float, float] | None = None  # values of the number, scaled, between which it stays as it is
 
 
 class LeftRangeError(Exception):
@@ -159,10 +160,12 @@ def descend(
     if not found:
         return None
     q, value, members = min(found, key=lambda one: one[1])
+    flat: tuple[tuple[int, float, float], ...] = ()
     for _ in range(valley.options.max_rounds):
         lines = [_along(valley, q, k) for k in range(q.size)]
         followed, lowest = all(line.all_followed for line in lines), min(lines, key=lambda line: line.value)
         if not lowest.value < value * (1.0 - valley.options.min_improvement):
+            flat = _flat_at(valley, q, value, lines)
             break
         again = downhill(valley, lowest.q)
         if not again[1] < value:
@@ -175,7 +178,22 @@ def descend(
             active.append(PieceHeight(height, 0.0, np.append(member[2], np.nan), member[1]))
     edge = bool(((q < valley.options.bound_tolerance) | (q > 1.0 - valley.options.bound_tolerance)).any())
     kind = "trials" if not followed else "kink" if len(active) > 1 else "bound" if edge else "smooth"
-    return valley.low + q * valley.width, EnvelopeMinimum(np.nan, value, tuple(active), kind)
+    if len(flat) == q.size:
+        kind = "flat"
+    return valley.low + q * valley.width, EnvelopeMinimum(np.nan, value, tuple(active), kind, flat=flat)
+
+
+def _flat_at(
+    valley: PeakEnvelope, q: FloatArray, value: float, lines: Sequence[LineMinimum]
+) -> tuple[tuple[int, float, float], ...]:
+    """The numbers on which the least does not depend at q, and between which values of each."""
+    found = []
+    for k, line in enumerate(lines):
+        same = abs(line.value - value) <= valley.options.height_tolerance * value
+        if same and line.flat is not None and line.flat[0] <= q[k] <= line.flat[1]:
+            low, high = (float(valley.low[k] + end * valley.width[k]) for end in line.flat)
+            found.append((k, low, high))
+    return tuple(found)
 
 
 def _starts(valley: PeakEnvelope, near: FloatArray | None) -> list[FloatArray]:
@@ -197,7 +215,8 @@ def _along(valley: PeakEnvelope, q: FloatArray, k: int) -> LineMinimum:
     best = found.best if found.checked else by_trials(search)
     if best is None:
         return LineMinimum(q, np.inf, found.checked)
-    return LineMinimum(origin + best.s * direction, best.value, found.checked)
+    flat = next(((low, high) for _, low, high in best.flat), None)
+    return LineMinimum(origin + best.s * direction, best.value, found.checked, flat)
 
 
 def downhill(valley: PeakEnvelope, q: FloatArray) -> tuple[FloatArray, float, list[Member]]:

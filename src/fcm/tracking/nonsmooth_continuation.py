@@ -89,7 +89,7 @@ class Pieces(JointCrossing):
         self.points = [self._point(self.z, self.t)]
         if z[-1] != start.z[-1]:
             self.points.insert(0, start)
-        if self._outside(self.z[-1] + self.t[-1] * self.options.step.min_step * self.smooth.span):
+        if self._leaves():
             return self.points, Ending.SPAN
         for _ in range(self.options.max_pieces):
             known = len(self.points)

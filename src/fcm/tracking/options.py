@@ -249,6 +249,13 @@ class EnvelopeOptions:
         Times the highest; counts where no peak is known, as differences of infinities are none.
     extreme_tolerance : float
         Relative; extremes of a cycle nearer than this are one.
+    flat_slope : float
+        Relative change over the whole range by the slope; a peak that changes by less does not depend on the
+        number.
+    flat_height : float
+        Relative; how far above the least such a stretch may be, as the onset of slip lowers peaks a little.
+    min_flat : float
+        Part of the range over which it has to be so.
     """
 
     brackets: int = 4
@@ -258,6 +265,9 @@ class EnvelopeOptions:
     height_tolerance: float = 1e-7
     unknown_factor: float = 10.0
     extreme_tolerance: float = 1e-12
+    flat_slope: float = 1e-8
+    flat_height: float = 1e-6
+    min_flat: float = 1e-3
 
 
 @dataclass(frozen=True)
@@ -288,11 +298,17 @@ class TrialOptions:
         Values about the lowest of those.
     min_distance : float
         Part of the range, between two values that are tried.
+    same_height : float
+        Relative; peaks nearer than this are as high.
+    min_flat : float
+        Part of the range over which peaks as high are said not to depend on the number.
     """
 
     values: int = 5
     closer_values: int = 4
     min_distance: float = 1e-4
+    same_height: float = 1e-9
+    min_flat: float = 0.2
 
 
 @dataclass(frozen=True)

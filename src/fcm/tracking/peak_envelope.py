@@ -8,7 +8,7 @@ where a piece turns, where two pieces cross, or at an end of one.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -46,8 +46,11 @@ class EnvelopeMinimum:
     s: float
     value: float
     active: tuple[PieceHeight, ...]
-    kind: str  # "smooth", "kink" of equal peaks, "corner", "end" of a higher, "bound", "trials", "unfinished"
+    kind: str  # "smooth", "kink" of equal peaks, "corner", "end" of a higher, "bound", "flat", "trials",
+    # "unfinished"
     between: tuple[float, float] | None = None  # values of s next to it, if it was found by trials
+    flat: tuple[tuple[int, float, float], ...] = ()  # a number's index, and between which of its values, here
+    # of s, the greatest does not depend on it
 
 
 class MonotonePiece:
@@ -138,8 +141,74 @@ def least(way: TrackingRun, pieces: Sequence[MonotonePiece]) -> EnvelopeMinimum 
     inner = np.pad(rough, 1, constant_values=np.inf)
     lowest = np.flatnonzero((rough <= inner[:-2]) & (rough <= inner[2:]))
     lowest = lowest[np.argsort(rough[lowest])][: way.options.envelope.brackets]
-    found = [_refined(pieces, way, *_around(pieces, grid, i)) for i in lowest.tolist()]
-    return min(found, key=lambda one: one.value)
+    envelope = _Envelope(pieces, way)
+    found = [_refined(envelope, way, *_around(pieces, grid, i)) for i in lowest.tolist()]
+    return _where_flat(envelope, way, grid, min(found, key=lambda one: one.value))
+
+
+class _Envelope:
+    """The greatest of the pieces as a function of s, exactly."""
+
+    def __init__(self, pieces: Sequence[MonotonePiece], way: TrackingRun) -> None:
+        self.pieces, self.options = pieces, way.options.envelope
+
+    def highest(self, s: float) -> tuple[PieceHeight, MonotonePiece]:
+        """The highest piece there; infinite where none is known."""
+        rough = {piece: piece.roughly(s) for piece in self.pieces if piece.covers(s)}
+        if not rough:
+            return PieceHeight(np.inf, 0.0, np.zeros(0), -1), self.pieces[0]
+        top = max(rough.values())
+        heights = [
+            (piece.at(s), piece)
+            for piece, height in rough.items()
+            if height >= self.options.chord_fraction * top
+        ]
+        return max(heights, key=lambda pair: pair[0].value)
+
+    def active(self, s: float, value: float) -> tuple[PieceHeight, ...]:
+        """All that are as high as a value there."""
+        heights = (piece.at(s) for piece in self.pieces if piece.covers(s))
+        return tuple(one for one in heights if one.value >= value * (1.0 - self.options.height_tolerance))
+
+
+def _where_flat(
+    envelope: _Envelope, way: TrackingRun, grid: FloatArray, best: EnvelopeMinimum
+) -> EnvelopeMinimum:
+    """The middle of the stretch on which the greatest does not depend on the number; else what was found."""
+    span, options = way.span[1] - way.span[0], way.options.envelope
+
+    def flat(s: float) -> bool:
+        there = envelope.highest(s)[0]
+        near = abs(there.value - best.value) <= options.flat_height * best.value
+        return near and abs(there.slope) * span <= options.flat_slope * best.value
+
+    least = options.min_flat * span
+    around = [s for s in (best.s - least, best.s + least) if way.span[0] <= s <= way.span[1]]
+    inner = next((s for s in around if flat(s)), None)
+    if inner is None:
+        return best
+    fine = options.value_tolerance * span
+    ends = (
+        _end_of_flat(flat, inner, grid[grid < inner][::-1], fine),
+        _end_of_flat(flat, inner, grid[grid > inner], fine),
+    )
+    middle = 0.5 * sum(ends)
+    top = envelope.highest(middle)[0].value
+    return replace(
+        best, s=middle, value=top, active=envelope.active(middle, top), kind="flat", flat=((0, *ends),)
+    )
+
+
+def _end_of_flat(flat: Callable[[float], bool], s: float, further: FloatArray, fine: float) -> float:
+    """The last value on one side, from s over points of the grid, at which it is flat."""
+    for there in further.tolist():
+        if not flat(there):
+            while abs(there - s) > fine:
+                middle = 0.5 * (s + there)
+                s, there = (middle, there) if flat(middle) else (s, middle)
+            return s
+        s = there
+    return s
 
 
 def gaps(way: TrackingRun, pieces: Sequence[MonotonePiece]) -> list[float]:
@@ -167,21 +236,11 @@ def _around(pieces: Sequence[MonotonePiece], grid: FloatArray, i: int) -> tuple[
 
 
 def _refined(
-    pieces: Sequence[MonotonePiece], way: TrackingRun, low: float, middle: float, high: float
+    envelope: _Envelope, way: TrackingRun, low: float, middle: float, high: float
 ) -> EnvelopeMinimum:
     """The least value between two values of s."""
     span, options = way.span[1] - way.span[0], way.options.envelope
-
-    def highest(s: float) -> tuple[PieceHeight, MonotonePiece]:
-        rough = {piece: piece.roughly(s) for piece in pieces if piece.covers(s)}
-        if not rough:  # nothing is known there
-            return PieceHeight(np.inf, 0.0, np.zeros(0), -1), pieces[0]
-        top = max(rough.values())
-        heights = [
-            (piece.at(s), piece) for piece, height in rough.items() if height >= options.chord_fraction * top
-        ]
-        return max(heights, key=lambda pair: pair[0].value)
-
+    pieces, highest = envelope.pieces, envelope.highest
     if high > low:
         most = options.unknown_factor * max(float(piece.height.max()) for piece in pieces)
         bounded = minimize_scalar(
@@ -205,17 +264,13 @@ def _refined(
     else:
         s = left if before.value <= after.value else right
     top = highest(s)[0]
-    active = [
-        h
-        for p in pieces
-        if p.covers(s) and (h := p.at(s)).value >= top.value * (1.0 - options.height_tolerance)
-    ]
+    active = envelope.active(s, top.value)
     kind = "kink" if len(active) > 1 else kind
     if kind == "corner" and any(
         _ends_higher(piece, s, top.value * (1.0 + options.height_tolerance), width) for piece in pieces
     ):
         kind = "end"
-    return EnvelopeMinimum(s, top.value, tuple(active), kind)
+    return EnvelopeMinimum(s, top.value, active, kind)
 
 
 def _ends_higher(piece: MonotonePiece, s: float, value: float, width: float) -> bool:

@@ -29,8 +29,27 @@ def by_trials(search: LowestPeakSearch) -> EnvelopeMinimum | None:
     top = search.visited_values[s]
     if not top.value > 0.0:
         return None
+    if (flat := _flat_about(search, s)) is not None:
+        return EnvelopeMinimum(s, top.value, (top,), "flat", flat=((0, *flat),))
     kind = "bound" if s in search.span else "trials"
     return EnvelopeMinimum(s, top.value, (top,), kind, _neighbours(search, s))
+
+
+def _flat_about(search: LowestPeakSearch, s: float) -> tuple[float, float] | None:
+    """The values that were tried about one between which all have its height; None where few have."""
+    options = search.options.tracking
+    tried = sorted(search.visited_values)
+    least = search.visited_values[s].value
+    same = [
+        abs(search.visited_values[one].value - least) <= options.trials.same_height * least for one in tried
+    ]
+    i = j = tried.index(s)
+    while i > 0 and same[i - 1]:
+        i -= 1
+    while j + 1 < len(tried) and same[j + 1]:
+        j += 1
+    wide = tried[j] - tried[i] >= options.trials.min_flat * (search.span[1] - search.span[0])
+    return (tried[i], tried[j]) if wide else None
 
 
 def _greatest(search: LowestPeakSearch, value: float) -> float:
