@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fcm import fourier_coefficients, normal_coefficients, periodic_forces
+from fcm import fourier_coefficients, normal_coefficients, periodic_forces, periodic_gradients
 from fcm.contact.periodic.forces import PeriodicContact
 
 from . import periodic_march
@@ -121,6 +121,13 @@ def test_a_set_of_harmonics_is_as_all_with_zeros_between(inside, outside):
         np.testing.assert_allclose(
             sparse.jacobian, np.array(full.jacobian)[np.ix_(rows, columns)], atol=1e-13
         )
+
+
+@pytest.mark.parametrize("of", [periodic_forces, periodic_gradients])
+def test_no_motions_have_no_forces(of):
+    f, n, *slopes = of(np.zeros((2, 0, 3)), [0, 1], 1.0, 1.0, 1.0, 1.0)
+    assert f.shape == n.shape == (2, 0, 3)
+    assert all(one.shape == (2, 0, 3, 2, 3, 2) for one in slopes)
 
 
 def test_arguments_broadcast():

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fcm import periodic_forces, planar_forces
+from fcm import periodic_forces, planar_forces, planar_gradients
 from fcm.contact.plane.options import OPTIONS
 
 from ..scale import SCALE
@@ -294,6 +294,14 @@ def test_arguments_broadcast_and_numbers_that_are_not_finite_give_nan():
     assert np.isnan(f_x[2]).all() and np.isfinite(f_x[:2]).all()
     alone = planar_forces([0, 2], [0, -1j], [0.0], 0.5, 1.0, 1.0, 0.5)
     np.testing.assert_array_equal(f_x[1, 1], alone[0])
+
+
+@pytest.mark.parametrize("of", [planar_forces, planar_gradients])
+@pytest.mark.parametrize(("shape", "harmonics"), [((0, 3), 3), ((2, 0, 1), 2)])
+def test_no_motions_have_no_forces(of, shape, harmonics):
+    f_x, f_y, n, *slopes = of(np.zeros(shape), [0, 1], [0, 1], 1.0, 1.0, 1.0, 1.0)
+    assert f_x.shape == f_y.shape == n.shape == (*shape[:-1], harmonics)
+    assert all(one.shape == (*shape[:-1], harmonics, 3, harmonics, 2) for one in slopes)
 
 
 def test_wrong_arguments():

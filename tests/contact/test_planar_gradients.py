@@ -90,6 +90,25 @@ def test_across_a_line_from_closing_to_opening():
         assert np.abs(J[:, column] - found).max() <= 1e-8 * case.k_v
 
 
+@pytest.mark.parametrize("options", [OPTIONS, FINEST])
+@pytest.mark.parametrize("small", [1e-2, 1e-3, 1e-4])
+@pytest.mark.parametrize("k_v", [1.0, 10.0, 100.0])
+def test_motions_far_smaller_than_the_load_allows(small, k_v, options):
+    """They slip an instant before the contact opens, at a load that is nearly nothing, and matter only as the
+    place where it closed: the derivatives by v are as small as they are."""
+    contact, law = PlanarContact([1], [1], options=options), (1.0, 1.0, k_v)
+    for n_0, phase in itertools.product((0.0, 0.3, -0.3), (0.3, 1.0, 2.0, 4.0)):
+        x = np.array([0, 0, 0, 1, 0, 0.4 * np.sin(1), -0.4 * np.cos(1), 0, 0]) * small
+        x[7:] = np.cos(phase), np.sin(phase)
+        contact.at(x, *law, k_v * n_0)
+        J = np.array(contact.jacobian)
+        assert [contact.cycle.slider.state[p] for p in range(contact.cycle.slider.pieces)] == [0, 1, 2]
+        for column in (7, 8):
+            found, _ = differences(contact, x, (*law, k_v * n_0), column, 1e-3)
+            assert np.abs(J[:2, column] - found[:2]).max() < 1e-3 * small
+            assert np.abs(J[3:7, column] - found[3:7]).max() < 1e-3 * small
+
+
 def test_of_a_circle():
     """f = (r^2 + i r sqrt(1 - r^2)) exp(i theta), as a complex number; by v at constant load."""
     r = 0.6

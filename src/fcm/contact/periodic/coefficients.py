@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import prod
 from typing import NamedTuple
 
 import numpy as np
@@ -89,7 +90,7 @@ def periodic_forces(
     motion = _Motion.of(u, v, harmonics, mu=mu, k_u=k_u, k_v=k_v, n_0=n_0, start=start)
     forces, _ = motion.evaluate(gradient=False)
     f, n = _complex(forces)
-    return f.reshape(*motion.shape, -1), n.reshape(*motion.shape, -1)
+    return f.reshape(*motion.shape, *f.shape[1:]), n.reshape(*motion.shape, *n.shape[1:])
 
 
 def periodic_gradients(
@@ -129,7 +130,7 @@ def periodic_gradients(
     forces, jacobian = motion.evaluate(gradient=True)
     by = _by_coefficients(jacobian)
     df, dn = (x.reshape(*motion.shape, *x.shape[1:]) for x in _complex(by))
-    f, n = (x.reshape(*motion.shape, -1) for x in _complex(forces))
+    f, n = (x.reshape(*motion.shape, *x.shape[1:]) for x in _complex(forces))
     return PeriodicGradients(f, n, df, dn)
 
 
@@ -170,7 +171,7 @@ class _Motion(NamedTuple):
         for i, motion in enumerate((u, v)):
             x[..., : motion.shape[-1], 2 * i] = motion.real
             x[..., 1 : motion.shape[-1], 2 * i + 1] = motion.imag[..., 1:]
-        x = x.reshape(-1, 4 * count)
+        x = x.reshape(prod(shape), 4 * count)
         columns = [np.broadcast_to(value, shape).reshape(-1) for value in parameters.values()]
         outputs = count - 1 if harmonics is None else harmonics
         contact = PeriodicContact(list(range(1, count)), list(range(1, outputs + 1)))
@@ -190,7 +191,7 @@ class _Motion(NamedTuple):
 
 def _complex(forces: FloatArray) -> tuple[ComplexArray, ComplexArray]:
     """The coefficients of both forces from the order of the kernel, along axis 1."""
-    rest = forces[:, 2:].reshape(forces.shape[0], -1, 4, *forces.shape[2:])
+    rest = forces[:, 2:].reshape(forces.shape[0], forces.shape[1] // 4, 4, *forces.shape[2:])
     f, n = (
         np.concatenate((forces[:, i : i + 1] + 0j, rest[:, :, 2 * i] + 1j * rest[:, :, 2 * i + 1]), axis=1)
         for i in range(2)
@@ -200,9 +201,9 @@ def _complex(forces: FloatArray) -> tuple[ComplexArray, ComplexArray]:
 
 def _by_coefficients(jacobian: FloatArray) -> FloatArray:
     """Derivatives by motion, harmonic and part, in three axes instead of the last."""
-    points, equations, _ = jacobian.shape
+    points, equations, unknowns = jacobian.shape
     means = np.zeros((points, equations, 1, 4))
     means[:, :, 0, ::2] = jacobian[:, :, :2]
-    rest = jacobian[:, :, 2:].reshape(points, equations, -1, 4)
-    by: FloatArray = np.concatenate((means, rest), axis=2).reshape(points, equations, -1, 2, 2).swapaxes(2, 3)
-    return by
+    rest = jacobian[:, :, 2:].reshape(points, equations, unknowns // 4, 4)
+    by = np.concatenate((means, rest), axis=2)
+    return by.reshape(points, equations, by.shape[2], 2, 2).swapaxes(2, 3)

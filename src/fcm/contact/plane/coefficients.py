@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import prod
 from typing import NamedTuple
 
 import numpy as np
@@ -99,7 +100,7 @@ def planar_forces(
         u_x, u_y, v, harmonics, mu=mu, k_u=k_u, k_v=k_v, n_0=n_0, start_x=start_x, start_y=start_y
     )
     forces, _ = motion.evaluate(gradient=False)
-    f_x, f_y, n = (part.reshape(*motion.shape, -1) for part in _complex(forces))
+    f_x, f_y, n = (part.reshape(*motion.shape, *part.shape[1:]) for part in _complex(forces))
     return f_x, f_y, n
 
 
@@ -144,7 +145,7 @@ def planar_gradients(
     )
     forces, jacobian = motion.evaluate(gradient=True)
     slopes = (part.reshape(*motion.shape, *part.shape[1:]) for part in _complex(_by_coefficients(jacobian)))
-    values = (part.reshape(*motion.shape, -1) for part in _complex(forces))
+    values = (part.reshape(*motion.shape, *part.shape[1:]) for part in _complex(forces))
     return PlanarGradients(*values, *slopes)
 
 
@@ -193,7 +194,7 @@ class _Motion(NamedTuple):
         for i, one in enumerate(motions):
             x[..., : one.shape[-1], 2 * i] = one.real
             x[..., 1 : one.shape[-1], 2 * i + 1] = one.imag[..., 1:]
-        x = x.reshape(-1, 6 * count)
+        x = x.reshape(prod(shape), 6 * count)
         columns = [np.broadcast_to(value, shape).reshape(-1) for value in parameters.values()]
         unknowns = np.concatenate((x[:, 0:6:2], x[:, 6:]), axis=1)
         return cls(
@@ -217,7 +218,7 @@ class _Motion(NamedTuple):
 
 def _complex(forces: FloatArray) -> list[ComplexArray]:
     """The coefficients of the three forces from the order of the kernel, along axis 1."""
-    rest = forces[:, 3:].reshape(forces.shape[0], -1, 6, *forces.shape[2:])
+    rest = forces[:, 3:].reshape(forces.shape[0], forces.shape[1] // 6, 6, *forces.shape[2:])
     return [
         np.concatenate((forces[:, i : i + 1] + 0j, rest[:, :, 2 * i] + 1j * rest[:, :, 2 * i + 1]), axis=1)
         for i in range(3)
@@ -226,9 +227,9 @@ def _complex(forces: FloatArray) -> list[ComplexArray]:
 
 def _by_coefficients(jacobian: FloatArray) -> FloatArray:
     """Derivatives by motion, harmonic and part, in three axes instead of the last."""
-    points, equations, _ = jacobian.shape
+    points, equations, unknowns = jacobian.shape
     means = np.zeros((points, equations, 1, 6))
     means[:, :, 0, ::2] = jacobian[:, :, :3]
-    rest = jacobian[:, :, 3:].reshape(points, equations, -1, 6)
-    by: FloatArray = np.concatenate((means, rest), axis=2).reshape(points, equations, -1, 3, 2).swapaxes(2, 3)
-    return by
+    rest = jacobian[:, :, 3:].reshape(points, equations, unknowns // 6, 6)
+    by = np.concatenate((means, rest), axis=2)
+    return by.reshape(points, equations, by.shape[2], 3, 2).swapaxes(2, 3)

@@ -29,7 +29,8 @@ cdef class Slider:
     cdef double scaled(self, double length, double left, double by) noexcept nogil
     cdef double stray(self, double end) noexcept nogil
     cdef double realign(self, double push) noexcept nogil
-    cdef void accept(self) noexcept nogil
+    cdef double left_out(self, double stray, double turned, double left) noexcept nogil
+    cdef void accept(self, bint carried) noexcept nogil
     cdef void halt(self) noexcept nogil
     cdef void hold(self, double end) noexcept nogil
     cdef double push(self) noexcept nogil

@@ -210,10 +210,11 @@ class Slider:
             # as it closes nothing is remembered, and no direction at the start but that is a solution
             with_turns: cython.bint = self.gathering and self.gradient and r > nothing
             turned: float = self.derivatives.greatest() if with_turns else 0.0
+            stray: float = self.stray(end) if graded else 1.0
             if (
                 graded
-                and self.stray(end) * r * left < self.ends * self.tolerance * self.motion.reach
-                and turned * r * left <= self.unturned
+                and stray * r * left < self.ends * self.tolerance * self.motion.reach
+                and (not with_turns or self.left_out(stray, turned * r, left) <= self.unturned)
             ):
                 graded, last = False, True
                 self.next_length = left
@@ -259,7 +260,7 @@ class Slider:
                     ):
                         self.next_length = 0.5 * part
                         continue
-                    self.accept()
+                    self.accept(True)
                 elif self.theta == begin:
                     self.stalled, self.first_step = begin, 2.0 * self.first_step  # no slip at all
                     self.pieces = before
@@ -267,7 +268,7 @@ class Slider:
                 return
             push, r = self.panel.push[STAGES], self.motion.value[STAGES, 2]
             rate = self.panel.rate[STAGES - 1]
-            self.accept()
+            self.accept(not (last and length == left))
             bend = 0.0
             if r > self.nothing * self.motion.reach:
                 self.motion.bend(STAGES)
@@ -300,6 +301,19 @@ class Slider:
         stray: float = hypot(self.e_x - x_1 / speed, self.e_y - y_1 / speed)
         return stray
 
+    def left_out(self, stray: float, turned: float, left: float) -> float:
+        """What the derivatives of the impulse have at most from directions that are followed no more.
+
+        At the angle in SCAN the contact opens, after what is left. From the derivative of the force by the
+        direction now, from an opening that moves, and from the motion.
+        """
+        falls: float = -self.motion.value[SCAN, 5]
+        if not falls > 0.0:
+            return 1e300
+        speed: float = hypot(self.motion.value[SCAN, 3], self.motion.value[SCAN, 4])
+        most: float = (turned + stray * speed / falls + self.motion.highest * left) * left
+        return most
+
     def realign(self, push: float) -> float:
         """Where the disc is nothing, the direction is that of the motion; lambda there."""
         self.motion.place(SCAN, self.theta)
@@ -313,8 +327,8 @@ class Slider:
             self.derivatives.close_sliding(self.e_x, self.e_y, 0.0)
         return self.push()
 
-    def accept(self) -> None:
-        """The end of the panel is the present angle."""
+    def accept(self, carried: cython.bint) -> None:
+        """The end of the panel is the present angle; so is that of the derivatives, if they are carried."""
         i: cython.int
         self.theta, self.first_step = self.panel.theta + self.panel.length, self.least_step
         self.e_x, self.e_y = self.panel.e_x[STAGES - 1], self.panel.e_y[STAGES - 1]
@@ -336,7 +350,7 @@ class Slider:
                 for i in range(STAGES):
                     self.record[self.panels, 5 + i] = self.panel.tangent[i + 1]
             self.panels += 1
-        if self.varying:
+        if self.varying and carried:
             self.derivatives.carry(self.gathering and self.gradient)
 
     def halt(self) -> None:
