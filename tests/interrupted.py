@@ -5,14 +5,18 @@ from fcm.cli.settings import Settings
 
 
 class Interrupting(Messages):
-    """Of a command: where its progress shows a text for the so-manieth time; settings are its own."""
+    """Of a command: where its progress shows a text for the so-manieth time, from a fraction on.
 
-    def __init__(self, text="", times=1, **settings):
+    shown: all fractions and texts until then. Settings are the command's.
+    """
+
+    def __init__(self, text="", times=1, *, fraction=0.0, **settings):
         super().__init__(settings=Settings(**settings))
-        self.text, self.left = text, times
+        self.text, self.left, self.fraction, self.shown = text, times, fraction, []
 
     def progress(self, fraction, text=""):
-        self.left -= self.text in text
+        self.shown.append((fraction, text))
+        self.left -= self.text in text and fraction >= self.fraction
         if self.left <= 0:
             raise KeyboardInterrupt
 

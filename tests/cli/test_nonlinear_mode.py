@@ -1,13 +1,12 @@
 """``fcm respond --mode`` and ``fcm plot mode``."""
 
 import json
-from unittest.mock import Mock
 
 import netCDF4
 import numpy as np
 import pytest
 
-from fcm.nonlinear_modes.backbone import nonlinear_mode
+from ..interrupted import Interrupting
 
 MODE = ("respond", "yang1998-n5", "--mode", 1, "--level", "0.1:100", "--harmonics", 1)
 
@@ -96,31 +95,20 @@ def test_another_file_is_no_mode(fcm, tmp_path):
 
 
 @pytest.mark.slow
-def test_an_interruption_keeps_the_modes_that_are_finished(fcm, scene, monkeypatch):
+def test_an_interruption_keeps_the_modes_that_are_finished(fcm, scene):
     """All of them were lost. Of one that had been followed with fewer harmonics, that is kept."""
     scene.write_text(scene.read_text() + '\n[sweep]\n"contact.shroud.mu" = [0.3, 0.4, 0.5]\n')
     mode = ("respond", scene, "--mode", 1, "--level", "0.1:100", "--json")
     every = json.loads(fcm(*mode, "--harmonics", 1).out)["curves"]
-    begun = []
-
-    def interrupted(*args):
-        begun.append(args)
-        if len(begun) == 3:
-            raise KeyboardInterrupt
-        return nonlinear_mode(*args)
-
-    monkeypatch.setattr("fcm.response.mode.nonlinear_mode", interrupted)
-    done = fcm(*mode, "--harmonics", 1)
+    done = fcm(*mode, "--harmonics", 1, messages=Interrupting("2 of 3 curves"))
     found = json.loads(done.out)["curves"]
     assert done.code == 3 and [one["mode"] for one in found[:2]] == [one["mode"] for one in every[:2]]
     assert [one["complete"] for one in found] == [True, True, False]
     assert done.err.endswith("; what was traced is reported\n")  # and to no file was it written
-    begun[:] = [None]  # of the first mode it is the second time, with more harmonics
-    first, *rest = json.loads(fcm(*mode, "--accuracy", 1e-4).out)["curves"]
+    fine = (*mode, "--accuracy", 1e-4)
+    first, *rest = json.loads(fcm(*fine, messages=Interrupting("with 3 harmonics")).out)["curves"]
     assert first["mode"] == every[0]["mode"] and first["reason"].endswith("known with 3 harmonics")
     assert [one["reason"] for one in rest] == ["interrupted before it was traced"] * 2
-    begun[:] = [None] * 5  # and so, if the error with more is not known
-    told = Mock(side_effect=[(np.ones(1), np.full(4, np.nan)), KeyboardInterrupt])  # of any points
-    monkeypatch.setattr("fcm.response.mode.truncation", told)
-    first = json.loads(fcm(*mode, "--accuracy", 1e-4).out)["curves"][0]
+    # and so, if the error with more is not known
+    first = json.loads(fcm(*fine, messages=Interrupting("error with 3 harmonics")).out)["curves"][0]
     assert first["mode"] == every[0]["mode"] and first["harmonics"] == [1]

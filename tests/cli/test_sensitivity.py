@@ -11,7 +11,8 @@ from fcm.cli.sensitivity import added
 from fcm.response import trace
 from fcm.results.cause import Cause
 from fcm.scene import load_scene
-from fcm.sensitivity.peaks import sensitivities
+
+from ..interrupted import Interrupting
 
 
 @pytest.fixture
@@ -79,19 +80,11 @@ def test_a_hidden_degree_of_freedom_has_none(fcm, scene):
     assert np.isfinite([n["amplitude"] for n in curve["sensitivity"]["u"]["numbers"].values()]).all()
 
 
-def test_an_interruption_keeps_the_curves(fcm, scene, monkeypatch):
+def test_an_interruption_keeps_the_curves(fcm, scene):
     """All of them were lost, unless they went to a file from which a run could go on."""
     scene.write_text(scene.read_text() + '\n[sweep]\n"contact.shroud.mu" = [0.3, 0.4, 0.5]\n')
-    taken = iter([sensitivities])
-
-    def interrupted(*args):
-        try:
-            return next(taken)(*args)
-        except StopIteration:
-            raise KeyboardInterrupt from None
-
-    monkeypatch.setattr("fcm.response.sensitivity.sensitivities", interrupted)
-    done = fcm("respond", scene, "--sensitivity", "--harmonics", 1, "--jobs", 1, "--json", "-o", "a.nc")
+    options = ("--sensitivity", "--harmonics", 1, "--jobs", 1, "--json", "-o", "a.nc")
+    done = fcm("respond", scene, *options, messages=Interrupting("sensitivities", 2))
     found = json.loads(done.out)["curves"]
     with netCDF4.Dataset("a.nc") as data:
         assert np.isfinite(data["sensitivity"][:].filled(np.nan)).any(axis=(1, 2)).tolist() == [

@@ -4,7 +4,6 @@ import csv
 import json
 import re
 from pathlib import Path
-from unittest.mock import Mock
 
 import netCDF4
 import numpy as np
@@ -14,6 +13,8 @@ import fcm as package
 from fcm.plot.tracked import DrawnTrack, DrawnTracking, draw_tracked, read_tracked
 from fcm.response.track import track
 from fcm.scene import load_scene
+
+from ..interrupted import Interrupting
 
 SCENES = Path(package.__file__).parent / "scenes"
 OPTIMUM = '\n[optimum]\nvary = ["contact.shroud.n_0"]\nbounds = [[2.0, 20.0]]\nminimise = "peak.u"\n'
@@ -249,17 +250,13 @@ def test_all_mistakes_of_the_table_are_named_at_once(fcm, scene, table, said):
 TWO = OPTIMUM.replace('"]', '", "contact.shroud.mu"]').replace("]]", "], [0.2, 0.6]]")
 
 
-@pytest.mark.parametrize(
-    ("wanted", "where", "stops_at"),
-    [(OPTIMUM, "lowest_peak", "both_ways"), (TWO, "minimax", "downhill")],
-    ids=["one number", "two"],
-)
-def test_the_least_so_far_of_an_interrupted_search_is_kept(fcm, scene, monkeypatch, wanted, where, stops_at):
+@pytest.mark.parametrize("wanted", [OPTIMUM, TWO], ids=["one number", "two"])
+def test_the_least_so_far_of_an_interrupted_search_is_kept(fcm, scene, wanted):
     """All that had been traced was lost. What is kept is the peak of the ordinary response there."""
     text = scene.read_text()
     scene.write_text(text + wanted)
-    monkeypatch.setattr(f"fcm.tracking.{where}.{stops_at}", Mock(side_effect=KeyboardInterrupt))
-    done = fcm("respond", scene, "--harmonics", "1", "-o", "best.nc", "--sensitivity")
+    options = ("--harmonics", "1", "-o", "best.nc", "--sensitivity")
+    done = fcm("respond", scene, *options, messages=Interrupting("optimum", 2))
     assert done.code == 3 and "the least so far" in done.out and "the optimum was sought for" in done.err
     assert done.err.endswith("; what was traced is reported and written\n")
     assert "--resume" not in done.err  # nothing is kept from which the search could go on
@@ -275,7 +272,6 @@ def test_the_least_so_far_of_an_interrupted_search_is_kept(fcm, scene, monkeypat
     assert peak == pytest.approx(there["peak"]["u"]["amplitude"], rel=1e-9)
 
 
-def test_of_a_search_that_found_nothing_before_it_was_interrupted_nothing_is_said(fcm, optimum, monkeypatch):
-    monkeypatch.setattr("fcm.tracking.lowest_peak.special_points", Mock(side_effect=KeyboardInterrupt))
-    done = fcm("respond", optimum, "--harmonics", "1", "-o", "best.nc")
+def test_of_a_search_that_found_nothing_before_it_was_interrupted_nothing_is_said(fcm, optimum):
+    done = fcm("respond", optimum, "--harmonics", "1", "-o", "best.nc", messages=Interrupting("optimum"))
     assert (done.code, done.out) == (3, "") and not Path("best.nc").exists()

@@ -9,7 +9,7 @@ import pytest
 
 from fcm.branches.force_level import level_curve, resonances, solutions
 from fcm.branches.linear_limits import highest_linear_limit, lowest_linear_limit
-from fcm.branches.shared_levels import clear
+from fcm.branches.shared_levels import clear, shared_curve
 from fcm.continuation import Status
 from fcm.harmonic_balance.response_quantities import recorded_at_levels
 from fcm.harmonic_balance.system import System
@@ -22,6 +22,7 @@ from fcm.shooting import periodic
 
 from ..harmonic_balance.scenes import isola, isola_stuck, up_to
 from ..harmonic_balance.truth import state
+from ..interrupted import interrupted_after
 from ..time_domain.cases import yang
 from .random_scenes import random_scene
 
@@ -158,23 +159,21 @@ def test_curves_of_other_preloads_share_a_curve_of_levels(scene, frequency, prel
     assert numbers == {1, 3}  # some of them have three
 
 
-def test_one_curve_of_levels_is_followed_for_a_sweep_of_preloads(monkeypatch):
-    """And for draws of friction and preload each has its own."""
+def test_one_curve_of_levels_is_followed_for_a_sweep_of_preloads():
+    """For draws of friction and preload there is none in common."""
     followed = []
 
-    def counted(*given, **options):
-        followed.append(given)
-        return level_curve(*given, **options)
+    def counted(system, omega):
+        followed.append(system)
+        return level_curve(system, omega, (0.0, highest_linear_limit(system, omega)))
 
-    monkeypatch.setattr("fcm.branches.force_level.level_curve", counted)
     clear()
-    curves = [preloaded(isola(), n_0) for n_0 in (-15.0, -15.5, -60.0)]
-    for one in curves:
-        solutions(System(one), 1.22)
-    assert len(followed) == 1
-    for one in curves:
-        solutions(System(replace(one, parameters={**one.parameters, "contact.c.mu": 0.05})), 1.22)
-    assert len(followed) == 4
+    systems = [System(preloaded(isola(), n_0)) for n_0 in (-15.0, -15.5, -60.0)]
+    paths = [shared_curve(one, 1.22, counted) for one in systems]
+    assert len(followed) == 1 and paths[0] is paths[1] is paths[2]
+    scene = systems[0].scene
+    drawn = System(replace(scene, parameters={**scene.parameters, "contact.c.mu": 0.05}))
+    assert all(one.preload_unit for one in systems) and not drawn.preload_unit
 
 
 @pytest.mark.parametrize("harmonics", [1, 3])
@@ -204,22 +203,14 @@ def test_a_curve_of_levels_that_has_not_the_accuracy_says_so():
 
 
 @pytest.mark.parametrize(("stops_at", "kept"), [(1, 0), (2, 1), (4, 2)])
-def test_an_interruption_keeps_the_curves_of_levels_that_are_finished(monkeypatch, stops_at, kept):
+def test_an_interruption_keeps_the_curves_of_levels_that_are_finished(stops_at, kept):
     """Each is followed with one harmonic and with three: one that is known with one alone is kept as well."""
-    begun = []
-
-    def interrupted(*args):
-        begun.append(args)
-        if len(begun) == stops_at:
-            raise KeyboardInterrupt
-        return level_curve(*args)
-
-    monkeypatch.setattr("fcm.response.level.level_curve", interrupted)
+    progress = interrupted_after(stops_at - 1)
     if not kept:
         with pytest.raises(KeyboardInterrupt):
-            trace_levels(isola(), [1.22, 1.23, 1.24], (0.0, 2.0))
+            trace_levels(isola(), [1.22, 1.23, 1.24], (0.0, 2.0), progress=progress)
         return
-    response = trace_levels(isola(), [1.22, 1.23, 1.24], (0.0, 2.0))
+    response = trace_levels(isola(), [1.22, 1.23, 1.24], (0.0, 2.0), progress=progress)
     assert [curve.level.size > 0 for curve in response.curves] == [i < kept for i in range(3)]
     assert [curve.complete for curve in response.curves] == [i < kept - 1 for i in range(3)]
     assert response.curves[kept - 1].reason == "interrupted before it was known with 3 harmonics"

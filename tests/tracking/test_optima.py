@@ -1,17 +1,16 @@
 """A search for optima that is interrupted: what was found is not sought again, and comes out the same."""
 
 import tomllib
-from unittest.mock import Mock
 
 import netCDF4
 import numpy as np
 import pytest
 
 from fcm.cli.track import as_table
-from fcm.response import optima
-from fcm.response.least_peak import PeakTask, optimum
+from fcm.response.least_peak import PeakTask
+from fcm.response.optima import optima
 from fcm.response.optimum import optimise
-from fcm.response.sweep import trace
+from fcm.response.options import OPTIMUM
 from fcm.response.track import track
 from fcm.results.output import write_netcdf
 from fcm.results.tracked import Optimal
@@ -22,6 +21,7 @@ from fcm.tracking.options import SEARCH
 from fcm.tracking.peak_envelope import PieceHeight
 from fcm.tracking.trials import by_trials
 
+from ..interrupted import Interrupting
 from ..oscillator import oscillator
 
 SCENE = oscillator("[response]\nfrequency = [0.8, 1.6]\n", damping=0.05) + (
@@ -37,35 +37,16 @@ def scene(tmp_path):
     return tmp_path / "scene.toml"
 
 
-@pytest.fixture
-def sought(monkeypatch):
-    """A counter of the searches that are begun, of which so many are finished and the next is interrupted."""
-
-    def interrupted_after(count, search=optimum):
-        begun = Mock()
-
-        def one(task, harmonics, progress):
-            begun()
-            if begun.call_count > count:
-                raise KeyboardInterrupt
-            return search(task, harmonics, progress)
-
-        monkeypatch.setattr(optima, "optimum", one)
-        return begun
-
-    return interrupted_after
-
-
 @pytest.mark.slow
-def test_an_interrupted_search_goes_on_from_the_optima_that_it_has_found(fcm, tmp_path, scene, sought):
+def test_an_interrupted_search_goes_on_from_the_optima_that_it_has_found(fcm, tmp_path, scene):
     assert fcm(*COMMAND, "whole.nc").code == 0
-    begun = sought(1)
-    done = fcm(*COMMAND, "a.nc")
-    assert done.code == 3 and begun.call_count == 2
+    second = Interrupting("optimum", fraction=0.5 * OPTIMUM.search_share)
+    done = fcm(*COMMAND, "a.nc", messages=second)
+    assert done.code == 3 and len(second.shown) > 2
     assert "kept in a.nc.unfinished: continue with --resume" in done.err
-    begun = sought(1)
-    assert fcm(*COMMAND, "a.nc", "--resume").code == 0
-    assert begun.call_count == 1 and not (tmp_path / "a.nc.unfinished").exists()
+    never = Interrupting("never")
+    assert fcm(*COMMAND, "a.nc", "--resume", messages=never).code == 0
+    assert never.shown[0] == second.shown[-1] and not (tmp_path / "a.nc.unfinished").exists()
     with netCDF4.Dataset("a.nc") as a, netCDF4.Dataset("whole.nc") as whole:
         assert set(a.variables) == set(whole.variables)
         for name in a.variables:
@@ -73,49 +54,56 @@ def test_an_interrupted_search_goes_on_from_the_optima_that_it_has_found(fcm, tm
 
 
 @pytest.mark.slow
-def test_optima_are_kept_until_the_response_with_them_is_written(fcm, scene, sought, monkeypatch):
-    monkeypatch.setattr("fcm.response.optimum.trace", Mock(side_effect=KeyboardInterrupt))
-    done = fcm(*COMMAND, "a.nc")
+def test_optima_are_kept_until_the_response_with_them_is_written(fcm, scene):
+    done = fcm(*COMMAND, "a.nc", messages=Interrupting(fraction=OPTIMUM.search_share))
     assert done.code == 3 and "continue with --resume" in done.err
-    monkeypatch.setattr("fcm.response.optimum.trace", trace)
-    none = sought(0)
-    assert fcm(*COMMAND, "a.nc", "--resume").code == 0 and none.call_count == 0
+    never = Interrupting("never")
+    assert fcm(*COMMAND, "a.nc", "--resume", messages=never).code == 0
+    assert never.shown and not any(text == "optimum" for _, text in never.shown)
 
 
-def found(task, harmonics, _progress):
-    """As a search would: the first of the scenes takes one harmonic, the second takes two."""
-    chosen = harmonics or ((1,) if task.scene.parameters["contact.shroud.mu"] == 0.4 else (1, 2))
-    return Optimal(task.scene.parameters, {"n": 3.0}, ("peak.u",), 2.0, (), "smooth", chosen), []
+class Known(PeakTask):
+    """As a search would: the first of the scenes takes one harmonic, the second takes two.
+
+    left: how many searches are finished before the next is interrupted; begun: how many are.
+    """
+
+    left = begun = 0
+
+    def optimum(self, harmonics, progress):
+        Known.begun += 1
+        if Known.begun > Known.left:
+            raise KeyboardInterrupt
+        chosen = harmonics or ((1,) if self.scene.parameters["contact.shroud.mu"] == 0.4 else (1, 2))
+        return Optimal(self.scene.parameters, {"n": 3.0}, ("peak.u",), 2.0, (), "smooth", chosen), []
+
+    def needed(self, found, harmonics):
+        return harmonics
 
 
-def tasks_of(scene):
-    return [PeakTask(curve, [], 1e-3) for curve in load_scene(scene).each_curve()]
+def sought(scene, left, harmonics=None, **kept):
+    """The optima of so many searches, whether the next was interrupted, and how many were begun."""
+    Known.left, Known.begun = left, 0
+    tasks = [Known(curve, [], 1e-3) for curve in load_scene(scene).each_curve()]
+    with Checkpoint(scene.with_name("kept"), **kept) as checkpoint:
+        return *optima(tasks, harmonics, checkpoint, None), Known.begun
 
 
-def test_what_is_sought_again_with_the_harmonics_of_all_is_kept_too(scene, sought, monkeypatch):
-    monkeypatch.setattr(optima, "harmonics_for_peaks", lambda _task, _found, harmonics: (harmonics, 0.0))
-    begun = sought(2, found)
-    with Checkpoint(scene.with_name("kept")) as kept:
-        first, stopped = optima.optima(tasks_of(scene), None, kept, None)
-    assert stopped and [one.harmonics for one, _ in first] == [(1,), (1, 2)] and begun.call_count == 3
+def test_what_is_sought_again_with_the_harmonics_of_all_is_kept_too(scene):
+    first, stopped, begun = sought(scene, 2)
+    assert stopped and [one.harmonics for one, _ in first] == [(1,), (1, 2)] and begun == 3
     for finished in (1, 0):  # the last is sought, and then known
-        begun = sought(finished, found)
-        with Checkpoint(scene.with_name("kept"), resume=True) as kept:
-            every, stopped = optima.optima(tasks_of(scene), None, kept, None)
+        every, stopped, begun = sought(scene, finished, resume=True)
         assert not stopped and [one.harmonics for one, _ in every] == [(1, 2), (1, 2)]
-        assert begun.call_count == finished
+        assert begun == finished
 
 
-def test_optima_of_another_aim_are_sought_anew(scene, sought):
-    sought(9, found)
-    with Checkpoint(scene.with_name("kept")) as kept:
-        optima.optima(tasks_of(scene), (1,), kept, None)
+def test_optima_of_another_aim_are_sought_anew(scene):
+    sought(scene, 9, (1,))
     scene.write_text(SCENE.replace("20.0]]", "19.0]]"))
-    begun = sought(2, found)
-    warned = pytest.warns(UserWarning, match="it is of another scene")
-    with Checkpoint(scene.with_name("kept"), resume=True) as kept, warned:
-        optima.optima(tasks_of(scene), (1,), kept, None)
-    assert begun.call_count == 2
+    with pytest.warns(UserWarning, match="it is of another scene"):
+        *_, begun = sought(scene, 2, (1,), resume=True)
+    assert begun == 2
 
 
 def test_where_the_forces_may_vanish_they_do(fcm, tmp_path):

@@ -60,6 +60,15 @@ class PeakTask:
         """The scene with values of the numbers."""
         return with_values(self.scene, self.numbers, values)
 
+    def optimum(self, harmonics: tuple[int, ...] | None, progress: Progress | None) -> Found:
+        """With given harmonics, or with those that the accuracy takes at the optimum itself."""
+        return _optimum(self, harmonics, progress)
+
+    def needed(self, found: Optimal, harmonics: tuple[int, ...]) -> tuple[int, ...]:
+        """The harmonics that the accuracy takes at an optimum, from some on."""
+        most = self.options.balance.work.max_seconds_repeated
+        return _harmonics_for_peaks(self, found, harmonics, most)[0]
+
     def least_traced(self) -> Optimal | None:
         """Of a search that is interrupted: the least of what was traced; None where nothing was."""
         found = None if self.seeking is None else self.seeking.least_traced()
@@ -68,7 +77,7 @@ class PeakTask:
         return replace(_optimal(self, *found, self.seeking.system.harmonics), fewer=self.fewer)
 
 
-def optimum(task: PeakTask, harmonics: tuple[int, ...] | None, progress: Progress | None) -> Found:
+def _optimum(task: PeakTask, harmonics: tuple[int, ...] | None, progress: Progress | None) -> Found:
     """With given harmonics, or with those that the accuracy takes at the optimum itself."""
     rounds = task.options.optimum.max_rounds
     chosen, seconds = harmonics or (1,), task.options.balance.work.max_seconds_repeated
@@ -83,10 +92,10 @@ def optimum(task: PeakTask, harmonics: tuple[int, ...] | None, progress: Progres
                 known = replace(known, best=by_trials(search))
             found = _on_line(task, known, chosen)
         else:
-            found = _downhill(task, chosen)
+            found = _downhill(task, chosen, _sharing(shown))
         if harmonics:
             break
-        more, taken = harmonics_for_peaks(task, found[0], chosen, seconds)
+        more, taken = _harmonics_for_peaks(task, found[0], chosen, seconds)
         if more == chosen:
             break
         chosen, seconds, task.fewer = more, seconds - taken, found[0]
@@ -97,7 +106,7 @@ def _sharing(progress: Progress | None) -> Callable[[float], None] | None:
     return None if progress is None else lambda share: progress(share, "optimum")
 
 
-def harmonics_for_peaks(
+def _harmonics_for_peaks(
     task: PeakTask, found: Optimal, harmonics: tuple[int, ...], seconds: float
 ) -> tuple[tuple[int, ...], float]:
     """The harmonics that the accuracy of the peaks to be least takes at an optimum, from some on.
@@ -136,12 +145,13 @@ def _on_line(task: PeakTask, found: LowestPeak, harmonics: tuple[int, ...]) -> F
     return _optimal(task, np.array([found.best.s]), found.best, harmonics), curves
 
 
-def _downhill(task: PeakTask, harmonics: tuple[int, ...]) -> Found:
+def _downhill(task: PeakTask, harmonics: tuple[int, ...], progress: Callable[[float], None] | None) -> Found:
     """Of several numbers; from what was found with fewer harmonics."""
     task.seeking = valley = PeakEnvelope(
         task.system(task.scene, harmonics), task.numbers, task.bounds, task.targets
     )
-    found = descend(valley, None if task.fewer is None else np.array(list(task.fewer.values.values())))
+    start = None if task.fewer is None else np.array(list(task.fewer.values.values()))
+    found = descend(valley, start, progress)
     if found is None:
         raise ResponseError(_no_peak(task))
     return _optimal(task, found[0], found[1], harmonics), []

@@ -32,7 +32,7 @@ from fcm.response.incomplete import no_steady_states, reason_for
 from fcm.response.options import INPUT_LIMITS, ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_modes
-from fcm.response.serial_sweep import one_by_one
+from fcm.response.serial_sweep import Tell, one_by_one
 from fcm.response.trace import Rows, pick
 from fcm.response.undetermined_traction import residual_changes_at_levels, undetermined
 from fcm.results.at_rest import without_rounding
@@ -122,7 +122,7 @@ def _without(scene: Scene, omega: float, reason: str, cause: Cause = Cause.CALCU
     return replace(lost_curve(scene, reason, cause), parameters=parameters, level=np.empty(0))
 
 
-def _level_curve(scene: Scene, wanted: Request, omega: float, span: tuple[float, float]) -> Curve:
+def _level_curve(scene: Scene, wanted: Request, omega: float, span: tuple[float, float], tell: Tell) -> Curve:
     """With the harmonics that are wanted; with ever more until they are enough for the accuracy."""
     begin, stopped = time.perf_counter(), ""
     system = System(scene, wanted.harmonics or (1,), options=wanted.options.balance)
@@ -132,6 +132,7 @@ def _level_curve(scene: Scene, wanted: Request, omega: float, span: tuple[float,
         if more is None:
             break
         try:
+            tell(f"with {len(more.harmonics)} harmonics")
             then = _followed(more, omega, span)
         except KeyboardInterrupt:
             stopped = f"{INTERRUPTED} before it was known with {len(more.harmonics)} harmonics"

@@ -25,7 +25,7 @@ from fcm.response.incomplete import no_steady_states, reason_for
 from fcm.response.options import INPUT_LIMITS, ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_other_harmonics, refuse_own_laws
-from fcm.response.serial_sweep import one_by_one
+from fcm.response.serial_sweep import Tell, one_by_one
 from fcm.response.trace import pick
 from fcm.response.undetermined_traction import undetermined
 from fcm.results.at_rest import without_rounding
@@ -110,7 +110,12 @@ def check_free(scene: Scene) -> None:
 
 
 def _curve(
-    scene: Scene, number: int, span: tuple[float, float], wanted: Request, levels: tuple[float, ...]
+    scene: Scene,
+    number: int,
+    span: tuple[float, float],
+    wanted: Request,
+    levels: tuple[float, ...],
+    tell: Tell,
 ) -> Curve:
     begin = time.perf_counter()
     system = System(scene, wanted.harmonics or (1,), options=wanted.options.balance)
@@ -120,18 +125,21 @@ def _curve(
         enlarged = with_twice_as_many(mode.system, mode.path.evaluations)
         if enlarged is None:
             break
+        count = len(enlarged.harmonics)
         try:
+            tell(f"with {count} harmonics")
             more = nonlinear_mode(enlarged, number, span, scene.max_step)
             if more.path.status is not Status.COMPLETE and mode.path.status is Status.COMPLETE:
                 break
+            tell(f"the error with {count} harmonics")
             mode, (error, theirs) = more, truncation(more)
         except KeyboardInterrupt:
-            stopped = f"{INTERRUPTED} before it was known with {len(enlarged.harmonics)} harmonics"
+            stopped = f"{INTERRUPTED} before it was known with {count} harmonics"
             break
     curve = _recorded(mode, number, error, theirs, levels)
     if wanted.harmonics is None and curve.complete and not _worst(error) <= wanted.accuracy:
-        count = counted(len(mode.system.harmonics), "harmonic")
-        curve.short_of = f"with {count} an estimated error of {_worst(error):.1e} remains"
+        these = counted(len(mode.system.harmonics), "harmonic")
+        curve.short_of = f"with {these} an estimated error of {_worst(error):.1e} remains"
     if stopped:
         curve.complete, curve.reason, curve.cause = False, stopped, Cause.INTERRUPTED
     curve.seconds = time.perf_counter() - begin

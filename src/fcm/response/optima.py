@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
-from fcm.response.least_peak import Found, PeakTask, harmonics_for_peaks, optimum
+from fcm.response.least_peak import Found, PeakTask
 from fcm.results.tracked import Optimal, TrackedCurve
 from fcm.run import Checkpoint, Progress, Results, fingerprint
 from fcm.run.progress import part
@@ -51,7 +51,7 @@ def _optima(
     for i, task in enumerate(tasks):
         if i not in kept.finished:
             shown = part(progress, i / len(tasks), (i + 1) / len(tasks))
-            kept.add(i, [optimum(task, harmonics, shown)])
+            kept.add(i, [task.optimum(harmonics, shown)])
         yield kept.finished[i][0]
 
 
@@ -86,8 +86,7 @@ def _with_the_same(tasks: list[PeakTask], found: list[Found], checkpoint: Checkp
         again = _optima(others, chosen, checkpoint, None)
         found = [one if one[0].harmonics == chosen else next(again) for one in found]
         for task, one in zip(tasks, found, strict=True):
-            seconds = task.options.balance.work.max_seconds_repeated
-            every |= set(harmonics_for_peaks(task, one[0], chosen, seconds)[0])
+            every |= set(task.needed(one[0], chosen))
         if len(every) == len(chosen):
             break
     return found

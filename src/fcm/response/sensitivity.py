@@ -36,9 +36,9 @@ def add_sensitivities(response: Response, scene: Scene, progress: Progress | Non
     if response.curves and response.tracking is not None and response.tracking.optima:
         scenes = scenes_at(scene, response.tracking.optima)
     for i, (curve, one) in enumerate(zip(response.curves, scenes, strict=True)):
-        if progress is not None:
-            progress(i / len(scenes), "sensitivities")
         try:
+            if progress is not None:
+                progress(i / len(scenes), "sensitivities")
             if curve.points and curve.harmonics and one.contacts:
                 curve.sensitivity = _of_curve(curve, one)
         except KeyboardInterrupt:

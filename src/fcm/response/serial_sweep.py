@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 from fcm.response.groups import KINDS, fits
 from fcm.results.cause import Cause
 from fcm.results.result import INTERRUPTED, Curve
 from fcm.run import Checkpoint, Progress, Results
 
-Task = tuple[Curve, Callable[[], Curve]]  # the curve without points, and what follows it
+Tell = Callable[[str], None]  # how far a curve is; an interruption may come of it
+Task = tuple[Curve, Callable[[Tell], Curve]]  # the curve without points, and what follows it
 
 
 def one_by_one(
@@ -33,16 +35,16 @@ def one_by_one(
     kept = Results() if keep is None else keep.results(mark, KINDS, lambda i, found: _fit(tasks, i, found))
     curves: list[Curve] = []
     for i, (none, followed) in enumerate(tasks):
-        if progress is not None:
-            progress(i / len(tasks), f"{i} of {len(tasks)} curves")
         if curves and _cut_off(curves[-1]):
             curves.append(none)
             continue
         if i in kept.finished:
             curves += kept.finished[i]
             continue
+        tell = partial(_tell, progress, i, len(tasks))
         try:
-            curves.append(followed())
+            tell("")
+            curves.append(followed(tell))
             if not _cut_off(curves[-1]):
                 kept.add(i, [curves[-1]])
         except KeyboardInterrupt:
@@ -51,6 +53,12 @@ def one_by_one(
             if len(curves) == i:
                 curves.append(replace(none, reason=f"{INTERRUPTED} at the start", cause=Cause.INTERRUPTED))
     return curves
+
+
+def _tell(progress: Progress | None, number: int, count: int, text: str) -> None:
+    """Show which curve is followed, and how far it is."""
+    if progress is not None:
+        progress(number / count, f"{number} of {count} curves{', ' if text else ''}{text}")
 
 
 def _cut_off(curve: Curve) -> bool:

@@ -85,6 +85,8 @@ class LowestPeakSearch:
     def run(self, known: LowestPeak | None = None, progress: Progress | None = None) -> LowestPeak:
         """The least peak; from what was found with fewer harmonics, or else from both ends of the range."""
         checked = False
+        if progress is not None:
+            progress(0.0)
         if known is None:
             for value in self.span:
                 self.visit(value)

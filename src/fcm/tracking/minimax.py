@@ -22,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import minimize
 
+from fcm.continuation.follow import Progress
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.scene.draft import Number
@@ -150,18 +151,25 @@ class PeakEnvelope:
 
 
 def descend(
-    valley: PeakEnvelope, near: FloatArray | None = None
+    valley: PeakEnvelope, near: FloatArray | None = None, progress: Progress | None = None
 ) -> tuple[FloatArray, EnvelopeMinimum] | None:
     """The optimum: the numbers, and what is least there; None where nothing has a peak.
 
     With numbers near it, as fewer harmonics find them, the way leads down from there.
     """
-    found = [downhill(valley, q) for q in _starts(valley, near)]
+    show = progress or (lambda _share: None)
+    show(0.0)
+    starts, rounds = _starts(valley, near), valley.options.max_rounds
+    found = []
+    for i, q in enumerate(starts):
+        show(0.5 * i / len(starts))
+        found.append(downhill(valley, q))
     if not found:
         return None
     q, value, members = min(found, key=lambda one: one[1])
     flat: tuple[tuple[int, float, float], ...] = ()
-    for _ in range(valley.options.max_rounds):
+    for i in range(rounds):
+        show(0.5 + 0.5 * i / rounds)
         lines = [_along(valley, q, k) for k in range(q.size)]
         followed, lowest = all(line.all_followed for line in lines), min(lines, key=lambda line: line.value)
         if not lowest.value < value * (1.0 - valley.options.min_improvement):
