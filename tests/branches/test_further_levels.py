@@ -6,9 +6,10 @@ from pathlib import Path as File
 import numpy as np
 import pytest
 
-from fcm.branches.force_level import solutions
-from fcm.branches.options import LEVELS
-from fcm.response import further_levels, refined, trace
+from fcm.branches.options import LevelCurveOptions, LevelOptions
+from fcm.continuation.options import StepOptions
+from fcm.response import trace
+from fcm.response.options import ResponseOptions
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.scene import load_scene, scene_from_dict
@@ -93,24 +94,22 @@ def test_a_closed_branch_is_found_where_a_harmonic_comes_to_a_resonance(parts, o
         assert np.abs(there / amplitude - 1.0).max(axis=1).min() < 2e-2
 
 
-def test_a_level_that_is_not_followed_to_its_end_leaves_branches_unsure(monkeypatch):
+def test_a_level_that_is_not_followed_to_its_end_leaves_branches_unsure():
     """Without a preload nothing is stable around 0.75 rad/s, where the motion repeats after two periods."""
     (scene,) = (one for one in load_scene("yang1998").each_curve() if one.contacts[0].n_0 == 0.0)
     assert traced_curve(scene).complete and traced_curve(scene).unsure == []
-    monkeypatch.setattr(further_levels, "solutions", lambda *args: replace(solutions(*args), complete=False))
-    (at,) = traced_curve(scene).unsure
-    ((low, high),) = traced_curve(scene).summary()["no_stable_motion"]
-    assert low < at < high
+    short = ResponseOptions(others=(LevelCurveOptions(step=StepOptions(max_steps=10)),))
+    curve = traced_curve(scene, Request(options=short))
+    ((low, high),) = curve.summary()["no_stable_motion"]
+    assert any(low < at < high for at in curve.unsure)
 
 
 @pytest.mark.slow
-def test_ranges_are_looked_at_the_widest_first_as_long_as_it_may_take_and_the_others_are_told(monkeypatch):
+def test_ranges_are_looked_at_the_widest_first_as_long_as_it_may_take_and_the_others_are_told():
     scene = replace(load_scene(KNOWN / "chaos.toml"), frequency_range=(1.15, 1.45))
     every = traced_curve(scene, Request(tuple(range(1, 6)), 1e-2)).summary()
-    few = replace(LEVELS, work_fraction=0.05, min_seconds=0.0)
-    whole = further_levels.with_levels_where_unstable
-    monkeypatch.setattr(refined, "with_levels_where_unstable", lambda *args: whole(*args, few))
-    some = traced_curve(scene, Request(tuple(range(1, 6)), 1e-2)).summary()
+    few = ResponseOptions(others=(LevelOptions(work_fraction=0.05, min_seconds=0.0),))
+    some = traced_curve(scene, Request(tuple(range(1, 6)), 1e-2, options=few)).summary()
     left, none = some["no_stable_motion_not_looked_at"], every.get("no_stable_motion_not_looked_at", [])
     assert len(none) < len(left) <= len(some["no_stable_motion"])
     looked = [ends for ends in some["no_stable_motion"] if ends not in left]

@@ -7,16 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fcm.branches import search
 from fcm.branches.fold_continuation import Ending, Folds, folds_from
 from fcm.branches.force_level import level_frequencies, solutions
 from fcm.branches.isolas import level_one_crossings
-from fcm.branches.options import FOLDS
+from fcm.branches.options import FoldOptions
 from fcm.branches.search import every_branch
 from fcm.branches.surface import Surface
 from fcm.branches.trace import traced
 from fcm.continuation import Mark, Status
 from fcm.harmonic_balance.system import System
+from fcm.response.options import ResponseOptions
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.scene import load_scene
@@ -139,16 +139,16 @@ def test_where_a_curve_of_folds_passes_the_level_one_the_response_has_a_fold():
 @pytest.mark.parametrize(
     "options",
     [
-        replace(FOLDS, max_steps=3),  # steps of a curve
-        replace(FOLDS, max_tangent=0.0),  # no fold is found near the start
-        replace(FOLDS, work_fraction=0.0, min_seconds=0.0),
+        FoldOptions(max_steps=3),  # steps of a curve
+        FoldOptions(max_tangent=0.0),  # no fold is found near the start
+        FoldOptions(work_fraction=0.0, min_seconds=0.0),
     ],
 )
 def test_where_curves_of_folds_are_not_followed_to_their_end_the_crossings_say_so(options):
     """Their points or their work come to an end, or they do not begin."""
-    system = System(scene("closed_impact"), (1, 2, 3, 4))
+    system = System(scene("closed_impact"), (1, 2, 3, 4), other_options=(options,))
     known = traced(system)
-    found = level_one_crossings(system, known.found, known.branches.paths, options)
+    found = level_one_crossings(system, known.found, known.branches.paths)
     low, high = system.scene.frequency_range
     assert found.solutions == () and found.uncertain
     assert all(low <= omega <= high for omega in found.uncertain)
@@ -161,14 +161,12 @@ def test_a_closed_curve_of_folds_has_lost_nothing_and_others_their_open_ends():
     assert Folds(z, z, (Ending.STALLED, Ending.CLOSED)).lost == []
 
 
-def test_where_folds_are_lost_a_response_says_from_where_on(monkeypatch):
+def test_where_folds_are_lost_a_response_says_from_where_on():
     """And with what is left of them the closed branch is not found."""
-    options = replace(FOLDS, work_fraction=0.0, min_seconds=0.0)
-    monkeypatch.setattr(search, "level_one_crossings", lambda *args: level_one_crossings(*args, options))
-    curve = traced_curve(scene("closed_impact"), Request((1, 2, 3, 4), ACCURACY))
+    none = ResponseOptions(others=(FoldOptions(work_fraction=0.0, min_seconds=0.0),))
+    curve = traced_curve(scene("closed_impact"), Request((1, 2, 3, 4), ACCURACY, options=none))
     assert curve.complete and curve.folds_unsure and not curve.unsure
     assert curve.summary()["folds_unsure_at"] == curve.folds_unsure
-    monkeypatch.undo()
     curve = traced_curve(scene("closed_impact"), Request((1, 2, 3, 4), ACCURACY))
     assert curve.folds_unsure == [] and "folds_unsure_at" not in curve.summary()
 

@@ -1,18 +1,17 @@
 """Analyses times doubts: what is in doubt is said by every analysis of the same place, in its own words."""
 
 import json
-from dataclasses import replace
-from importlib import import_module
 
 import netCDF4
-import numpy as np
 import pytest
 
-from fcm.accuracy import outline, stability_validity
 from fcm.accuracy.options import RefinementOptions, ValidityOptions
-from fcm.branches import force_level, search
-from fcm.branches.isolas import Crossings
-from fcm.response import level, mode, tracked_work
+from fcm.branches.options import FoldOptions, LevelCurveOptions
+from fcm.continuation.options import StepOptions
+from fcm.harmonic_balance.options import HarmonicBalanceOptions, WorkOptions
+from fcm.response.options import ResponseOptions
+from fcm.shooting.options import BalanceOptions, ShootingOptions
+from fcm.stability.options import ConfirmationOptions, StabilityOptions
 
 from .test_doubts_of_analyses import CREEPING
 
@@ -56,11 +55,11 @@ ANALYSES = {  # what the scene has besides, and options
 FEW = ("--harmonics", 1)
 
 
-def run(fcm, tmp_path, text, analysis, *more):
+def run(fcm, tmp_path, text, analysis, *more, **settings):
     extra, options = ANALYSES[analysis]
     (tmp_path / "s.toml").write_text(text + extra)
     chosen = () if "exact" in options else more
-    done = fcm("respond", "s.toml", "--json", "-o", "a.nc", *options, *chosen)
+    done = fcm("respond", "s.toml", "--json", "-o", "a.nc", *options, *chosen, **settings)
     return done, json.loads(done.out)
 
 
@@ -92,6 +91,12 @@ def test_what_moves_by_rounding_alone_is_at_rest(fcm, tmp_path, analysis):
         assert phase["amplitude"]["d"] == 0.0 < phase["amplitude"]["u"]
 
 
+def of_branches(options):
+    """Options of the branches of a balance, by itself and where exact motions begin near it."""
+    shooting = ShootingOptions(balance=BalanceOptions(others=(options,)))
+    return ResponseOptions(others=(options,), shooting=shooting)
+
+
 LOST = {  # analyses that trace branches over the range, and where they say it
     "curve": "curves", "peaks only": "curves", "sensitivity": "curves", "draws": "curves",
     "optimum": "curves", "exact": "curves", "exact peaks": "curves", "peaks tracked": "tracked",
@@ -99,24 +104,23 @@ LOST = {  # analyses that trace branches over the range, and where they say it
 
 
 @pytest.mark.parametrize("analysis", LOST)
-def test_where_folds_of_the_level_are_lost_branches_may_be_missing(fcm, tmp_path, monkeypatch, analysis):
-    monkeypatch.setattr(search, "level_one_crossings", lambda *_: Crossings((), (1.25,)))
-    done, found = run(fcm, tmp_path, PAIR, analysis, *FEW)
+def test_where_folds_of_the_level_are_lost_branches_may_be_missing(fcm, tmp_path, analysis):
+    """From 1.2072 rad/s on, the middle between two resonances: the level of the forces turns back there."""
+    none = of_branches(FoldOptions(work_fraction=0.0, min_seconds=0.0))
+    text = PAIR.replace("n_0 = 2.0", "n_0 = 3.0")  # of which the level turns back with more harmonics, too
+    done, found = run(fcm, tmp_path, text, analysis, *FEW, response=none)
     assert done.code == 0, done.err
-    assert "may be missing" in done.err and "1.25 rad/s" in done.err
+    assert "may be missing" in done.err and "1.2072" in done.err
     if LOST[analysis] == "curves":
-        assert all(curve["folds_unsure_at"] == [1.25] for curve in found["curves"])
+        assert all(curve["folds_unsure_at"] == [pytest.approx(1.2072, abs=1e-4)] for curve in found["curves"])
     else:
-        assert all(at == 1.25 for _, at in found["tracked"]["branches_unsure_at"])
+        assert all(at == pytest.approx(1.2072, abs=1e-4) for _, at in found["tracked"]["branches_unsure_at"])
 
 
 @pytest.mark.parametrize("analysis", [*LOST, "visited"])
-def test_where_levels_are_not_followed_to_their_end_branches_may_be_missing(
-    fcm, tmp_path, monkeypatch, analysis
-):
-    known = force_level._followed  # what follows the level at one frequency
-    monkeypatch.setattr(force_level, "_followed", lambda *args: replace(known(*args), complete=False))
-    done, found = run(fcm, tmp_path, PAIR, analysis, *FEW)
+def test_where_levels_are_not_followed_to_their_end_branches_may_be_missing(fcm, tmp_path, analysis):
+    short = of_branches(LevelCurveOptions(step=StepOptions(max_steps=3)))
+    done, found = run(fcm, tmp_path, PAIR, analysis, *FEW, response=short)
     assert "may be missing" in done.err and "was not followed to its end" in done.err
     if LOST.get(analysis) != "tracked":
         assert all(curve["branches_unsure_at"] for curve in found["curves"])
@@ -144,12 +148,10 @@ def test_what_creeps_is_no_steady_state(fcm, tmp_path, analysis):
 
 
 @pytest.mark.parametrize("analysis", [*MISSED])
-def test_what_misses_the_accuracy_says_so(fcm, tmp_path, monkeypatch, analysis):
-    monkeypatch.setattr(outline, "MAX_SECONDS", 0.0)
-    monkeypatch.setattr(outline, "REFINEMENT", RefinementOptions(max_doubtful_seconds=0.0))
-    for module in (level, mode):
-        monkeypatch.setattr(module, "with_twice_as_many", lambda *_: None)
-    done, found = run(fcm, tmp_path, PAIR, analysis, "--accuracy", 1e-7)
+def test_what_misses_the_accuracy_says_so(fcm, tmp_path, analysis):
+    work = WorkOptions(max_seconds=0.0, max_seconds_repeated=0.0)
+    none = ResponseOptions(HarmonicBalanceOptions(work=work), RefinementOptions(max_doubtful_seconds=0.0))
+    done, found = run(fcm, tmp_path, PAIR, analysis, "--accuracy", 1e-7, response=none)
     assert "the accuracy that was asked for" in done.err, done.err
     if analysis == "peaks tracked":
         assert "remains at contact.shroud.n_0" in found["tracked"]["short_of_accuracy"]
@@ -159,15 +161,13 @@ def test_what_misses_the_accuracy_says_so(fcm, tmp_path, monkeypatch, analysis):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("analysis", [one for one in MISSED if one != "mode"])
-def test_where_stability_is_not_told_no_peak_is_without_that_word(fcm, tmp_path, monkeypatch, analysis):
-    for module in (stability_validity, level, tracked_work):
-        monkeypatch.setattr(module, "VALIDITY", ValidityOptions(max_error=0.0))
-    of_curves = import_module("fcm.response.trace")  # not the function of that name
-    monkeypatch.setattr(of_curves, "confirmed_stable", lambda _, z, doubted: np.zeros_like(doubted))
+def test_where_stability_is_not_told_no_peak_is_without_that_word(fcm, tmp_path, analysis):
+    unconfirmed = StabilityOptions(confirmation=ConfirmationOptions(max_addition=-1.0))
+    strict = ResponseOptions(others=(ValidityOptions(max_error=0.0), unconfirmed))
     extra, options = ANALYSES[analysis]
     (tmp_path / "s.toml").write_text(PAIR + extra)
-    said = fcm("respond", "s.toml", *FEW, *options).out
-    found = json.loads(fcm("respond", "s.toml", "--json", *FEW, *options).out)
+    said = fcm("respond", "s.toml", *FEW, *options, response=strict).out
+    found = json.loads(fcm("respond", "s.toml", "--json", *FEW, *options, response=strict).out)
     assert "unknown" in said
     if analysis == "peaks tracked":
         assert all(one["stability_untold"] for one in found["tracked"]["curves"])

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from fcm.accuracy.options import VALIDITY
+from fcm.accuracy.options import VALIDITY, ValidityOptions
 from fcm.harmonic_balance.runs import runs
 from fcm.model.scene import FloatArray
 
@@ -15,7 +15,11 @@ Mask = npt.NDArray[np.bool_]
 
 
 def unreliable_points(
-    frequency: FloatArray, truncations: Sequence[FloatArray], stable: FloatArray, fold: Mask
+    frequency: FloatArray,
+    truncations: Sequence[FloatArray],
+    stable: FloatArray,
+    fold: Mask,
+    options: ValidityOptions = VALIDITY,
 ) -> Mask:
     """Which points of branches, one after the other, are too far from the motion, or may be.
 
@@ -25,31 +29,36 @@ def unreliable_points(
         fold is whether a point is one.
     truncations : sequence of array (point,)
         Estimated errors of each branch, NaN where there is none.
+    options : ValidityOptions, optional
+        Up to which errors a solution is called stable.
     """
     truncation = np.concatenate(truncations)
-    lost = np.concatenate([on_other_branch(one) for one in truncations])
-    far: Mask = (truncation > VALIDITY.max_error) | lost | _without_error(frequency, truncation, stable, fold)
+    lost = np.concatenate([on_other_branch(one, options) for one in truncations])
+    untold = _without_error(frequency, truncation, stable, fold, options)
+    far: Mask = (truncation > options.max_error) | lost | untold
     return far
 
 
-def on_other_branch(truncation: FloatArray) -> Mask:
+def on_other_branch(truncation: FloatArray, options: ValidityOptions = VALIDITY) -> Mask:
     """Where (point,) a branch has long lost that of more harmonics, and says nothing of the motion."""
     far = np.zeros(len(truncation), dtype=np.bool_)
     for first, end in runs(np.isnan(truncation)):
-        far[first:end] = end - first > VALIDITY.max_unknown_points
+        far[first:end] = end - first > options.max_unknown_points
     return far
 
 
-def _without_error(frequency: FloatArray, truncation: FloatArray, stable: FloatArray, fold: Mask) -> Mask:
+def _without_error(
+    frequency: FloatArray, truncation: FloatArray, stable: FloatArray, fold: Mask, options: ValidityOptions
+) -> Mask:
     """Stretches (point,) without an error: marches leave many of them.
 
     Of those at a fold, which has no error either, whose stable part is no more than that of a fold, nothing
     is said. A point alone with an error, as one of several at a corner may be, does not part a stretch.
     """
     found, untold = np.zeros(len(truncation), dtype=np.bool_), np.isnan(truncation)
-    untold[1:-1] |= untold[:-2] & untold[2:] & (truncation[1:-1] <= VALIDITY.max_error)
+    untold[1:-1] |= untold[:-2] & untold[2:] & (truncation[1:-1] <= options.max_error)
     for first, end in runs(untold):
         own = frequency[first:end][stable[first:end] == 1.0]
-        wide = own.size > 0 and np.ptp(own) > VALIDITY.max_fold_error * own.max()
+        wide = own.size > 0 and np.ptp(own) > options.max_fold_error * own.max()
         found[first:end] = wide or not fold[max(first - 1, 0) : end + 1].any()
     return found

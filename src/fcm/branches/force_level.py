@@ -92,10 +92,11 @@ def solutions(system: System, omega: float, reach: float | None = None) -> Level
     """
     most, linear = (
         highest_linear_limit(system, omega),
-        LEVEL_CURVE.linear_fraction * lowest_linear_limit(system, omega),
+        system.option(LEVEL_CURVE).linear_fraction * lowest_linear_limit(system, omega),
     )
-    if len(system.scene.contacts) >= LEVEL_REACH.min_contacts:
-        most = min(most, LEVEL_REACH.max_level)
+    reached = system.option(LEVEL_REACH)
+    if len(system.scene.contacts) >= reached.min_contacts:
+        most = min(most, reached.max_level)
     if reach is None and len(system.harmonics) > few_harmonics(system):
         few = system.with_harmonics(system.harmonics[: few_harmonics(system)])
         reach = _followed(few, omega, linear, most, most).max_level
@@ -126,10 +127,11 @@ def _followed(system: System, omega: float, linear: float, top: float, most: flo
 
 
 def _found(system: System, omega: float, linear: float, top: float) -> LevelSolutions:
-    path, near = None, LEVEL_REACH.max_level_without_fold
-    if len(system.scene.contacts) >= LEVEL_REACH.min_contacts and linear < near < top:
+    options = system.option(LEVEL_REACH)
+    path, near = None, options.max_level_without_fold
+    if len(system.scene.contacts) >= options.min_contacts and linear < near < top:
         path = _coarse_curve(system, omega, linear, near, (1.0,))
-        path = None if _turned(path) or path.status is not Status.COMPLETE else path
+        path = None if _turned(path, options) or path.status is not Status.COMPLETE else path
     path = path or _coarse_curve(system, omega, linear, top, (1.0,))
     found = path.z[path.parameter == 1.0]
     found[:, -1] = omega
@@ -138,10 +140,10 @@ def _found(system: System, omega: float, linear: float, top: float) -> LevelSolu
     return LevelSolutions(omega, system.harmonics, tuple(found), complete, reach, turns)
 
 
-def _turned(path: Path) -> bool:
+def _turned(path: Path, options: LevelReachOptions) -> bool:
     """Whether a curve turns back by more than a beginning slip does."""
     levels = path.parameter
-    return bool((levels < (1.0 - LEVEL_REACH.max_reversal) * np.maximum.accumulate(levels)).any())
+    return bool((levels < (1.0 - options.max_reversal) * np.maximum.accumulate(levels)).any())
 
 
 def _shared(system: System, omega: float, top: float) -> LevelSolutions | None:
@@ -154,7 +156,8 @@ def _shared(system: System, omega: float, top: float) -> LevelSolutions | None:
     path = shared_curve(system, omega, _to_level_one)
     if path is not None:  # whoever followed it
         system.work.add(seconds_of(system, path.evaluations, len(system.harmonics)))
-    if path is None or top > (1.0 + LEVEL_CURVE.level_tolerance) * system.preload_unit * path.parameter[-1]:
+    margin = 1.0 + system.option(LEVEL_CURVE).level_tolerance
+    if path is None or top > margin * system.preload_unit * path.parameter[-1]:
         return None
     found = solutions_at_level_one(system, path, omega)
     if found is None:
@@ -168,7 +171,7 @@ def _to_level_one(system: System, omega: float) -> Path:
     return _coarse_curve(
         system,
         omega,
-        LEVEL_CURVE.linear_fraction * lowest_linear_limit(system, omega),
+        system.option(LEVEL_CURVE).linear_fraction * lowest_linear_limit(system, omega),
         highest_linear_limit(system, omega),
         (),
     )
@@ -179,11 +182,12 @@ def _coarse_curve(
 ) -> Path:
     """The curve of the level, by long steps if those come to its end, and to its stations; shorter ones may
     where they do not."""
-    for step, lightly in ((LEVEL_CURVE.max_step_stations, True), (LEVEL_CURVE.max_step, False)):
+    options = system.option(LEVEL_CURVE)
+    for step, lightly in ((options.max_step_stations, True), (options.max_step, False)):
         path = level_curve(system, omega, (0.0, top), step, stations, linear, True, lightly)
         if path.status is Status.COMPLETE and not _skips_station(path, stations):
             return path
-    for step in (LEVEL_CURVE.max_step, LEVEL_CURVE.stalled_fraction * LEVEL_CURVE.max_step):
+    for step in (options.max_step, options.stalled_fraction * options.max_step):
         path = level_curve(system, omega, (0.0, top), step, stations, linear)
         if path.status not in (Status.STALLED, Status.AROUND):
             break
@@ -198,11 +202,11 @@ def _skips_station(path: Path, stations: tuple[float, ...]) -> bool:
 
 def few_harmonics(system: System) -> int:
     """How many harmonics tell how far the level of more is to be followed."""
-    layout = system.layout
+    layout, options = system.layout, system.option(LEVEL_CURVE)
     means, each = layout.directions, layout.stride
     return min(
-        max((LEVEL_CURVE.few_unknowns // max(layout.contacts, 1) - means) // each, 1),
-        LEVEL_CURVE.few_harmonics,
+        max((options.few_unknowns // max(layout.contacts, 1) - means) // each, 1),
+        options.few_harmonics,
     )
 
 
@@ -210,9 +214,10 @@ def _level_reach(system: System, status: Status, levels: FloatArray) -> float:
     """Up to which level the curve of more harmonics is to be followed, if those of a system tell it."""
     if status is not Status.COMPLETE or len(system.harmonics) < few_harmonics(system):
         return np.inf
-    near = np.flatnonzero(levels < LEVEL_CURVE.clear_level)
-    most = float(levels[: near[-1] + 1].max()) if near.size else LEVEL_CURVE.clear_level
-    return LEVEL_CURVE.reach_factor * max(most, LEVEL_CURVE.clear_level)  # however far apart the points are
+    options = system.option(LEVEL_CURVE)
+    near = np.flatnonzero(levels < options.clear_level)
+    most = float(levels[: near[-1] + 1].max()) if near.size else options.clear_level
+    return options.reach_factor * max(most, options.clear_level)  # however far apart the points are
 
 
 def level_curve(
@@ -228,16 +233,15 @@ def level_curve(
     """Response at omega against the level of the forces, from rest, or from a level up to which it is
     linear; hasty if only its stations matter, as of `follow`, lightly if slight corners are stepped over."""
     # a stiffened resonance may take much less than leads to it
-    path, low = None, max(span[0], LEVEL_CURVE.linear_levels[-1])
-    for weak in LEVEL_CURVE.linear_levels:
+    options = system.option(LEVEL_CURVE)
+    path, low = None, max(span[0], options.linear_levels[-1])
+    for weak in options.linear_levels:
         level = max(span[0], weak, linear)
         for x in linear_responses(system, omega, level):
             start, whole = np.append(x, level), (low, span[1])
             path = _follow_level(system, start, omega, whole, step, stations, hasty, lightly)
             if _comes_back(path, low):
-                path = _follow_level(
-                    system, start, omega, whole, LEVEL_CURVE.reversed_fraction * step, stations
-                )
+                path = _follow_level(system, start, omega, whole, options.reversed_fraction * step, stations)
                 path = replace(path, status=Status.STALLED) if _comes_back(path, low) else path
             if path.z.shape[0]:
                 return path
@@ -257,9 +261,9 @@ def _follow_level(
 ) -> Path:
     level, stepper = system.level_problem
     level.begin(omega, lightly)
-    wanted, options = Events(stations), FollowOptions(step, hasty)
-    if lightly and len(system.scene.contacts) >= LEVEL_REACH.min_contacts:
-        reach = LEVEL_REACH
+    wanted, options = Events(stations), FollowOptions(step, hasty, step=system.option(LEVEL_CURVE).step)
+    if lightly and len(system.scene.contacts) >= system.option(LEVEL_REACH).min_contacts:
+        reach = system.option(LEVEL_REACH)
         steps = replace(
             options.step,
             target_turn=reach.target_turn,
@@ -311,9 +315,8 @@ def with_low_harmonics(system: System, found: Sequence[LevelSolutions]) -> tuple
     level of the forces may turn back just above 1, or go on, and with three turn just below 1: its curve then
     shows nothing of what is there, and its errors are those of another motion.
     """
-    few = tuple(
-        sorted({*system.harmonics, *range(1, min(LEVEL_CURVE.reliable_harmonics, few_harmonics(system)) + 1)})
-    )
+    low = min(system.option(LEVEL_CURVE).reliable_harmonics, few_harmonics(system))
+    few = tuple(sorted({*system.harmonics, *range(1, low + 1)}))
     if few == system.harmonics:
         return few
     finer = solutions_at(system.with_harmonics(few), [one.omega for one in found])
@@ -326,12 +329,9 @@ def resonances(system: System) -> list[float]:
     forces at other harmonics these divided by them."""
     low, high = system.scene.frequency_range
     stuck, found = system.springs(stuck=True), set[float]()
+    offset = system.option(LEVEL_CURVE).resonance_offset
     for closed in (np.ones(stuck.size, dtype=bool), closed_at_rest(system), np.zeros(stuck.size, dtype=bool)):
         for harmonic in system.linear.driven:
-            natural = (
-                system.linear.stiffened(stuck * closed, harmonic)
-                * (1.0 + LEVEL_CURVE.resonance_offset)
-                / harmonic
-            )
+            natural = system.linear.stiffened(stuck * closed, harmonic) * (1.0 + offset) / harmonic
             found.update(float(w) for w in natural if low < w < high)
     return sorted(found)

@@ -38,7 +38,7 @@ class Crossings:
 
 
 def level_one_crossings(
-    system: System, found: Sequence[LevelSolutions], paths: tuple[Path, ...], options: FoldOptions = FOLDS
+    system: System, found: Sequence[LevelSolutions], paths: tuple[Path, ...]
 ) -> Crossings:
     """Those that lie on none of some paths.
 
@@ -52,6 +52,7 @@ def level_one_crossings(
     paths : tuple of Path
         The branches that are known.
     """
+    options = system.option(FOLDS)
     few = system.with_harmonics(system.harmonics[: few_harmonics(system)])
     solutions, span = list[FloatArray](), system.scene.frequency_range
     turns = [turn.extended(few, one.harmonics) for one in found for turn in one.folds]

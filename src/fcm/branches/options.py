@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+from fcm.continuation.options import StepOptions
 
 
 @dataclass(frozen=True)
@@ -145,6 +147,8 @@ class LevelCurveOptions:
         Relative difference by which two ways to one level may differ.
     resonance_offset : float
         Relative distance from a resonance, which an undamped structure has no response at.
+    step : StepOptions
+        How its steps are chosen.
     """
 
     linear_levels: tuple[float, ...] = (1e-3, 1e-6, 1e-9)
@@ -160,6 +164,7 @@ class LevelCurveOptions:
     reach_factor: float = 2.0
     level_tolerance: float = 1e-9
     resonance_offset: float = 1e-4
+    step: StepOptions = field(default_factory=StepOptions)
 
 
 LEVEL_CURVE = LevelCurveOptions()

@@ -57,7 +57,7 @@ def shared_curve(system: System, omega: float, followed: Followed) -> Path | Non
 def _curve_key(system: System) -> tuple[object, ...]:
     """What the curve is of, besides the frequency."""
     laws = tuple((c.mu, c.k_u, c.k_v, c.n_0) for c in system.normalised.scene.contacts)
-    return *system.linear.numbers, laws, system.harmonics
+    return *system.linear.numbers, laws, system.harmonics, system.other_options
 
 
 def solutions_at_level_one(system: System, path: Path, omega: float) -> list[FloatArray] | None:

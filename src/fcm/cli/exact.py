@@ -85,8 +85,11 @@ def traced(
 ) -> Response:
     """The exact curves of a scene, or its steady motions at frequencies."""
     from fcm.response.exact import trace_exact
+    from fcm.response.options import RESPONSE
     from fcm.run.progress import part
 
+    chosen = messages.settings.response or RESPONSE
+    options = {**options, "shooting": chosen.shooting, "options": chosen.exact}
     shown = part(messages.progress, 0.0, 0.5 if scene.schedule else 1.0)
     response = trace_exact(scene, at, shown, **options)
     messages.clear()

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 
@@ -39,6 +40,8 @@ from fcm.structure.receptance import Receptance, TravellingReceptance
 from fcm.structure.ring import RingLinear
 from fcm.table.lookup import Table
 
+Options = TypeVar("Options")
+
 
 @dataclass(frozen=True)
 class System:
@@ -48,7 +51,8 @@ class System:
 
     With one harmonic the coefficients of a table may be the contacts' law, see `table_balance`: that of
     this balance if it is not corrected. condensing says when the linear systems of many contacts are
-    condensed, options has all other tolerances and limits.
+    condensed, options has all other tolerances and limits of the balance. What is computed from it, as its
+    branches, has options classes of its own: other_options are those that are not the default.
     """
 
     scene: Scene
@@ -57,6 +61,7 @@ class System:
     corrected: bool = True
     condensation: CondensationOptions = CONDENSATION
     options: HarmonicBalanceOptions = HARMONIC_BALANCE
+    other_options: tuple[object, ...] = ()
     linear: Linear = field(init=False)
     coefficients: CoefficientLaw = field(init=False)  # the table's, or the closed form's
     port_responses: dict[float, ComplexArray] = field(
@@ -69,6 +74,23 @@ class System:
         object.__setattr__(self, "linear", linear_of(self.scene))
         object.__setattr__(self, "harmonics", self._with_driven(self.harmonics))
         object.__setattr__(self, "coefficients", ClosedForm() if self.table is None else self.table.law())
+
+    def of(self, scene: Scene) -> System:
+        """The same balance of another scene."""
+        return System(
+            scene,
+            self.harmonics,
+            self.table,
+            self.corrected,
+            self.condensation,
+            self.options,
+            self.other_options,
+        )
+
+    def option(self, default: Options) -> Options:
+        """The options of a class that were given for what is computed from the system, or the default."""
+        given = (one for one in self.other_options if isinstance(one, type(default)))
+        return next(given, default)
 
     def with_harmonics(self, harmonics: tuple[int, ...]) -> System:
         """The same with other harmonics."""

@@ -59,7 +59,7 @@ def respond(
     sensitivity : bool
         Whether to add the derivatives of each peak, its height and frequency, by the numbers of the scene.
     options : fcm.response.options.ResponseOptions, optional
-        Tolerances and limits of the balance; of no use with "exact".
+        Tolerances and limits.
 
     Returns
     -------
@@ -145,8 +145,10 @@ def _curves(
         if asked["harmonics"] is not None or asked["accuracy"] is not None:
             raise ResponseError("harmonics and accuracy are of no use with the method 'exact'")
         from fcm.response.exact import trace_exact
+        from fcm.response.options import RESPONSE
 
-        return trace_exact(scene, at, place=place)
+        chosen = asked["options"] or RESPONSE
+        return trace_exact(scene, at, place=place, shooting=chosen.shooting, options=chosen.exact)
     return trace(scene, method, place=place, **asked)
 
 

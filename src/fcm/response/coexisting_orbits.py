@@ -20,7 +20,7 @@ from fcm.shooting.harmonic_balance_branches import states_across
 from fcm.shooting.harmonic_balance_state import balance_solutions
 from fcm.shooting.initial_orbits import first_point
 from fcm.shooting.linear_orbits import started_states
-from fcm.shooting.options import SHOOTING
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.orbit_record import OrbitRecord, recorded_point, recorded_steady
 from fcm.shooting.periodic import Orbit, Poll, shoot, unloaded
 from fcm.shooting.problem import OrbitProblem
@@ -48,6 +48,7 @@ def coexisting_orbits(
     report: Report,
     poll: Poll,
     doubts: UncertainFrequencies,
+    options: ShootingOptions = SHOOTING,
 ) -> Iterator[OrbitRecord]:
     """The stable motions at each of some frequencies [rad/s] that are none of those visited; each saved.
 
@@ -65,7 +66,7 @@ def coexisting_orbits(
             poll()
             report(1.0, f"other motions, {with_unit(scene, omega)}")
             here = [one for one in visited if one.frequency == omega]
-            known, whole = balance_solutions(scene, omega, poll)
+            known, whole = balance_solutions(scene, omega, poll, options)
             guesses = [*known, *across.get(omega, ()), *started_states(scene, omega)]
             found = CoexistingOrbits(omega, tuple(_coexisting_at(problem, omega, guesses, here, poll)), whole)
             report.save(found)

@@ -66,7 +66,7 @@ class ExactWork:
 
     def _made(self, scene: Scene, report: Report) -> Curve:
         if self.at is not None:
-            return _visited(scene, self.at, report, self.limit, self.options)
+            return _visited(scene, self.at, report, self.limit, self.options, self.shooting)
         stiff, limit = _too_stiff(scene, self.limit, self.options)
         clock = CurveTimeLimit(limit, report)
         try:
@@ -137,7 +137,7 @@ class _CurveFollower:
         """The peaks, folds and jumps alone."""
         known, search = list[OrbitRecord](), Search(self.clock.poll, self.report)
         try:
-            alone = peaks_only(scene, known, self.report, self.clock.poll)
+            alone = peaks_only(scene, known, self.report, self.clock.poll, self.options)
         except (KeyboardInterrupt, TimeOver) as stop:
             where = with_unit(scene, known[-1].frequency) if known else "the start"
             reason = _stop_prefix(stop, self.clock.limit) + where + self.stiff
@@ -249,7 +249,12 @@ def _too_stiff(scene: Scene, limit: float | None, options: ExactOptions) -> tupl
 
 
 def _visited(
-    scene: Scene, at: tuple[float, ...], report: Report, limit: float | None, options: ExactOptions
+    scene: Scene,
+    at: tuple[float, ...],
+    report: Report,
+    limit: float | None,
+    options: ExactOptions,
+    shooting: ShootingOptions,
 ) -> Curve:
     around = replace(scene, frequency_range=(0.0, at[-1]))
     stiff, limit = _too_stiff(replace(scene, frequency_range=(at[0], at[-1])), limit, options)
@@ -263,7 +268,7 @@ def _visited(
     cause = Cause.CALCULATION
     try:
         visitor.run(at, report)
-        others.extend(coexisting_orbits(scene, at, visitor.points, report, poll, doubts))
+        others.extend(coexisting_orbits(scene, at, visitor.points, report, poll, doubts, shooting))
     except (KeyboardInterrupt, TimeOver) as stop:
         where = with_unit(scene, visitor.points[-1].frequency) if visitor.points else "the start"
         reason, cause = _stop_prefix(stop, limit) + where, _cause(stop)

@@ -34,17 +34,15 @@ def with_traced(found: RefinedResponse, traced: Traced, accuracy: float) -> Refi
     return replace(every, further=found.further, begun=found.begun)
 
 
-def with_levels_below_peaks(
-    found: RefinedResponse, accuracy: float, options: LevelOptions = LEVELS
-) -> RefinedResponse:
+def with_levels_below_peaks(found: RefinedResponse, accuracy: float) -> RefinedResponse:
     """With the branches that the level leads to where low harmonics come to the highest peaks."""
-    system = found.system
+    system, options = found.system, found.system.option(LEVELS)
     looked = list(_level_solutions(system, _excited_frequencies(found, options), options))
     return _with_branches(found, looked, [z for one in looked for z in one.solutions], accuracy)
 
 
 def with_levels_where_unstable(
-    found: RefinedResponse, stable: Sequence[FloatArray], accuracy: float, options: LevelOptions = LEVELS
+    found: RefinedResponse, stable: Sequence[FloatArray], accuracy: float
 ) -> tuple[RefinedResponse, bool]:
     """With the branches that the level leads to in ranges in which nothing is stable, and whether more
     harmonics have a higher motion there.
@@ -55,7 +53,7 @@ def with_levels_where_unstable(
     """
     system, paths = found.system, found.traced.branches.paths
     stretches = stretches_of(paths, stable, system.scene.frequency_range)
-    harmonics = system.harmonics
+    harmonics, options = system.harmonics, system.option(LEVELS)
     if len(harmonics) < options.max_harmonics:
         harmonics = tuple(sorted({*harmonics, *range(1, options.max_harmonics + 1)}))
     more = system.with_harmonics(harmonics)
@@ -100,7 +98,7 @@ def _level_solutions(
             low, high = left.pop()
             middle = 0.5 * (low + high)
             try:
-                yield solutions(system, middle, LEVEL_CURVE.clear_level)
+                yield solutions(system, middle, system.option(LEVEL_CURVE).clear_level)
             except WorkLimitError:
                 return
             if high - low > options.wide_range * (last - first):

@@ -12,7 +12,6 @@ import numpy as np
 
 from fcm.branches.shared_levels import clear
 from fcm.model.scene import Scene
-from fcm.response.options import SWEEP
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.results.cause import Cause
@@ -59,7 +58,7 @@ class Work:
         begin, saved = time.monotonic(), len(curves)
         clear()
         for number, scene in list(enumerate(group))[len(curves) :]:
-            if time.monotonic() - begin > SWEEP.save_interval:
+            if time.monotonic() - begin > self.wanted.options.sweep.save_interval:
                 saved, begin = _save(curves, saved, report), time.monotonic()
             try:
                 report(number / len(group), "")

@@ -11,7 +11,7 @@ from fcm.accuracy.refinement import enlarged, with_estimated_errors
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.options import RESPONSE, ResponseOptions
-from fcm.response.request import ResponseError
+from fcm.response.request import Request, ResponseError
 from fcm.response.tracked_work import as_curve
 from fcm.results.tracked import Optimal, TrackedCurve
 from fcm.run import Progress
@@ -54,7 +54,7 @@ class PeakTask:
 
     def system(self, scene: Scene, harmonics: tuple[int, ...]) -> System:
         """The balance of a scene."""
-        return System(scene, harmonics, options=self.options.balance)
+        return Request(harmonics, options=self.options).system(scene)
 
     def with_values(self, values: FloatArray) -> Scene:
         """The scene with values of the numbers."""

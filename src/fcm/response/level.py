@@ -125,7 +125,7 @@ def _without(scene: Scene, omega: float, reason: str, cause: Cause = Cause.CALCU
 def _level_curve(scene: Scene, wanted: Request, omega: float, span: tuple[float, float], tell: Tell) -> Curve:
     """With the harmonics that are wanted; with ever more until they are enough for the accuracy."""
     begin, stopped = time.perf_counter(), ""
-    system = System(scene, wanted.harmonics or (1,), options=wanted.options.balance)
+    system = wanted.system(scene)
     curve = _followed(system, omega, span)
     while wanted.harmonics is None and curve.complete and not _worst(curve) <= wanted.accuracy:
         more = with_twice_as_many(system, curve.evaluations)
@@ -199,7 +199,8 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     error, of_borne = errors_at_levels(system, z, level, amplitude, borne, even)
     truncation = (error * amplitude).max(axis=1) / np.where(size := amplitude.max(axis=1), size, 1.0)
     stable = stable_at_levels(system, z, even)
-    known = truncation <= VALIDITY.max_error  # with more harmonics there may be no solution where it is not
+    # with more harmonics there may be no solution where it is not
+    known = truncation <= system.option(VALIDITY).max_error
     stable[~known & (stable == 1.0)] = np.nan
     lost = no_steady_states(system, z, level)
     for which in lost.values():

@@ -15,7 +15,6 @@ import numpy as np
 from fcm.accuracy.outline import UncheckedResponse
 from fcm.accuracy.refinement import RefinedResponse, with_errors
 from fcm.harmonic_balance.reported_quantities import reported_quantities
-from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.options import OPTIMUM
 from fcm.results.peak import Peak
@@ -47,8 +46,7 @@ def _modes(linear: Linear) -> tuple[FloatArray, FloatArray]:
 
 def with_all_dofs(found: RefinedResponse, scene: Scene, accuracy: float) -> RefinedResponse:
     """What was found of a scene that leads, of all degrees of freedom of another."""
-    of = found.system
-    system = System(scene, of.harmonics, of.table, of.corrected, of.condensation, of.options)
+    system = found.system.of(scene)
     shown = tuple(reported_quantities(system, path) for path in found.traced.branches.paths)
     every = with_errors(UncheckedResponse(system, found.traced, shown, found.seconds), accuracy)
     return replace(every, further=found.further, begun=found.begun)

@@ -15,7 +15,6 @@ from fcm.continuation import Mark, Status
 from fcm.harmonic_balance.cost_model import with_twice_as_many
 from fcm.harmonic_balance.planar_quantities import planar_quantities
 from fcm.harmonic_balance.response_quantities import cycles, loops
-from fcm.harmonic_balance.system import System
 from fcm.harmonic_balance.wave_extremes import half_peak_to_peak
 from fcm.model.scene import FloatArray, Scene
 from fcm.nonlinear_modes.backbone import Mode, ModeError, nonlinear_mode, truncation
@@ -118,7 +117,7 @@ def _curve(
     tell: Tell,
 ) -> Curve:
     begin = time.perf_counter()
-    system = System(scene, wanted.harmonics or (1,), options=wanted.options.balance)
+    system = wanted.system(scene)
     mode = nonlinear_mode(system, number, span, scene.max_step)
     (error, theirs), stopped = truncation(mode), ""
     while wanted.harmonics is None and not _worst(error) <= wanted.accuracy:

@@ -15,7 +15,7 @@ from fcm.continuation import Mark
 from fcm.model.scene import FloatArray, Scene
 from fcm.reduction.restore import unknowns
 from fcm.response.coexisting_search import Search
-from fcm.response.options import EXACT_CURVES, INPUT_LIMITS
+from fcm.response.options import EXACT_CURVES, INPUT_LIMITS, ResponseOptions
 from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.orbit_curve import curve_of_points, orbit_curve
 from fcm.response.request import ONE_HARMONIC, Request
@@ -25,7 +25,7 @@ from fcm.results.result import Curve
 from fcm.run import Report
 from fcm.shooting.harmonic_balance_state import state_of
 from fcm.shooting.initial_orbits import near_balance
-from fcm.shooting.options import SHOOTING
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.orbit_record import OrbitRecord
 from fcm.shooting.peaks_and_folds import Guess, located
 from fcm.shooting.periodic import Poll
@@ -46,14 +46,21 @@ class PeaksOnly:
     )  # of the balance that they are near
 
 
-def peaks_only(scene: Scene, known: list[OrbitRecord], report: Report, poll: Poll) -> PeaksOnly | None:
+def peaks_only(
+    scene: Scene,
+    known: list[OrbitRecord],
+    report: Report,
+    poll: Poll,
+    shooting: ShootingOptions = SHOOTING,
+) -> PeaksOnly | None:
     """The peaks, folds and jumps of a scene; None where the balance has others.
 
     known : to which points are added as they are found.
     """
     if not _one_harmonic_suffices(traced_curve(scene, ONE_HARMONIC, poll)):
         return None
-    balanced = traced_curve(scene, Request(None, INPUT_LIMITS.accuracy), poll)
+    branches = ResponseOptions(others=shooting.balance.others)
+    balanced = traced_curve(scene, Request(None, INPUT_LIMITS.accuracy, options=branches), poll)
     swept = balanced.swept()
     if not balanced.complete or swept.untold or not _at_folds(swept, balanced):
         return None

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from fcm.accuracy.options import REFINEMENT, RefinementOptions
 from fcm.harmonic_balance.options import HARMONIC_BALANCE, HarmonicBalanceOptions
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.tracking.options import SEARCH, SearchOptions
 
 
@@ -289,11 +290,25 @@ class ResponseOptions:
         How harmonics are added for an accuracy.
     optimum : OptimumOptions
         How the least peak is found.
+    sweep : SweepOptions
+        How the curves of a sweep are traced.
+    exact : ExactOptions
+        How exact curves are calculated,
+    shooting : ShootingOptions
+        and the periodic motions that they consist of.
+    others : tuple
+        Options of what is computed from a balance, each of the class of its package: `FoldOptions`,
+        `LevelOptions`, `LevelCurveOptions` and `LevelReachOptions` of the branches, `ValidityOptions` and
+        `StabilityOptions`.
     """
 
     balance: HarmonicBalanceOptions = HARMONIC_BALANCE
     refinement: RefinementOptions = REFINEMENT
     optimum: OptimumOptions = OPTIMUM
+    sweep: SweepOptions = SWEEP
+    exact: ExactOptions = EXACT_CURVES
+    shooting: ShootingOptions = SHOOTING
+    others: tuple[object, ...] = ()
 
 
 RESPONSE = ResponseOptions()

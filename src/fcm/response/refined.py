@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
+from fcm.accuracy.options import VALIDITY
 from fcm.accuracy.refinement import Keep, RefinedResponse, enlarged, retraced
 from fcm.accuracy.stability_limits import StabilityLimit, distances_from, stability_limits
 from fcm.accuracy.stability_validity import on_other_branch
@@ -140,12 +141,14 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
     to it, and is said not to: of that nothing is looked for where it has long lost that of more harmonics.
     """
     found, stable, lost = now.found, list(now.stable), list(now.lost)
-    bifurcations = list(now.bifurcations)
+    bifurcations, options = list(now.bifurcations), now.found.system.option(VALIDITY)
     short, known = accuracy is not None and not found.reached, len(stable)
     every = found.traced.branches.paths
     paths, shown, errors = list(every[:known]), list(found.shown[:known]), list(found.errors[:known])
     for path, seen, error in zip(every[known:], found.shown[known:], found.errors[known:], strict=True):
-        judged = stability(found.system, path, on_other_branch(error.on_same_branch) if short else None)
+        judged = stability(
+            found.system, path, on_other_branch(error.on_same_branch, options) if short else None
+        )
         inserted = judged.inserted
         bifurcations += [(one.kind.value, one.frequency) for one in judged.crossings]
         if accuracy is not None and not short:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import Scene
 from fcm.response.options import INPUT_LIMITS, RESPONSE, ResponseOptions
 from fcm.scene.rules import harmonics_fault, harmonics_up_to
@@ -32,6 +33,11 @@ class Request:
     table: Table | None = None
     corrected: bool = True
     options: ResponseOptions = RESPONSE
+
+    def system(self, scene: Scene, harmonics: tuple[int, ...] | None = None) -> System:
+        """The balance of a scene (of one curve), with other harmonics if they are given; without a table."""
+        chosen, options = harmonics or self.harmonics or (1,), self.options
+        return System(scene, chosen, options=options.balance, other_options=options.others)
 
 
 ONE_HARMONIC = Request()

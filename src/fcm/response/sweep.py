@@ -18,7 +18,7 @@ from fcm.reduction.restore import checked, restored
 from fcm.response.blades import with_blades
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.groups import Work
-from fcm.response.options import SWEEP, ResponseOptions
+from fcm.response.options import ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_modes, unknown
 from fcm.response.trace import METHODS
@@ -132,19 +132,21 @@ def trace(
 def _traced(sweep: _Sweep, tolerance: float | None, progress: Progress | None) -> Response:
     """The curves without what they do not need; where that turns out to be needed, once more with it."""
     curves = sweep.scene.each_curve()
-    highest = max((*(sweep.wanted.harmonics or (SWEEP.expected_harmonic,)), *driven_harmonics(sweep.scene)))
+    options = sweep.wanted.options.sweep
+    asked = sweep.wanted.harmonics or (options.expected_harmonic,)
+    highest = max((*asked, *driven_harmonics(sweep.scene)))
     if tolerance is None or sweep.scene.ring is not None or sweep.scene.with_own_laws:
         lighter = keep_all(curves)
     else:
         lighter = leave_out(curves, tolerance, highest)
-    response, said = sweep.run(lighter, part(progress, 0.0, SWEEP.traced_share)), list(lighter.sentences)
+    response, said = sweep.run(lighter, part(progress, 0.0, options.traced_share)), list(lighter.sentences)
     if lighter.above is not None and tolerance is not None:
         shift = checked(response, lighter)
         if 2.0 * shift <= tolerance or response.interrupted:
             said.append(sentences.on_modes(lighter, shift))
         else:  # the estimate was too good: with all modes after all
             lighter = leave_out(curves, 0.0, highest)
-            response = sweep.run(lighter, part(progress, SWEEP.traced_share, 1.0))
+            response = sweep.run(lighter, part(progress, options.traced_share, 1.0))
     response = restored(response, lighter)
     response.curves = [without_rounding(one) for one in response.curves]
     if sweep.table_idle:
@@ -176,7 +178,8 @@ class _Sweep:
 
     def run(self, lighter: Lighter, progress: Progress | None) -> Response:
         """Trace all groups that are not finished already."""
-        batches = in_batches(tuple(replace(scene, draft=None) for scene in lighter.curves))
+        every = tuple(replace(scene, draft=None) for scene in lighter.curves)
+        batches = in_batches(every, self.wanted.options.sweep.batch)
         samples = REDUCTION.checked_of_curve if lighter.above is not None else 0
         work = Work(replace(self.wanted, table=self._table(lighter)), self.peaks_only, samples)
         curves = self.curves.curves(work, batches, self.mark, progress)
@@ -201,6 +204,6 @@ def _shipped_table() -> Table:
     return open_table()
 
 
-def in_batches(curves: tuple[Scene, ...]) -> list[tuple[Scene, ...]]:
+def in_batches(curves: tuple[Scene, ...], size: int) -> list[tuple[Scene, ...]]:
     """The curves in batches; each curve is computed alone, so that no result depends on them."""
-    return [curves[first : first + SWEEP.batch] for first in range(0, len(curves), SWEEP.batch)]
+    return [curves[first : first + size] for first in range(0, len(curves), size)]

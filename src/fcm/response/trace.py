@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fcm.accuracy.options import PAIR
+from fcm.accuracy.options import PAIR, VALIDITY
 from fcm.accuracy.refinement import RefinedResponse, refined_response, with_errors, with_given_harmonics
 from fcm.accuracy.stability_validity import unreliable_points
 from fcm.branches.options import FOLDS
@@ -36,6 +36,7 @@ from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve
 from fcm.run import Interrupted
 from fcm.stability.confirmation import confirmed_stable
+from fcm.stability.options import STABILITY
 
 METHODS = ("table", "closed-form")
 NO_CHECKS = replace(
@@ -97,6 +98,7 @@ def _traced_curve(scene: Scene, wanted: Request, poll: Callable[[], None] | None
         wanted.table,
         wanted.corrected,
         options=wanted.options.balance,
+        other_options=wanted.options.others,
     )
     system.work.poll = poll or system.work.poll
     by_need = wanted.harmonics is None
@@ -142,11 +144,14 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
     stable = np.where(nowhere, 0.0, np.concatenate(parts))  # what creeps away, or floats, is no steady state
     truncations = [one.truncation for one in found.errors]
     believed = [one.on_same_branch for one in found.errors]
-    far = unreliable_points(points.z[:, -1], believed, stable, (points.mark & Mark.FOLD) > 0)
+    folds = (points.mark & Mark.FOLD) > 0
+    far = unreliable_points(points.z[:, -1], believed, stable, folds, system.option(VALIDITY))
     doubted = far & (stable == 1.0)
     for k in np.unique(points.path[doubted]).tolist() if not quick else ():
         rows_of = points.path == k
-        doubted[rows_of] &= ~confirmed_stable(system, points.z[rows_of], doubted[rows_of])
+        doubted[rows_of] &= ~confirmed_stable(
+            system, points.z[rows_of], doubted[rows_of], system.option(STABILITY)
+        )
     stable[doubted] = np.nan
     peak = np.full_like(found.peak, np.nan) if response.exceeded else found.peak
     error = np.maximum(np.concatenate([one.amplitude for one in found.errors]), rounding)
@@ -170,7 +175,7 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
         complete=not reason,
         reason=reason,
         peaks=_peaks(scene.modal.dofs, points, peak, rounding, stable, residual),
-        folds=points.z[(points.mark & Mark.FOLD) > 0, -1].tolist(),
+        folds=points.z[folds, -1].tolist(),
         bifurcations=response.bifurcations,
         seconds=0.0,
         evaluations=sum(path.evaluations for path in paths),

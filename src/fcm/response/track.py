@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 
 from fcm.accuracy.refinement import refined_response
-from fcm.harmonic_balance.system import System
 from fcm.model.scene import Scene
 from fcm.response.curve_sweep import checkpoint_of
 from fcm.response.master_dofs import with_master_dofs
@@ -229,7 +228,7 @@ def needed(
     found = {1}
     for curve in (curves[0], curves[-1]) if len(curves) > 1 else curves:
         for value in np.linspace(*span, 3).tolist():
-            system = System(number.put(curve, value), options=wanted.options.balance)
+            system = wanted.system(number.put(curve, value), (1,))
             there = refined_response(system, wanted.accuracy, options=wanted.options.refinement)
             found |= set(there.system.harmonics)
     return tuple(sorted(found))

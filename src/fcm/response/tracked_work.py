@@ -16,12 +16,13 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from fcm.accuracy.options import VALIDITY
+from fcm.accuracy.options import VALIDITY, ValidityOptions
 from fcm.harmonic_balance.response_quantities import cycles, loops
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.incomplete import no_steady_states, reason_for
 from fcm.response.options import RESPONSE, ResponseOptions
+from fcm.response.request import Request
 from fcm.response.undetermined_traction import undetermined
 from fcm.results.result import INTERRUPTED
 from fcm.results.tracked import TrackedCurve, TrackedError
@@ -77,7 +78,7 @@ class TrackedWork:
         return [self._one(scene, report) for scene in scenes]
 
     def _one(self, scene: Scene, report: Report) -> TrackedScene:
-        system = System(scene, self.harmonics, options=self.options.balance)
+        system = Request(self.harmonics, options=self.options).system(scene)
         line, once = along(self.number), _SavedSteps(report)
         shown = partial(report, text=self.number.key)
         way = TrackingRun(system, line, self.span, (), scene.max_step)
@@ -155,7 +156,7 @@ def as_curve(
     stopped = [ending for ending in one.endings if not ending.whole]
     nowhere, count = _along_spots(way, one)
     stable = np.full(one.s.size, np.nan) if stable is None else np.array(stable)
-    stable[_disbelieved(told, one.s.size) & (stable == 1.0)] = np.nan
+    stable[_disbelieved(told, one.s.size, way.system.option(VALIDITY)) & (stable == 1.0)] = np.nan
     reason = _unsteady_ranges(way.system, one.s, nowhere)
     for which in nowhere.values():
         stable[which] = 0.0  # what creeps away, or floats, is no steady state
@@ -178,13 +179,13 @@ def as_curve(
     )
 
 
-def _disbelieved(told: Sequence[TrackedError], count: int) -> npt.NDArray[np.bool_]:
+def _disbelieved(told: Sequence[TrackedError], count: int, options: ValidityOptions) -> npt.NDArray[np.bool_]:
     """The points (point,) next to a place, or between two, whose error is too great for the motion there to
     be called stable, as of a response curve."""
     far = np.zeros(count, dtype=np.bool_)
     places = sorted((one.point, one.relative) for one in told)
     for k, (_, error) in enumerate(places):
-        if error > VALIDITY.max_error:
+        if error > options.max_error:
             first = places[k - 1][0] if k else 0
             last = places[k + 1][0] if k + 1 < len(places) else count - 1
             far[first : last + 1] = True

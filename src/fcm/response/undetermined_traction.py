@@ -77,7 +77,7 @@ def residual_changes_at_levels(
     for i in np.unique(top[maybe[top]]).tolist():
         forces = tuple(replace(one, amplitude=one.amplitude * float(level[i])) for one in scene.forces)
         held = replace(scene, forces=forces, frequency_range=(at, 2.0 * at))  # as at an end of a range
-        there = System(held, system.harmonics, options=system.options)
+        there = System(held, system.harmonics, options=system.options, other_options=system.other_options)
         one = slice(i, i + 1)
         change = residual_changes(there, z[one], amplitude[one], states[one], maybe[one])
         found = np.where(top == i, change, found)

@@ -72,14 +72,7 @@ class _Way:
         scene, self.options = system.scene, options
         chosen = np.zeros(len(scene.modal.dofs), dtype=np.bool_)
         chosen[dofs] = True
-        self.system = System(
-            scene.at_attached_and(chosen),
-            system.harmonics,
-            system.table,
-            system.corrected,
-            system.condensation,
-            system.options,
-        )
+        self.system = system.of(scene.at_attached_and(chosen))
         place = {name: i for i, name in enumerate(self.system.scene.modal.dofs)}
         self.columns = np.array([place[scene.modal.dofs[d]] for d in dofs], dtype=np.intp)
         self.dofs, self.between = dofs, Segment(self.system.new_balance(), path, first)

@@ -59,7 +59,7 @@ def level_motions(
     whole = scene.whole()
     if not (whole.modal.frequency.all() and whole.contacts):
         return
-    one = System(whole, (1,))
+    one = System(whole, (1,), other_options=bounded.options.balance.others)
     one.work.poll = bounded.poll
     waiting = [(omega, 0.0) for omega in level_frequencies(one)]
     while waiting:

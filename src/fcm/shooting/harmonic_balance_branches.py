@@ -137,8 +137,8 @@ def every_balance(whole: Scene, poll: Poll, options: ShootingOptions = SHOOTING)
     from fcm.harmonic_balance.reported_quantities import reported_quantities
 
     if len(whole.contacts) >= options.balance.many_contacts:
-        return unchecked_response(_single_harmonic(whole, poll))
-    found = refined_response(_single_harmonic(whole, poll), options.balance.accuracy)
+        return unchecked_response(_single_harmonic(whole, poll, options))
+    found = refined_response(_single_harmonic(whole, poll, options), options.balance.accuracy)
     system = found.system
     traced = with_branching(system, with_isolas(system, found.traced))
     shown = (reported_quantities(system, path) for path in traced.branches.paths[len(found.shown) :])
@@ -156,7 +156,7 @@ def states_across(
     if not (inside and whole.contacts and whole.modal.frequency.all()):
         return {}
     try:
-        found = _branches_with_few_harmonics(_single_harmonic(whole, poll), options)
+        found = _branches_with_few_harmonics(_single_harmonic(whole, poll, options), options)
     except RestError:
         return {}
     harmonics, paths = found.system.harmonics, found.traced.branches.paths
@@ -176,11 +176,11 @@ def _crossings(paths: Sequence[Path], omega: float) -> Iterator[FloatArray]:
             yield np.append((before[k] + share * (after[k] - before[k]))[:-1], omega)
 
 
-def _single_harmonic(whole: Scene, poll: Poll) -> System:
+def _single_harmonic(whole: Scene, poll: Poll, options: ShootingOptions) -> System:
     """The balance of one harmonic."""
     from fcm.harmonic_balance.system import System
 
-    one = System(whole, (1,))
+    one = System(whole, (1,), other_options=options.balance.others)
     one.work.poll = poll
     return one
 

@@ -101,10 +101,9 @@ def balance_solutions(
     from fcm.branches.force_level import solutions
     from fcm.harmonic_balance.system import System as Balanced
 
-    balanced = Balanced(
-        whole,
-        options.balance.guess_harmonics if len(whole.contacts) < options.balance.many_contacts else (1,),
-    )
+    few = len(whole.contacts) < options.balance.many_contacts
+    harmonics = options.balance.guess_harmonics if few else (1,)
+    balanced = Balanced(whole, harmonics, other_options=options.balance.others)
     balanced.work.poll = poll or balanced.work.poll
     found = solutions(balanced, frequency)
     states = [computed_state(scene, balanced.harmonics, z, options) for z in found.solutions]

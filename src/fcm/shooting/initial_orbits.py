@@ -178,7 +178,8 @@ def _corrected_states(
     from fcm.branches.force_level import solutions
     from fcm.harmonic_balance.system import System as Balanced
 
-    one, more = Balanced(whole, options.start.harmonics), Balanced(whole, options.start.corrected_harmonics)
+    one = Balanced(whole, options.start.harmonics, other_options=options.balance.others)
+    more = Balanced(whole, options.start.corrected_harmonics)
     newton = Newton(more.new_balance())
     one.work.poll = poll
     for solution in solutions(one, omega).solutions:

@@ -177,6 +177,8 @@ class BalanceOptions:
         From so many on a guess has one harmonic.
     force_harmonics : int
         Times the highest harmonic of a guess, up to which its forces have harmonics.
+    others : tuple
+        Options of its branches, of the classes of `fcm.branches.options`; the others are the default.
     """
 
     accuracy: float = 1e-2
@@ -186,6 +188,7 @@ class BalanceOptions:
     guess_harmonics: tuple[int, ...] = (1, 2, 3)
     many_contacts: int = 5
     force_harmonics: int = 3
+    others: tuple[object, ...] = ()
 
 
 @dataclass(frozen=True)
