@@ -74,8 +74,9 @@ class Program:
         self.folder, self.running = folder, []
 
     def start(self, *args, before="", env=None, **more):
-        """Begin a run, in a session of its own; before: Python that is executed first in its process."""
-        code = f"{before}\nfrom fcm.cli.__main__ import run\nrun()"
+        """Begin a run, in a session of its own; before: Python that is executed first in its
+        process; `messages` of it are those of the command."""
+        code = f"{before}\nfrom fcm.cli.__main__ import run\nrun(globals().get('messages'))"
         command = ["-c", code] if before else AS_A_MODULE
         return self.python(*command, *args, env={**os.environ, **(env or {})}, **more)
 

@@ -9,13 +9,9 @@ import netCDF4
 import numpy as np
 import pytest
 
-from fcm import response
+from ..computed import nowhere
 
 AT = ["--method", "exact", "--at", "0.9", "--at", "1.1:1.3:3"]
-
-
-def refuse(*_args, **_more):
-    raise AssertionError("nothing is to be computed")
 
 
 def test_a_traced_curve_is_printed_and_written(fcm, scene, tmp_path):
@@ -97,10 +93,8 @@ def test_points_are_drawn_over_curves(fcm, scene, tmp_path):
         (["--method", "exact", "--table", "t.nc"], "--table is of no use"),
     ],
 )
-def test_options_that_do_not_fit_are_refused(fcm, scene, monkeypatch, args, said):
-    monkeypatch.setattr("fcm.response.exact.trace_exact", refuse)
-    monkeypatch.setattr(response, "trace", refuse)
-    done = fcm("respond", scene, *args)
+def test_options_that_do_not_fit_are_refused(fcm, scene, args, said):
+    done = fcm("respond", scene, *args, place=nowhere)
     assert done.code == 2 and done.out == "" and said in done.err and "Traceback" not in done.err
 
 

@@ -6,7 +6,12 @@ import netCDF4
 import numpy as np
 import pytest
 
-from fcm.results import output, padded
+from fcm.response import trace
+from fcm.results.options import FileOptions
+from fcm.results.output import write_netcdf
+from fcm.scene import load_scene
+
+from ..computed import by
 
 SWEEP = 'max_step = 0.3\nharmonics = 1\n[sweep]\n"contact.shroud.n_0" = [-5.0, 3.0, 8.0]\n'
 STIFF = """
@@ -131,9 +136,7 @@ def test_what_has_peaks_only_is_drawn_by_them(fcm, scene):
 
 def test_why_a_curve_is_not_complete_is_in_the_file(fcm, scene):
     scene.write_text(scene.read_text() + SWEEP)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("fcm.response.groups.traced_curve", lambda *_, **more: 1 / 0)
-        done = fcm("respond", scene, "-o", "only.nc", "--peaks-only", "--jobs", 1)
+    done = fcm("respond", scene, "-o", "only.nc", "--peaks-only", place=by(lambda *_: 1 / 0))
     assert done.code == 1
     with netCDF4.Dataset("only.nc") as file:
         assert file["complete"][:].tolist() == [0, 0, 0]
@@ -154,13 +157,12 @@ def test_where_only_peaks_have_no_meaning(fcm, scene, options, why):
     assert done.code == 2 and why in " ".join(done.err.split())
 
 
-def test_some_curves_at_a_time_make_the_same_file(fcm, scene, monkeypatch):
+def test_some_curves_at_a_time_make_the_same_file(scene, tmp_path):
     scene.write_text(scene.read_text() + SWEEP)
-    assert fcm("respond", scene, "-o", "whole.nc", "--harmonics", 2).code == 0
-    monkeypatch.setattr(padded, "CHUNK", 100)
-    monkeypatch.setattr(output, "SMALL", 0)
-    assert fcm("respond", scene, "-o", "parts.nc", "--harmonics", 2).code == 0
-    with netCDF4.Dataset("whole.nc") as whole, netCDF4.Dataset("parts.nc") as parts:
+    response = trace(load_scene(scene), harmonics=2)
+    write_netcdf(response, tmp_path / "whole.nc")
+    write_netcdf(response, tmp_path / "parts.nc", FileOptions(chunk=100, contiguous=0))
+    with netCDF4.Dataset(tmp_path / "whole.nc") as whole, netCDF4.Dataset(tmp_path / "parts.nc") as parts:
         assert parts["amplitude"].chunking()[0] == 1 and whole["amplitude"].chunking() == "contiguous"
         for name, variable in whole.variables.items():
             np.testing.assert_array_equal(parts[name][:], variable[:])

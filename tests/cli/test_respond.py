@@ -3,21 +3,19 @@
 import csv
 import dataclasses
 import json
+import resource
 
 import netCDF4
 import numpy as np
 import pytest
 
-from fcm import response
 from fcm.results.peak import Peak
+
+from ..computed import by, nowhere
 
 
 def files(folder):
     return sorted(path.name for path in folder.iterdir())
-
-
-def refuse(*_args, **_more):
-    raise AssertionError("nothing is to be computed")
 
 
 def test_the_table_has_a_line_for_each_curve(fcm):
@@ -65,9 +63,9 @@ def test_json_is_all_of_standard_output(fcm, scene):
     assert {"left_out", "seconds"} <= set(result)
 
 
-def test_a_number_that_does_not_exist_is_null(fcm, scene, monkeypatch):
-    changed(monkeypatch, peaks={"u": Peak(np.nan, np.nan), "v": Peak(np.nan, np.nan)})
-    done = fcm("respond", scene, "--json")
+def test_a_number_that_does_not_exist_is_null(fcm, scene):
+    untold = changed(peaks={"u": Peak(np.nan, np.nan), "v": Peak(np.nan, np.nan)})
+    done = fcm("respond", scene, "--json", place=untold)
     assert json.loads(done.out)["curves"][0]["peak"]["u"] == {
         "amplitude": None,
         "frequency": None,
@@ -76,7 +74,7 @@ def test_a_number_that_does_not_exist_is_null(fcm, scene, monkeypatch):
         "at_edge": False,
         "residual_change": None,
     }
-    assert fcm("respond", scene).out.splitlines()[1].split()[:2] == ["-", "-"]
+    assert fcm("respond", scene, place=untold).out.splitlines()[1].split()[:2] == ["-", "-"]
 
 
 def test_files_hold_the_points_that_were_reported(fcm, scene, tmp_path):
@@ -136,10 +134,9 @@ def test_a_shorter_step_gives_more_points(fcm, scene):
         (["--method", "closed-form", "--table", "t.nc"], "--table is of no use"),
     ],
 )
-def test_wrong_options_are_refused_before_anything_is_computed(fcm, scene, tmp_path, monkeypatch, args, said):
+def test_wrong_options_are_refused_before_anything_is_computed(fcm, scene, tmp_path, args, said):
     (tmp_path / "folder.nc").mkdir()
-    monkeypatch.setattr("fcm.response.trace", refuse)
-    done = fcm("respond", scene, *args)
+    done = fcm("respond", scene, *args, place=nowhere)
     assert done.code == 2 and done.out == "" and said in done.err
     assert files(tmp_path) == ["folder.nc", "scene.toml"]
 
@@ -174,64 +171,52 @@ def test_a_wrong_table_is_refused(fcm, scene, tmp_path, content):
     assert done.code == 2 and "t.nc" in done.err and "Traceback" not in done.err
 
 
-def changed(monkeypatch, **changes):
-    """Let every curve come out of the solver with these attributes."""
-    real = response.trace
-
-    def trace(*args, **more):
-        result = real(*args, **more)
-        curves = [dataclasses.replace(curve, **changes) for curve in result.curves]
-        return dataclasses.replace(result, curves=curves)
-
-    monkeypatch.setattr(response, "trace", trace)
+def changed(**changes):
+    """A place where every curve comes out of the solver with these attributes."""
+    return by(lambda compute, *given: [dataclasses.replace(one, **changes) for one in compute(*given)])
 
 
-def test_a_curve_that_stopped_is_reported_and_written(fcm, scene, tmp_path, monkeypatch):
-    changed(monkeypatch, complete=False, reason="stopped at 1.2 rad/s: the step became too short")
-    done = fcm("respond", scene, "-o", "a.nc")
+def test_a_curve_that_stopped_is_reported_and_written(fcm, scene, tmp_path):
+    short = changed(complete=False, reason="stopped at 1.2 rad/s: the step became too short")
+    done = fcm("respond", scene, "-o", "a.nc", place=short)
     assert done.code == 3
     assert "NOT COMPLETE: stopped at 1.2 rad/s" in done.out
     assert "the curve stopped early" in done.err
     assert files(tmp_path) == ["a.nc", "scene.toml"]
 
 
-def test_a_defect_is_one_only_if_it_takes_every_curve(fcm, scene, monkeypatch):
+def test_a_defect_is_one_only_if_it_takes_every_curve(fcm, scene):
     """One curve, or all of a sweep, lost to a defect: 1; some of a sweep: 3, for the others are there."""
 
     def fails_below(limit):
-        def traced_curve(scene, *args, **more):
-            if scene.contacts[0].n_0 < limit:
+        def computed(compute, batch, report):
+            if any(one.contacts[0].n_0 < limit for one in batch):
                 raise ZeroDivisionError("of zero")
-            return traced(scene, *args)
+            return compute(batch, report)
 
-        monkeypatch.setattr("fcm.response.groups.traced_curve", traced_curve)
+        return by(computed)
 
-    from fcm.response.groups import traced_curve as traced
-
-    fails_below(1e9)
-    done = fcm("respond", scene)
+    done = fcm("respond", scene, place=fails_below(1e9))
     assert done.code == 1 and "a defect of fcm, ZeroDivisionError: of zero" in done.out
     scene.write_text(scene.read_text() + '\n[sweep]\n"contact.shroud.n_0" = [5, 1]\n')
-    assert fcm("respond", scene).code == 1
-    fails_below(3.0)
-    done = fcm("respond", scene)
+    assert fcm("respond", scene, place=fails_below(1e9)).code == 1
+    done = fcm("respond", scene, place=fails_below(3.0))
     assert done.code == 3 and "1 of 2 curves stopped early" in done.err
 
 
-def test_a_full_disk_does_not_take_the_result_away(fcm, scene, tmp_path, monkeypatch):
-    def full(*_args):
-        raise OSError(28, "No space left on device", "a.nc")
-
-    monkeypatch.setattr("fcm.results.output.write_netcdf", full)
-    done = fcm("respond", scene, "-o", "a.nc")
+def test_a_full_disk_does_not_take_the_result_away(fcm, scene, tmp_path):
+    """Here files may have no more bytes than the curve takes while it is not written."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, before[1]))
+    try:
+        done = fcm("respond", scene, "-o", "a.nc")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
     assert done.code == 3 and "peak u" in done.out
     kept, error = done.err.splitlines()
     assert kept.endswith("kept in a.nc.unfinished: continue with --resume")
-    assert error == "fcm: error: a.nc: No space left on device"
-    monkeypatch.undo()
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("fcm.response.groups.traced_curve", refuse)
-    done = fcm("respond", scene, "-o", "a.nc", "--resume")
+    assert error == "fcm: error: a.nc: File too large"
+    done = fcm("respond", scene, "-o", "a.nc", "--resume", place=nowhere)
     assert done.code == 0 and "afresh" not in done.err
     assert files(tmp_path) == ["a.nc", "scene.toml"]
 

@@ -23,7 +23,10 @@ ONE = TITLE + oscillator("[response]\nfrequency = [0.8, 1.6]\nmax_step = 0.2\n")
 FEW = (
     "from fcm import signals\nsignals.take()\n"  # as the program does, before anything is imported
     "import fcm.response.options as options, fcm.response.sweep as sweep\n"
-    "sweep.SWEEP = options.SweepOptions(batch=2)\n"
+    "def messages():\n"
+    "    from fcm.cli.messages import Messages\n    from fcm.cli.settings import Settings\n"
+    "    few = options.ResponseOptions(sweep=options.SweepOptions(batch=2))\n"
+    "    return Messages(settings=Settings(response=few))\n"
 )
 TIMED = {"seconds"}  # parts of a summary that differ from run to run
 

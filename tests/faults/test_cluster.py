@@ -12,7 +12,7 @@ import pytest
 import xarray
 
 import fcm
-from fcm.response.options import SweepOptions
+from fcm.response.options import ResponseOptions, SweepOptions
 from fcm.run import Gone, Lost, cluster, place_of, sweep
 from fcm.run.options import RunOptions
 
@@ -148,9 +148,8 @@ def test_what_stands_in_the_way_of_a_cluster_is_said_in_one_line(program, monkey
         ("tcp://127.0.0.1:9", "nothing listens there"),
     ],
 )
-def test_addresses_where_no_scheduler_can_be(address, why, monkeypatch):
+def test_addresses_where_no_scheduler_can_be(address, why):
     """None is given to distributed, which tries for as long as it is let."""
-    monkeypatch.setattr("fcm.run.cluster._connected", None)
     with pytest.raises(cluster.ClusterError, match=re.escape(why)), cluster.connected(address):
         pass
 
@@ -162,9 +161,9 @@ def silent():
         yield f"tcp://127.0.0.1:{server.getsockname()[1]}"
 
 
-def test_a_port_that_is_silent_is_left_in_the_time_that_is_said(silent, monkeypatch):
-    monkeypatch.setattr(cluster, "RUN", RunOptions(scheduler_answer=0.5))
-    with pytest.raises(cluster.ClusterError, match=r"within 0\.5 s"), cluster.connected(silent):
+def test_a_port_that_is_silent_is_left_in_the_time_that_is_said(silent):
+    soon = cluster.connected(silent, RunOptions(scheduler_answer=0.5))
+    with pytest.raises(cluster.ClusterError, match=r"within 0\.5 s"), soon:
         pass
 
 
@@ -173,8 +172,10 @@ def test_a_port_that_is_silent_is_left_in_the_time_that_is_said(silent, monkeypa
 def test_a_signal_ends_the_wait_for_a_port_that_is_silent(program, silent, which):
     """Long before the ten minutes for which it would be waited for here."""
     patient = (
-        f"{FEW}from fcm.run import cluster, options\n"
-        "cluster.RUN = options.RunOptions(scheduler_answer=600.0)\nprint('now', flush=True)\n"
+        "from fcm.cli.messages import Messages\nfrom fcm.cli.settings import Settings\n"
+        "from fcm.run.options import RunOptions\n"
+        "messages = lambda: Messages(settings=Settings(run=RunOptions(scheduler_answer=600.0)))\n"
+        "print('now', flush=True)\n"
     )
     run = program.start("respond", "one.toml", "-o", "a.nc", "--cluster", silent, before=patient)
     assert run.stdout.readline().strip() == "now"
@@ -185,18 +186,18 @@ def test_a_signal_ends_the_wait_for_a_port_that_is_silent(program, silent, which
 
 
 @pytest.mark.slow
-def test_a_scheduler_without_a_worker_of_this_fcm(dask, monkeypatch):
-    monkeypatch.setattr(cluster, "RUN", RunOptions(first_worker=0.1))
+def test_a_scheduler_without_a_worker_of_this_fcm(dask):
+    soon = RunOptions(first_worker=0.1)
     with (
         pytest.raises(cluster.ClusterError, match="has no workers; one is started with"),
-        cluster.connected(dask.address),
+        cluster.connected(dask.address, soon),
     ):
         pass
     dask.said_by(dask.worker(OLDER))
     with (
         pytest.warns(UserWarning, match=r"is refused: it has fcm 0\.0\.9"),
         pytest.raises(cluster.ClusterError, match="has no worker with this fcm"),
-        cluster.connected(dask.address),
+        cluster.connected(dask.address, soon),
     ):
         pass
 
@@ -240,14 +241,14 @@ class Breaks(Executor):
         return future
 
 
-def test_an_executor_that_breaks_leaves_what_is_finished(swept, alone, monkeypatch):
-    monkeypatch.setattr("fcm.response.sweep.SWEEP", SweepOptions(batch=4))
+def test_an_executor_that_breaks_leaves_what_is_finished(swept, alone):
+    fours = ResponseOptions(sweep=SweepOptions(batch=4))
     with pytest.warns(UserWarning, match="computes nothing any more .BrokenExecutor: for a test"):
-        part = fcm.respond(swept, executor=Breaks(1))
+        part = fcm.respond(swept, executor=Breaks(1), options=fours)
     assert part.complete.values.tolist() == [1] * 4 + [0] * 8
     np.testing.assert_array_equal(part.peak_amplitude[:4], alone.peak_amplitude[:4])
     with pytest.raises(Gone, match="nothing any more"):
-        fcm.respond(swept, executor=Breaks(0))
+        fcm.respond(swept, executor=Breaks(0), options=fours)
 
 
 def test_what_does_not_get_to_an_executor_is_lost_alone():
@@ -259,11 +260,11 @@ def test_what_does_not_get_to_an_executor_is_lost_alone():
     assert isinstance(lost, Lost) and lost.reason.startswith("the executor did not compute it: ")
 
 
-def test_an_executor_with_another_fcm_is_refused(monkeypatch):
+def test_an_executor_with_another_fcm_is_refused():
     with ThreadPoolExecutor(1) as executor:
         place = place_of(executor)(abs, 1)
-        monkeypatch.setattr(fcm, "__version__", "0.0.9")
-        with pytest.raises(Gone, match=r"refused: it has fcm 0\.0\.9, and this is fcm"):
+        place.asked_by = "0.0.9", place.asked_by[1]
+        with pytest.raises(Gone, match=r"refused: it has fcm .*, and this is fcm 0\.0\.9"):
             sweep(abs, [[1]], lambda *_: place)
 
 

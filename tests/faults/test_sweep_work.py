@@ -278,16 +278,20 @@ def test_a_file_of_another_program_is_moved_aside(program):
 
 
 @pytest.mark.parametrize("forged", ["empty", "short", "other", "code"])
-def test_a_forged_record_does_not_count(tmp_path, monkeypatch, forged):
+def test_a_forged_record_does_not_count(tmp_path, forged):
     """Sealed as well as any, and yet no result."""
     one = replace(fcm.load_scene("yang1998-n5"), max_step=0.5, frequency_range=(1.3, 1.5))
     scene = replace(one, curves=tuple(replace(one, parameters={"n": n}) for n in (1.0, 2.0)))
     keep, marks = tmp_path / "kept", []
-    real = Checkpoint.results
-    monkeypatch.setattr(
-        Checkpoint, "results", lambda self, mark, *more: marks.append(mark) or real(self, mark, *more)
-    )
-    reference = trace(scene, "closed-form", keep=keep)
+
+    class Marked(Checkpoint):
+        def results(self, mark, *more):
+            marks.append(mark)
+            return super().results(mark, *more)
+
+    with Marked(keep) as kept:
+        reference = trace(scene, "closed-form", keep=kept)
+        kept.done()
     curves = reference.curves
     payload = {
         "empty": pickle.dumps([]),
@@ -552,17 +556,17 @@ def test_the_lock_goes_with_the_process(program):
     assert not path.exists()
 
 
-def test_checkpoints_have_a_limit_aside(tmp_path, monkeypatch):
-    monkeypatch.setattr("fcm.run.checkpoint.RUN", RunOptions(most_aside=3))
+def test_checkpoints_have_a_limit_aside(tmp_path):
+    three = RunOptions(most_aside=3)
     path = Path(tmp_path / "kept")
     for number in range(3):
         path.write_text("foreign")
         if number == 2:
             with pytest.raises(CheckpointError, match="remove some"):
-                Checkpoint(path)
+                Checkpoint(path, options=three)
         else:
             with pytest.warns(UserWarning, match="moved to"):
-                Checkpoint(path).close()
+                Checkpoint(path, options=three).close()
 
 
 def test_an_import_that_an_interruption_made_fail_is_one():

@@ -10,16 +10,17 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.response import groups, sweep
-from fcm.response.options import SweepOptions
+from fcm.response.options import ResponseOptions, SweepOptions
 from fcm.response.sweep import trace
 from fcm.results.result import NOT_BEGUN
 
+from ..computed import Interrupted, by
 from ..interrupted import interrupted_beyond
 from ..oscillator import oscillator
 from ..program import called, python
 
 PRELOADS = np.linspace(-20.0, 60.0, 6)
+PAIRS = ResponseOptions(sweep=SweepOptions(batch=2))
 
 
 def curve_with(scene, n_0):
@@ -31,11 +32,6 @@ def curve_with(scene, n_0):
 def scene():
     one = replace(fcm.load_scene("yang1998-n5"), max_step=0.2)
     return replace(one, curves=tuple(curve_with(one, n_0) for n_0 in PRELOADS))
-
-
-@pytest.fixture
-def small_groups(monkeypatch):
-    monkeypatch.setattr(sweep, "SWEEP", SweepOptions(batch=2))
 
 
 @pytest.fixture(scope="module")
@@ -52,8 +48,8 @@ def same(response, other):
         assert one.peaks == two.peaks and one.folds == two.folds
 
 
-def test_groups_give_the_curves_of_the_whole(scene, whole, small_groups):
-    response = trace(scene, "closed-form")
+def test_groups_give_the_curves_of_the_whole(scene, whole):
+    response = trace(scene, "closed-form", options=PAIRS)
     for one, two in zip(response.curves, whole.curves, strict=True):
         assert one.parameters == two.parameters
         assert one.peaks["u"][:2] == pytest.approx(two.peaks["u"][:2], rel=1e-9)
@@ -61,23 +57,21 @@ def test_groups_give_the_curves_of_the_whole(scene, whole, small_groups):
 
 
 @pytest.mark.slow
-def test_two_cores_give_what_one_gives(scene, small_groups):
+def test_two_cores_give_what_one_gives(scene):
     shown = []
-    response = trace(scene, "closed-form", jobs=2, progress=lambda share, _: shown.append(share))
-    same(response, trace(scene, "closed-form"))
+    show = lambda share, _: shown.append(share)  # noqa: E731
+    response = trace(scene, "closed-form", jobs=2, options=PAIRS, progress=show)
+    same(response, trace(scene, "closed-form", options=PAIRS))
     assert shown[-1] == 1.0 and shown == sorted(shown)
 
 
-def test_a_curve_that_fails_loses_no_other(scene, whole, monkeypatch):
-    real = groups.traced_curve
-
-    def traced_curve(curve, *args, **more):
-        if curve.parameters["n_0"] == PRELOADS[3]:
+def test_a_curve_that_fails_loses_no_other(scene, whole):
+    def fails(compute, batch, report):
+        if any(one.parameters["n_0"] == PRELOADS[3] for one in batch):
             raise MemoryError("too much")
-        return real(curve, *args, **more)
+        return compute(batch, report)
 
-    monkeypatch.setattr(groups, "traced_curve", traced_curve)
-    response = trace(scene, "closed-form")
+    response = trace(scene, "closed-form", place=by(fails))
     lost = response.curves[3]
     assert not lost.complete and lost.reason == "MemoryError: too much" and lost.points == 0
     others = [c for i, c in enumerate(response.curves) if i != 3]
@@ -85,69 +79,45 @@ def test_a_curve_that_fails_loses_no_other(scene, whole, monkeypatch):
     assert others[-1].peaks["u"][:2] == pytest.approx(whole.curves[-1].peaks["u"][:2], rel=1e-9)
 
 
-def interrupt_after(monkeypatch, count):
-    real, calls = groups.traced_curve, []
-
-    def traced_curve(*args, **more):
-        calls.append(args)
-        if len(calls) > count:
-            raise KeyboardInterrupt
-        return real(*args, **more)
-
-    monkeypatch.setattr(groups, "traced_curve", traced_curve)
-    return calls
-
-
-def test_an_interrupted_sweep_is_continued(scene, small_groups, tmp_path, monkeypatch):
-    reference = trace(scene, "closed-form")
-    keep = tmp_path / "a.nc.unfinished"
-    with monkeypatch.context() as patch:
-        interrupt_after(patch, 4)
-        part = trace(scene, "closed-form", keep=keep)
+def test_an_interrupted_sweep_is_continued(scene, tmp_path):
+    reference = trace(scene, "closed-form", options=PAIRS)
+    keep, last = tmp_path / "a.nc.unfinished", Interrupted()
+    part = trace(scene, "closed-form", keep=keep, options=PAIRS, place=Interrupted(4))
     assert part.interrupted and keep.is_file()
     assert [c.reason for c in part.curves] == [""] * 4 + [NOT_BEGUN] * 2
-    with monkeypatch.context() as patch:
-        calls = interrupt_after(patch, 99)
-        resumed = trace(scene, "closed-form", keep=keep, resume=True)
-    assert len(calls) == 2  # only the last group
+    resumed = trace(scene, "closed-form", keep=keep, resume=True, options=PAIRS, place=last)
+    assert last.begun == 2  # only the last group
     same(resumed, reference)
     assert not keep.exists()
 
 
 @pytest.mark.parametrize("slow", [False, True])
-def test_what_is_finished_of_a_group_is_not_traced_again(scene, small_groups, tmp_path, monkeypatch, slow):
+def test_what_is_finished_of_a_group_is_not_traced_again(scene, tmp_path, slow):
     """Be it saved when the interruption comes, or before, as the curves take long."""
-    monkeypatch.setattr(groups, "SWEEP", SweepOptions(save_interval=0.0 if slow else np.inf))
-    reference = trace(scene, "closed-form")
+    often = SweepOptions(batch=2, save_interval=0.0 if slow else np.inf)
+    options, last = ResponseOptions(sweep=often), Interrupted()
+    reference = trace(scene, "closed-form", options=options)
     keep = tmp_path / "a.nc.unfinished"
-    with monkeypatch.context() as patch:
-        interrupt_after(patch, 5)
-        part = trace(scene, "closed-form", keep=keep)
+    part = trace(scene, "closed-form", keep=keep, options=options, place=Interrupted(5))
     assert part.interrupted and [c.reason for c in part.curves] == [""] * 5 + [NOT_BEGUN]
-    with monkeypatch.context() as patch:
-        calls = interrupt_after(patch, 99)
-        resumed = trace(scene, "closed-form", keep=keep, resume=True)
-    assert len(calls) == 1
+    resumed = trace(scene, "closed-form", keep=keep, resume=True, options=options, place=last)
+    assert last.begun == 1
     same(resumed, reference)
 
 
-def test_another_scene_does_not_take_what_was_kept(scene, small_groups, tmp_path, monkeypatch):
-    keep = tmp_path / "a.nc.unfinished"
-    with monkeypatch.context() as patch:
-        interrupt_after(patch, 4)
-        trace(scene, "closed-form", keep=keep)
+def test_another_scene_does_not_take_what_was_kept(scene, tmp_path):
+    keep, every = tmp_path / "a.nc.unfinished", Interrupted()
+    trace(scene, "closed-form", keep=keep, options=PAIRS, place=Interrupted(4))
     other = replace(scene, curves=tuple(replace(c, frequency_range=(0.8, 1.2)) for c in scene.curves))
-    calls = interrupt_after(monkeypatch, 99)
     with pytest.warns(UserWarning, match="of another scene.*moved to a.nc.unfinished.1"):
-        trace(other, "closed-form", keep=keep, resume=True)
-    assert len(calls) == 6
+        trace(other, "closed-form", keep=keep, resume=True, options=PAIRS, place=every)
+    assert every.begun == 6
 
 
-def test_interrupted_before_anything_is_finished(scene, small_groups, tmp_path, monkeypatch):
+def test_interrupted_before_anything_is_finished(scene, tmp_path):
     keep = tmp_path / "a.nc.unfinished"
-    interrupt_after(monkeypatch, 0)
     with pytest.raises(KeyboardInterrupt):
-        trace(scene, "closed-form", keep=keep)
+        trace(scene, "closed-form", keep=keep, options=PAIRS, place=Interrupted(0))
     assert not keep.exists()
 
 
@@ -159,7 +129,13 @@ max_step = 0.2
 "contact.shroud.mu" = { normal = [0.4, 0.05], count = 90, seed = 1 }
 "contact.shroud.n_0" = { normal = [10, 3], count = 90, seed = 1 }
 """)
-GROUPS = "from fcm.response import options, sweep\nsweep.SWEEP = options.SweepOptions(batch=5)"
+GROUPS = """
+from fcm.response.options import ResponseOptions, SweepOptions
+def messages():
+    from fcm.cli.messages import Messages
+    from fcm.cli.settings import Settings
+    return Messages(settings=Settings(response=ResponseOptions(sweep=SweepOptions(batch=5))))
+"""
 
 
 @pytest.mark.slow
@@ -201,12 +177,13 @@ SCRIPT = """
 from dataclasses import replace
 import fcm
 from deadly import Deadly
-from fcm.response import options, sweep
+from fcm.response.options import ResponseOptions, SweepOptions
+from fcm.response.sweep import trace
 
-sweep.SWEEP = options.SweepOptions(batch=1)
 scene = replace(fcm.load_scene("yang1998-n5"), max_step=0.3)
 curves = [replace(scene, contacts=(replace(scene.contacts[0], n_0=n),)) for n in (50.0, 1e12, 60.0)]
-response = sweep.trace(replace(scene, curves=tuple(curves)), table=Deadly(), jobs=2)
+one = ResponseOptions(sweep=SweepOptions(batch=1))
+response = trace(replace(scene, curves=tuple(curves)), table=Deadly(), jobs=2, options=one)
 print([(curve.complete, curve.reason[:31]) for curve in response.curves])
 """
 
@@ -225,11 +202,13 @@ def test_resume_needs_a_file():
     assert done.code == 2 and "--resume needs the -o FILE" in done.err
 
 
-def test_an_interrupted_sweep_is_not_continued_with_other_harmonics(scene, small_groups, tmp_path):
+def test_an_interrupted_sweep_is_not_continued_with_other_harmonics(scene, tmp_path):
     few = replace(scene, curves=tuple(replace(one, frequency_range=(1.3, 1.5)) for one in scene.curves))
 
     keep = tmp_path / "kept"
-    assert trace(few, "closed-form", progress=interrupted_beyond(0.4), keep=keep, harmonics=1).interrupted
+    stop = interrupted_beyond(0.4)
+    part = trace(few, "closed-form", progress=stop, keep=keep, harmonics=1, options=PAIRS)
+    assert part.interrupted
     with pytest.warns(UserWarning, match="other options"):
-        done = trace(few, "closed-form", keep=keep, resume=True, harmonics=2)
+        done = trace(few, "closed-form", keep=keep, resume=True, harmonics=2, options=PAIRS)
     assert [curve.harmonics for curve in done.curves] == [(1, 2)] * len(few.curves)

@@ -7,11 +7,21 @@ on Ctrl-C ends it in silence, until there is someone to say so.
 
 from __future__ import annotations
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fcm.cli.messages import Messages
+
 YOUNG = 100_000  # objects between two looks for garbage: of what is loaded, some 70 000, nothing is
 
 
-def run() -> None:
-    """The program, for which signals are interruptions from its first moment to its last."""
+def run(messages: Callable[[], Messages] | None = None) -> None:
+    """The program, for which signals are interruptions from its first moment to its last.
+
+    messages: makes what it says beside its results, with settings of its own (`fcm.cli.settings`), once
+    signals are heeded.
+    """
     import _signal  # type: ignore[import-not-found]  # built in
 
     if _signal.getsignal(_signal.SIGINT) is _signal.default_int_handler:
@@ -28,7 +38,7 @@ def run() -> None:
     from fcm.cli.commands import main
 
     try:
-        main(prog_name="fcm")
+        main(prog_name="fcm", obj=None if messages is None else messages())
     except SystemExit as end:
         if isinstance(end.code, int):
             _leave(end.code)

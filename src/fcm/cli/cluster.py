@@ -9,6 +9,7 @@ import click
 
 if TYPE_CHECKING:
     from fcm.run import Factory
+    from fcm.run.options import RunOptions
 
 
 def check_options(address: str | None, level: object) -> None:
@@ -24,10 +25,10 @@ def check_options(address: str | None, level: object) -> None:
         raise click.UsageError("--jobs is of no use with --cluster, whose workers are as many as it has.")
 
 
-def place_of(address: str | None) -> AbstractContextManager[Factory | None]:
+def place_of(address: str | None, options: RunOptions | None) -> AbstractContextManager[Factory | None]:
     """Where to compute: on that cluster, as long as it is open; None for this machine."""
     if address is None:
         return nullcontext()
     from fcm.run.cluster import connected
 
-    return connected(address)
+    return connected(address) if options is None else connected(address, options)

@@ -54,9 +54,9 @@ def respond(messages: Messages, /, scene: str, **options: Any) -> None:
         messages.expect(len(loaded.each_curve()))
     exported = [] if exporting is None else exporting.files
     outputs = Outputs(messages, asked.output, asked.csv, asked.history_csv, exported)
-    with outputs.kept(asked.resume) as keep, cluster.place_of(asked.cluster) as place:
+    with outputs.kept(asked.resume) as keep, cluster.place_of(asked.cluster, messages.settings.run) as place:
         with TimeLimit(messages, asked.time_limit):
-            response = calculated(messages, loaded, asked, place, keep)
+            response = calculated(messages, loaded, asked, place or messages.settings.place, keep)
             if exporting is not None:
                 exporting.take(response, loaded)
         response = visible(response, loaded)

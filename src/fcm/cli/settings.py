@@ -14,6 +14,8 @@ from fcm.cli.limits import SENTENCES, RemarkOptions
 if TYPE_CHECKING:
     from fcm.compare.options import CompareOptions
     from fcm.response.options import ResponseOptions
+    from fcm.run import Factory
+    from fcm.run.options import RunOptions
     from fcm.scene.options import MessageOptions
 
 
@@ -31,6 +33,11 @@ class Settings:
         Tolerances and limits of responses.
     compare : CompareOptions, optional
         Those of ``--compare``.
+    run : RunOptions, optional
+        How long workers and schedulers are waited for.
+    place : Factory, optional
+        Where the curves of sweeps are computed, as `fcm.run.place_of` an executor says it; without it and
+        ``--cluster`` in processes of this machine.
     memory : callable
         [byte] that this process can still take.
     disk : callable
@@ -43,6 +50,8 @@ class Settings:
     reading: MessageOptions | None = None
     response: ResponseOptions | None = None
     compare: CompareOptions | None = None
+    run: RunOptions | None = None
+    place: Factory | None = None
     memory: Callable[[], float] = room.memory
     disk: Callable[[Path], float] = room.disk
     clock: Callable[[], float] = time.monotonic

@@ -43,17 +43,34 @@ class DrawOptions:
 
 
 @dataclass(frozen=True)
+class FileOptions:
+    """How variables are laid out in a netCDF file.
+
+    Attributes
+    ----------
+    chunk : int
+        [byte] of a variable of many curves that are made and written at a time, about.
+    contiguous : int
+        [byte] of a variable up to which to compress it takes longer than to write it.
+    """
+
+    chunk: int = 1 << 20
+    contiguous: int = 1 << 16
+
+
+@dataclass(frozen=True)
 class ResultOptions:
     """What is told of curves.
 
     Attributes
     ----------
-    jumps, draws : JumpOptions, DrawOptions
+    jumps, draws, file : JumpOptions, DrawOptions, FileOptions
         Of the parts.
     """
 
     jumps: JumpOptions = field(default_factory=JumpOptions)
     draws: DrawOptions = field(default_factory=DrawOptions)
+    file: FileOptions = field(default_factory=FileOptions)
 
 
 RESULTS = ResultOptions()  # where nothing else is said

@@ -16,7 +16,8 @@ from fcm.results.blades import add_to_summary
 from fcm.results.field import Field
 from fcm.results.fields import fields_of, swept_names
 from fcm.results.in_plane import DIRECTIONS
-from fcm.results.padded import CHUNK, Padded
+from fcm.results.options import RESULTS, FileOptions
+from fcm.results.padded import Padded
 from fcm.results.result import Response
 from fcm.results.scatter import scatter, summary_of
 from fcm.results.tracked_fields import tracked_names
@@ -24,7 +25,6 @@ from fcm.results.tracked_fields import tracked_names
 if TYPE_CHECKING:
     import xarray
 
-SMALL = 1 << 16  # bytes of a variable up to which to compress it takes longer than to write it
 LAYOUT = "fcm response 1"  # changes when a reader of older files would misread
 
 
@@ -120,7 +120,7 @@ def _coordinates(response: Response, fields: dict[str, Field]) -> list[str]:
     return [*swept, *(name for name in ("time", "cycles", "cycle_start") if name in fields)]
 
 
-def write_netcdf(response: Response, path: str | Path) -> None:
+def write_netcdf(response: Response, path: str | Path, options: FileOptions = RESULTS.file) -> None:
     """Write the response as netCDF-4; the file appears only when it is complete.
 
     All variables are described before any is filled: between the one and the other the library goes through
@@ -135,33 +135,36 @@ def write_netcdf(response: Response, path: str | Path) -> None:
         for name, field in fields.items():
             of = [x for x in coordinates if set(fields[x].dims) <= set(field.dims)]
             more = {"coordinates": " ".join(of)} if of and name not in coordinates else {}
-            _described(file, name, field).setncatts(field.attrs | more)
+            _described(file, name, field, options).setncatts(field.attrs | more)
         for name, field in fields.items():
-            _fill(file.variables[name], field.values)
+            _fill(file.variables[name], field.values, options.chunk)
 
 
-def _described(file: Any, name: str, field: Field) -> Any:
+def _described(file: Any, name: str, field: Field, options: FileOptions) -> Any:
     """A variable of an open file, without values."""
     for dim, size in zip(field.dims, field.values.shape, strict=True):
         if dim not in file.dimensions:
             file.createDimension(dim, size)
-    if 0 < 8 * int(np.prod(field.values.shape)) <= SMALL and field.values.dtype.kind != "U":
+    size = 8 * int(np.prod(field.values.shape))
+    if 0 < size <= options.contiguous and field.values.dtype.kind != "U":
         return _variable(file, name, field.dims, field.values.dtype, contiguous=True)
     if not isinstance(field.values, Padded):
         return _variable(file, name, field.dims, field.values.dtype)
-    step, (count, *rest) = field.values.step, field.values.shape
-    chunks = (max(min(step, count), 1), *(max(size, 1) for size in rest))
+    step, (count, *rest) = field.values.step(options.chunk), field.values.shape
+    chunks = (max(min(step, count), 1), *(max(one, 1) for one in rest))
+    cache = 2 * options.chunk
     # each chunk is written once, so that nothing is gained by keeping many of every variable
-    return _variable(file, name, field.dims, field.values.dtype, chunksizes=chunks, chunk_cache=2 * CHUNK)
+    return _variable(file, name, field.dims, field.values.dtype, chunksizes=chunks, chunk_cache=cache)
 
 
-def _fill(variable: Any, values: npt.NDArray[Any] | Padded) -> None:
+def _fill(variable: Any, values: npt.NDArray[Any] | Padded, chunk: int) -> None:
     """Write the values; what is of many curves is made and written some curves at a time."""
     if not isinstance(values, Padded):
         variable[...] = _storable(values)
         return
-    for begin in range(0, values.shape[0], values.step):
-        variable[begin : begin + values.step] = _storable(values.part(begin, begin + values.step))
+    step = values.step(chunk)
+    for begin in range(0, values.shape[0], step):
+        variable[begin : begin + step] = _storable(values.part(begin, begin + step))
 
 
 def _variable(file: Any, name: str, dims: tuple[str, ...], kind: np.dtype[Any], **options: Any) -> Any:

@@ -10,8 +10,6 @@ import numpy.typing as npt
 
 from fcm.results.result import Curve
 
-CHUNK = 1 << 20  # bytes that are made at a time, about
-
 
 class Padded:
     """What is picked of each curve, its rows padded with NaN, or '' for text: (curve, row, ...).
@@ -27,10 +25,9 @@ class Padded:
         self.dtype = np.dtype("<U6") if first.dtype.kind == "U" else np.dtype(np.float64)
         self.shape = (len(curves), longest, *first.shape[1:])
 
-    @property
-    def step(self) -> int:
-        """Curves whose rows together take a chunk."""
-        return max(CHUNK // max(8 * int(np.prod(self.shape[1:])), 1), 1)
+    def step(self, chunk: int) -> int:
+        """Curves whose rows together take a chunk, of so many bytes about."""
+        return max(chunk // max(8 * int(np.prod(self.shape[1:])), 1), 1)
 
     def part(self, begin: int, end: int) -> npt.NDArray[Any]:
         """The rows of some of the curves."""

@@ -16,7 +16,7 @@ from typing import Any
 
 from fcm.files import real
 from fcm.run.lock import LENGTH, TITLE, CheckpointError, locked, same
-from fcm.run.options import RUN
+from fcm.run.options import RUN, RunOptions
 from fcm.run.records import Record, packed, unpacked, whole
 from fcm.signals import undisturbed
 
@@ -59,7 +59,8 @@ class Checkpoint:
         If it cannot be written.
     """
 
-    def __init__(self, path: Path, resume: bool = False) -> None:
+    def __init__(self, path: Path, resume: bool = False, options: RunOptions = RUN) -> None:
+        self.options = options
         self.path, self.failed, self.used, self.spent = path, False, False, False
         self._file = -1
         try:
@@ -159,7 +160,7 @@ class Checkpoint:
         if self._known() and not self.resumable:
             os.ftruncate(self._file, 0)
             return
-        aside = _free(self.path)
+        aside = _free(self.path, self.options.most_aside)
         self.path.rename(aside)
         warnings.warn(f"{self.path}: {reason}; moved to {aside.name}", stacklevel=3)
         os.close(self._file)
@@ -193,10 +194,10 @@ def _write(file: int, data: bytes) -> None:
         view = view[os.write(file, view) :]
 
 
-def _free(path: Path) -> Path:
-    """A name beside it that nobody has."""
-    for number in range(1, RUN.most_aside):
+def _free(path: Path, most: int) -> Path:
+    """A name beside it that nobody has, of so many."""
+    for number in range(1, most):
         aside = path.with_name(f"{path.name}.{number}")
         if not os.path.lexists(aside):
             return aside
-    raise CheckpointError(f"{path}: there are {RUN.most_aside} of them already; remove some")
+    raise CheckpointError(f"{path}: there are {most} of them already; remove some")

@@ -19,7 +19,7 @@ from typing import Any
 from fcm.run.address import LATE, answering
 from fcm.run.address import within as _within
 from fcm.run.elsewhere import Elsewhere, Refused, identity, other_fcm, there
-from fcm.run.options import RUN
+from fcm.run.options import RUN, RunOptions
 from fcm.run.places import Again, Factory, Gone
 from fcm.run.work import Attempt, Compute
 from fcm.signals import undisturbed
@@ -32,7 +32,7 @@ class ClusterError(Exception):
 
 
 @contextmanager
-def connected(address: str) -> Iterator[Factory]:
+def connected(address: str, options: RunOptions = RUN) -> Iterator[Factory]:
     """The cluster of the scheduler at an address, as ``tcp://127.0.0.1:8786``, for one or more sweeps.
 
     Raises
@@ -41,13 +41,13 @@ def connected(address: str) -> Iterator[Factory]:
         If `distributed` is not installed, or no scheduler with a worker of this fcm is found.
     """
     with _quiet():
-        client = _client(address)
+        client = _client(address, options)
         try:
-            workers = Workers(client, address)
+            workers = Workers(client, address, options)
             yield lambda compute, _count: Cluster(compute, workers)
         finally:
             with undisturbed(), suppress(Exception):
-                client.close(timeout=RUN.leave)
+                client.close(timeout=options.leave)
 
 
 @contextmanager
@@ -63,7 +63,7 @@ def _quiet() -> Iterator[None]:
         logging.disable(before)
 
 
-def _client(address: str) -> Any:
+def _client(address: str, options: RunOptions) -> Any:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -72,14 +72,16 @@ def _client(address: str) -> Any:
         raise ClusterError(
             "a cluster needs dask.distributed, which is not installed: pip install 'fcm[cluster]'"
         ) from None
-    until = time.monotonic() + RUN.scheduler_answer
+    until = time.monotonic() + options.scheduler_answer
     fault = answering(address, until)
     if not fault:
         client, error = _within(lambda: _connected(Client, address, until - time.monotonic()), until)
         if error is None:
             return client
         fault = (
-            f"it did not answer within {RUN.scheduler_answer:g} s" if error is LATE else _first_line(error)
+            f"it did not answer within {options.scheduler_answer:g} s"
+            if error is LATE
+            else _first_line(error)
         )
     raise ClusterError(
         f"no dask scheduler answers at {address!r} ({fault}); it is started with: dask scheduler"
@@ -95,13 +97,14 @@ def _connected(client: Any, address: str, timeout: float) -> Any:
 class Workers:
     """The workers that a scheduler has, and which of them have this fcm."""
 
-    def __init__(self, client: Any, address: str) -> None:
+    def __init__(self, client: Any, address: str, options: RunOptions = RUN) -> None:
+        self.options = options
         self.client, self.address, self.lost = client, address, f"the scheduler at {address} was lost"
         self.threads: dict[str, int] = {}  # of those that are there, by address
         self.fits: dict[str, bool] = {}  # of all that were asked
-        self._looked, self._last = -RUN.worker_interval, time.monotonic()
+        self._looked, self._last = -options.worker_interval, time.monotonic()
         try:
-            client.wait_for_workers(1, timeout=RUN.first_worker)
+            client.wait_for_workers(1, timeout=options.first_worker)
         except Exception:
             raise ClusterError(
                 f"the scheduler at {address} has no workers; one is started with: dask worker {address}"
@@ -118,28 +121,28 @@ class Workers:
     @property
     def width(self) -> int:
         """Batches for them at a time; none as long as there is nobody to compute one."""
-        return RUN.batches_ahead * sum(self.threads[address] for address in self.good)
+        return self.options.batches_ahead * sum(self.threads[address] for address in self.good)
 
     def poll(self) -> None:
         """See who is there, and ask those who are new; `Gone` if there has been nobody for long."""
-        if (now := time.monotonic()) - self._looked < RUN.worker_interval:
+        if (now := time.monotonic()) - self._looked < self.options.worker_interval:
             return
         self._looked = now
         with suppress(Exception):  # that the scheduler is lost is told by every batch it has
-            threads = self.client.nthreads(callback_timeout=RUN.scheduler_answer)
+            threads = self.client.nthreads(callback_timeout=self.options.scheduler_answer)
             self._ask([address for address in threads if address not in self.fits])
             self.threads = {address: count for address, count in threads.items() if address in self.fits}
         if self.good:
             self._last = now
-        elif now - self._last > RUN.without_workers:
+        elif now - self._last > self.options.without_workers:
             raise Gone(
                 f"the scheduler at {self.address} has had no worker with this fcm "
-                f"for {RUN.without_workers:.0f} s"
+                f"for {self.options.without_workers:.0f} s"
             )
 
     def look_again(self) -> None:
         """Somebody is there who was not: see at the next look."""
-        self._looked = -RUN.worker_interval
+        self._looked = -self.options.worker_interval
 
     def _ask(self, new: list[str]) -> None:
         """Whether new ones have this fcm; of those that have not a warning says why they are refused."""
@@ -147,7 +150,10 @@ class Workers:
             return
         asked_by = identity()
         answers = self.client.run(
-            identity, workers=new, on_error="return", callback_timeout=RUN.scheduler_answer
+            identity,
+            workers=new,
+            on_error="return",
+            callback_timeout=self.options.scheduler_answer,
         )
         for address, found in answers.items():
             self.fits[address] = found == asked_by
