@@ -162,7 +162,11 @@ def _rotation(system: System, path: Path, options: StabilityOptions = STABILITY)
     """As of `PathVerdicts`; 0 where there are so many multipliers that two are always about to meet."""
     linear, omega = system.linear, path.parameter
     near = ~quasi_static_modes(
-        linear.natural, float(omega.max(initial=0.0)), [int(h) for h in system.harmonics], options
+        linear.natural,
+        float(omega.max(initial=0.0)),
+        [int(h) for h in system.harmonics],
+        system.scene.planar,
+        options,
     )
     lasting = (
         np.exp(-2.0 * np.pi * linear.damping * linear.natural / omega.min(initial=np.inf))

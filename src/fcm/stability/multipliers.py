@@ -66,7 +66,7 @@ class Multipliers:
         self.contact = contact = np.array(law, dtype=np.float64).reshape(self.contacts, 4)  # all look at it
         harmonics = [int(h) for h in system.harmonics]
         finer = enriched_harmonics(harmonics)
-        far = quasi_static_modes(linear.natural, highest, harmonics, self.options)
+        far = quasi_static_modes(linear.natural, highest, harmonics, system.scene.planar, self.options)
         self.has_rigid_body_modes = int(np.count_nonzero(linear.adrift))
         summed = linear.ports.shape[1] <= PORTS
         seen = linear.receptance(np.array(finer, dtype=np.float64), summed)
@@ -297,12 +297,19 @@ def _many_contacts(
 
 
 def quasi_static_modes(
-    natural: FloatArray, highest: float, harmonics: list[int], options: StabilityOptions = STABILITY
+    natural: FloatArray,
+    highest: float,
+    harmonics: list[int],
+    planar: bool,
+    options: StabilityOptions = STABILITY,
 ) -> npt.NDArray[np.bool_]:
-    """Which of many modes are so far above the excitation that they follow without delay."""
-    if natural.size <= options.structure.many_modes:
-        return np.zeros(natural.size, dtype=bool)
+    """Which of many modes are so far above the excitation that they follow without delay.
+
+    With contacts in a plane also of few: steps would have to resolve each of their vibrations.
+    """
     times = max(options.structure.above_excitation, options.structure.above_harmonics * max(harmonics))
+    if natural.size <= options.structure.many_modes:
+        times *= options.structure.above_of_few if planar else np.inf
     far: npt.NDArray[np.bool_] = natural > highest * times
     return far
 

@@ -50,6 +50,8 @@ class StructureOptions:
         Part of the contacts' displacement that a far mode gives; one that gives less is left out.
     above_excitation, above_harmonics : float
         Times the excitation, and times the highest harmonic, from where modes are far.
+    above_of_few : float
+        Times that, with fewer modes, and contacts in a plane.
     max_cached : int
         Disturbances; with fewer the last workspace is used again.
     max_disturbances : int
@@ -61,6 +63,7 @@ class StructureOptions:
     min_displacement: float = 1e-3
     above_excitation: float = 6.0
     above_harmonics: float = 1.5
+    above_of_few: float = 2.0
     max_cached: int = 12
     max_disturbances: int = 600
 

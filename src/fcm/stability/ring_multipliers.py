@@ -40,7 +40,8 @@ def stability_unknown(system: System, highest: float, options: StabilityOptions 
         diameters = ", ".join(map(str, missing[:MAX_NAMED])) + (", ..." if len(missing) > MAX_NAMED else "")
         return f"there are no modes of nodal diameter {diameters}, which disturbances have"
     natural = ring.frequency[_places(ring)]
-    near = ~quasi_static_modes(natural, highest, [int(h) for h in system.harmonics], options)
+    harmonics = [int(h) for h in system.harmonics]
+    near = ~quasi_static_modes(natural, highest, harmonics, system.scene.planar, options)
     count = 2 * int(near.sum()) + ring.period * len(system.scene.contacts)
     if count > options.structure.max_disturbances:
         most = options.structure.max_disturbances
@@ -81,7 +82,7 @@ class RingMultipliers(Multipliers):
         finer = enriched_harmonics(harmonics)
         self.unknown = bool(stability_unknown(system, highest, self.options))
         around = modes_around(linear, ring)
-        far = quasi_static_modes(around.natural, highest, harmonics, self.options)
+        far = quasi_static_modes(around.natural, highest, harmonics, system.scene.planar, self.options)
         self.has_rigid_body_modes = int(np.count_nonzero(linear.adrift))
         seen = linear.receptance(np.array(finer, dtype=np.float64))
         self.finer = EnrichedMotion(seen, system.exact_laws(tuple(finer)), harmonics)
