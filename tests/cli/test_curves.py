@@ -47,7 +47,10 @@ def test_rotations_are_in_radians_and_come_after_displacements():
 def test_a_peak_where_the_range_ends_is_marked():
     text = as_table({"curves": [curve({"u": 1.0, "v": 2.0}, edge=("v",))]}, "Hz")
     assert text.splitlines()[1].split()[:6] == ["1.00000", "1.50000", "-", "2.00000", "1.50000*", "-"]
-    assert text.splitlines()[-1] == "* at an end of the range: beyond it the curve may rise further"
+    assert (
+        text.splitlines()[-1]
+        == "* at an end of the range: beyond it the curve may rise further; fcm plot modes SCENE: resonances"
+    )
 
 
 def test_where_the_error_of_a_balanced_peak_is_not_told_it_says_why():

@@ -198,3 +198,18 @@ def test_modes_alone_are_enough_but_not_to_be_solved(listed, tmp_path):
     assert listed(text).out.splitlines()[0].split() == ["mode", "at", "Hz", "damping", "mass"]
     done = called("respond", tmp_path / "scene.toml")
     assert done.code == 2 and "response: missing" in done.err and "force: missing" in done.err
+
+
+def test_where_the_modes_are_while_all_contacts_stick(listed):
+    """Against the eigenvalues of the matrices with the springs of the contact."""
+    shapes, mass = np.array([[1.0, 0.5, 0.0], [0.2, 1.0, 0.0], [0.0, 1.0, 1.0]]), np.array([2.0, 3.0, 1.0])
+    scene = SCENE.replace("[0.0, 1.0, 0.0]]", "[0.0, 1.0, 1.0]]").replace("k_u = 1\n", "k_u = 400\n")
+    inverse = np.linalg.inv(shapes)
+    M = inverse @ np.diag(mass) @ inverse.T
+    K = inverse @ np.diag(mass * (2 * np.pi * np.array([1.0, 4.0, 5.0])) ** 2) @ inverse.T
+    squares = np.linalg.eigvals(np.linalg.solve(M, K + np.diag([400.0, 0.0, 1.0])))
+    first = np.sort(np.sqrt(squares.real)) / (2 * np.pi)
+    said = next(line for line in listed(scene).err.splitlines() if "all contacts stick" in line)
+    assert [float(word.strip(",;")) for word in said.split() if word[0].isdigit()] == pytest.approx(
+        first, rel=1e-5
+    )

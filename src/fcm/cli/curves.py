@@ -125,7 +125,8 @@ def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: st
     if any(_at_rest(curve, dof) for curve in curves for dof in dofs):
         lines.append(_AT_REST)
     if any(_at_edge(curve, dof) for curve in curves for dof in dofs):
-        lines.append(f"{_EDGE} at an end of the range: beyond it the curve may rise further")
+        beyond = "beyond it the curve may rise further; fcm plot modes SCENE: resonances"
+        lines.append(f"{_EDGE} at an end of the range: {beyond}")
     marks = {_stability(curve, dof) for curve in curves for dof in dofs}
     if UNSTABLE in marks:
         lines.append(f"{UNSTABLE} unstable: the motion is not stable there: none stays at this peak")

@@ -27,8 +27,8 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
     by nodal diameter, with the share among the modes of the same; `fcm plot campbell` draws those.
 
     This is a list, and draws no picture. SCENE may be without [response] and [[force]]. Below the list stands
-    what was read: matrices, their rows, entries and symmetry, rigid bodies, and frequencies in both units.
-    Frequencies that look as if units were mixed are named.
+    what was read: matrices, their rows, entries and symmetry, rigid bodies, frequencies in both units, and
+    those while all contacts stick. Frequencies that look as if units were mixed are named.
     """
     from fcm.scene import load_scene
     from fcm.scene.listing import listing
@@ -42,7 +42,8 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
         if shown < count:
             messages.info(f"{shown} of {count} directions of contacts and forces: --json has all")
         if missing := len(found["modes"]) - len(_listed(found["modes"])):
-            messages.info(f"{missing} more modes stand for flexibility: --json has all")
+            stand = "mode stands" if missing == 1 else "modes stand"
+            messages.info(f"{missing} more {stand} for flexibility: --json has all")
         messages.info(f"shapes: {found['normalisation']}")
         for text in found["read"]:
             messages.info(f"read: {text}")

@@ -133,9 +133,21 @@ def _read(scene: Scene, frequency: FloatArray) -> list[str]:
     low, high = elastic[0], elastic[-1]
     in_hertz = f"{low / (2.0 * np.pi):.6g} to {high / (2.0 * np.pi):.6g} Hz"
     said = [*scene.read, f"{bodies}; others from {in_hertz}, which are {low:.6g} to {high:.6g} rad/s"]
+    if scene.ring is None and scene.contacts:
+        said.append(_said_of_stuck(scene))
     if slip := units_doubt(scene):
         said.append(slip)
     return said
+
+
+def _said_of_stuck(scene: Scene) -> str:
+    """Where the resonances are while all contacts stick."""
+    first = np.sort(_stuck(scene))[: MESSAGES.stuck_modes] / UNIT[scene.frequency_unit]
+    places = ", ".join(f"{frequency:.6g}" for frequency in first)
+    return (
+        f"first modes while all contacts stick: {places} {scene.frequency_unit}; peaks lie between these and "
+        "those of the structure alone"
+    )
 
 
 def _slip_of_units(elastic: FloatArray, ends: tuple[float, float], unit: str) -> str:

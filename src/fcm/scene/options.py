@@ -33,6 +33,7 @@ class MessageOptions:
     longest_path: int = 400  # characters of a path shown in a message
     faults: int = 5  # of a file beside a scene that are said one by one
     groups: int = 3  # of contacts in one sentence
+    stuck_modes: int = 3  # whose frequencies are said, while all contacts stick
     damping_left_out: float = 1e-4  # relative change of the response by damping that is left out
     # [byte] that directions of contacts take in a large structure: from here on it is told
     memory: float = 2e9
