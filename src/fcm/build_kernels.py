@@ -37,7 +37,12 @@ DIRECTIVES = {
 # One rounding for each operation as it is written: the sequence of a contact hangs on signs.
 FLAGS = ["-g0", "-ffp-contract=off"]
 # What -O3 makes of loops over harmonics is a tenth of the time of a curve; elsewhere it only takes longer.
-LOOPS = ("fcm.contact.", "fcm.harmonic_balance.", "fcm.continuation.dense_solver")
+LOOPS = (
+    "fcm.contact.",
+    "fcm.harmonic_balance.",
+    "fcm.continuation.dense_solver",
+    "fcm.stability.many_monodromy",
+)
 ANY_PYTHON = ("Py_LIMITED_API", "0x030B0000")  # from 3.11 on
 BESIDE = ("Makefile", ".ci/*", ".github/**/*", "tests/**/*")  # in an sdist, for its tests
 ARRAYS = "fcm.kernel_arrays"  # what Cython adds for arrays, once for all kernels

@@ -80,6 +80,33 @@ def test_points_between_two_that_are_confirmed_are_confirmed():
     assert 0.2 < found[doubted].mean() < 0.9
 
 
+def test_where_the_pair_has_no_neighbour_none_is_sought(monkeypatch):
+    """There a doubt is left, as it is where one is sought and not found; elsewhere the same is told."""
+    looked = []
+    rebalance = Rebalancing.rebalance
+
+    def recorded(self, z, *rest):
+        looked.append(float(z[-1]))
+        return rebalance(self, z, *rest)
+
+    monkeypatch.setattr(Rebalancing, "rebalance", recorded)
+    system = System(elastic_strip((11.3, 20.0)), (1,))
+    path = traced(system).branches.paths[-1]
+    sought = stability(system, path)
+    alone = path.parameter < 11.45  # the upper branch of more harmonics ends at 11.64 rad/s
+    assert any(omega < 11.45 for omega in looked)
+    looked.clear()
+    left = stability(system, path, alone=alone)
+    assert looked and not any(omega < 11.45 for omega in looked)
+    np.testing.assert_array_equal(left.stable, sought.stable)
+    every = stability(system, path, alone=np.ones(len(path.z), dtype=bool))
+    untold = np.isnan(every.stable) & ~np.isnan(sought.stable)
+    assert (
+        untold.any()
+        and (every.stable[~untold] == sought.stable[~untold])[~np.isnan(sought.stable[~untold])].all()
+    )
+
+
 def test_three_harmonics_tell_the_stability_beside_the_fold_at_which_the_upper_branch_ends():
     """One of both motions, balanced and finer, has a real multiplier above 1; the exact motion is stable."""
     system = System(elastic_strip((11.3, 20.0)), (1, 2, 3))

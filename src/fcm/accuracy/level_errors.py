@@ -88,7 +88,8 @@ def _balanced(
         newton.z[-1] = level[i]
         raised.measure(newton.z)
         newton.scale[:] = raised.scale
-        newton.row[:] = np.eye(raised.unknowns + 1)[-1]
+        newton.row[:] = 0.0
+        newton.row[-1] = 1.0
         known[i] = newton.correct(1.0) and (newton.orientation * np.sign(newton.tangent[-1]) > 0.0) == even[i]
         found[i] = newton.z
         found[i, -1] = one[-1]

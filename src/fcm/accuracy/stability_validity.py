@@ -47,6 +47,17 @@ def on_other_branch(truncation: FloatArray, options: ValidityOptions = VALIDITY)
     return far
 
 
+def without_neighbour(
+    truncation: FloatArray, is_same_curve: Mask, options: ValidityOptions = VALIDITY
+) -> Mask:
+    """Beside which points (point,) the pair has looked for a motion with more harmonics, and found none.
+
+    truncation: how far they are from the partner's curve, or from its nearest motion, relative.
+    """
+    far: Mask = ~is_same_curve & (truncation > options.max_change)
+    return far
+
+
 def _without_error(
     frequency: FloatArray, truncation: FloatArray, stable: FloatArray, fold: Mask, options: ValidityOptions
 ) -> Mask:

@@ -33,11 +33,51 @@ cdef extern from *:
             for (ptrdiff_t j = 0; j < columns; j++) out[j] += a * p[j];
         }
     }
+
+    /* The same for several rows of by, two at a time, so that the matrix is read once. */
+    FCM_WIDE static void fcm_sums_of_rows(
+        double *__restrict out, const double *__restrict by, const double *__restrict matrix,
+        ptrdiff_t parts, ptrdiff_t rows, ptrdiff_t columns)
+    {
+        ptrdiff_t r = 0;
+        for (ptrdiff_t j = 0; j < parts * columns; j++) out[j] = 0.0;
+        for (; r + 4 <= rows; r += 4) {
+            const double *__restrict p = matrix + r * columns, *__restrict q = p + columns,
+                *__restrict s = q + columns, *__restrict t = s + columns;
+            ptrdiff_t k = 0;
+            for (; k + 2 <= parts; k += 2) {
+                const double *f = by + k * rows + r, *g = f + rows;
+                const double a = f[0], b = f[1], c = f[2], d = f[3], e = g[0], h = g[1], l = g[2], m = g[3];
+                double *__restrict x = out + k * columns, *__restrict y = x + columns;
+                for (ptrdiff_t j = 0; j < columns; j++) {
+                    x[j] += (a * p[j] + b * q[j]) + (c * s[j] + d * t[j]);
+                    y[j] += (e * p[j] + h * q[j]) + (l * s[j] + m * t[j]);
+                }
+            }
+            for (; k < parts; k++) {
+                const double *f = by + k * rows + r;
+                const double a = f[0], b = f[1], c = f[2], d = f[3];
+                double *__restrict x = out + k * columns;
+                for (ptrdiff_t j = 0; j < columns; j++)
+                    x[j] += (a * p[j] + b * q[j]) + (c * s[j] + d * t[j]);
+            }
+        }
+        for (; r < rows; r++)
+            for (ptrdiff_t k = 0; k < parts; k++) {
+                const double a = by[k * rows + r];
+                const double *__restrict p = matrix + r * columns;
+                double *__restrict x = out + k * columns;
+                for (ptrdiff_t j = 0; j < columns; j++) x[j] += a * p[j];
+            }
+    }
     """
     void add_rows "fcm_sum_of_rows"(
         double *, const double *, const double *, Py_ssize_t, Py_ssize_t) noexcept nogil
+    void add_rows_of_several "fcm_sums_of_rows"(
+        double *, const double *, const double *, Py_ssize_t, Py_ssize_t, Py_ssize_t) noexcept nogil
 
 cdef void sum_of_rows(double[::1] by, double[:, ::1] matrix, double[::1] out) noexcept
+cdef void sums_of_rows(double[:, ::1] by, double[:, ::1] matrix, double[:, ::1] out) noexcept
 
 cdef class ModalCompliance:
     cdef public Receptance seen

@@ -21,7 +21,7 @@ from fcm.continuation.dense_solver import Solver
 from fcm.structure.receptance import Receptance
 
 if cython.compiled:
-    from cython.cimports.fcm.harmonic_balance.modal_equations import add_rows
+    from cython.cimports.fcm.harmonic_balance.modal_equations import add_rows, add_rows_of_several
 
 DIVERGED = cython.declare(cython.double, 1e300)  # what is longer is no number
 
@@ -35,10 +35,26 @@ def sum_of_rows(
     if not cython.compiled:
         with np.errstate(invalid="ignore", over="ignore"):  # where Newton's method has gone astray
             np.matmul(by, matrix, out=out)
-    elif matrix.shape[0] > 0 and matrix.shape[1] > 0:
+    elif matrix.shape[1] > 0:
         add_rows(
             cython.address(out[0]), cython.address(by[0]), cython.address(matrix[0, 0]),
             matrix.shape[0], matrix.shape[1],
+        )  # fmt: skip
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def sums_of_rows(
+    by: cython.double[:, ::1], matrix: cython.double[:, ::1], out: cython.double[:, ::1]
+) -> cython.void:
+    """The same for each row of by (part, row), into that of out (part, column)."""
+    if not cython.compiled:
+        with np.errstate(invalid="ignore", over="ignore"):
+            np.matmul(by, matrix, out=out)
+    elif matrix.shape[1] > 0:
+        add_rows_of_several(
+            cython.address(out[0, 0]), cython.address(by[0, 0]), cython.address(matrix[0, 0]),
+            by.shape[0], matrix.shape[0], matrix.shape[1],
         )  # fmt: skip
 
 
@@ -91,7 +107,7 @@ class ModalCompliance:
         for j in range(self.parts):
             for p in range(self.at.shape[1]):
                 self.on_ports[j, p] = force[self.at[j, p]]
-            sum_of_rows(self.on_ports[j], self.by_port, self.on_modes[j])
+        sums_of_rows(self.on_ports, self.by_port, self.on_modes)
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -123,8 +139,8 @@ class ModalCompliance:
         """Fill out (unknown,) with the displacements of the modes at the ports."""
         j: cython.Py_ssize_t
         p: cython.Py_ssize_t
+        sums_of_rows(self.on_modes, self.shapes, self.moved)
         for j in range(self.parts):
-            sum_of_rows(self.on_modes[j], self.shapes, self.moved[j])
             for p in range(self.at.shape[1]):
                 out[self.at[j, p]] = self.moved[j, p]
 
@@ -230,7 +246,8 @@ class ModalEquations:
         for j in range(self.parts):
             for k in range(self.on_ports.shape[1]):
                 self.on_ports[j, k] = -self.row[self.answer.at[j, k]]
-            sum_of_rows(self.on_ports[j], self.by_port, self.pushed[j])
+        sums_of_rows(self.on_ports, self.by_port, self.pushed)
+        for j in range(self.parts):
             for i in range(m):
                 matrix[rank, j * m + i] = self.pushed[j, i]
         return self.solver.orientation if self.solver.factor() else 0.0
@@ -290,7 +307,8 @@ class ModalEquations:
         for j in range(self.parts):
             for i in range(self.modes):
                 self.pushed[j, i] = reduced[j * self.modes + i]
-            sum_of_rows(self.pushed[j], self.shapes, self.moved[j])
+        sums_of_rows(self.pushed, self.shapes, self.moved)
+        for j in range(self.parts):
             for i in range(self.moved.shape[1]):
                 out[self.answer.at[j, i]] -= self.moved[j, i]
         return 0
@@ -424,7 +442,7 @@ class ModalEquations:
         for j in range(self.parts):
             for p in range(self.on_ports.shape[1]):
                 self.on_ports[j, p] = self.force[self.answer.at[j, p]]
-            sum_of_rows(self.on_ports[j], self.by_port, self.pushed[j])
+        sums_of_rows(self.on_ports, self.by_port, self.pushed)
 
     @cython.cfunc
     @cython.exceptval(check=False)

@@ -66,7 +66,7 @@ def with_levels_where_unstable(
     starts = [z for z in (at_its_frequency(system, guess) for guess in guesses) if z is not None]
     found = _with_branches(found, looked, starts, accuracy)
     greatest = np.max([one.amplitude.max(axis=0) for one in found.shown], axis=0) * (1.0 + found.peak)
-    heights = (reported_at(more, z[None], np.eye(z.size)[-1:]).amplitude[0] for z in passed)
+    heights = (reported_at(more, z[None], np.eye(1, z.size, z.size - 1)).amplitude[0] for z in passed)
     return found, any((height > greatest).any() for height in heights)
 
 

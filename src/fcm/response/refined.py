@@ -15,7 +15,7 @@ import numpy.typing as npt
 from fcm.accuracy.options import VALIDITY
 from fcm.accuracy.refinement import Keep, RefinedResponse, enlarged, retraced
 from fcm.accuracy.stability_limits import StabilityLimit, distances_from, stability_limits
-from fcm.accuracy.stability_validity import on_other_branch
+from fcm.accuracy.stability_validity import on_other_branch, without_neighbour
 from fcm.branches.branch_points import all_up_to
 from fcm.branches.search import symmetry_lost, with_branching, with_isolas
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_at
@@ -146,9 +146,9 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
     every = found.traced.branches.paths
     paths, shown, errors = list(every[:known]), list(found.shown[:known]), list(found.errors[:known])
     for path, seen, error in zip(every[known:], found.shown[known:], found.errors[known:], strict=True):
-        judged = stability(
-            found.system, path, on_other_branch(error.on_same_branch, options) if short else None
-        )
+        beyond = on_other_branch(error.on_same_branch, options) if short else None
+        alone = without_neighbour(error.truncation, error.is_same_curve, options)
+        judged = stability(found.system, path, beyond, alone=alone)
         inserted = judged.inserted
         bifurcations += [(one.kind.value, one.frequency) for one in judged.crossings]
         if accuracy is not None and not short:

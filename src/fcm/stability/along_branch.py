@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from fcm.continuation import Mark, Path, Segment
 from fcm.harmonic_balance.residual import Balance
@@ -23,17 +24,22 @@ from fcm.stability.multipliers import quasi_static_modes
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.verdict import Verdict, meeting_angle
 
+Mask = npt.NDArray[np.bool_]
 EITHER = (0.0, 1.0)  # what the finer motion says is enough, stable or not
 
 
 class PathVerdicts:
     """The verdicts of places, those between the points of the path, and how many were calculated.
 
+    alone (point,): beside which no solution with more harmonics is near.
     rotation (point,) [rad]: by how much multipliers that are not small have turned up to each point, about.
     """
 
-    def __init__(self, system: System, path: Path, options: StabilityOptions = STABILITY) -> None:
+    def __init__(
+        self, system: System, path: Path, alone: Mask | None = None, options: StabilityOptions = STABILITY
+    ) -> None:
         self.path, self.evaluations, self.options = path, 0, options
+        self.alone = np.zeros(len(path.z), dtype=np.bool_) if alone is None else alone
         self._verdicts: dict[float, Verdict] = {}
         self.between: dict[float, InsertedPoint] = {}
         self._places: list[float] = []  # with a verdict, in order
@@ -58,7 +64,8 @@ class PathVerdicts:
         """Of a point, which has it then."""
         if i not in self._verdicts:
             self.evaluations += 1
-            self._keep(i, self.multipliers.verdict(self.path.z[i], bool(self.fold[i])))
+            fold, alone = bool(self.fold[i]), bool(self.alone[i])
+            self._keep(i, self.multipliers.verdict(self.path.z[i], fold, alone=alone))
         return self._verdicts[i]
 
     def _keep(self, t: float, verdict: Verdict) -> Verdict:
@@ -74,6 +81,9 @@ class PathVerdicts:
 
     def confirmed(self, i: int, stable: float) -> bool:
         """Whether a point is as stable as told (1 or 0) with the further harmonics balanced, too."""
+        known = self._verdicts.get(i)
+        if known is not None and known.rebalanced:
+            return known.stable == stable
         self.evaluations += 1
         return self.multipliers.confirms(self.path.z[i], stable)
 
@@ -106,8 +116,11 @@ class PathVerdicts:
     def sufficient(self, *places: float) -> Sequence[float]:
         """What is enough to find where growth changes sign between places: EITHER, if the finer motion alone
         says the same of these as their verdicts."""
-        alone = (self.judge(self._z(t), EITHER).growth > 0.0 for t in places)
-        return EITHER if all(one == self.grows(t) for one, t in zip(alone, places, strict=True)) else ()
+        for t in places:
+            alone = self.judge(self._z(t), EITHER)
+            if alone.rebalanced or (alone.growth > 0.0) != self.grows(t):
+                return ()
+        return EITHER
 
     def _z(self, t: float) -> FloatArray:
         return self.between[t].z if t in self.between else self.path.z[int(t)]

@@ -25,7 +25,7 @@ from fcm.stability.along_branch import PathVerdicts
 from fcm.stability.bifurcation_functions import predicted_minimum
 from fcm.stability.inserted_points import Crossing, InsertedPoint, with_points
 from fcm.stability.options import STABILITY, StabilityOptions
-from fcm.stability.verdict import Bifurcation, Verdict
+from fcm.stability.verdict import Bifurcation, Verdict, flip_function
 
 IntArray = npt.NDArray[np.intp]
 
@@ -52,20 +52,26 @@ def stability(
     path: Path,
     beyond: npt.NDArray[np.bool_] | None = None,
     options: StabilityOptions = STABILITY,
+    alone: npt.NDArray[np.bool_] | None = None,
 ) -> Stability:
     """Stability of the points of a path followed in the frequency, and where it changes between folds.
 
     A fold counts to the stable side, a crossing to neither. What is stable with the balanced harmonics and
     not with the next ones that their forces make, or the other way round, is nan; and so is what is
-    beyond (point,), too far from the motion, and that the determinant allows to be stable.
+    beyond (point,), too far from the motion, and that the determinant allows to be stable. Beside what is
+    alone (point,) it is known that there is no solution with more harmonics: there a doubt remains one.
     """
     none = np.zeros(path.z.shape[0], dtype=np.bool_)
-    return _BifurcationSearch(system, path, options).run(none if beyond is None else beyond)
+    search = _BifurcationSearch(system, path, options, none if alone is None else alone)
+    return search.run(none if beyond is None else beyond)
 
 
 class _BifurcationSearch:
-    def __init__(self, system: System, path: Path, options: StabilityOptions) -> None:
-        self.path, self.verdicts, self.options = path, PathVerdicts(system, path, options), options
+    def __init__(
+        self, system: System, path: Path, options: StabilityOptions, alone: npt.NDArray[np.bool_]
+    ) -> None:
+        self.path, self.options = path, options
+        self.verdicts = PathVerdicts(system, path, alone, options)
         self.many = len(system.scene.contacts) >= self.options.structure.many_contacts
         self.step_span = (
             options.sampling.interval_many_contacts
@@ -111,10 +117,13 @@ class _BifurcationSearch:
         angle = self.verdicts.rotation[first : last + 1]
         passed = np.floor((angle - angle[0]) / self.options.sampling.max_phase)
         some = (first + k * (last - first) // parts for k in range(parts + 1))
-        nodes = sorted({*some, *(first + 1 + (passed[1:] != passed[:-1]).nonzero()[0]).tolist()})
-        for i in nodes:
+        nodes = {*some, *(first + 1 + (passed[1:] != passed[:-1]).nonzero()[0]).tolist()}
+        if self.many:  # of a fold no doubt is told: its neighbour is looked at, too
+            beside = (i + way for i, way in ((first, 1), (last, -1)) if self.verdicts.fold[i])
+            nodes |= {i for i in beside if first < i < last}
+        for i in sorted(nodes):
             self.verdicts.at(i)
-        for a, b in itertools.pairwise(nodes):
+        for a, b in itertools.pairwise(sorted(nodes)):
             self._refine_between(a, b)
 
     def _search_windows(self, first: int, last: int) -> None:
@@ -200,6 +209,8 @@ class _BifurcationSearch:
         if b - a < 2:
             return
         one, middle, other = self.verdicts.at(a), (a + b) // 2, self.verdicts.at(b)
+        if self.many and math.isnan(one.stable) and math.isnan(other.stable):
+            return  # what is not told on both sides is not between them
         passive = one.passive and other.passive
         if not passive and not _growth_is_linear(
             one, self.verdicts.at(middle), other, self.many, self.options
@@ -234,19 +245,25 @@ class _BifurcationSearch:
         curve = self.verdicts.curve(first)
         before, after = (max(self.verdicts[t].growth, self.options.sampling.sufficient_decay) for t in (a, b))
         kind = self.verdicts[a if before > 0.0 else b].kind
+        flips = tuple(flip_function(self.verdicts[t].values) for t in (a, b))
+        by_flip = kind is Bifurcation.PERIOD_DOUBLING and flips[0] * before > 0.0 > flips[0] * flips[1]
+        if by_flip:
+            before, after = flips
         sides = SignChange(a - first, b - first, before, after, may_jump=True)
-        fine = self.options.sampling.tolerance if enough else self.options.sampling.confirmed_tolerance
+        fine = self.options.sampling.tolerance
+        narrow = fine if enough else self.options.sampling.confirmed_tolerance
         for _ in range(self.options.sampling.max_evaluations):
             at = sides.at
-            if sides.width < fine or not curve.find(at):
+            if sides.width < narrow or (found is not None and sides.converged(fine)) or not curve.find(at):
                 break
             verdict = self.verdicts.judge(curve.z, enough)
-            now = max(verdict.growth, self.options.sampling.sufficient_decay)
-            if math.isnan(now):
+            if math.isnan(verdict.growth):
                 break
-            kind = verdict.kind if now > 0.0 else kind
+            growth = max(verdict.growth, self.options.sampling.sufficient_decay)
+            now = flip_function(verdict.values) if by_flip else growth
+            kind = verdict.kind if growth > 0.0 else kind
             found = Crossing(first + at, curve.z, curve.direction, curve.orientation, kind=kind)
-            if abs(now) < self.options.sampling.growth_tolerance:
+            if abs(growth) < self.options.sampling.growth_tolerance:
                 break
             sides.update(at, now)
         return found

@@ -110,7 +110,9 @@ class HillMultipliers:
             found += np.einsum("mp,paqb,nq->manb", shapes, tangent, shapes, optimize=True)
         return found.reshape(self.modes * self.each, -1)
 
-    def verdict(self, z: FloatArray, turning: bool = False, enough: Sequence[float] = ()) -> Verdict:
+    def verdict(
+        self, z: FloatArray, turning: bool = False, enough: Sequence[float] = (), alone: bool = False
+    ) -> Verdict:
         """Of a solution with an even number of real multipliers above 1, or of a fold (turning)."""
         values = self.of(z)
         if values is None:

@@ -14,6 +14,9 @@ d = (1 + s a_f^T G a_f)^-1 s, by
 
     -G a_f d a_f^T G,    G a_f d o,    i d a_f^T G,    i d o,    o = a^T - a_f^T L,   i = a - R a_f.
 
+Together K, -R, L and G are one matrix [[K, -R], [L, G]], which changes by [i, G a_f] d [o, -a_f^T G]. What
+the sliders push the modes with, phi - R phi_f, changes along i alone, too.
+
 The period begins after the event at which the fewest sliders remember where they rest: so many disturbances
 less are to be followed.
 """
@@ -27,13 +30,36 @@ from cython.cimports.libc.math import ceil, fabs, sqrt
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
+    from cython.cimports.fcm.harmonic_balance.modal_equations import sum_of_rows
+    from cython.cimports.fcm.stability.many_monodromy import add_term, add_two_products
     from cython.cimports.fcm.stability.state_sequence import StateSequence
 else:
     from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
+    from fcm.harmonic_balance.modal_equations import sum_of_rows
     from fcm.stability.state_sequence import StateSequence
 
 REACH = cython.declare(cython.double, 3.0)  # of a step, in radians of the fastest motion
 SMALL = cython.declare(cython.double, 1e-13)  # bound of the last term of the series, relative to the first
+LANES = 8  # columns beside one another in the widest registers; arrays have a multiple of them
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def add_products(
+    matrix: cython.double[:, ::1],
+    p: cython.double[::1],
+    x: cython.double[::1],
+    q: cython.double[::1],
+    y: cython.double[::1],
+) -> cython.void:
+    """Add p x^T + q y^T to a matrix (row, column)."""
+    if not cython.compiled:
+        np.add(matrix, np.outer(p, x[: matrix.shape[1]]) + np.outer(q, y[: matrix.shape[1]]), out=matrix)
+    elif matrix.shape[0] > 0:
+        add_two_products(
+            cython.address(matrix[0, 0]), cython.address(p[0]), cython.address(x[0]),
+            cython.address(q[0]), cython.address(y[0]), matrix.shape[0], matrix.shape[1],
+        )  # fmt: skip
 
 
 @cython.cclass
@@ -68,23 +94,20 @@ class ManyMonodromy:
         # by ports, so that what an event needs stands together
         self.by_slow, self.by_fast = np.ascontiguousarray(self.slow.T), np.ascontiguousarray(self.fast.T)
         self.natural, self.ratio, self.far = natural[~far], damping[~far], natural[far]
-        self.K, self.G = np.zeros((modes, modes)), np.zeros((follow, follow))
-        self.stiffness = np.asarray(self.K)
-        self.L, self.R = np.zeros((follow, modes)), np.zeros((modes, follow))
+        self.K = np.zeros((modes, modes))
+        self.lower, self.upper = np.zeros((2, follow, modes + follow))  # [L, G], [-R, G] by columns
+        self.left, self.right, self.changed = np.zeros((3, 2, modes + follow))
         self.damping, self.state = np.zeros(modes), np.zeros(contacts, dtype=np.intc)
-        self.b, self.bt = np.zeros((2, follow)), np.zeros((2, follow))
-        self.out, self.into = np.zeros((2, modes)), np.zeros((2, modes))
         self.columns, self.first, self.rate, self.omega = 2 * modes, 0, 1.0, 1.0
         self.remembering: list[int] = []
         self.allocate(2 * modes)
 
     def allocate(self, columns: int) -> None:
         """Arrays for so many disturbances."""
-        self.columns = columns
-        self.q, self.v, self.tq, self.tv, self.work, self.g = np.zeros((6, self.modes, columns))
-        self.term, self.product = np.asarray(self.tq), np.asarray(self.work)  # for BLAS
-        self.w, self.phi = np.zeros((self.contacts, columns)), np.zeros((self.modes, columns))
-        self.phi_f, self.port = np.zeros((self.follows, columns)), np.zeros((2, columns))
+        self.columns, wide = columns, -(-columns // LANES) * LANES
+        self.q, self.v, self.tq, self.tv, self.work, self.g = np.zeros((6, self.modes, wide))
+        self.w, self.phi_f = np.zeros((self.contacts, wide)), np.zeros((self.follows, wide))
+        self.port, self.followed, self.row, self.pushed = np.zeros((4, 2, wide))
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -98,8 +121,9 @@ class ManyMonodromy:
         self.omega = omega
         self.begin()
         if s.events == 0:
-            self.pull()
-            return self.propagate(TWO_PI)
+            self.find_rate()
+            self.propagate(TWO_PI)
+            return 0
         for i in range(s.events):
             k = (self.first + i) % s.events
             e = s.order[k]
@@ -109,7 +133,7 @@ class ManyMonodromy:
             if i > 0:
                 self.apply_event(e)
             if length > 0.0:
-                self.pull()
+                self.find_rate()
                 self.propagate(length)
         # the event after which the period began ends it
         return self.apply_event(s.order[self.first])
@@ -117,7 +141,7 @@ class ManyMonodromy:
     def matrix(self) -> npt.NDArray[np.float64]:
         """(2 modes + memories, the same)."""
         w = np.asarray(self.w)[self.remembering]
-        return np.vstack((np.asarray(self.q), np.asarray(self.v), w))
+        return np.vstack((np.asarray(self.q), np.asarray(self.v), w))[:, : self.columns]
 
     def begin(self) -> None:
         """The disturbances, the states and the matrices when the period begins."""
@@ -142,26 +166,28 @@ class ManyMonodromy:
         self.remembering = [c for c in moving.tolist() if state[c] == STICK]
         if 2 * self.modes + len(self.remembering) != self.columns:
             self.allocate(2 * self.modes + len(self.remembering))
+        self.assemble(state)
         self.q[:, :] = 0.0
         self.v[:, :] = 0.0
         self.w[:, :] = 0.0
-        self.phi[:, :] = 0.0
+        self.g[:, :] = 0.0
         self.phi_f[:, :] = 0.0
         m = np.arange(self.modes)
         np.asarray(self.q)[m, m] = np.asarray(self.v)[m, self.modes + m] = 1.0
-        k: cython.int
-        for k in range(len(self.remembering)):
-            one: cython.int = self.remembering[k]
-            column: cython.int = 2 * self.modes + k
-            k_u: cython.double = self.contact[one, 1] / self.omega**2
+        column: cython.Py_ssize_t = 2 * self.modes
+        one: cython.Py_ssize_t
+        for one in self.remembering:
+            k_u = self.contact[one, 1] / self.omega**2
+            on_fast = np.asarray(self.by_fast)[2 * one]
+            on_slow = np.asarray(self.by_slow)[2 * one] + on_fast @ np.asarray(self.upper)[:, : self.modes]
             self.w[one, column] = 1.0
-            np.asarray(self.phi)[:, column] = k_u * np.asarray(self.by_slow)[2 * one]
-            np.asarray(self.phi_f)[:, column] = k_u * np.asarray(self.by_fast)[2 * one]
-        self.assemble(state)
+            np.asarray(self.g)[:, column] = k_u * on_slow
+            np.asarray(self.phi_f)[:, column] = k_u * on_fast
+            column += 1
 
     def assemble(self, state: npt.NDArray[np.intc]) -> None:
         """All of the matrices, for states of the contacts; stiffnesses over omega^2: all is by the angle."""
-        unit = 1.0 / self.omega**2
+        unit, modes = 1.0 / self.omega**2, self.modes
         mu, k_u, k_v = np.asarray(self.contact).T[:3] * np.array([[1.0], [unit], [unit]])
         slow, fast = self.slow, self.fast
         u, v = np.where(state == STICK, k_u, 0.0), np.where(state != SEPARATION, k_v, 0.0)
@@ -173,10 +199,11 @@ class ManyMonodromy:
 
         G = np.linalg.inv(np.diag(unit * self.far**2) + between(fast, fast))
         along = between(fast, slow)
-        np.asarray(self.G)[:], np.asarray(self.L)[:] = G, G @ along
-        np.asarray(self.R)[:] = between(slow, fast) @ G
-        own = np.diag(unit * self.natural**2) + between(slow, slow)
-        np.asarray(self.K)[:] = own - np.asarray(self.R) @ along
+        R = between(slow, fast) @ G
+        lower, upper = np.asarray(self.lower), np.asarray(self.upper)
+        lower[:, :modes], lower[:, modes:] = G @ along, G
+        upper[:, :modes], upper[:, modes:] = -R.T, G.T
+        np.asarray(self.K)[:] = np.diag(unit * self.natural**2) + between(slow, slow) - R @ along
         np.asarray(self.damping)[:] = 2.0 * self.ratio * self.natural / self.omega
 
     @cython.cfunc
@@ -186,157 +213,102 @@ class ManyMonodromy:
         c: cython.int = self.sequence.whose[e]
         to: cython.int = self.sequence.into[e]
         was: cython.int = self.state[c]
+        m: cython.Py_ssize_t = self.modes
+        k: cython.Py_ssize_t
+        wide: cython.Py_ssize_t = self.w.shape[1]
         unit: cython.double = 1.0 / (self.omega * self.omega)
-        k_u: cython.double = self.contact[c, 1]
-        self.seen(c)
-        if to == STICK:
-            self.displacements(c)
-        if was == STICK:
-            self.add_slider_force(c, -k_u * unit)
-        if to == STICK:
-            weight: cython.double = self.sequence.along[e] * self.contact[c, 0] * self.contact[c, 2] / k_u
-            k: cython.Py_ssize_t
-            for k in range(self.columns):
-                self.w[c, k] = self.port[0, k] + weight * self.port[1, k]
+        k_u: cython.double = self.contact[c, 1] * unit
+        k_v: cython.double = self.contact[c, 2] * unit
+        mu: cython.double = self.contact[c, 0]
+        self.find_products(c)
+        # G between the ports, and (1 + s G)^-1 s with the change s of the stiffness
+        G_uu: cython.double = 0.0
+        G_uv: cython.double = 0.0
+        G_vu: cython.double = 0.0
+        G_vv: cython.double = 0.0
+        for k in range(self.follows):
+            G_uu += self.by_fast[2 * c, k] * self.left[0, m + k]
+            G_uv += self.by_fast[2 * c, k] * self.left[1, m + k]
+            G_vu += self.by_fast[2 * c + 1, k] * self.left[0, m + k]
+            G_vv += self.by_fast[2 * c + 1, k] * self.left[1, m + k]
+        s_uu: cython.double = (k_u if to == STICK else 0.0) - (k_u if was == STICK else 0.0)
+        s_vv: cython.double = (k_v if to != SEPARATION else 0.0) - (k_v if was != SEPARATION else 0.0)
+        s_uv: cython.double = mu * k_v * (_side(to) - _side(was))
+        a: cython.double = 1.0 + s_uu * G_uu + s_uv * G_vu
+        b: cython.double = s_uu * G_uv + s_uv * G_vv
+        t: cython.double = s_vv * G_vu
+        z: cython.double = 1.0 + s_vv * G_vv
+        det: cython.double = a * z - b * t
+        d_uu: cython.double = z * s_uu / det
+        d_uv: cython.double = (z * s_uv - b * s_vv) / det
+        d_vu: cython.double = -t * s_uu / det
+        d_vv: cython.double = (a * s_vv - t * s_uv) / det
+        # the slider's force before and after
+        before: cython.double = k_u if was == STICK else 0.0
+        after: cython.double = k_u if to == STICK else 0.0
+        weight: cython.double = self.sequence.along[e] * mu * self.contact[c, 2] / self.contact[c, 1]
+        share: cython.double = 1.0 - d_uu * G_uu - d_uv * G_vu
+        other: cython.double = -d_vu * G_uu - d_vv * G_vu
+        old: cython.double
+        new: cython.double
+        f_u: cython.double
+        f_v: cython.double
+        for k in range(wide):
+            old = before * self.w[c, k]
+            f_u = self.followed[0, k] + G_uu * old
+            f_v = self.followed[1, k] + G_vu * old
+            if to == STICK:
+                self.w[c, k] = (
+                    self.port[0, k] - self.followed[0, k]
+                    + weight * (self.port[1, k] - self.followed[1, k])
+                )  # fmt: skip
+            new = after * self.w[c, k]
+            self.pushed[0, k], self.pushed[1, k] = new - old, 0.0
+            self.row[0, k] = d_uu * f_u + d_uv * f_v + share * new - old
+            self.row[1, k] = d_vu * f_u + d_vv * f_v + other * new
+        add_products(self.g, self.left[0], self.row[0], self.left[1], self.row[1])
+        add_products(self.phi_f, self.by_fast[2 * c], self.pushed[0], self.by_fast[2 * c], self.pushed[1])
         self.state[c] = to
-        self.change(c, was, to, unit)
-        if to == STICK:
-            self.add_slider_force(c, k_u * unit)
+        if was == to:
+            return 0
+        for k in range(self.changed.shape[1]):
+            self.changed[0, k] = self.left[0, k] * d_uu + self.left[1, k] * d_vu
+            self.changed[1, k] = self.left[0, k] * d_uv + self.left[1, k] * d_vv
+        p, q, x, y = self.changed[0], self.changed[1], self.right[0], self.right[1]
+        add_products(self.K, p, x, q, y)
+        add_products(self.lower, p[m:], x, q[m:], y)
+        add_products(self.upper, x[m:], p, y[m:], q)
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def find_products(self, c: cython.int) -> cython.int:
+        """left, [i, G a_f], and right, [o, -a_f^T G], of the two ports of a contact; its displacements, from
+        port less followed, with followed, -a_f^T G phi_f, by the modes that follow."""
+        i: cython.Py_ssize_t
+        r: cython.Py_ssize_t
+        for r in range(2):
+            sum_of_rows(self.by_fast[2 * c + r], self.upper, self.left[r])
+            sum_of_rows(self.by_fast[2 * c + r], self.lower, self.right[r])
+            for i in range(self.modes + self.follows):
+                self.right[r, i] = -self.right[r, i]
+            for i in range(self.modes):
+                self.left[r, i] += self.by_slow[2 * c + r, i]
+                self.right[r, i] += self.by_slow[2 * c + r, i]
+            sum_of_rows(self.right[r, : self.modes], self.q, self.port[r])
+            sum_of_rows(self.right[r, self.modes :], self.phi_f, self.followed[r])
         return 0
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def seen(self, c: cython.int) -> cython.void:
-        """out, into, b and bt of the two ports of a contact."""
+    def find_rate(self) -> cython.void:
+        """How fast the motion turns, at most."""
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
-        r: cython.Py_ssize_t
-        a: cython.double
-        for r in range(2):
-            for i in range(self.modes):
-                self.out[r, i] = self.into[r, i] = self.by_slow[2 * c + r, i]
-            for i in range(self.follows):
-                self.b[r, i] = self.bt[r, i] = 0.0
-            for j in range(self.follows):
-                a = self.by_fast[2 * c + r, j]
-                if a == 0.0:
-                    continue
-                for i in range(self.modes):
-                    self.out[r, i] -= a * self.L[j, i]
-                for i in range(self.follows):
-                    self.bt[r, i] += a * self.G[j, i]
-            for i in range(self.modes):
-                for j in range(self.follows):
-                    self.into[r, i] -= self.R[i, j] * self.by_fast[2 * c + r, j]
-            for i in range(self.follows):
-                for j in range(self.follows):
-                    self.b[r, i] += self.G[i, j] * self.by_fast[2 * c + r, j]
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def displacements(self, c: cython.int) -> cython.void:
-        """port: displacements (2, column) of the contact that was seen, before it changes its state."""
-        r: cython.Py_ssize_t
-        i: cython.Py_ssize_t
-        k: cython.Py_ssize_t
-        a: cython.double
-        for r in range(2):
-            for k in range(self.columns):
-                self.port[r, k] = 0.0
-            for i in range(self.modes):
-                a = self.out[r, i]
-                for k in range(self.columns):
-                    self.port[r, k] += a * self.q[i, k]
-            for i in range(self.follows):
-                a = self.bt[r, i]
-                for k in range(self.columns):
-                    self.port[r, k] += a * self.phi_f[i, k]
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def add_slider_force(self, c: cython.int, by: cython.double) -> cython.void:
-        """Add the force of a slider, so many times its place."""
-        i: cython.Py_ssize_t
-        k: cython.Py_ssize_t
-        a: cython.double
-        for i in range(self.modes):
-            a = by * self.by_slow[2 * c, i]
-            for k in range(self.columns):
-                self.phi[i, k] += a * self.w[c, k]
-        for i in range(self.follows):
-            a = by * self.by_fast[2 * c, i]
-            if a != 0.0:
-                for k in range(self.columns):
-                    self.phi_f[i, k] += a * self.w[c, k]
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def change(self, c: cython.int, was: cython.int, to: cython.int, unit: cython.double) -> cython.void:
-        """The matrices, from one state of the contact that was seen to another."""
-        i: cython.Py_ssize_t
-        j: cython.Py_ssize_t
-        if was == to:
-            return
-        k_u: cython.double = self.contact[c, 1] * unit
-        k_v: cython.double = self.contact[c, 2] * unit
-        mu: cython.double = self.contact[c, 0]
-        s_uu: cython.double = (k_u if to == STICK else 0.0) - (k_u if was == STICK else 0.0)
-        s_vv: cython.double = (k_v if to != SEPARATION else 0.0) - (k_v if was != SEPARATION else 0.0)
-        s_uv: cython.double = mu * k_v * (_side(to) - _side(was))
-        A_uu: cython.double = 0.0
-        A_uv: cython.double = 0.0
-        A_vu: cython.double = 0.0
-        A_vv: cython.double = 0.0
-        for i in range(self.follows):
-            A_uu += self.by_fast[2 * c, i] * self.b[0, i]
-            A_uv += self.by_fast[2 * c, i] * self.b[1, i]
-            A_vu += self.by_fast[2 * c + 1, i] * self.b[0, i]
-            A_vv += self.by_fast[2 * c + 1, i] * self.b[1, i]
-        # 1 + s A, and its inverse times s
-        p: cython.double = 1.0 + s_uu * A_uu + s_uv * A_vu
-        q: cython.double = s_uu * A_uv + s_uv * A_vv
-        t: cython.double = s_vv * A_vu
-        z: cython.double = 1.0 + s_vv * A_vv
-        det: cython.double = p * z - q * t
-        d_uu: cython.double = z * s_uu / det
-        d_uv: cython.double = (z * s_uv - q * s_vv) / det
-        d_vu: cython.double = -t * s_uu / det
-        d_vv: cython.double = (p * s_vv - t * s_uv) / det
-        left_u: cython.double
-        left_v: cython.double
-        for i in range(self.follows):
-            left_u = self.b[0, i] * d_uu + self.b[1, i] * d_vu
-            left_v = self.b[0, i] * d_uv + self.b[1, i] * d_vv
-            for j in range(self.follows):
-                self.G[i, j] -= left_u * self.bt[0, j] + left_v * self.bt[1, j]
-            for j in range(self.modes):
-                self.L[i, j] += left_u * self.out[0, j] + left_v * self.out[1, j]
-        for i in range(self.modes):
-            left_u = self.into[0, i] * d_uu + self.into[1, i] * d_vu
-            left_v = self.into[0, i] * d_uv + self.into[1, i] * d_vv
-            for j in range(self.follows):
-                self.R[i, j] += left_u * self.bt[0, j] + left_v * self.bt[1, j]
-            for j in range(self.modes):
-                self.K[i, j] += left_u * self.out[0, j] + left_v * self.out[1, j]
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def pull(self) -> cython.void:
-        """g, the forces of the sliders on the modes, and how fast the motion turns."""
-        i: cython.Py_ssize_t
-        j: cython.Py_ssize_t
-        k: cython.Py_ssize_t
-        a: cython.double
         rows: cython.double = 0.0
         damped: cython.double = 0.0
         total: cython.double
         for i in range(self.modes):
-            for k in range(self.columns):
-                self.g[i, k] = self.phi[i, k]
-            for j in range(self.follows):
-                a = self.R[i, j]
-                for k in range(self.columns):
-                    self.g[i, k] -= a * self.phi_f[j, k]
             total = 0.0
             for j in range(self.modes):
                 total += fabs(self.K[i, j])
@@ -344,45 +316,46 @@ class ManyMonodromy:
         self.rate = sqrt(rows) + damped
 
     @cython.cfunc
-    @cython.exceptval(-1, check=False)
-    def propagate(self, length: cython.double) -> cython.int:
+    @cython.exceptval(check=False)
+    def propagate(self, length: cython.double) -> cython.void:
         """The disturbances after an angle, by a series in steps in which its terms do not grow large."""
         i: cython.int
         steps: cython.int = cython.cast(cython.int, ceil(self.rate * length / REACH))
         steps = max(steps, 1)
         for i in range(steps):  # noqa: B007
             self.apply(length / steps)
-        return 0
 
     @cython.cfunc
-    @cython.exceptval(-1, check=False)
-    def apply(self, h: cython.double) -> cython.int:
+    @cython.exceptval(check=False)
+    def apply(self, h: cython.double) -> cython.void:
         """One step: the terms (A h)^j / j! of (q, q')' = (q', g - K q - D q')."""
-        i: cython.Py_ssize_t
-        k: cython.Py_ssize_t
         order: cython.int = 0
         size: cython.double = 1.0
         share: cython.double
-        a: cython.double
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        if self.modes == 0:
+            return
         for i in range(self.modes):
-            for k in range(self.columns):
+            for k in range(self.q.shape[1]):
                 self.tq[i, k], self.tv[i, k] = self.q[i, k], self.v[i, k]
         while size > SMALL or order < 2:
             order += 1
             share = h / order
             size *= self.rate * share
-            np.matmul(self.stiffness, self.term, out=self.product)
-            for i in range(self.modes):
-                a = self.damping[i]
-                for k in range(self.columns):
-                    self.work[i, k] = -self.work[i, k] - a * self.tv[i, k]
-                    if order == 1:
-                        self.work[i, k] += self.g[i, k]
-                    self.tq[i, k] = share * self.tv[i, k]
-                    self.tv[i, k] = share * self.work[i, k]
-                    self.q[i, k] += self.tq[i, k]
-                    self.v[i, k] += self.tv[i, k]
-        return 0
+            if not cython.compiled:
+                work = (self.g if order == 1 else 0.0) - self.K @ self.tq - self.damping[:, None] * self.tv
+                self.tq[:, :], self.tv[:, :] = share * self.tv, share * work
+                self.q += self.tq
+                self.v += self.tv
+            else:
+                add_term(
+                    cython.address(self.K[0, 0]), cython.address(self.damping[0]),
+                    cython.address(self.g[0, 0]), order == 1, share,
+                    cython.address(self.tq[0, 0]), cython.address(self.tv[0, 0]),
+                    cython.address(self.q[0, 0]), cython.address(self.v[0, 0]),
+                    cython.address(self.work[0, 0]), self.modes, self.q.shape[1],
+                )  # fmt: skip
 
 
 @cython.cfunc

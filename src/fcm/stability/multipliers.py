@@ -123,11 +123,13 @@ class Multipliers:
         """The multipliers of a period from the eigenvalues of what the monodromy follows."""
         return values
 
-    def verdict(self, z: FloatArray, turning: bool = False, enough: Sequence[float] = ()) -> Verdict:
+    def verdict(
+        self, z: FloatArray, turning: bool = False, enough: Sequence[float] = (), alone: bool = False
+    ) -> Verdict:
         """Of a solution with an even number of real multipliers above 1, or of a fold (turning).
 
         Where the finer motion says what is `enough`, stable (1) or unstable (0), it is not confirmed by that
-        of the balanced harmonics.
+        of the balanced harmonics. Of a solution that is alone none with further harmonics is near.
         """
         fine, plain, omega = self.fine.states, self.plain.states, float(z[-1])
         self.finer.at(z)
@@ -141,7 +143,7 @@ class Multipliers:
         values = self._values(self.fine, omega)
         if values is None:
             return UNKNOWN
-        found = self._verdict_of(MultiplierSpectrum(values, self.options), z, turning, enough)
+        found = self._verdict_of(MultiplierSpectrum(values, self.options), z, turning, enough, alone)
         return (
             either_slider(found, self._with_sliders_at_rest(omega))._replace(held=fine.held)
             if fine.held
@@ -149,7 +151,12 @@ class Multipliers:
         )
 
     def _verdict_of(
-        self, fine: MultiplierSpectrum, z: FloatArray, turning: bool, enough: Sequence[float]
+        self,
+        fine: MultiplierSpectrum,
+        z: FloatArray,
+        turning: bool,
+        enough: Sequence[float],
+        is_alone: bool,
     ) -> Verdict:
         """The verdict, which the motion of the balanced harmonics alone confirms where that may matter.
 
@@ -175,7 +182,8 @@ class Multipliers:
             return found._replace(stable=math.nan) if doubt else found
         slight = 0.0 < found.growth < max(options.doubtful_decay, options.growth_ratio * self.finer.shift)
         if slight or self._doubtful(found, fine, plain, options.growth_ratio, float(z[-1])):
-            return self.refined(z, persistent=found.stable == 1.0) or found._replace(stable=math.nan)
+            better = None if is_alone else self.refined(z, persistent=found.stable == 1.0)
+            return better or found._replace(stable=math.nan)
         return found
 
     def _doubtful(
@@ -230,7 +238,7 @@ class Multipliers:
             refined.take(self.system)
             judge.take(refined.system)
         there = refined.rebalance(z, self.finer.x, persistent)
-        return None if there is None else judge.verdict(there)
+        return None if there is None else judge.verdict(there)._replace(rebalanced=True)
 
     def confirms(self, z: FloatArray, stable: float, most: float = math.inf) -> bool:
         """Whether a solution is as stable as told (1 or 0) with the further harmonics balanced, too; to these

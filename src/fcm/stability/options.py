@@ -185,9 +185,9 @@ class SamplingOptions:
     max_phase : float
         [rad] by which multipliers that are not small turn at most, from one point to the next.
     tolerance : float
-        Part of a step, to which a crossing is known where the growth jumps.
+        Part of a step, to which a crossing is known.
     confirmed_tolerance : float
-        The same where verdicts are confirmed, as the jump may be from one motion to a finer one.
+        The same where verdicts are confirmed and the growth jumps, as it may from one motion to a finer one.
     growth_tolerance : float
         Growth at a crossing.
     max_evaluations : int

@@ -28,7 +28,8 @@ class Rebalancing:
         self.homotopy = Homotopy(self.balance)
         self.homotopy.subtracted_part = 1.0
         self.newton = Newton(self.homotopy)
-        self.newton.row[:] = np.eye(self.balance.unknowns + 1)[-1]  # holds the frequency
+        self.newton.row[:] = 0.0
+        self.newton.row[-1] = 1.0  # holds the frequency
         balanced = np.isin(self.system.layout.harmonic_of(self.more), [0, *self.harmonics])
         self.balanced = np.tile(balanced, len(system.scene.contacts))
 

@@ -130,9 +130,11 @@ class RingMultipliers(Multipliers):
         whole[..., d:] = shifted.reshape(len(shift), self.contacts, d * count).view(np.float64)
         return bool(states.find_events(whole.ravel()))
 
-    def verdict(self, z: FloatArray, turning: bool = False, enough: Sequence[float] = ()) -> Verdict:
+    def verdict(
+        self, z: FloatArray, turning: bool = False, enough: Sequence[float] = (), alone: bool = False
+    ) -> Verdict:
         """As `Multipliers.verdict`; in a part of a period multipliers turn by as much less towards -1."""
-        found = Multipliers.verdict(self, z, turning, enough)
+        found = Multipliers.verdict(self, z, turning, enough, alone)
         if self.planar:
             return found
         return found._replace(before_flip=min(found.before_flip * self.ring.period, np.pi))

@@ -28,6 +28,7 @@ class Verdict(NamedTuple):
     passive: bool = False  # no contact slips or opens
     held: int = 0  # contacts that never slip, but for an extreme of a limit that holds the slider
     values: tuple[complex, ...] = ()  # the multipliers
+    rebalanced: bool = False  # of the motion with further harmonics balanced
 
 
 PASSIVE = Verdict(1.0, -math.inf, Bifurcation.NEIMARK_SACKER, passive=True)
@@ -164,6 +165,19 @@ def doubtful(
         plain.odd and abs(plain.nearest) > options.verdict.real_uncertainty
     )
     return (meetings and flips) or -found.growth < change or far
+
+
+def flip_function(values: Sequence[complex]) -> float:
+    """What changes its sign where one multiplier passes -1, smoothly, however it has come there: less than
+    0 while none has.
+
+    >>> flip_function([0.5 + 0.5j, 0.5 - 0.5j]), flip_function([-1.5, -0.5])
+    (-2.5, 0.25)
+    """
+    product = 1.0 + 0.0j
+    for value in values:
+        product *= 1.0 + value
+    return -product.real
 
 
 def flip_distance(values: Sequence[complex], options: StabilityOptions = STABILITY) -> tuple[float, float]:
