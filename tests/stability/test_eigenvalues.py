@@ -9,7 +9,7 @@ from fcm.stability.eigenvalues import eigenvalues
 
 
 def found(matrix: np.ndarray) -> np.ndarray:
-    values = eigenvalues(matrix)
+    (values,) = eigenvalues([matrix])
     assert values is not None
     return np.array(values, dtype=complex)
 
@@ -67,4 +67,13 @@ def test_nothing_is_said_of_what_is_no_number():
     for wrong in (np.nan, np.inf):
         matrix = np.eye(3)
         matrix[0, 2] = wrong
-        assert eigenvalues(matrix) is None
+        assert eigenvalues([matrix]) == [None]
+
+
+def test_one_that_is_no_number_does_not_hide_the_others():
+    """Of several of the same size each is as alone; so are those of another size between them."""
+    rng = np.random.default_rng(3)
+    matrices = [rng.standard_normal((n, n)) for n in (3, 5, 3, 3)]
+    matrices.insert(2, np.full((3, 3), np.nan))
+    assert eigenvalues(matrices) == [eigenvalues([one])[0] for one in matrices]
+    assert eigenvalues(matrices)[2] is None

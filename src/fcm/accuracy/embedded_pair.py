@@ -29,7 +29,7 @@ from fcm.continuation import Mark, Path
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
-from fcm.harmonic_balance.response_quantities import borne_along
+from fcm.harmonic_balance.response_quantities import ContactRecord
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.scene.options import LIMITS
@@ -55,7 +55,8 @@ class Errors:
     partner: its harmonics.
     borne (point, contact, 4): of what the contacts bear, see `response_quantities.cycles`, each relative
     to itself; infinite where it is nothing, and something in the partner. greatest (contact, 4): of the
-    greatest of each along the path. pieces: what is known of the partner's curve.
+    greatest of each along the path. contacts: what those of the path itself do and bear. pieces: what is
+    known of the partner's curve.
     """
 
     amplitude: FloatArray
@@ -68,6 +69,7 @@ class Errors:
     partner: tuple[int, ...]
     borne: FloatArray
     greatest: FloatArray
+    contacts: ContactRecord
     pieces: tuple[CurvePiece, ...] = field(default=(), repr=False)
 
     @property
@@ -88,6 +90,7 @@ def errors_along(
     Where the partner's own branch does not come to a frequency nothing is told, see `with_nearest`.
     """
     shown = shown or reported_quantities(system, path)
+    contacts = ContactRecord.at(system, path.z)
     tops, d = shown.amplitude.argmax(axis=0), np.arange(shown.amplitude.shape[1])
     folds, size = path.where(Mark.FOLD), shown.amplitude.max(axis=0)
     special = np.unique(np.concatenate((folds, path.where(Mark.PEAK), tops)))
@@ -99,10 +102,12 @@ def errors_along(
         of_folds = np.full(len(folds), none[0, 0])
         borne = np.full((len(path.z), len(system.scene.contacts), 4), none[0, 0])
         known: Mask = np.isfinite(none[:, 0])  # then the partner's curve is this one
-        own = (_same_curve(system, path, shown),) if known.all() and len(path.z) > 1 else ()
+        own = (piece_of(path, shown, _flat(contacts.borne)),) if known.all() and len(path.z) > 1 else ()
         more = system.harmonics
-        return Errors(none, none[:, 0], known, none[0], size, of_folds, share, more, borne, borne[0], own)
-    partner = _partner(system, path, shown, share, options, budget or Budget(options.max_seconds))
+        told = none, none[:, 0], known, none[0], size, of_folds, share, more, borne, borne[0]
+        return Errors(*told, contacts, own)
+    seconds = budget or Budget(options.max_seconds)
+    partner = _partner(system, path, shown, contacts, share, options, seconds)
     change = partner.displacements(np.union1d(partner.distinct_points(special), np.union1d(folds, met)))
     followed = partner.follow_stretches(change)
     compared, dofs = partner.compared_quantities(change), shown.amplitude.shape[1]
@@ -147,6 +152,7 @@ def errors_along(
         partner=partner.more,
         borne=borne,
         greatest=greatest,
+        contacts=contacts,
         pieces=partner.pieces(compared, followed),
     )
 
@@ -155,6 +161,7 @@ def _partner(
     system: System,
     path: Path,
     shown: ReportedQuantities,
+    contacts: ContactRecord,
     share: FloatArray,
     options: PairOptions,
     budget: Budget,
@@ -162,7 +169,8 @@ def _partner(
     """The partner of a path; with fewer harmonics where it is another curve, too dear to be followed."""
     ports, most = system.layout.ports, Budget.elsewhere(system.work, options).seconds
     more = partner_of(system.harmonics, share, ports, options)
-    partner = PartnerCurve(system, path, shown, more, options, budget)
+    borne = _flat(contacts.borne)
+    partner = PartnerCurve(system, path, shown, borne, more, options, budget)
     if partner.is_same_curve() or _seconds_along(system, path, more) <= most:
         return partner
     system.work.add(partner.seconds())
@@ -173,7 +181,7 @@ def _partner(
         )
         if _seconds_along(system, path, more) <= most:
             break
-    other = PartnerCurve(system, path, shown, more, options, budget)
+    other = PartnerCurve(system, path, shown, borne, more, options, budget)
     other.stretches.budget = Budget(0.0)  # see `elsewhere`
     return other
 
@@ -214,7 +222,7 @@ def with_nearest(
         there = nearest(pieces, path.parameter[rows], even, now)
         off = np.abs(there[:, :dofs] - now)
         error[rows] = np.maximum(off / np.where(now > 0.0, now, 1.0), _truncation_of(off, now)[:, None])
-        bear = borne_along(system, path.z).reshape(len(path.z), -1)
+        bear = _flat(every[k].contacts.borne)
         change = there[:, dofs:] - bear[rows]
         borne[rows] = relative(change, bear[rows], bear.max(axis=0), options).reshape(len(rows), -1, 4)
         truncation = _truncation(error, amplitude)
@@ -222,9 +230,9 @@ def with_nearest(
     return tuple(every)
 
 
-def _same_curve(system: System, path: Path, shown: ReportedQuantities) -> CurvePiece:
-    """A path whose partner is the same curve."""
-    return piece_of(path, shown, borne_along(system, path.z).reshape(len(path.z), -1))
+def _flat(borne: FloatArray) -> FloatArray:
+    """What contacts bear (point, contact, 4) as columns (point, 4 contact)."""
+    return borne.reshape(len(borne), -1)
 
 
 def _truncation(error: FloatArray, amplitude: FloatArray) -> FloatArray:

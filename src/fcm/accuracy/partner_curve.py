@@ -91,12 +91,13 @@ class PartnerCurve:
         system: System,
         path: Path,
         shown: ReportedQuantities,
+        borne: FloatArray,
         more: tuple[int, ...],
         options: PairOptions,
         budget: Budget,
     ) -> None:
         self.path, self.shown, self.options, self.fewer = path, shown, options, system.harmonics
-        self.borne = borne_along(system, path.z).reshape(len(path.z), -1)
+        self.borne = borne
         self.amplitude, self.linear = shown.amplitude, _with_ends(path, shown.linear)
         least = system.options.spectrum.least_amplitude * self.amplitude.max(axis=1, keepdims=True)
         self.unit = np.maximum(self.amplitude, least)

@@ -42,6 +42,36 @@ class PointRecord:
     linear: npt.NDArray[np.bool_]  # (point,) where no contact slips or separates
 
 
+@dataclass(frozen=True)
+class ContactRecord:
+    """What contacts do and bear at points: their loops (point, contact, 5), see `loops`; what they do over a
+    cycle (point, contact) and bear (point, contact, 4), see `cycles`."""
+
+    loop: FloatArray
+    words: npt.NDArray[np.str_]
+    borne: FloatArray
+
+    @classmethod
+    def at(cls, system: System, z: FloatArray) -> ContactRecord:
+        """At points z (point, unknown + 1)."""
+        loop = loops(system, z)
+        return cls(loop, *cycles(system, z, loop))
+
+    @classmethod
+    def joined(cls, parts: Sequence[ContactRecord]) -> ContactRecord:
+        """Of points one after the other."""
+        return cls(*(_joined([getattr(one, name) for one in parts]) for name in ("loop", "words", "borne")))
+
+    def with_rows(self, after: IntArray, other: ContactRecord) -> ContactRecord:
+        """With the points of another inserted after some points."""
+        at, words = after + 1, self.words.astype(np.result_type(self.words, other.words))
+        return ContactRecord(
+            np.insert(self.loop, at, other.loop, axis=0),
+            np.insert(words, at, other.words, axis=0),
+            np.insert(self.borne, at, other.borne, axis=0),
+        )
+
+
 def recorded(
     system: System, paths: Sequence[Path], shown: Sequence[ReportedQuantities] | None = None
 ) -> PointRecord:

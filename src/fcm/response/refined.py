@@ -18,13 +18,13 @@ from fcm.accuracy.stability_limits import StabilityLimit, distances_from, stabil
 from fcm.accuracy.stability_validity import on_other_branch, without_neighbour
 from fcm.branches.branch_points import all_up_to
 from fcm.branches.search import symmetry_lost, with_branching, with_isolas
-from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_at
-from fcm.harmonic_balance.system import System
+from fcm.harmonic_balance.reported_quantities import reported_at
+from fcm.harmonic_balance.response_quantities import ContactRecord
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.further_levels import with_levels_below_peaks, with_levels_where_unstable, with_traced
 from fcm.response.master_dofs import with_all_dofs
 from fcm.response.options import SWEEP
-from fcm.stability.bifurcations import InsertedPoint, stability, with_points
+from fcm.stability.bifurcations import stability, with_points
 
 Rows = npt.NDArray[np.intp]
 Harmonics = tuple[int, ...]
@@ -161,7 +161,8 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
             continue
         after = np.array([one.after for one in inserted], dtype=np.intp)
         paths.append(with_points(path, inserted))
-        shown.append(_with_reported(found.system, seen, inserted, after))
+        z, direction = (np.array([getattr(one, name) for one in inserted]) for name in ("z", "direction"))
+        shown.append(seen.with_rows(after, reported_at(found.system, z, direction)))
         errors.append(
             replace(
                 error,
@@ -169,6 +170,7 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
                 truncation=_between(error.truncation, after),
                 is_same_curve=np.insert(error.is_same_curve, after + 1, error.is_same_curve[after]),
                 borne=_between(error.borne, after),
+                contacts=error.contacts.with_rows(after, ContactRecord.at(found.system, z)),
             )
         )
         stable.append(np.insert(judged.stable, after + 1, [one.stable for one in inserted]))
@@ -176,14 +178,6 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
     traced = replace(found.traced, branches=branches)
     found = replace(found, traced=traced, shown=tuple(shown), errors=tuple(errors))
     return replace(now, found=found, stable=stable, lost=lost, bifurcations=bifurcations)
-
-
-def _with_reported(
-    system: System, known: ReportedQuantities, inserted: Sequence[InsertedPoint], after: Rows
-) -> ReportedQuantities:
-    """With what is reported of points inserted after some others."""
-    z, direction = (np.array([getattr(one, name) for one in inserted]) for name in ("z", "direction"))
-    return known.with_rows(after, reported_at(system, z, direction))
 
 
 def _between(values: FloatArray, after: Rows) -> FloatArray:

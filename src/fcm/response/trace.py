@@ -17,7 +17,7 @@ from fcm.branches.options import FOLDS
 from fcm.contact.contact_law import ContactLawError
 from fcm.continuation import Mark
 from fcm.harmonic_balance.planar_quantities import planar_quantities
-from fcm.harmonic_balance.response_quantities import PointRecord, cycles, loops, recorded, table_errors
+from fcm.harmonic_balance.response_quantities import ContactRecord, PointRecord, recorded, table_errors
 from fcm.harmonic_balance.rounding import with_precise_fundamental
 from fcm.harmonic_balance.static_equilibrium import RestError
 from fcm.harmonic_balance.stiff_contacts import too_stiff
@@ -137,8 +137,8 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
     scene, first = system.scene, system.harmonics.index(1)
     ends, rows = np.flatnonzero(np.diff(points.path)) + 1, np.arange(points.path.size)
     rows = np.insert(rows, ends, -1) if ends.size else rows
-    loop, plane = loops(system, points.z), planar_quantities(system, points.z)
-    words, borne = cycles(system, points.z, loop)
+    contacts = ContactRecord.joined([one.contacts for one in found.errors])
+    words, borne, plane = contacts.words, contacts.borne, planar_quantities(system, points.z)
     X = 1j * points.X  # from Re(X exp(i theta)) to Im(X exp(i theta))
     reason, nowhere = incomplete(found, points)
     stable = np.where(nowhere, 0.0, np.concatenate(parts))  # what creeps away, or floats, is no steady state
@@ -165,7 +165,7 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
         phase=pick(np.angle(X[:, first]), rows),
         mean=pick(points.mean, rows),
         regime=pick(words, rows),
-        loop=pick(loop, rows),
+        loop=pick(contacts.loop, rows),
         cycle=pick(_without_slip_of_own_laws(scene, borne), rows),
         cycle_error=pick(np.concatenate([one.borne for one in found.errors]), rows),
         stable=pick(stable, rows),

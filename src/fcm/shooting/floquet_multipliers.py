@@ -46,7 +46,7 @@ class Floquet:
         self.states.take(segments, duration)
         self.monodromy.follow(2.0 * np.pi / duration)
         matrix = self.monodromy.matrix()
-        found = eigenvalues(matrix)
+        found = eigenvalues((matrix,))[0]
         return np.full(len(matrix), np.inf, dtype=complex) if found is None else np.array(found)
 
 

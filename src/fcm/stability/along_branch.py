@@ -63,10 +63,16 @@ class PathVerdicts:
     def at(self, i: int) -> Verdict:
         """Of a point, which has it then."""
         if i not in self._verdicts:
-            self.evaluations += 1
-            fold, alone = bool(self.fold[i]), bool(self.alone[i])
-            self._keep(i, self.multipliers.verdict(self.path.z[i], fold, alone=alone))
+            self.look_at((i,))
         return self._verdicts[i]
+
+    def look_at(self, points: Sequence[int]) -> None:
+        """At several points, which have verdicts then."""
+        new = [i for i in points if i not in self._verdicts]
+        self.evaluations += len(new)
+        z, fold, alone = [self.path.z[i] for i in new], self.fold[new].tolist(), self.alone[new].tolist()
+        for i, verdict in zip(new, self.multipliers.verdicts(z, fold, alone), strict=True):
+            self._keep(i, verdict)
 
     def _keep(self, t: float, verdict: Verdict) -> Verdict:
         if t not in self._verdicts:

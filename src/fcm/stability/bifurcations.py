@@ -121,10 +121,8 @@ class _BifurcationSearch:
         if self.many:  # of a fold no doubt is told: its neighbour is looked at, too
             beside = (i + way for i, way in ((first, 1), (last, -1)) if self.verdicts.fold[i])
             nodes |= {i for i in beside if first < i < last}
-        for i in sorted(nodes):
-            self.verdicts.at(i)
-        for a, b in itertools.pairwise(sorted(nodes)):
-            self._refine_between(a, b)
+        self.verdicts.look_at(sorted(nodes))
+        self._refine_between(list(itertools.pairwise(sorted(nodes))))
 
     def _search_windows(self, first: int, last: int) -> None:
         """Look where a window may be hidden between two places of a run that were looked at."""
@@ -148,9 +146,8 @@ class _BifurcationSearch:
             self._divide(before, (ends[0], t), [ends[1]], divided + 1)
             self._divide([ends[0]], (t, ends[1]), after, divided + 1)
             return
-        self.verdicts.at(int(t)), self.verdicts.at(math.ceil(t))
-        self._refine_between(math.ceil(ends[0]), int(t))
-        self._refine_between(math.ceil(t), int(ends[1]))
+        self.verdicts.look_at(sorted({int(t), math.ceil(t)}))
+        self._refine_between([(math.ceil(ends[0]), int(t)), (math.ceil(t), int(ends[1]))])
 
     def _doubtful_place(
         self, before: list[float], ends: tuple[float, float], after: list[float], divided: int
@@ -204,19 +201,27 @@ class _BifurcationSearch:
             if before == after != one.stable and not math.isnan(one.stable):
                 yield one
 
-    def _refine_between(self, a: int, b: int) -> None:
-        """Look between two points until neither the verdict nor a change of its sign can hide there."""
-        if b - a < 2:
-            return
-        one, middle, other = self.verdicts.at(a), (a + b) // 2, self.verdicts.at(b)
+    def _refine_between(self, ways: list[tuple[int, int]]) -> None:
+        """Look between pairs of points that were looked at until neither the verdict nor a change of its sign
+        can hide there."""
+        seen = self.verdicts
+        while ways:
+            wide = [(a, (a + b) // 2, b) for a, b in ways if b - a > 1 and self._may_differ(a, b)]
+            seen.look_at([middle for _, middle, _ in wide])
+            bent = (
+                (a, middle, b)
+                for a, middle, b in wide
+                if not _growth_is_linear(seen[a], seen[middle], seen[b], self.many, self.options)
+            )
+            ways = [half for a, middle, b in bent for half in ((a, middle), (middle, b))]
+
+    def _may_differ(self, a: int, b: int) -> bool:
+        """Whether anything between two points may be told otherwise than at both; with many contacts nothing
+        is told between two of which it is not."""
+        one, other = self.verdicts[a], self.verdicts[b]
         if self.many and math.isnan(one.stable) and math.isnan(other.stable):
-            return  # what is not told on both sides is not between them
-        passive = one.passive and other.passive
-        if not passive and not _growth_is_linear(
-            one, self.verdicts.at(middle), other, self.many, self.options
-        ):
-            self._refine_between(a, middle)
-            self._refine_between(middle, b)
+            return False
+        return not (one.passive and other.passive)
 
     def _crossings(self, places: list[float]) -> Iterator[Crossing]:
         """Where the growth changes sign between places that are told, and what is not told between them."""

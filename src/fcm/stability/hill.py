@@ -120,6 +120,12 @@ class HillMultipliers:
         spectrum = MultiplierSpectrum(values, self.options)
         return spectrum.verdict(spectrum.odd or turning)
 
+    def verdicts(
+        self, z: Sequence[FloatArray], turning: Sequence[bool], alone: Sequence[bool]
+    ) -> list[Verdict]:
+        """Of several solutions."""
+        return [self.verdict(*one) for one in zip(z, turning, strict=True)]
+
     def confirms(self, z: FloatArray, stable: float, most: float = 0.0) -> bool:
         """Whether further harmonics say the same of a solution: none are balanced."""
         return True

@@ -52,6 +52,18 @@ class VariationalProblem(NamedTuple):
     monodromy: Monodromy | ManyMonodromy | PlanarMonodromy | ManyPlanarMonodromy
 
 
+class _Look(NamedTuple):
+    """A solution that was looked at: whether it is a fold, and alone; how much its finer motion adds,
+    contacts of that which are held, see `Verdict`, and the monodromy matrix of that."""
+
+    z: FloatArray
+    turning: bool
+    alone: bool
+    shift: float
+    held: int
+    matrix: FloatArray
+
+
 class Multipliers:
     """The multipliers of solutions of a system up to a frequency [rad/s]; a workspace."""
 
@@ -82,11 +94,12 @@ class Multipliers:
             self.states = BalancedSequence(contact, finer), BalancedSequence(contact, harmonics)
         self.fine, self.plain = self._followed()
         self.further: tuple[Rebalancing, Multipliers] | None = None
+        self._seen: FloatArray | None = None  # the solution whose finer motion was looked at last
 
     def take(self, system: System) -> None:
         """A system with the same structure and harmonics, whose contacts may be others."""
         same = system.scene.frequency_range == self.system.scene.frequency_range and not system.scene.loads
-        self.system, self.further = system, self.further if same else None
+        self.system, self.further, self._seen = system, self.further if same else None, None
         before = self.contact[:, :3].copy()
         for row, c in zip(self.contact, system.scene.contacts, strict=True):
             row[:] = c.mu, c.k_u, c.k_v, c.n_0
@@ -113,6 +126,7 @@ class Multipliers:
     def of(self, z: FloatArray) -> list[complex] | None:
         """The multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""
         self.finer.at(z)
+        self._seen = None
         return self._values(self.fine, z[-1]) if self.find_states(self.fine.states, self.finer.x) else None
 
     def find_states(self, states: BalancedSequence | PlanarSequence, x: FloatArray) -> bool:
@@ -131,8 +145,32 @@ class Multipliers:
         Where the finer motion says what is `enough`, stable (1) or unstable (0), it is not confirmed by that
         of the balanced harmonics. Of a solution that is alone none with further harmonics is near.
         """
-        fine, plain, omega = self.fine.states, self.plain.states, float(z[-1])
+        return self.verdicts((z,), (turning,), (alone,), enough)[0]
+
+    def verdicts(
+        self,
+        z: Sequence[FloatArray],
+        turning: Sequence[bool],
+        alone: Sequence[bool],
+        enough: Sequence[float] = (),
+    ) -> list[Verdict]:
+        """The same of several solutions (unknown + 1,): LAPACK is called once for as many as can be held."""
+        found, count = list[Verdict](), 0
+        while count < len(z):
+            looks, held = list[_Look | Verdict](), 0
+            while count < len(z) and held < self.options.structure.max_held:
+                one = self._look(z[count], turning[count], alone[count])
+                looks.append(one)
+                held += one.matrix.size if isinstance(one, _Look) else 0
+                count += 1
+            found += self._verdicts_of(looks, enough)
+        return found
+
+    def _look(self, z: FloatArray, turning: bool, alone: bool) -> _Look | Verdict:
+        """At a solution and its finer motion; the verdict where no multipliers are needed for it."""
+        fine, plain = self.fine.states, self.plain.states
         self.finer.at(z)
+        self._seen = z
         if self.finer.shift < self.options.confirmation.min_addition:
             if not self.find_states(plain, z):
                 return UNKNOWN
@@ -140,69 +178,92 @@ class Multipliers:
                 return PASSIVE._replace(held=plain.held) if plain.held else PASSIVE
         if not self.find_states(fine, self.finer.x):
             return UNKNOWN
-        values = self._values(self.fine, omega)
-        if values is None:
+        matrix = self._matrix(self.fine, float(z[-1]))
+        return UNKNOWN if matrix is None else _Look(z, turning, alone, self.finer.shift, fine.held, matrix)
+
+    def _look_again(self, z: FloatArray) -> None:
+        """At a solution that others may have been looked at since."""
+        if self._seen is not z:
+            self.finer.at(z)
+            self.find_states(self.fine.states, self.finer.x)
+            self._seen = z
+
+    def _verdicts_of(self, looks: Sequence[_Look | Verdict], enough: Sequence[float]) -> list[Verdict]:
+        """The verdicts, which the motion of the balanced harmonics alone confirms where that may matter."""
+        seen = [one for one in looks if isinstance(one, _Look)]
+        fine = dict(zip(map(id, seen), self._spectra([one.matrix for one in seen]), strict=True))
+        known, left = dict[int, Verdict](), list[_Look]()
+        for one in seen:
+            verdict = self._alone(one, fine[id(one)], enough)
+            if verdict is None:
+                left.append(one)
+            else:
+                known[id(one)] = verdict
+        both = [self._plain_matrix(one.z) for one in left]
+        for one, plain in zip(left, self._spectra(both), strict=True):
+            known[id(one)] = self._of_both(one, fine[id(one)], plain)
+        for one in seen:
+            if one.held and fine[id(one)] is not None:
+                resting = self._with_sliders_at_rest(one.z)
+                known[id(one)] = either_slider(known[id(one)], resting)._replace(held=one.held)
+        return [known[id(one)] if isinstance(one, _Look) else one for one in looks]
+
+    def _alone(self, one: _Look, fine: MultiplierSpectrum | None, enough: Sequence[float]) -> Verdict | None:
+        """What the finer motion alone says; None where that is to be confirmed."""
+        if fine is None:
             return UNKNOWN
-        found = self._verdict_of(MultiplierSpectrum(values, self.options), z, turning, enough, alone)
-        return (
-            either_slider(found, self._with_sliders_at_rest(omega))._replace(held=fine.held)
-            if fine.held
-            else found
-        )
-
-    def _verdict_of(
-        self,
-        fine: MultiplierSpectrum,
-        z: FloatArray,
-        turning: bool,
-        enough: Sequence[float],
-        is_alone: bool,
-    ) -> Verdict:
-        """The verdict, which the motion of the balanced harmonics alone confirms where that may matter.
-
-        What that does not confirm, or only just, is that of a motion with the further harmonics balanced too,
-        which may be the last.
-        """
-        alone = fine.verdict(turning)
-        options = self.options.confirmation
-        safe = alone.growth < -max(options.doubtful_decay, options.decay_ratio * self.finer.shift)
+        alone, options = fine.verdict(one.turning), self.options.confirmation
+        safe = alone.growth < -max(options.doubtful_decay, options.decay_ratio * one.shift)
         if not fine.odd and (safe or alone.stable in enough):
             return alone
-        if self.finer.shift == 0.0:  # both motions are the same, as where no contact slips but one just would
-            return even_verdict(fine, fine, turning, self.options)
-        values = self._values(self.plain, float(z[-1])) if self.find_states(self.plain.states, z) else None
-        if values is None:
+        if one.shift == 0.0:  # both motions are the same, as where no contact slips but one just would
+            return even_verdict(fine, fine, one.turning, self.options)
+        return None
+
+    def _plain_matrix(self, z: FloatArray) -> FloatArray | None:
+        return self._matrix(self.plain, float(z[-1])) if self.find_states(self.plain.states, z) else None
+
+    def _of_both(
+        self, one: _Look, fine: MultiplierSpectrum | None, plain: MultiplierSpectrum | None
+    ) -> Verdict:
+        """What both motions say.
+
+        What the one does not confirm, or only just, is that of a motion with the further harmonics balanced
+        too, which may be the last.
+        """
+        if fine is None or plain is None:
             return UNKNOWN
-        plain = MultiplierSpectrum(values, self.options)
-        found = even_verdict(fine, plain, turning, self.options)
-        if turning:
+        z, options = one.z, self.options.confirmation
+        found = even_verdict(fine, plain, one.turning, self.options)
+        if one.turning:
             return found
         if self.last:
-            doubt = self._doubtful(found, fine, plain, 1.0, float(z[-1]))
+            doubt = self._doubtful(found, fine, plain, 1.0, z)
             return found._replace(stable=math.nan) if doubt else found
-        slight = 0.0 < found.growth < max(options.doubtful_decay, options.growth_ratio * self.finer.shift)
-        if slight or self._doubtful(found, fine, plain, options.growth_ratio, float(z[-1])):
-            better = None if is_alone else self.refined(z, persistent=found.stable == 1.0)
+        slight = 0.0 < found.growth < max(options.doubtful_decay, options.growth_ratio * one.shift)
+        if slight or self._doubtful(found, fine, plain, options.growth_ratio, z):
+            better = None if one.alone else self.refined(z, persistent=found.stable == 1.0)
             return better or found._replace(stable=math.nan)
         return found
 
     def _doubtful(
-        self, found: Verdict, fine: MultiplierSpectrum, plain: MultiplierSpectrum, times: float, omega: float
+        self, found: Verdict, fine: MultiplierSpectrum, plain: MultiplierSpectrum, times: float, z: FloatArray
     ) -> bool:
         """As `doubtful`, but for a pair that decays also where it meets at -1."""
         if not doubtful(found, fine, plain, times, options=self.options):
             return False
         return doubtful(found, fine, plain, times, False, self.options) or not self._pair_decays_at_flip(
-            found.values, omega
+            found.values, z
         )
 
-    def _pair_decays_at_flip(self, values: Sequence[complex], omega: float) -> bool:
+    def _pair_decays_at_flip(self, values: Sequence[complex], z: FloatArray) -> bool:
         """Whether the pair nearest to -1, of values of the finer motion, decays where it meets there.
 
         The same motion is taken at frequencies at which the pair comes to -1: as far as it parts there, the
         changing contacts drive it.
         """
-        at, seen = [0.0], [flip_distance(values, self.options)]
+        self._look_again(z)
+        at, seen, omega = [0.0], [flip_distance(values, self.options)], float(z[-1])
         ahead = self.options.confirmation.frequency_step
         for _ in range(self.options.confirmation.max_evaluations):
             there = self._values(self.fine, omega * (1.0 + ahead))
@@ -226,8 +287,8 @@ class Multipliers:
         return bool(math.sqrt(max(-least, 0.0)) + seen[-1][1] < -self.options.confirmation.meeting_decay)
 
     def refined(self, z: FloatArray, persistent: bool) -> Verdict | None:
-        """Of the solution with the harmonics of the finer motion, which was looked at last, balanced; None
-        where there is none near."""
+        """Of the solution with the harmonics of the finer motion balanced; None where there is none near."""
+        self._look_again(z)
         if self.further is None:
             refined = Rebalancing(
                 self.system, enriched_harmonics([int(h) for h in self.system.harmonics]), self.options
@@ -244,6 +305,7 @@ class Multipliers:
         """Whether a solution is as stable as told (1 or 0) with the further harmonics balanced, too; to these
         those beyond them add no more than the most, as `EnrichedMotion.shift` says it."""
         self.finer.at(z)
+        self._seen = None  # whose states are not known
         if self.finer.shift == 0.0:  # it has none
             return True
         found = self.refined(z, persistent=True)
@@ -252,12 +314,28 @@ class Multipliers:
         assert self.further is not None
         return bool(self.further[1].finer.shift <= most)
 
-    def _values(self, followed: VariationalProblem, omega: float) -> list[complex] | None:
-        """Of the motion that was looked at."""
+    def _matrix(self, followed: VariationalProblem, omega: float) -> FloatArray | None:
+        """The monodromy matrix of the motion that was looked at."""
         followed.monodromy.follow(omega)
-        found = eigenvalues(followed.monodromy.matrix())
-        if found is None:
-            return None
+        found: FloatArray = followed.monodromy.matrix()
+        return found
+
+    def _values(self, followed: VariationalProblem, omega: float) -> list[complex] | None:
+        """The multipliers of the motion that was looked at."""
+        matrix = self._matrix(followed, omega)
+        found = None if matrix is None else eigenvalues((matrix,))[0]
+        return None if found is None else self._disturbing(found)
+
+    def _spectra(self, matrices: Sequence[FloatArray | None]) -> list[MultiplierSpectrum | None]:
+        """The spectrum of each; None of those of which it is not known."""
+        known = iter(eigenvalues([one for one in matrices if one is not None]))
+        each = (None if one is None else next(known) for one in matrices)
+        return [
+            None if one is None else MultiplierSpectrum(self._disturbing(one), self.options) for one in each
+        ]
+
+    def _disturbing(self, found: list[complex]) -> list[complex]:
+        """The multipliers of a period, without those of what nothing holds."""
         values = self.of_period(found)
         for _ in range(2 * self.has_rigid_body_modes):
             nearest = min(values, key=_from_one)
@@ -265,13 +343,14 @@ class Multipliers:
                 values.remove(nearest)
         return values
 
-    def _with_sliders_at_rest(self, omega: float) -> Verdict:
+    def _with_sliders_at_rest(self, z: FloatArray) -> Verdict:
         """With the sliders that an extreme of a limit holds left where they are."""
+        self._look_again(z)
         states = self.fine.states
         states.yielding = False
         self.find_states(states, self.finer.x)
-        values = self._values(self.fine, omega) if states.moving else []
-        states.yielding = True
+        values = self._values(self.fine, float(z[-1])) if states.moving else []
+        states.yielding, self._seen = True, None
         return UNKNOWN if values is None else MultiplierSpectrum(values, self.options).verdict()
 
 

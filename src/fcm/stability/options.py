@@ -54,6 +54,8 @@ class StructureOptions:
         Times that, with fewer modes, and contacts in a plane.
     max_cached : int
         Disturbances; with fewer the last workspace is used again.
+    max_held : int
+        Entries of the matrices of points that are held at once, whose eigenvalues are found together.
     max_disturbances : int
         Of the sectors of a ring; with more a point takes seconds, and stability is not told.
     """
@@ -65,6 +67,7 @@ class StructureOptions:
     above_harmonics: float = 1.5
     above_of_few: float = 2.0
     max_cached: int = 12
+    max_held: int = 20_000
     max_disturbances: int = 600
 
 

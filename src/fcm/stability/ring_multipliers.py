@@ -72,6 +72,7 @@ class RingMultipliers(Multipliers):
     ) -> None:
         self.options = options
         self.system, self.highest, self.last, self.further = system, highest, last, None
+        self._seen = None
         linear, ring = system.linear, system.scene.ring
         assert isinstance(linear, RingLinear) and ring is not None
         n = ring.period
@@ -113,9 +114,9 @@ class RingMultipliers(Multipliers):
             for numbers in (finer, harmonics)
         }
 
-    def _values(self, followed: VariationalProblem, omega: float) -> list[complex] | None:
-        """As `Multipliers._values`; None where modes are missing, or there are too many."""
-        return None if self.unknown else Multipliers._values(self, followed, omega)
+    def _matrix(self, followed: VariationalProblem, omega: float) -> FloatArray | None:
+        """As `Multipliers._matrix`; None where modes are missing, or there are too many."""
+        return None if self.unknown else Multipliers._matrix(self, followed, omega)
 
     def find_states(self, states: BalancedSequence | PlanarSequence, x: FloatArray) -> bool:
         """As `Multipliers.find_states`, with the unknowns of one sector."""
@@ -130,14 +131,19 @@ class RingMultipliers(Multipliers):
         whole[..., d:] = shifted.reshape(len(shift), self.contacts, d * count).view(np.float64)
         return bool(states.find_events(whole.ravel()))
 
-    def verdict(
-        self, z: FloatArray, turning: bool = False, enough: Sequence[float] = (), alone: bool = False
-    ) -> Verdict:
-        """As `Multipliers.verdict`; in a part of a period multipliers turn by as much less towards -1."""
-        found = Multipliers.verdict(self, z, turning, enough, alone)
+    def verdicts(
+        self,
+        z: Sequence[FloatArray],
+        turning: Sequence[bool],
+        alone: Sequence[bool],
+        enough: Sequence[float] = (),
+    ) -> list[Verdict]:
+        """As `Multipliers.verdicts`; in a part of a period multipliers turn by as much less towards -1."""
+        found = Multipliers.verdicts(self, z, turning, alone, enough)
         if self.planar:
             return found
-        return found._replace(before_flip=min(found.before_flip * self.ring.period, np.pi))
+        n = self.ring.period
+        return [one._replace(before_flip=min(one.before_flip * n, np.pi)) for one in found]
 
     def of_period(self, values: list[complex]) -> list[complex]:
         """Magnitudes of a whole period, with the angles of its part."""
