@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +19,7 @@ from fcm.accuracy.partner_stretch import PartnerPiece, StretchFollower
 from fcm.accuracy.residual import changes_left_out
 from fcm.continuation import Mark, Path
 from fcm.harmonic_balance.cost_model import seconds_of
+from fcm.harmonic_balance.normal_plane_prolongation import Prolongation
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.harmonic_balance.response_quantities import borne_along
@@ -196,7 +198,7 @@ class PartnerCurve:
         """By how much (dof,) a partner of its own differs from it at the frequency of a point, in the unit of
         that; None where either has no motion there."""
         lifted = self.finding.lifted
-        if not lifted.find_at_frequency(self._padded(i), True):
+        if not lifted.find_at_frequency(self._guesses[i], True):
             return None
         z, amplitude = np.array(lifted.newton.z), np.array(lifted.found[1:])
         second = self._second(z, amplitude)
@@ -234,13 +236,17 @@ class PartnerCurve:
             second = self._second(z, amplitude)
             if second is not None and second.found(z, direction if inside else None):
                 there = np.array(second.lifted.newton.z)
-                return np.stack(
-                    (second.amplitude - amplitude, changes_left_out(second.system, there, self.options))
-                )
+                left = self._left_out(second.system, second.lifted, there)
+                return np.stack((second.amplitude - amplitude, left))
             if second is None:
                 break
-        left = nothing if known is None else changes_left_out(self.stretches.finer, known, self.options)
+        finer, lifted = self.stretches.finer, self.finding.lifted
+        left = nothing if known is None else self._left_out(finer, lifted, known)
         return np.stack((nothing, left))
+
+    def _left_out(self, system: System, lifted: Prolongation, z: FloatArray) -> FloatArray:
+        """By how much (dof,) the harmonics that a system lacks would change a motion of it."""
+        return changes_left_out(system, lifted.balance, z, self.options)
 
     def _points_around_peak(self, top: int) -> list[int]:
         """A top and points to either side of it, as long as contacts slip or separate there."""
@@ -253,7 +259,7 @@ class PartnerCurve:
         lifted, path = self.finding.lifted, self.path
         if normal and lifted.find_normal(path.z[i], path.direction[i], True):
             return True
-        return not normal and bool(lifted.find_at_frequency(self._padded(i), True))
+        return not normal and bool(lifted.find_at_frequency(self._guesses[i], True))
 
     def _second(self, z: FloatArray, amplitude: FloatArray) -> SecondPartner | None:
         """A partner of its own; None where that has no more harmonics, or too many unknowns. It is that of
@@ -276,16 +282,17 @@ class PartnerCurve:
         """Amplitudes (dof,) of the partner at the frequency of a point; None where Newton's method finds
         none that is as even."""
         lifted, path = self.finding.lifted, self.path
-        if self.linear[i] or not lifted.find_at_frequency(self._padded(i), True):
+        if self.linear[i] or not lifted.find_at_frequency(self._guesses[i], True):
             return None
         even = path.orientation[i] * path.direction[i, -1]
         if not lifted.newton.orientation * lifted.newton.tangent[-1] * even > 0.0:
             return None
         return np.array(lifted.found[1:])
 
-    def _padded(self, i: int) -> FloatArray:
-        """A point as a guess for the partner."""
-        return self.stretches.finer.extended(self.path.z[i], self.fewer)
+    @cached_property
+    def _guesses(self) -> FloatArray:
+        """The points (point, unknown + 1) as guesses for the partner."""
+        return self.stretches.finer.extended(self.path.z, self.fewer)
 
     def interpolated(self, points: Indices) -> FloatArray:
         """Displacements (point, 1 + dof) by cubics through those that are known, with slopes from them."""

@@ -11,15 +11,16 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.options import PairOptions
-from fcm.harmonic_balance.reported_quantities import reported_at
+from fcm.harmonic_balance.residual import Balance, PointQuantities
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
 ComplexArray = npt.NDArray[np.complex128]
 
 
-def changes_left_out(system: System, z: FloatArray, options: PairOptions) -> FloatArray:
-    """By how much (dof,) the amplitudes of a motion z (unknown + 1,) change by what a balance leaves out.
+def changes_left_out(system: System, balance: Balance, z: FloatArray, options: PairOptions) -> FloatArray:
+    """By how much (dof,) the amplitudes of a motion z (unknown + 1,) change by what the balance of a system
+    leaves out.
 
     Zero where no mode is met beyond its harmonics. Of a ring nothing is looked at, and of many modes
     and degrees of freedom only as far as the options allow.
@@ -28,7 +29,8 @@ def changes_left_out(system: System, z: FloatArray, options: PairOptions) -> Flo
     others = tuple(h for h in range(1, last + 1) if h not in system.harmonics)
     if not others or others[-1] < system.harmonics[-1]:
         return np.zeros(system.linear.dofs.shape[1])
-    X = reported_at(system, z[None], np.zeros((1, len(z)))).X[0]
+    points = PointQuantities(balance, 1).evaluate(z[None], np.zeros((1, len(z))), np.ones(1))
+    X = np.asarray(points.re)[0] + 1j * np.asarray(points.im)[0]
     top = max(last, system.harmonics[-1])
     spectrum = np.zeros((options.samples_per_period * top // 2 + 1, X.shape[1]), dtype=np.complex128)
     spectrum[list(system.harmonics)] = X

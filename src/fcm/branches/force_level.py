@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import pairwise
 
 import numpy as np
 
@@ -196,8 +195,8 @@ def _coarse_curve(
 
 def _skips_station(path: Path, stations: tuple[float, ...]) -> bool:
     """Whether a curve leads across one of its stations without a point there."""
-    levels = path.parameter.tolist()
-    return any((a - one) * (b - one) < 0.0 for one in stations for a, b in pairwise(levels))
+    off = path.parameter - np.array(stations)[:, None]
+    return bool((off[:, :-1] * off[:, 1:] < 0.0).any())
 
 
 def few_harmonics(system: System) -> int:

@@ -8,7 +8,6 @@ the frequencies at which the level was followed, and that none of them tells of 
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
@@ -68,14 +67,15 @@ class LevelFold(NamedTuple):
 
 def level_folds(path: Path, omega: float, unit: float = 1.0) -> tuple[LevelFold, ...]:
     """Where a curve of levels at a frequency turns; its displacements and levels are multiples of a unit."""
-    levels = (unit * path.parameter).tolist()
-    rises = [after > before for before, after in pairwise(levels)]
+    levels = unit * path.parameter
+    rises = np.diff(levels) > 0.0
     found = []
-    for i in (i for i in range(1, len(rises)) if rises[i] != rises[i - 1]):
+    for i in (1 + np.flatnonzero(rises[1:] != rises[:-1])).tolist():
         z, before = np.append(unit * path.z[i, :-1], omega), _direction(path, i, unit)
         corner = path.mark[i] & Mark.CORNER
         after = _direction(path, i + 1, unit) if corner else before
-        found.append(LevelFold(levels[i], z, before, after, (levels[i] < 1.0) == rises[i - 1]))
+        level = float(levels[i])
+        found.append(LevelFold(level, z, before, after, (level < 1.0) == bool(rises[i - 1])))
     return tuple(found)
 
 

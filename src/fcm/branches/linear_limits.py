@@ -75,16 +75,9 @@ def _with_springs(system: System, frequencies: Sequence[float], held: FloatArray
     return found
 
 
-def loads_at_rest(system: System) -> list[float]:
-    """Normal loads of the contacts at rest, negative where one is open."""
-    d = system.layout.directions
-    contacts, normal = system.scene.contacts, system.rest[d - 1 :: d].tolist()
-    return [c.n_0 + c.k_v * displacement for c, displacement in zip(contacts, normal, strict=True)]
-
-
 def closed_at_rest(system: System) -> npt.NDArray[np.bool_]:
     """Whether the contact of each port (port,) is closed at rest."""
-    return np.repeat([load > 0.0 for load in loads_at_rest(system)], system.layout.directions)
+    return np.repeat([load > 0.0 for load in system.loads_at_rest], system.layout.directions)
 
 
 def _unknowns(system: System, ports: ComplexArray) -> FloatArray:
@@ -98,7 +91,7 @@ def _unknowns(system: System, ports: ComplexArray) -> FloatArray:
 
 def highest_linear_limit(system: System, omega: float) -> float:
     """A level beyond those at which a contact opens, closes or slips, all being stuck or open."""
-    levels, loads = [1.0], [abs(load) for load in loads_at_rest(system)]
+    levels, loads = [1.0], [abs(load) for load in system.loads_at_rest]
     for ports in _on_ports(system, omega)[1:]:
         for load, (variation, slip, contact) in zip(loads, _motions(system, ports, max), strict=True):
             levels += [load / variation] if variation > 0.0 else []

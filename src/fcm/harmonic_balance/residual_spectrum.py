@@ -10,7 +10,7 @@ so that it is the structure as much as the contact that decides which harmonics 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from functools import lru_cache
 
 import cython
 import numpy as np
@@ -29,6 +29,12 @@ def highest_harmonic(system: System) -> int:
     return max(LIMITS.harmonics, int(system.options.spectrum.ahead * max(system.harmonics)))
 
 
+@lru_cache(maxsize=256)
+def left_out(highest: int, harmonics: tuple[int, ...]) -> npt.NDArray[np.intp]:
+    """The harmonics up to the highest that are not among some."""
+    return np.setdiff1d(np.arange(1, highest + 1), harmonics)
+
+
 @cython.cclass
 class FurtherHarmonics:
     """The harmonics of the exact forces of motions of a system's balance."""
@@ -41,7 +47,10 @@ class FurtherHarmonics:
         own = linear.natural, linear.damping, linear.ports, linear.dofs
         self.modes = ForcedModes(*own) if few else None
         self.natural = np.array(linear.natural)
-        self.others, self.least = self._without(system.harmonics), system.options.spectrum.least_amplitude
+        self.others, self.least = (
+            left_out(self.highest, system.harmonics),
+            system.options.spectrum.least_amplitude,
+        )
         self.leading = system.options.spectrum.leads
         self.force = np.zeros((self.highest, system.layout.ports, 2))
         self.share, self.size = np.zeros(self.highest), np.zeros(linear.dofs.shape[1])
@@ -51,10 +60,6 @@ class FurtherHarmonics:
         """A system with the same structure and harmonics, whose contacts may be others."""
         self.system = system
         self.laws = system.exact_laws(tuple(range(1, self.highest + 1)))
-
-    def _without(self, harmonics: Sequence[int]) -> npt.NDArray[np.intp]:
-        """The other harmonics."""
-        return np.setdiff1d(np.arange(1, self.highest + 1), harmonics)
 
     def shares(
         self, z: FloatArray, amplitude: FloatArray, known: tuple[int, ...] | None = None
@@ -67,7 +72,7 @@ class FurtherHarmonics:
         """
         found, own = np.zeros((len(z), self.highest)), self.others
         if known is not None:
-            self.others = self._without(known)
+            self.others = left_out(self.highest, known)
         for i in range(len(z)):
             self.shares_at(z[i], amplitude[i])
             found[i] = self.share

@@ -100,7 +100,7 @@ class System:
         driven = self.linear.driven
         return harmonics if set(driven) <= {*harmonics} else tuple(sorted({*harmonics, *driven}))
 
-    @property
+    @cached_property
     def own_laws(self) -> bool:
         """Whether a contact has a law of its own."""
         return any(one.law is not None for one in self.scene.contacts)
@@ -125,6 +125,8 @@ class System:
         found.__dict__.update(vars(self), **other)
         for made in (
             "_workspace",
+            "own_laws",
+            "loads_at_rest",
             "preload_unit",
             "normalised",
             "modal_compliance",
@@ -155,6 +157,13 @@ class System:
 
         return at_rest(self)
 
+    @cached_property
+    def loads_at_rest(self) -> list[float]:
+        """Normal loads of the contacts at rest, negative where one is open."""
+        d = self.layout.directions
+        each = zip(self.scene.contacts, self.rest[d - 1 :: d].tolist(), strict=True)
+        return [c.n_0 + c.k_v * displacement for c, displacement in each]
+
     @property
     def shared_balance(self) -> Balance:
         """A balance for what looks at points or follows curves, one after the other."""
@@ -180,13 +189,10 @@ class System:
 
         Nor does one after an error, in the middle of which it was left.
         """
-        kept, mine = _WORKSPACES.by_key, self._workspace
-        shared = kept.get(mine.key) is mine
-        if shared:
-            del kept[mine.key]
+        mine = self._workspace
+        before, mine.exclusive = mine.exclusive, True
         yield
-        if shared:
-            kept[mine.key] = mine
+        mine.exclusive = before
 
     def reset_balance(self) -> Balance:
         """`shared_balance` at the level 1, as if nothing had been followed yet."""
@@ -279,11 +285,11 @@ class System:
 class _Workspace:
     """A balance and its fronts, for one after the other of the systems whose contacts alone are others.
 
-    Those have the same key.
+    exclusive: no other system takes it now.
     """
 
-    def __init__(self, system: System, key: tuple[object, ...] = ()) -> None:
-        self.system, self.balance, self.key = system, system.new_balance(), key
+    def __init__(self, system: System) -> None:
+        self.system, self.balance, self.exclusive = system, system.new_balance(), False
 
     def reset_for(self, system: System) -> _Workspace:
         """As if it were new."""
@@ -320,12 +326,11 @@ def _workspace_of(system: System) -> _Workspace:
         return _Workspace(system)
     approximate = system.table is not None, system.corrected
     key = (*system.linear.numbers, scene.frequency_range, system.harmonics, system.options, *approximate)
-    if key not in kept:
-        kept[key] = _Workspace(system, key)
-        if len(kept) > system.options.workspace.most:
-            kept.popitem(last=False)
-    kept.move_to_end(key)
-    return kept[key]
+    found = kept.pop(key, None) or _Workspace(system)
+    kept[key] = found
+    if len(kept) > system.options.workspace.most:
+        kept.popitem(last=False)
+    return _Workspace(system) if found.exclusive else found
 
 
 def _displacements(linear: Linear, seen: Receptance) -> Displacements:

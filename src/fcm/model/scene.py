@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -339,7 +340,7 @@ class Scene:
         curves = tuple(replace(curve._at(used, modals), draft=draft) for curve in self.curves)
         return replace(self._at(used, modals), curves=curves, draft=draft)
 
-    @property
+    @cached_property
     def planar(self) -> bool:
         """Whether a contact slides in a plane."""
         return any(contact.second is not None for contact in self.contacts)
