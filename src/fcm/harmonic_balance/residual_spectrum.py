@@ -142,9 +142,16 @@ class FurtherHarmonics:
     def is_leading(
         self, z: cython.double[::1], amplitude: cython.double[::1], h: cython.Py_ssize_t
     ) -> cython.bint:
-        """Whether one of the shares at a point is nearly the greatest."""
+        """Whether one of the shares at a point is nearly the greatest: none is where contacts are linear."""
         k: cython.Py_ssize_t
         most: cython.double = 0.0
+        bent: cython.bint = False
+        for k in range(self.contacts):
+            law: Law = self.laws[k]
+            law.probe(z, k * self.width)
+            bent = bent or law.nonlinear
+        if not bent:
+            return False
         self.shares_at(z, amplitude)
         for k in range(self.highest):
             most = max(most, self.share[k])
