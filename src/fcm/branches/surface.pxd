@@ -20,6 +20,9 @@ cdef class Surface:
     cdef double diverged_step
     cdef double[::1] balance_point
     cdef double[::1] right
+    cpdef bint recentre(self, double[::1] along, double[::1] across) except -1
+    cpdef int measure(self, double[::1] z) except -1
+    cdef bint orthonormalise(self) except -1
     cpdef bint find(self, double ahead, double aside) except -1
     cdef bint factor(self) except -1
     cdef double correct(self, double ahead, double aside) except -2

@@ -66,18 +66,22 @@ class Surface:
         self.z[:] = z
         if not (self.recentre(across, along) and self.find(0.0, 0.0)):
             return False
-        return self.recentre(np.asarray(self.tangents)[1] * self.scale, across)
+        return bool(self.recentre(np.asarray(self.tangents)[1] * self.scale, across))
 
-    def recentre(self, along: cython.double[::1], across: cython.double[::1]) -> bool:
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def recentre(self, along: cython.double[::1], across: cython.double[::1]) -> cython.bint:
         """Take the place that z is for the centre of other axes (n + 2,), in the units of z."""
         i: cython.Py_ssize_t
         self.centre[:] = self.z
         self.measure(self.z)
         for i in range(self.n + 2):
             self.axes[0, i], self.axes[1, i] = along[i] / self.scale[i], across[i] / self.scale[i]
-        return bool(self.orthonormalise())
+        return self.orthonormalise()
 
-    def measure(self, z: cython.double[::1]) -> None:
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def measure(self, z: cython.double[::1]) -> cython.int:
         """Units of lengths at a place: those of the balance, and the level by itself."""
         i: cython.Py_ssize_t
         for i in range(self.n + 1):
@@ -86,18 +90,31 @@ class Surface:
         for i in range(self.n + 1):
             self.scale[i] = self.balance.scale[i]
         self.scale[self.n + 1] = max(fabs(z[self.n + 1]), self.level_floor)
+        return 0
 
-    def orthonormalise(self) -> bool:
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def orthonormalise(self) -> cython.bint:
         """Make the axes unit vectors at right angles; false if they are none."""
-        axes = np.asarray(self.axes)
-        first = float(np.linalg.norm(axes[0]))
-        if not (first > 0.0 and np.isfinite(axes).all()):
+        i: cython.Py_ssize_t
+        first: cython.double = 0.0
+        along: cython.double = 0.0
+        second: cython.double = 0.0
+        for i in range(self.n + 2):
+            first += self.axes[0, i] * self.axes[0, i]
+            along += self.axes[0, i] * self.axes[1, i]
+        if not (first > 0.0 and isfinite(first)):
             return False
-        axes[0] /= first
-        axes[1] -= (axes[0] @ axes[1]) * axes[0]
-        second = float(np.linalg.norm(axes[1]))
-        axes[1] /= second or 1.0
-        return second > 0.0
+        for i in range(self.n + 2):
+            self.axes[1, i] -= along / first * self.axes[0, i]
+            second += self.axes[1, i] * self.axes[1, i]
+        if not (second > 0.0 and isfinite(second)):
+            return False
+        first, second = sqrt(first), sqrt(second)
+        for i in range(self.n + 2):
+            self.axes[0, i] /= first
+            self.axes[1, i] /= second
+        return True
 
     @cython.ccall
     @cython.exceptval(-1, check=False)

@@ -26,14 +26,9 @@ def seconds_of(system: System, evaluations: int, harmonics: int) -> float:
 
     A condensed matrix is formed first, see `condensed`, by 2 multiplications for each mode and entry.
     """
-    key = seconds_of, system.harmonics, harmonics
-    if key not in system.cache:
-        layout = layout_of(len(system.scene.contacts), system.scene.directions_of_contact, harmonics)
-        rank = condensed_size(system.modal_compliance, layout.ports, harmonics, system.condensation)
-        system.cache[key] = _evaluation(layout, rank, system.options.cost)
-    each = system.cache[key]
-    assert isinstance(each, float)
-    return evaluations * each
+    layout = layout_of(len(system.scene.contacts), system.scene.directions_of_contact, harmonics)
+    rank = condensed_size(system.modal_compliance, layout.ports, harmonics, system.condensation)
+    return evaluations * _evaluation(layout, rank, system.options.cost)
 
 
 def _evaluation(layout: Layout, rank: int, cost: EvaluationCost) -> float:
