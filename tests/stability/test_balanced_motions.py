@@ -65,6 +65,20 @@ def error(found, true):
     return greatest
 
 
+@pytest.mark.parametrize("preload", [5.0, 0.0, -5.0])
+def test_of_several_points_each_verdict_is_as_alone(preload):
+    """However many matrices are held at once: what one needs of its motion is not that of another."""
+    of, found = path(yang(preload), 1, (0.7, 1.7))
+    turning = ((found.mark & Mark.FOLD) > 0).tolist()
+    workspace = Multipliers(of, 1.7)
+    alone = [workspace.verdict(z, fold) for z, fold in zip(found.z, turning, strict=True)]
+    assert preload != 0.0 or {0.0, 1.0} <= {one.stable for one in alone}
+    for held in (1, 100, 100_000):
+        options = replace(STABILITY, structure=replace(STABILITY.structure, max_held=held))
+        together = Multipliers(of, 1.7, options=options).verdicts(list(found.z), turning)
+        assert repr(together) == repr(alone)  # NaN is not equal to itself
+
+
 @pytest.mark.parametrize(("preload", "looks"), [(5.0, 0.6), (0.0, 0.8), (-5.0, 0.6)])
 def test_few_points_tell_the_stability_of_three_harmonics(preload, looks):
     """Beside the multipliers of every point: without preload a pair leaves, and comes back."""
