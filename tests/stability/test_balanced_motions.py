@@ -75,7 +75,9 @@ def test_of_several_points_each_verdict_is_as_alone(preload):
     assert preload != 0.0 or {0.0, 1.0} <= {one.stable for one in alone}
     for held in (1, 100, 100_000):
         options = replace(STABILITY, structure=replace(STABILITY.structure, max_held=held))
-        together = Multipliers(of, 1.7, options=options).verdicts(list(found.z), turning)
+        together = Multipliers(of, 1.7, options=options).verdicts(
+            list(found.z), turning, [False] * len(turning)
+        )
         assert repr(together) == repr(alone)  # NaN is not equal to itself
 
 
