@@ -26,6 +26,7 @@ from fcm.table import Table
 from fcm.table.tabulated import locate
 
 REPEATS = 7
+DIFFERENTIATED = 30  # motions whose derivatives are marched, in memory
 Row = tuple[str, Callable[[], object], int]  # what, the call, elements that it handles
 
 
@@ -126,6 +127,9 @@ def planar(count: int = 300) -> None:
             ("on a line, derivatives", partial(line.all, along, parameters[:, :5].copy(), f, J), count),
             (f"radial return, {samples} samples", partial(radial_return, x, parameters[0], samples), count),
         ]
+        few = x[:DIFFERENTIATED]
+        call = partial(derivatives_of_radial_return, few, parameters[0], samples)
+        rows.append((f"radial return, {samples} samples, derivatives", call, len(few)))
         block(f"forces of {highest} harmonics as h**-2 in a plane, a motion", rows, repeats=3)
 
 
@@ -148,6 +152,37 @@ def radial_return(x: np.ndarray, parameters: np.ndarray, samples: int) -> np.nda
     F: np.ndarray = np.einsum("sh,isp->phi", wave.conj(), f) * (2.0 / samples)
     F[:, 0] *= 0.5
     return F
+
+
+def derivatives_of_radial_return(x: np.ndarray, parameters: np.ndarray, samples: int) -> np.ndarray:
+    """Of its coefficients (point, harmonic, 2, unknown) by the unknowns: each step differentiated."""
+    mu, k_u, k_v, n_0 = parameters[:4]
+    rest = x[:, 3:].copy().view(complex).reshape(len(x), -1, 3)
+    X = np.concatenate((x[:, None, :3] + 0j, rest), axis=1)
+    wave = np.exp(2j * np.pi / samples * np.outer(np.arange(samples), np.arange(X.shape[1])))
+    u_x, u_y, v = (np.ascontiguousarray((wave @ X[:, :, i].T).real) for i in range(3))
+    load = n_0 + k_v * v
+    by = np.zeros((samples, 3, x.shape[1]))  # of u_x, u_y and v by the unknowns
+    for i in range(3):
+        by[:, i, i] = 1.0
+        by[:, i, 3 + 2 * i :: 6], by[:, i, 4 + 2 * i :: 6] = wave[:, 1:].real, -wave[:, 1:].imag
+    w, dw = np.zeros((2, len(x))), np.zeros((2, len(x), x.shape[1]))
+    df = np.empty((samples, *dw.shape))
+    for step in range(2 * samples):
+        i = step % samples
+        trial = k_u * np.stack((u_x[i], u_y[i])) - w
+        size = np.maximum(np.hypot(*trial), 1e-300)
+        limit, e = mu * np.maximum(load[i], 0.0), trial / size
+        slips = limit < size
+        back = np.where(slips, limit / size, 1.0)
+        change = k_u * by[i, :2, None] - dw
+        along = e[0, :, None] * change[0] + e[1, :, None] * change[1]
+        grown = np.where(load[i] > 0.0, mu * k_v, 0.0)[:, None] * by[i, 2] - back[:, None] * along
+        df[i] = back[:, None] * change + np.where(slips[:, None], grown, 0.0) * e[..., None]
+        w, dw = k_u * np.stack((u_x[i], u_y[i])) - back * trial, k_u * by[i, :2, None] - df[i]
+    J: np.ndarray = np.tensordot(wave.conj(), df, (0, 0)).transpose(2, 0, 1, 3) * (2.0 / samples)
+    J[:, 0] *= 0.5
+    return J
 
 
 def samples_of_radial_return(x: np.ndarray, parameters: np.ndarray, forces: np.ndarray) -> int:

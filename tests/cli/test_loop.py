@@ -4,11 +4,13 @@ import json
 from dataclasses import replace
 from unittest.mock import Mock
 
+import click
 import netCDF4
 import numpy as np
 import pytest
 
-from fcm import load_scene, periodic_forces, periodic_loop
+from fcm import load_scene, periodic_forces, periodic_loop, planar_loop
+from fcm.cli.loop_cases import PlanarCase
 from fcm.response import trace
 from fcm.results.output import write_netcdf
 
@@ -333,3 +335,16 @@ def test_several_loops_in_a_plane_are_too_many(fcm, tmp_path):
     done = fcm("plot", "loop", "plane.nc", "--at", "0.97", "--at", "1.0")
     assert done.code == 2
     assert "2 loops in a plane are too many for a picture" in done.err
+    done = fcm("plot", "loop", "plane.nc", "--cosine")
+    assert done.code == 2 and "--cosine is of no use in a plane" in done.err
+
+
+def test_a_loop_in_a_plane_without_dimensions():
+    loop = planar_loop([0.0, 3.0], [0.0, 1.0 - 2.0j], [0.0, 2.0], 0.3, 5.0, 2.0, 7.0)
+    case = PlanarCase(loop, ("x", "y"), (), "", {"a": 2.0, "k_u a": 10.0}, None)
+    theta, scaled = np.linspace(0.0, 6.0, 41), case.dimensionless()
+    assert scaled.force(theta) == pytest.approx(loop.force(theta) / 10.0, abs=1e-9)
+    assert scaled.displacement(theta) == pytest.approx(loop.displacement(theta) / 2.0, abs=1e-12)
+    still = PlanarCase(loop, ("x", "y"), (), "", {"a": 0.0, "k_u a": 0.0}, None)
+    with pytest.raises(click.UsageError, match="the motion in the plane is zero"):
+        still.dimensionless()

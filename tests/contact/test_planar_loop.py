@@ -34,7 +34,12 @@ def test_it_is_continuous_and_within_the_load():
         assert np.all(size <= loop.slip_limit(theta) + 1e-9 * case.size)
         assert np.all(size <= loop.greatest_force * (1.0 + 1e-6))
         jump = loop.force(loop.angles + 1e-9) - loop.force(loop.angles - 1e-9)
-        assert np.abs(jump).max(initial=0.0) <= 1e-6 * (case.size + case.k_v * np.abs(case.v).sum())
+        allowed = 1e-6 * (case.size + case.k_v * np.abs(case.v).sum())
+        assert np.abs(jump).max(initial=0.0) <= allowed
+        # where a slip begins an angle may be before it by rounding, after the slip before
+        for aside in (0.0, -1e-15, 1e-15):
+            jump = loop.force(loop.angles * (1.0 + aside)) - loop.force(loop.angles + 1e-9)
+            assert np.abs(jump).max(initial=0.0) <= allowed
 
 
 def test_the_slider_rests_or_moves_along_the_force():

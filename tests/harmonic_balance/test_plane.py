@@ -15,7 +15,7 @@ from fcm.branches.force_level import solutions
 from fcm.branches.trace import traced
 from fcm.contact.periodic.workspace import periodic_contact
 from fcm.contact.plane.workspace import planar_contact
-from fcm.continuation import Status
+from fcm.continuation import Mark, Status
 from fcm.harmonic_balance.line_contact import LineLaw
 from fcm.harmonic_balance.planar_contact import PlanarLaw
 from fcm.harmonic_balance.reported_quantities import reported_at
@@ -198,6 +198,24 @@ def test_turned_axes_turn_the_response():
         shown = reported_at(system, z[None], np.zeros((1, z.size)))
         found.append(shown.X[0])
     assert np.abs(found[0] @ turn - found[1]).max() < 1e-9 * np.abs(found[0]).max()
+
+
+def test_a_contact_that_slips_all_the_time_has_no_corners():
+    """Where its period is begun rounding may put a stick, whose slider the slip takes back to where it was.
+
+    Nor is it a corner where two sticks appear, with no length at first.
+    """
+    lag = (QUARTER, QUARTER - 1.6, QUARTER - 0.4)
+    slides = replace(ELLIPSE, force=(1.0, 0.9, 0.5), lag=lag)
+    (path,) = traced(System(slides.scene((0.8, 1.4)), (1, 2, 3))).branches.paths
+    assert path.status is Status.COMPLETE
+    law = slides.mu, slides.k_u, slides.k_v, slides.n_0
+    found = set()
+    for z in path.z[::4]:
+        motion = np.concatenate((z[None, :3] + 0j, z[3:-1].copy().view(complex).reshape(-1, 3)))
+        found.add(fcm.planar_loop(*motion.T, *law).sequence)
+    assert found == {"P", "EPEP"}
+    assert not path.where(Mark.CORNER).size
 
 
 def test_a_line_beside_a_plane():

@@ -79,6 +79,21 @@ def test_both_hysteresis_loops_and_the_names_of_the_directions(figure):
     assert above.get_ylabel() == "$f_x$ (N)"
 
 
+def test_without_tangential_stiffness_there_is_no_disc_and_no_force():
+    loop = fcm.planar_loop(*MOTION, mu=0.5, k_u=0.0, k_v=1.0, n_0=0.7)
+    plane, above, below = draw_planar_loop(DrawnPlanarLoop(loop, "pad")).axes
+    assert all(patch.radius == 0.0 for patch in plane.patches if isinstance(patch, Circle))
+    for axes in (above, below):
+        shown = [np.array(line.get_ydata()) for line in axes.lines if len(line.get_xdata()) > 2]
+        assert shown and np.nanmax(np.abs(shown)) == 0.0
+
+
+def test_without_dimensions_the_axes_say_by_what_they_are_divided():
+    plane, above, _ = draw_planar_loop(DrawnPlanarLoop(LOOP, "pad", dimensionless=True)).axes
+    assert plane.get_xlabel() == "Displacement $u_x$$/a$ = x$/a$"
+    assert above.get_ylabel() == "$f_x$$/(k_u a)$"
+
+
 def test_the_work_of_both_loops_is_the_dissipation():
     """What is drawn: the areas of the two loops together."""
     path = path_of(LOOP)

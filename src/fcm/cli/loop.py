@@ -6,6 +6,7 @@ import json
 import math
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -163,6 +164,8 @@ def loop(
     cases = _cases(given, file, options, units)
     if len(cases) > 1 and isinstance(cases[0], PlanarCase):
         raise click.UsageError(f"{len(cases)} loops in a plane are too many for a picture: say which one.")
+    if cosine and isinstance(cases[0], PlanarCase):
+        raise click.UsageError("--cosine is of no use in a plane: each direction has a phase of its own.")
     if len(cases) > REQUESTS.loops:
         raise click.UsageError(f"{len(cases)} loops are too many for a picture: at most {REQUESTS.loops}.")
     if output is None:
@@ -243,15 +246,18 @@ def _drawn(
 
     first = cases[0]
     if isinstance(first, PlanarCase):
-        return _drawn_in_plane(first, units)
+        return _drawn_in_plane(first, scaled, units)
     return _drawn_on_lines([case for case in cases if isinstance(case, Case)], scaled, units, cosine)
 
 
-def _drawn_in_plane(case: PlanarCase, units: tuple[str, str] | None) -> Figure:
+def _drawn_in_plane(case: PlanarCase, scaled: bool, units: tuple[str, str] | None) -> Figure:
     from fcm.plot.planar_loop import DrawnPlanarLoop, draw_planar_loop
 
     title = ", ".join(filter(None, [*(name.drawn for name in case.names), case.loop.sequence]))
-    return draw_planar_loop(DrawnPlanarLoop(case.loop, title, case.directions, units or case.units))
+    drawn = DrawnPlanarLoop(case.loop, title, case.directions, units or case.units)
+    if not scaled:
+        drawn = replace(drawn, loop=case.dimensionless(), units=None, dimensionless=True)
+    return draw_planar_loop(drawn)
 
 
 def _drawn_on_lines(cases: list[Case], scaled: bool, units: tuple[str, str] | None, cosine: bool) -> Figure:

@@ -79,6 +79,16 @@ class PlanarCase:
     facts: dict[str, Any]
     units: tuple[str, str] | None
 
+    def dimensionless(self) -> PlanarLoop:
+        """The loop with displacements as parts of the amplitude a and forces as parts of k_u a."""
+        from fcm.contact import planar_loop
+
+        loop, a, force = self.loop, self.facts["a"], self.facts["k_u a"]
+        if not (a > 0.0 and force > 0.0):
+            raise click.UsageError("--dimensionless: k_u or the motion in the plane is zero.")
+        motion = (loop.u_x / a, loop.u_y / a, loop.v / a)
+        return planar_loop(*motion, loop.mu, 1.0, loop.k_v / loop.k_u, loop.n_0 / force)
+
     def record(self, _from_greatest: bool) -> dict[str, Any]:
         """What ``--json`` prints of the loop."""
         import numpy as np

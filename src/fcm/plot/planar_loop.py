@@ -24,51 +24,56 @@ DISC = "0.75"
 
 @dataclass(frozen=True)
 class DrawnPlanarLoop:
-    """A loop with its title, the names of its directions, and units of length and force where known."""
+    """A loop with its title, the names of its directions, and units of length and force where known.
+
+    dimensionless: its displacements are parts of an amplitude a, and its forces of k_u a.
+    """
 
     loop: PlanarLoop
     title: str
     directions: tuple[str, str] = ("x", "y")
     units: tuple[str, str] | None = None
     instants: int = LAYOUT.planar_instants
+    dimensionless: bool = False
 
 
 @dataclass(frozen=True)
 class Path:
-    """A cycle sampled: theta, limit, states (sample,); displacement u, slider w and force f (sample, 2)."""
+    """A cycle sampled: theta, disc's radius, states (sample,); displacement u, slider w, force f (sample, 2).
+
+    Without tangential stiffness nothing drags the slider: it is where u is, and there is no disc.
+    """
 
     theta: FloatArray
     u: FloatArray
     w: FloatArray
     f: FloatArray
-    limit: FloatArray
+    radius: FloatArray
     states: npt.NDArray[np.str_]
 
 
 def path_of(loop: PlanarLoop) -> Path:
     """Samples, those of the transitions among them."""
     theta = np.unique(np.concatenate((np.linspace(0.0, 2.0 * np.pi, LAYOUT.planar_samples + 1), loop.angles)))
-    return Path(
-        theta,
-        loop.displacement(theta),
-        loop.slider(theta),
-        loop.force(theta),
-        loop.slip_limit(theta),
-        np.asarray(loop.states(theta)),
-    )
+    u, stiff = loop.displacement(theta), loop.k_u > 0.0
+    w = loop.slider(theta) if stiff else u
+    radius = loop.slip_limit(theta) / loop.k_u if stiff else np.zeros_like(theta)
+    return Path(theta, u, w, loop.force(theta), radius, np.asarray(loop.states(theta)))
 
 
 def draw_planar_loop(drawn: DrawnPlanarLoop) -> Figure:
     """At the left the plane: paths of u and of the slider, discs; at the right force over displacement."""
     path = path_of(drawn.loop)
     length, force = (f" ({unit.replace('$', '')})" for unit in drawn.units) if drawn.units else ("", "")
+    if drawn.dimensionless:
+        length, force = "$/a$", "$/(k_u a)$"
     with house_style():
         figure = new_figure(TWO_COLUMNS, LAYOUT.planar_height)
         grid = figure.add_gridspec(2, 2, width_ratios=[1.25, 1.0])
         plane = figure.add_subplot(grid[:, 0])
         _draw_plane(plane, drawn, path)
-        plane.set_xlabel(f"Displacement $u_x$ = {_plain(drawn.directions[0])}{length}")
-        plane.set_ylabel(f"Displacement $u_y$ = {_plain(drawn.directions[1])}{length}")
+        plane.set_xlabel(_of_direction("$u_x$", drawn.directions[0], length))
+        plane.set_ylabel(_of_direction("$u_y$", drawn.directions[1], length))
         for i, name in enumerate("xy"):
             axes = figure.add_subplot(grid[i, 1])
             _draw_direction(axes, path, i)
@@ -90,7 +95,7 @@ def _draw_plane(axes: Axes, drawn: DrawnPlanarLoop, path: Path) -> None:
     from matplotlib.patches import Circle
 
     axes.set_aspect("equal", adjustable="box")
-    radius = path.limit / drawn.loop.k_u
+    radius = path.radius
     for k, at in enumerate(_instants(path, drawn.instants)):
         centre = float(path.u[at, 0]), float(path.u[at, 1])
         disc = Circle(centre, float(radius[at]), facecolor="none", edgecolor=DISC, linewidth=0.8, zorder=1)
@@ -139,6 +144,12 @@ def _only(values: FloatArray, which: npt.NDArray[np.bool_]) -> FloatArray:
     shown = which | np.concatenate((which[:1], which[:-1]))
     found: FloatArray = np.where(shown if values.ndim == 1 else shown[:, None], values, np.nan)
     return found
+
+
+def _of_direction(symbol: str, name: str, unit: str) -> str:
+    """The label of a displacement, as a number of its unit or as a part of another."""
+    scaled = unit.startswith("$")
+    return f"Displacement {symbol}{unit if scaled else ''} = {_plain(name)}{unit}"
 
 
 def _plain(text: str) -> str:

@@ -82,6 +82,11 @@ class PlanarLoop:
         begin = self._panels[:, 0]
         t = begin[0] + np.mod(angle[slips] - begin[0], 2.0 * np.pi)
         at = np.searchsorted(begin, t, side="right") - 1
+        # where a slip begins rounding may put an angle before it, after the last panel of the slip before
+        after = (at + 1) % begin.size
+        ahead = np.mod(begin[after] - t, 2.0 * np.pi)
+        sooner = (t - begin[at] - self._panels[at, 1] > ahead) & (begin.size > 1)
+        at, t = np.where(sooner, after, at), np.where(sooner, begin[after], t)
         found[slips] = directions(self._panels[at], t)
         return found
 

@@ -198,7 +198,11 @@ class PlanarMargins:
         return least
 
     def pushes(self) -> None:
-        """Of every stick: the discs that nearly touch its slider, and how far the next slip takes it."""
+        """Of every stick: the discs that nearly touch its slider, and how far the next slip takes it.
+
+        If there is one stick alone, or none but by rounding, where a period begins, the slip takes the slider
+        back to where it was, and tells nothing.
+        """
         p: cython.int
         n: cython.int = self.cycle.slider.pieces
         for p in range(n):
@@ -212,6 +216,8 @@ class PlanarMargins:
             self.within(p, end)
             if self.cycle.slider.state[follows] == SLIP:
                 after: cython.int = 0 if follows + 1 == n else follows + 1
+                if after == p:
+                    continue
                 halt: float = self.cycle.slider.begin[after]
                 while halt <= end:
                     halt += TWO_PI
