@@ -68,3 +68,35 @@ def test_how_far_a_pair_is_from_meeting_and_how_far_it_has_parted():
     apart, size = flip_distance([complex(-0.9 * np.exp(0.1)), complex(-0.9 * np.exp(-0.1)), 0.5 + 0j])
     assert (apart, size) == pytest.approx((2.0 - 2.0 * np.cosh(0.1), np.log(0.9)))
     assert np.isnan(flip_distance([0.9 + 0.1j, 0.9 - 0.1j, -0.1 + 0j])).all()
+
+
+@pytest.mark.parametrize(
+    ("tangential", "small"),
+    [({"a": 1.0, "b": -1.0}, slice(10, 12)), ([{"a": 1.0, "b": -1.0}, {"n": 1.0, "a": 0.05}], slice(5, 7))],
+)
+def test_what_is_added_to_a_motion_that_hardly_is_matters_no_more_than_it_changes_the_force(
+    tangential, small
+):
+    """Of the normal motion of a contact under a deep indentation; and across the motion in its plane."""
+    pair = {"tangential": tangential, "normal": {"n": 1.0, "a": 0.05}, "mu": 0.5, "k_u": 200.0, "k_v": 200.0}
+    if isinstance(tangential, list):
+        pair["normal"] = "m"
+    scene = scene_from_dict(
+        {
+            "modal": {
+                "dofs": ["a", "b", "n", "m"],
+                "frequency": [1.0, 1.1, 1.05, 1.2],
+                "damping": [0.01] * 4,
+                "shapes": np.eye(4).tolist(),
+            },
+            "contact": [pair | {"name": f"c{i}", "n_0": n_0} for i, n_0 in enumerate((0.3, 30.0))],
+            "force": [{"dof": "a", "amplitude": 2.0}],
+            "response": {"frequency": [0.9, 1.2]},
+        }
+    )
+    finer, z = Multipliers(System(scene), 1.0).finer, only(scene, 1.0, (1,))
+    finer.at(z)
+    before = finer.shift
+    z[small] *= 1e-9
+    finer.at(z)
+    assert 0.0 < finer.shift < max(2.0 * before, 0.1)

@@ -52,7 +52,9 @@ def test_condensed_as_by_all_displacements(some, far):
         (ManyPlanarMonodromy, 1e-9),
         (ManyPlanarMonodromy, 1e-4),
     ):
-        sequence = PlanarSequence(contact, (1, 2), replace(STABILITY.planar, tolerance=tolerance))
+        sequence = PlanarSequence(
+            contact, (1, 2), replace(STABILITY.planar, tolerance=tolerance, tolerance_of_many=tolerance)
+        )
         assert sequence.find_events(x)
         monodromy = make(shapes, natural, damping, above, sequence)
         monodromy.follow(OMEGA)
@@ -69,3 +71,21 @@ def test_more_disturbances_than_are_followed_are_none():
     monodromy = ManyPlanarMonodromy(*structure(1, 6), np.zeros(6, dtype=bool), sequence)
     monodromy.follow(OMEGA)
     assert np.isnan(monodromy.matrix()).all()
+
+
+@pytest.mark.parametrize("make", [PlanarMonodromy, ManyPlanarMonodromy])
+def test_contacts_that_mirror_one_another_take_no_more_steps_for_rounding_errors(make):
+    """Their events are apart by these; apart, each would end a step."""
+    found, steps = [], []
+    for away in (0.0, 1e-11):
+        x, contact = motion((CATCHES, CATCHES, SLIPS, OPENS, OPENS))
+        x[: x.size // 5] *= 1.0 + away
+        x[-x.size // 5 :] *= 1.0 + away
+        sequence = PlanarSequence(contact, (1, 2), STABILITY.planar)
+        assert sequence.find_events(x)
+        monodromy = make(*structure(5, 6), np.zeros(6, dtype=bool), sequence)
+        monodromy.follow(OMEGA)
+        found.append(np.array(monodromy.matrix()))
+        steps.append(monodromy.steps)
+    assert steps[1] <= steps[0] + 1
+    assert found[1] == pytest.approx(found[0], abs=1e-6)

@@ -66,12 +66,12 @@ class PathVerdicts:
             self.look_at((i,))
         return self._verdicts[i]
 
-    def look_at(self, points: Sequence[int]) -> None:
-        """At several points, which have verdicts then."""
+    def look_at(self, points: Sequence[int], enough: Sequence[float] = ()) -> None:
+        """At several points, which have verdicts then; `enough` as of `Multipliers.verdict`."""
         new = [i for i in points if i not in self._verdicts]
         self.evaluations += len(new)
         z, fold, alone = [self.path.z[i] for i in new], self.fold[new].tolist(), self.alone[new].tolist()
-        for i, verdict in zip(new, self.multipliers.verdicts(z, fold, alone), strict=True):
+        for i, verdict in zip(new, self.multipliers.verdicts(z, fold, alone, enough), strict=True):
             self._keep(i, verdict)
 
     def _keep(self, t: float, verdict: Verdict) -> Verdict:

@@ -203,10 +203,16 @@ class _BifurcationSearch:
 
     def _refine_between(self, ways: list[tuple[int, int]]) -> None:
         """Look between pairs of points that were looked at until neither the verdict nor a change of its sign
-        can hide there."""
+        can hide there.
+
+        Of many contacts, what the finer motion says between two stable points is enough where that is the
+        same: both are confirmed, and it shows whether anything has changed between them.
+        """
         seen = self.verdicts
         while ways:
             wide = [(a, (a + b) // 2, b) for a, b in ways if b - a > 1 and self._may_differ(a, b)]
+            alike = {middle for a, middle, b in wide if self.many and seen[a].stable == seen[b].stable == 1.0}
+            seen.look_at(sorted(alike), (1.0,))
             seen.look_at([middle for _, middle, _ in wide])
             bent = (
                 (a, middle, b)

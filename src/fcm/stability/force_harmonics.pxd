@@ -15,4 +15,4 @@ cdef class EnrichedMotion:
     cdef void unknowns(self, double[::1] z) noexcept
     cdef void displace(self, Py_ssize_t h) noexcept
     cdef int displace_many(self, int h) except -1
-    cdef double relative_addition(self, Py_ssize_t p) noexcept
+    cdef double relative_addition(self, Py_ssize_t first, Py_ssize_t ports, double least) noexcept

@@ -43,9 +43,11 @@ def enriched_harmonics(harmonics: list[int]) -> list[int]:
 class EnrichedMotion:
     """`at` a point z of the balance fills x, the unknowns of the finer motion.
 
-    shift is the greatest amplitude that was added to a displacement of a contact, in any of its directions,
+    shift is the greatest amplitude that was added to a displacement of a contact, along it or normal to it,
     relative to the greatest that there was of the same: a small normal motion opens and closes a contact as
-    much as a large one does. laws (contact,) have the balance's motion, and forces of the finer harmonics.
+    much as a large one does. Not so beside a deep mean indentation, or a wide gap, to which it is relative
+    where that is more; and across the motion in its plane a small one turns the slip by little.
+    laws (contact,) have the balance's motion, and forces of the finer harmonics.
     """
 
     def __init__(self, seen: Receptance, laws: list[Law], harmonics: list[int]) -> None:
@@ -87,26 +89,36 @@ class EnrichedMotion:
             elif self.place[h] < 0:
                 self.displace_many(h)
         self.shift = 0.0
-        for i in range(self.seen.ports):
-            self.shift = max(self.shift, self.relative_addition(i))
+        tangential: cython.Py_ssize_t = self.directions - 1
+        for c in range(self.contacts):
+            i = self.directions * c
+            self.shift = max(self.shift, self.relative_addition(i, tangential, 0.0))
+            closed: Law = self.laws[c]
+            load: cython.double = closed.n_0 + closed.k_v * self.x[c * self.wide + tangential]
+            depth: cython.double = abs(load) / closed.k_v if closed.k_v > 0.0 else 0.0
+            self.shift = max(self.shift, self.relative_addition(i + tangential, 1, depth))
         return 0
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def relative_addition(self, p: cython.Py_ssize_t) -> cython.double:
-        """The greatest amplitude that was added to one displacement of a contact, relative to the greatest
-        that there was; 0 if there was none."""
+    def relative_addition(
+        self, first: cython.Py_ssize_t, ports: cython.Py_ssize_t, least: cython.double
+    ) -> cython.double:
+        """The greatest amplitude that was added to some displacements of a contact, relative to the greatest
+        that there was, and to a least; 0 if there was none."""
         h: cython.Py_ssize_t
         i: cython.Py_ssize_t
-        most: cython.double = 0.0
+        p: cython.Py_ssize_t
+        most: cython.double = least
         new: cython.double = 0.0
         for h in range(self.place.shape[0]):
-            for i in range(2):
-                size: cython.double = abs(self.x[self.seen.wave_at[p] + self.seen.stride * h + i])
-                if self.place[h] < 0:
-                    new = max(new, size)
-                else:
-                    most = max(most, size)
+            for p in range(first, first + ports):
+                for i in range(2):
+                    size: cython.double = abs(self.x[self.seen.wave_at[p] + self.seen.stride * h + i])
+                    if self.place[h] < 0:
+                        new = max(new, size)
+                    else:
+                        most = max(most, size)
         return new / most if most > 0.0 else 0.0
 
     @cython.cfunc

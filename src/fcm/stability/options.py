@@ -230,22 +230,26 @@ class HillOptions:
 class PlanarStabilityOptions:
     """How disturbances of contacts in a plane are followed.
 
-    stages: Radau's points of a step. tolerance: of the velocities' last coefficient in Legendre's polynomials
-    over a step, beside the size of a disturbance; multipliers err by about a thousandth of it.
-    coefficient_floor: of the last coefficient but one, what the last is taken for at least, as it may
-    vanish by chance. end_factor: times the tolerance, what steps may leave out that end where a slipping
-    contact opens, or begin where it closes. max_step: step [rad]. min_factor, max_factor, safety: limits of
-    the ratio of two steps, and what it is multiplied by. max_retry_factor: the same limit of a step that is
-    taken again, shorter.
+    stages, stages_of_many: Radau's points of a step, of few and of many contacts. tolerance: of the
+    velocities' last coefficient in Legendre's polynomials over a step, beside the size of a disturbance;
+    multipliers err by about a thousandth of it. tolerance_of_many: the same of many contacts, of which
+    multipliers err by about a hundredth. coefficient_floor: of the last coefficient but one, what the last
+    is taken for at least, as it may vanish by chance. end_factor: times the tolerance, what steps may leave
+    out that end where a slipping contact opens, or begin where it closes. max_step: step [rad]. min_factor,
+    max_factor, safety: limits of the ratio of two steps, and what it is multiplied by. max_retry_factor: the
+    same limit of a step that is taken again, shorter. min_step: [rad]; where none as short will do, stability
+    is not told.
 
     max_disturbances, most_of_many: disturbances that are followed, of few and of many contacts; with more,
-    stability is not told. initial_panels: of slip that are recorded
-    for a contact at first. event_tolerance: [rad] between events that are one. min_gap: [rad] between
-    events, from where on a period may begin between them.
+    stability is not told. initial_panels: of slip that are recorded for a contact at first. event_tolerance:
+    [rad] between events that are one, as those of contacts that mirror one another are; multipliers err by
+    about as much. min_gap: [rad] between events, from where on a period may begin between them.
     """
 
     stages: int = 5
-    tolerance: float = 1e-4
+    stages_of_many: int = 7
+    tolerance: float = 8e-5
+    tolerance_of_many: float = 1e-3
     coefficient_floor: float = 0.1
     end_factor: float = 0.01
     max_step: float = 1.0
@@ -253,10 +257,11 @@ class PlanarStabilityOptions:
     max_factor: float = 2.5
     safety: float = 0.8
     max_retry_factor: float = 0.7
+    min_step: float = 1e-13
     max_disturbances: int = 160
     most_of_many: int = 800
     initial_panels: int = 200
-    event_tolerance: float = 1e-13
+    event_tolerance: float = 1e-7
     min_gap: float = 1e-6
 
 

@@ -1,26 +1,18 @@
 from fcm.stability.planar_sequence cimport PlanarSequence
+from fcm.stability.variational_steps cimport VariationalSteps
 
-cdef class PlanarMonodromy:
-    cdef public PlanarSequence sequence
-    cdef readonly int modes, contacts, stages, columns, events, steps
-    cdef int max_disturbances, actives, first, unknowns
+cdef class PlanarMonodromy(VariationalSteps):
+    cdef readonly int modes, columns
+    cdef int max_disturbances, actives, unknowns
     cdef bint modal, remote
-    cdef double tolerance, coefficient_floor, max_step, min_factor, max_factor, safety, end_factor, max_retry_factor
-    cdef double event_tolerance, min_gap, period, taken, next
-    cdef object filled
+    cdef double coefficient_floor, period, taken
     cdef double[:, ::1] shapes, soft, butcher, slopes, inner, tail, system, seen
-    cdef double[::1] natural, damping, node, angle, scale, fore, aft
+    cdef double[::1] natural, damping, node, scale, fore, aft
     cdef double[:, ::1] q, p, memory, force, work, push, q_new, p_new, after, du, stress, rest_to, rest_by
     cdef double[:, :, ::1] q_to, p_to, q_by, p_by, inverse, feels
     cdef double[:, :, :, ::1] answer
     cdef double[:, ::1] kept, e_x, e_y
-    cdef int[::1] state, order, whose, which, active, held, fresh
-    cpdef int follow(self, double omega) except -1
-    cdef void find(self) noexcept
-    cdef double start(self) except -1
-    cdef bint begin(self, double start) except -1
-    cdef bint propagate(self, double theta, double length, bint opens) noexcept
-    cdef void apply_event(self, int c, int i) noexcept
+    cdef int[::1] active
     cdef void activate(self) noexcept
     cdef void displaced(self, int c) noexcept
     cdef double contact_ratio(self, int c) noexcept
@@ -28,7 +20,6 @@ cdef class PlanarMonodromy:
     cdef void respond(self, int m, double h) noexcept
     cdef void couple(self) noexcept
     cdef void slip(self, int c, double theta, double h) noexcept
-    cdef bint step(self, double theta, double h) noexcept
     cdef void unforced(self) noexcept
     cdef void assemble(self, int a) noexcept
     cdef bint solve(self, int size) noexcept
@@ -36,4 +27,3 @@ cdef class PlanarMonodromy:
     cdef void strain(self, int a) noexcept
     cdef void move(self) noexcept
     cdef double rest(self) noexcept
-    cdef void accept(self) noexcept

@@ -33,22 +33,20 @@ import numpy.typing as npt
 from cython.cimports.libc.math import fabs
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.cycle import TWO_PI
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK
     from cython.cimports.fcm.stability.planar_sequence import PlanarSequence
+    from cython.cimports.fcm.stability.variational_steps import VariationalSteps
 else:
-    from fcm.contact.periodic.cycle import TWO_PI
     from fcm.contact.plane.slider import SEPARATION, SLIP, STICK
     from fcm.stability.planar_sequence import PlanarSequence
+    from fcm.stability.variational_steps import VariationalSteps
 
 from fcm.contact.plane.radau import radau
 
 
 @cython.cclass
-class PlanarMonodromy:
-    """`follow` a sequence: `matrix` is then the derivative of (q, q', memory) after a period by that before.
-
-    Velocities are by the angle.
+class PlanarMonodromy(VariationalSteps):
+    """Of few contacts: with the displacements of those that are closed, or of the modes, as unknowns.
 
     Parameters
     ----------
@@ -56,11 +54,6 @@ class PlanarMonodromy:
         Of all modes, of mass 1; three ports for each contact; natural frequencies in rad/s.
     far : (mode,) bool
         Which follow without delay.
-
-    Attributes
-    ----------
-    steps
-        How many the last period took.
     """
 
     def __init__(
@@ -72,21 +65,13 @@ class PlanarMonodromy:
         sequence: PlanarSequence,
     ) -> None:
         options = sequence.options
-        self.sequence = sequence
-        self.tolerance, self.coefficient_floor, self.max_step = (
-            options.tolerance,
-            options.coefficient_floor,
-            options.max_step,
-        )
-        self.min_factor, self.max_factor, self.safety = options.min_factor, options.max_factor, options.safety
-        self.end_factor, self.event_tolerance = options.end_factor, options.event_tolerance
-        self.max_retry_factor = options.max_retry_factor
-        self.min_gap, self.max_disturbances = options.min_gap, options.max_disturbances
+        VariationalSteps.__init__(self, sequence, options.stages, options.tolerance)
+        self.coefficient_floor, self.max_disturbances = options.coefficient_floor, options.max_disturbances
         self.shapes = np.ascontiguousarray(shapes[~far])
         self.natural, self.damping = natural[~far], damping[~far]
         self.soft = (shapes[far].T * natural[far] ** -2.0) @ shapes[far]
         m, c, s = len(self.natural), sequence.contacts, options.stages
-        self.modes, self.contacts, self.stages = m, c, s
+        self.modes = m
         rule = radau(s)
         self.node, self.slopes, self.inner = rule.nodes, np.ascontiguousarray(rule.slopes[1:]), rule.inner
         self.butcher, self.tail = np.linalg.inv(rule.slopes[1:, 1:]), rule.tail
@@ -102,14 +87,10 @@ class PlanarMonodromy:
         self.inverse, self.feels = np.zeros((c, s, s)), np.zeros((c, s, 3))
         self.kept, self.e_x, self.e_y = np.zeros((3, c, s))
         self.fore, self.aft = np.zeros((2, s))
-        self.state, self.active, self.held, self.fresh = np.zeros((4, c), dtype=np.intc)
-        most = c * sequence.capacity
-        self.angle = np.zeros(most)
-        self.whose, self.which, self.order = np.zeros((3, most), dtype=np.intc)
-        self.events = self.actives = self.steps = self.first = self.unknowns = 0
+        self.active = np.zeros(c, dtype=np.intc)
+        self.actives = self.unknowns = 0
         self.modal = False
-        self.taken = self.period = self.next = 0.0
-        self.filled = np.zeros((0, 0))
+        self.taken = self.period = 0.0
         self._room(2 * m)
 
     def _room(self, columns: int) -> None:
@@ -123,94 +104,21 @@ class PlanarMonodromy:
         self.work = np.zeros((3 * c * s, 3 * c * s + columns))
         self.push, self.scale = np.zeros((m * s, columns)), np.zeros(columns)
 
-    def matrix(self) -> npt.NDArray[np.float64]:
-        """(2 modes + memories, the same); of more disturbances than the options allow, not a number."""
-        found: npt.NDArray[np.float64] = self.filled
-        return found
+    def disturbances(self) -> npt.NDArray[np.float64]:
+        """The rows (q, q', memory) now."""
+        rows = [2 * c + i for c in range(self.contacts) for i in range(self.held[c])]
+        return np.concatenate((self.q, self.p, np.asarray(self.memory)[rows]))
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def follow(self, omega: cython.double) -> cython.int:
-        """Fill the matrix for a frequency."""
-        e: cython.int
-        i: cython.int
-        self.period, self.taken, self.next, self.steps = 1.0 / omega, -1.0, self.max_step, 0
-        self.find()
-        start: cython.double = self.start()
-        now: cython.double = start
-        found: cython.bint = self.begin(start)
-        for i in range(self.events + 1):
-            e = self.order[(self.first + i) % self.events] if i < self.events else -1
-            at: cython.double = self.angle[e] if e >= 0 else start + TWO_PI
-            if at < start:
-                at += TWO_PI
-            if found and at - now > self.event_tolerance:
-                opens: cython.bint = e >= 0 and self.state[self.whose[e]] == SLIP
-                opens = opens and self.sequence.state[self.whose[e], self.which[e]] == SEPARATION
-                found = self.propagate(now, at - now, opens)
-                now = at
-            if found and e >= 0:
-                self.apply_event(self.whose[e], self.which[e])
-        if not found:
-            self.filled = np.full((1, 1), np.nan)
-            return 0
-        rows = [2 * c + i for c in range(self.contacts) for i in range(self.held[c])]
-        self.filled = np.concatenate((self.q, self.p, np.asarray(self.memory)[rows]))
-        return 0
-
-    def find(self) -> None:
-        """The events of the period, `order` of their angles."""
+    def begin(self, omega: cython.double) -> cython.bint:
+        """Take a frequency, and the disturbances to be followed; false if they are too many."""
         c: cython.int
         i: cython.int
         j: cython.int
-        self.events = 0
-        for c in range(self.contacts):
-            for i in range(self.sequence.count[c]):
-                if self.sequence.count[c] == 1:
-                    continue
-                angle: float = self.sequence.begin[c, i]
-                while angle < 0.0:
-                    angle += TWO_PI
-                while angle >= TWO_PI:
-                    angle -= TWO_PI
-                self.angle[self.events], self.whose[self.events], self.which[self.events] = angle, c, i
-                j = self.events
-                while j > 0 and self.angle[self.order[j - 1]] > angle:
-                    self.order[j] = self.order[j - 1]
-                    j -= 1
-                self.order[j] = self.events
-                self.events += 1
-
-    def start(self) -> float:
-        """An angle at which little is remembered, in the middle between two events; `first` is the next."""
-        i: cython.int
-        c: cython.int
-        count: cython.int
-        fewest: cython.int = 3 * self.contacts
-        widest: float = 0.0
-        found: float = 0.0
-        for i in range(self.events):
-            begin: float = self.angle[self.order[i]]
-            last: cython.bint = i + 1 == self.events
-            end: float = self.angle[self.order[0 if last else i + 1]] + (TWO_PI if last else 0.0)
-            middle: float = 0.5 * (begin + end)
-            count = 0
-            for c in range(self.contacts):
-                count += self.sequence.remembers(c, middle)
-            if end - begin > self.min_gap and (count < fewest or (count == fewest and end - begin > widest)):
-                fewest, widest, found = count, end - begin, middle
-                self.first = 0 if last else i + 1
-        return found
-
-    def begin(self, start: float) -> bool:
-        """The disturbances to be followed, and the states; false if there are too many."""
-        c: cython.int
-        i: cython.int
-        j: cython.int
+        self.period, self.taken = 1.0 / omega, -1.0
         columns: cython.int = 2 * self.modes
         for c in range(self.contacts):
-            self.state[c], self.fresh[c] = self.sequence.state_at(c, start), 0
-            self.held[c] = self.sequence.remembers(c, start)
             columns += self.held[c]
         if columns > self.max_disturbances:
             return False
@@ -249,41 +157,9 @@ class PlanarMonodromy:
         self.unknowns = self.modes if self.modal else 3 * self.actives
         self.taken = -1.0
 
-    def propagate(self, theta: float, length: float, opens: bool) -> bool:
-        """Carry the disturbances from an angle on, in steps; false where no step is short enough.
-
-        Where a contact opens that slipped, s varies as a power of the angle that is left, and where it closes
-        and slips, s has one coefficient less: what polynomials leave out there disturbances err by.
-        """
-        left: float = length
-        closed: cython.bint = False
-        c: cython.int
-        for c in range(self.contacts):
-            closed = closed or self.fresh[c] != 0
-        while left > 0.0:
-            h: float = min(self.next, self.max_step)
-            if h >= left:
-                h = left
-            elif h > 0.5 * left:
-                h = 0.5 * left
-            while True:
-                if h < self.event_tolerance:
-                    return False
-                rest: float = 1e300
-                if self.step(theta + length - left, h):
-                    rest = self.rest() / (self.end_factor if closed or (opens and h == left) else 1.0)
-                by: float = (self.tolerance / max(rest, 1e-300)) ** (1.0 / self.stages)
-                if rest <= self.tolerance:
-                    break
-                h *= min(max(self.safety * by, self.min_factor), self.max_retry_factor)
-            self.next = h * min(max(self.safety * by, self.min_factor), self.max_factor)
-            self.accept()
-            closed = False
-            left = left - h if h < left else 0.0
-            self.steps += 1
-        return True
-
-    def apply_event(self, c: cython.int, i: cython.int) -> None:
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def apply_event(self, c: cython.int, i: cython.int) -> cython.int:
         """State i of a contact begins: what it remembers of the disturbances."""
         j: cython.int
         x: cython.Py_ssize_t = 2 * c
@@ -316,6 +192,7 @@ class PlanarMonodromy:
                 w_x = w_y = 0.0
             self.memory[x, j], self.memory[x + 1, j] = w_x, w_y
         self.activate()
+        return 0
 
     def displaced(self, c: cython.int) -> None:
         """`du`, the displacements of a contact, which far modes share in."""
@@ -488,8 +365,10 @@ class PlanarMonodromy:
                 self.inverse[c, i, j] = part * self.system[i, s + j]
                 self.kept[c, i] += self.inverse[c, i, j] * self.fore[j]
 
-    def step(self, theta: float, h: float) -> bool:
-        """One step from an angle on, in `q_new`, `p_new` and `work`; false where it is singular."""
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def step(self, theta: cython.double, h: cython.double) -> cython.double:
+        """One step from an angle on, in `q_new`, `p_new` and `work`; what it leaves out, as `rest`."""
         a: cython.int
         self.prepare(h)
         for a in range(self.actives):
@@ -499,9 +378,9 @@ class PlanarMonodromy:
         for a in range(self.actives):
             self.assemble(a)
         if not self.solve(self.unknowns * self.stages):
-            return False
+            return 1e300
         self.move()
-        return True
+        return self.rest()
 
     def unforced(self) -> None:
         """`work`: one, and the unknowns as the modes go on without forces."""
@@ -753,7 +632,9 @@ class PlanarMonodromy:
                     most = max(most, value / self.scale[j])
         return most
 
-    def accept(self) -> None:
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def accept(self) -> cython.int:
         """The end of the step is where the disturbances are."""
         a: cython.int
         c: cython.int
@@ -775,3 +656,4 @@ class PlanarMonodromy:
                 self.fresh[c] = 0
                 for j in range(self.columns):
                     self.memory[2 * c, j] = self.after[2 * c, j]
+        return 0
