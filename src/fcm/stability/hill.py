@@ -121,7 +121,11 @@ class HillMultipliers:
         return spectrum.verdict(spectrum.odd or turning)
 
     def verdicts(
-        self, z: Sequence[FloatArray], turning: Sequence[bool], alone: Sequence[bool]
+        self,
+        z: Sequence[FloatArray],
+        turning: Sequence[bool],
+        alone: Sequence[bool],
+        enough: Sequence[float] = (),
     ) -> list[Verdict]:
         """Of several solutions."""
         return [self.verdict(*one) for one in zip(z, turning, strict=True)]
