@@ -36,6 +36,13 @@ def test_the_greatest_peaks_of_all_curves_are_shown_in_the_order_of_the_file():
     assert rows[-1] == "shown: the 4 of 6 degrees of freedom with the greatest peaks"
 
 
+def test_what_is_minimised_is_shown_however_small():
+    one = curve({"a": 1.0, "b": 5.0, "c": 3.0, "d": 2.0, "e": 4.0, "f": 0.5})
+    header, *rows = as_table({"curves": [one], "optimum": [{"minimise": ["peak.f"]}]}, "Hz").splitlines()
+    assert [word for word in header.split() if word in one["peak"]] == ["b", "c", "e", "f"]
+    assert rows[-1].endswith("greatest peaks, and what is minimised")
+
+
 def test_rotations_are_in_radians_and_come_after_displacements():
     peaks = {"7x": 1e-6, "7rz": 3.0, "8x": 2e-6, "8:5": 2.0, "9rx": 4.0, "tip": 5e-6}
     header, *rows = as_table({"curves": [curve(peaks)], "units": {"length": "m"}}, "Hz").splitlines()

@@ -32,8 +32,9 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
         from fcm.cli.nonlinear_mode import as_table as of_modes
 
         return of_modes(summary, names, unit)
-    dofs, length = _greatest(curves), summary.get("units", {}).get("length", "")
-    parts = [_curves(curves, names, dofs, unit, length)]
+    minimised = _minimised(summary)
+    dofs, length = _greatest(curves, minimised), summary.get("units", {}).get("length", "")
+    parts = [_curves(curves, names, dofs, unit, length, bool(minimised))]
     parts += [_blades(curves, names, unit, length)] if "blades" in curves[0] else []
     parts += filter(None, [table(curves, names, dofs, unit) for table in (jump_table, untold_table)])
     parts += [_scatter(one, dofs, unit) for one in summary.get("scatter", ())]
@@ -92,8 +93,13 @@ def _of_how_many(jump: Mapping[str, Any]) -> str:
     return f"of {jump['share']:.0%} of the curves{untold}"
 
 
-def _greatest(curves: Sequence[Curve]) -> list[str]:
-    """Those degrees of freedom whose peaks are the greatest, in the order of the file.
+def _minimised(summary: Mapping[str, Any]) -> list[str]:
+    """The degrees of freedom whose peaks an [optimum] makes least."""
+    return [name.partition(".")[2] for one in summary.get("optimum", ()) for name in one["minimise"]]
+
+
+def _greatest(curves: Sequence[Curve], minimised: Sequence[str]) -> list[str]:
+    """Those degrees of freedom whose peaks are the greatest, and what is minimised, in the order of the file.
 
     Rotations, which are of another unit, come after all displacements.
     """
@@ -103,11 +109,14 @@ def _greatest(curves: Sequence[Curve]) -> list[str]:
         return max((value for value in found if value is not None), default=0.0)
 
     dofs = list(curves[0]["peak"])
-    chosen = greatest_first(dofs, [peak(dof) for dof in dofs])[:MOST_DOFS]
+    order = greatest_first(dofs, [peak(dof) for dof in dofs])
+    chosen = sorted(order, key=lambda d: dofs[d] not in minimised)[:MOST_DOFS]
     return [dofs[d] for d in sorted(chosen)]
 
 
-def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: str, length: str) -> str:
+def _curves(
+    curves: Sequence[Curve], names: list[str], dofs: list[str], unit: str, length: str, minimised: bool
+) -> str:
     """What was swept, the peaks, the points, the time, the folds, whether it is whole."""
     ranges_of = [dof for dof in dofs if any(_residual(curve, dof) != "0" for curve in curves)]
     peaks = []
@@ -121,7 +130,9 @@ def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: st
     lines = [aligned([header, *rows], left=2)]
     if (count := len(curves[0]["peak"])) > len(dofs):
         turning = ", displacements before rotations" if any(map(is_rotation, curves[0]["peak"])) else ""
-        lines.append(f"shown: the {len(dofs)} of {count} degrees of freedom with the greatest peaks{turning}")
+        least = ", and what is minimised" if minimised else ""
+        shown = f"the {len(dofs)} of {count} degrees of freedom with the greatest peaks"
+        lines.append(f"shown: {shown}{least}{turning}")
     if any(_at_rest(curve, dof) for curve in curves for dof in dofs):
         lines.append(_AT_REST)
     if any(_at_edge(curve, dof) for curve in curves for dof in dofs):
@@ -225,7 +236,7 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
             for dof, one in curve["peak"].items()
             if one and one.get("error")
         ]
-        shown = _greatest(curves)  # of which the table has the peaks
+        shown = _greatest(curves, _minimised(summary))  # of which the table has the peaks
         peaks = [error for error, dof in told if dof in shown]
         harmonic = max([harmonic, *(error for error, _ in told)])  # also where what lies around is not told
         if harmonic > 0.0 or not untold:  # the 0 of a motion at rest tells nothing of peaks
