@@ -213,3 +213,15 @@ def test_where_the_modes_are_while_all_contacts_stick(listed):
     assert [float(word.strip(",;")) for word in said.split() if word[0].isdigit()] == pytest.approx(
         first, rel=1e-5
     )
+
+
+def test_stiffness_and_mass_in_each_others_place(tmp_path):
+    """Nothing was said: the response of so heavy a structure is small, and an error of none."""
+    matrices = 'dofs = ["u", "v"]\nstiffness = {}\nmass = {}\ndamping = 0.01\n'
+    soft, light = "[[3e6, -1e6], [-1e6, 2e6]]", "[[0.2, 0.0], [0.0, 0.3]]"
+    rest = SCENE[SCENE.index("[[contact]]") :].replace('"w"', '"v"').replace("[2, 4.5]", "[300, 900]")
+    for pair, amiss in (((soft, light), False), ((light, soft), True)):
+        text = f'frequency_unit = "Hz"\n[structure]\n{matrices.format(*pair)}{rest}'
+        (tmp_path / "scene.toml").write_text(text)
+        said = called("respond", tmp_path / "scene.toml").err
+        assert ("stiffness and mass may be in each other's place" in said) == amiss

@@ -17,7 +17,7 @@ from fcm.cli.messages import Messages
 from fcm.continuation import dense_solver
 from fcm.scene.keys import TABLES
 
-from ..program import AS_A_MODULE, python, shell
+from ..program import AS_A_MODULE, called, python, shell
 
 HEAVY = {"numpy", "scipy", "xarray", "netCDF4", "matplotlib", "pandas"}
 
@@ -196,3 +196,19 @@ def test_a_shell_completes_bundled_scenes_and_files(words, found):
     asked = {"_FCM_COMPLETE": "bash_complete", "COMP_WORDS": words, "COMP_CWORD": str(words.count(" "))}
     completed = CliRunner().invoke(main, env=asked, prog_name="fcm").output.split()
     assert f"plain,{found}" in completed and f"file,{words.split()[-1]}" in completed
+
+
+@pytest.mark.parametrize(
+    ("args", "said"),
+    [(["respnd", "x.toml"], "respond"), (["plot", "resonse"], "response"), (["Plot"], "plot")],
+)
+def test_a_misspelled_command_is_recognised(args, said):
+    done = called(*args)
+    assert done.code == 2 and f'did you mean "{said}"?' in done.err
+
+
+@pytest.mark.parametrize("option", ["-o", "--csv"])
+def test_an_empty_name_of_a_file_is_no_folder(option):
+    """It was said that '.' is a folder."""
+    done = called("respond", "yang1998", option, "")
+    assert done.code == 2 and "as an empty name is: name a file to write" in done.err

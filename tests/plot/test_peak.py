@@ -11,6 +11,8 @@ from fcm.response import trace
 from fcm.results.output import write_netcdf
 from fcm.scene import load_scene
 
+from ..program import called
+
 N_0, MU = "contact.shroud.n_0", "contact.shroud.mu"
 
 
@@ -156,3 +158,11 @@ def test_a_file_without_a_sweep(tmp_path):
     write_netcdf(trace(load_scene("yang1998-n5")), path)
     with pytest.raises(PlotError, match="nothing was swept"):
         draw_peak(read_peaks(path))
+
+
+def test_a_file_of_nonlinear_modes_has_no_peaks(tmp_path):
+    """It was said that nothing was swept."""
+    made = called("respond", "yang1998-n5", "--mode", "1", "--level", "1:2", "-o", tmp_path / "mode.nc")
+    assert made.code == 0
+    with pytest.raises(PlotError, match="nonlinear modes, which have no peaks; try fcm plot mode"):
+        read_peaks(tmp_path / "mode.nc")

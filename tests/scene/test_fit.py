@@ -198,3 +198,8 @@ def test_a_universal_file_without_a_response_says_what_it_holds(written):
     assert "has 0 responses over the frequency among its functions (a time response)" in said
     cut = uff58(VALUES)[:-60] + b"\n    -1\n"
     assert "says 3 values, and" in mistakes(written(fit, cut, "a.unv"))
+
+
+def test_a_file_that_is_not_there_is_said_beside_other_mistakes(written):
+    said = mistakes(written(FIT.replace("a.csv", "no.csv").replace('dof = "u"', 'dof = "q"')))
+    assert 'no.csv" is not there' in said and 'there is no degree of freedom "q"' in said

@@ -68,6 +68,8 @@ def alone(outputs: Iterable[Path | None]) -> Iterator[None]:
 
 
 def _problem(path: Path, endings: tuple[str, ...]) -> str:
+    if path == Path():
+        return "it is this folder, as an empty name is: name a file to write"
     if (what := no_file(path, "written")) == "is a folder":
         return "it is a folder, not a file to write"
     if path.suffix.lower() not in endings:

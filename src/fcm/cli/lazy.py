@@ -32,6 +32,11 @@ class LazyGroup(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         if not ctx.resilient_parsing and args[0] in self._instead:
             ctx.fail(f"No such command {args[0]!r}: it is {self._instead[args[0]]}.")
+        if not ctx.resilient_parsing and args[0] not in self._lazy and args[0][:1].isalpha():
+            from fcm.scene.errors import suggestion
+
+            hint = suggestion(args[0], self._lazy) or f"; there are {', '.join(self._lazy)}"
+            ctx.fail(f"No such command {args[0]!r}{hint}")
         return super().resolve_command(ctx, args)
 
     def list_commands(self, ctx: click.Context) -> list[str]:

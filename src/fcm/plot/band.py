@@ -25,7 +25,10 @@ def banded_column(response: DrawnResponse, dof: str | None) -> int:
     """The degree of freedom whose bands can be drawn; errors say why there are none."""
     column = response.column(dof)
     if not response.drawn:
-        raise PlotError("nothing was drawn at random in this sweep, so that it has no bands")
+        raise PlotError(
+            "nothing was drawn at random in this sweep, so that it has no bands; [sweep] draws a number by "
+            "{ normal = [5.0, 0.5], count = 40 }"
+        )
     if response.frequency_unit == LEVEL:
         raise PlotError("the curves are against the level of the forces; bands are over frequencies")
     if not any(np.isfinite(curve.amplitude[:, column]).any() for curve in response.curves):

@@ -49,6 +49,8 @@ def read_peaks(path: Path) -> Peaks:
     """Read the peaks of what ``fcm respond -o`` has written; PlotError if the file is something else."""
     with opened(path, "a response file", _NEEDED, ("peak_stable",)) as data:
         variables = data.variables
+        if "damping_ratio" in variables:
+            raise PlotError(f"{path}: it is of nonlinear modes, which have no peaks; try fcm plot mode")
         dofs = tuple(str(name) for name in np.atleast_1d(variables["dof"][:]))
         amplitude, frequency, complete = (floats(variables[name]) for name in _NEEDED[1:])
         swept = swept_values(variables)

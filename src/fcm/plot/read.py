@@ -117,9 +117,11 @@ def opened(path: Path, kind: str, needed: Sequence[str], also: Sequence[str] = (
 
     if what := no_file(path):
         raise PlotError(f"{path}: {what}")
-    scene = f": fcm respond {path.name} -o {path.stem}.nc writes one" if path.suffix == ".toml" else ""
+    scene = path.name if path.suffix == ".toml" else "SCENE"
     with read(
-        path, f"not a netCDF file that can be read{scene}", (Exception,)
+        path,
+        f"not a netCDF file that can be read; fcm respond {scene} -o {path.stem or 'FILE'}.nc writes one",
+        (Exception,),
     ):  # whatever the library comes to
         dataset = Dataset(str(path))
     with dataset:

@@ -128,10 +128,9 @@ def _data(
         )
     mode = section.number("mode", MODE, 1.0)
     name = section.text("backbone" if backbone else "file")
-    if section.mistakes.count > before:
-        return None
-    columns = _columns(section, files, name, backbone, level if isinstance(level, str) else "")
-    if columns is None:
+    column = level if isinstance(level, str) else ""
+    columns = _columns(section, files, name, backbone, column) if name else None
+    if columns is None or section.mistakes.count > before:
         return None
     scaled = columns["angular_frequency"] if "angular_frequency" in columns else unit * columns["frequency"]
     amplitude, count = columns["amplitude"], scaled.size

@@ -62,10 +62,17 @@ def units_doubt(scene: Scene) -> str:
         modal.frequency[: modal.frequency.size - modal.added] if ring is None else ring.frequency[~ring.added]
     )
     elastic, ends, unit = own[own > 0.0], scene.frequency_range, scene.frequency_unit
+    if elastic.size and scene.of_matrices and _swapped(elastic, ends):
+        return "stiffness and mass may be in each other's place: modes are far below the range"
     slip = _slip_of_units(np.sort(elastic), ends, unit) if elastic.size else ""
     if slip and ring is None and scene.contacts:  # contacts that stick may bring a mode there
         slip = _slip_of_units(np.sort(np.concatenate((elastic, _stuck(scene)))), ends, unit)
     return slip
+
+
+def _swapped(elastic: FloatArray, ends: tuple[float, float]) -> bool:
+    """Whether frequencies [rad/s] are so low that their reciprocals may be meant."""
+    return bool(elastic.max() < TOLERANCES.far_below * min(1.0, ends[0]))
 
 
 def _stuck(scene: Scene) -> FloatArray:
