@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from fcm import load_scene
-from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.response.groups import Work, fits
 from fcm.response.request import Request
@@ -48,12 +47,13 @@ def test_the_first_curve_is_kept_with_its_error():
 
 
 def test_the_last_of_several_is_kept_and_each_is_told():
-    one, stops = scene("yang1998", 5), _Stops(3)
+    one, stops = scene("yang1998", 5), _Stops(4)
     with pytest.raises(Interrupted) as stopped:
         traced_curve(one, FINE, tell=stops)
     (curve,) = stopped.value.results
     assert len(curve.harmonics) > 3
-    assert stops.told[0].startswith("1 harmonic, error 6")
+    assert stops.told[0] == "1 harmonic, error not told yet; now its errors"
+    assert stops.told[1].startswith("1 harmonic, error 6")
     assert all("; now " in text for text in stops.told)
 
 
@@ -64,13 +64,64 @@ def test_given_harmonics_leave_the_curve_of_fewer():
     assert curve.harmonics == (1,) and "before it was traced with 11" in curve.reason
 
 
-def test_before_the_first_curve_there_is_nothing(monkeypatch):
-    def stop(*_):
-        raise KeyboardInterrupt
+def _stopping(looks):
+    """Interrupts at a look after so many."""
+    left = iter(range(looks))
 
-    monkeypatch.setattr(System, "new_balance", stop)
+    def poll():
+        if next(left, None) is None:
+            raise KeyboardInterrupt
+
+    return poll
+
+
+@pytest.mark.parametrize("name", ["yang1998", "isola"])
+def test_the_first_curve_is_kept_as_far_as_it_has_come(name):
+    """Its points are those of the whole curve, which has no other before them."""
+    one = scene(name, 5) if name == "yang1998" else scene(name)
+    known = set(zip(*_points(traced_curve(one, Request((1,)))), strict=True))
+    parts = []
+    for looks in range(60):
+        try:
+            traced_curve(one, Request((1,)), _stopping(looks))
+            break
+        except Interrupted as stopped:
+            parts += stopped.results
+        except KeyboardInterrupt:
+            assert not parts  # once there is something it stays
+    cut = [part for part in parts if "before it came to its end" in part.reason]
+    assert cut and not any(part.complete for part in parts)
+    lengths = [len(part.frequency) for part in parts]
+    assert lengths == sorted(lengths) and lengths[0] < lengths[-1]
+    for part in cut:
+        assert "this is the part up to there with 1 harmonic" in part.reason
+        assert len(known.intersection(zip(*_points(part), strict=True))) >= len(part.frequency) - 1
+
+
+def _points(curve):
+    """Frequencies and amplitudes, as far as rounding leaves them."""
+    there = np.isfinite(curve.frequency)
+    return (
+        curve.frequency[there].round(9).tolist(),
+        curve.amplitude[there, 0].round(7).tolist(),
+    )
+
+
+def test_before_the_errors_the_curve_of_given_harmonics_is_kept():
+    """And it is said that these come next."""
+    stops = _Stops(1)
+    with pytest.raises(Interrupted) as stopped:
+        traced_curve(scene("yang1998", 5), Request((1,)), tell=stops)
+    (curve,) = stopped.value.results
+    assert stops.told == ["1 harmonic, error not told yet; now its errors"]
+    assert curve.harmonics == (1,) and "before it was judged" in curve.reason
+    assert curve.peaks["u"].amplitude == pytest.approx(15.831, abs=1e-3)
+
+
+def test_before_the_first_curve_there_is_nothing():
+    """As the level of the forces is followed, to where it begins."""
     with pytest.raises(KeyboardInterrupt) as stopped:
-        traced_curve(scene("isola"), FINE)
+        traced_curve(scene("isola"), FINE, _stopping(0))
     assert not isinstance(stopped.value, Interrupted)
 
 
@@ -141,19 +192,15 @@ def whole():
 @pytest.mark.slow
 @pytest.mark.parametrize("share", [0.2, 0.75, 0.95])
 def test_many_contacts_stopped_at_any_time_leave_the_best_curve_that_there_was(whole, share):
-    """What the whole run has at that time is written, with its error; before the first curve nothing."""
+    """What the whole run has at that time is written, with its error; of the first curve what there is."""
     calls, told = whole
-    left = iter(range(int(share * calls)))
-
-    def stop():
-        if next(left, None) is None:
-            raise KeyboardInterrupt
-
     known = [text for at, text in told if at <= int(share * calls)]
-    with pytest.raises(KeyboardInterrupt) as stopped:
-        traced_curve(_joint(), Request(None, 1e-2), stop)
-    assert isinstance(stopped.value, Interrupted) == bool(known)
+    with pytest.raises(Interrupted) as stopped:
+        traced_curve(_joint(), Request(None, 1e-2), _stopping(int(share * calls)))
+    (curve,) = stopped.value.results
+    assert not curve.complete and len(curve.frequency) > 1
     if known:
-        (curve,) = stopped.value.results
-        assert not curve.complete and known[-1].split(";")[0] in curve.reason
+        assert known[-1].split(";")[0] in curve.reason
         assert np.isfinite([peak.error for peak in curve.peaks.values()]).all()
+    else:
+        assert "before it came to its end" in curve.reason

@@ -15,7 +15,7 @@ from fcm.accuracy.options import REFINEMENT, RefinementOptions
 from fcm.branches.force_level import LevelSolutions
 from fcm.branches.prolongation import prolongated
 from fcm.branches.trace import Traced, traced, traced_from, with_levels
-from fcm.continuation import Path
+from fcm.continuation import Branches, BranchesInterrupted, Path
 from fcm.continuation.follow import Progress
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
@@ -103,15 +103,37 @@ class UncheckedResponse:
         return UncheckedResponse(system, response, shown, seconds)
 
 
+class ResponseInterrupted(KeyboardInterrupt):
+    """Tracing a response was interrupted; response: the branches up to there."""
+
+    def __init__(self, response: UncheckedResponse) -> None:
+        super().__init__()
+        self.response = response
+
+
 def unchecked_response(
     system: System,
     progress: Progress | None = None,
     fewer: tuple[LevelSolutions, ...] = (),
     near: Sequence[FloatArray] = (),
 ) -> UncheckedResponse:
-    """The response of a system; fewer and near as of `traced`."""
+    """The response of a system; fewer and near as of `traced`.
+
+    Raises
+    ------
+    ResponseInterrupted
+        With the branches up to there, where a `KeyboardInterrupt` comes when there is a part of one.
+    """
     before = system.work.seconds
-    response = traced(system, progress, fewer, near)
+    try:
+        response = traced(system, progress, fewer, near)
+    except BranchesInterrupted as stopped:
+        paths = tuple(path for path in stopped.branches.paths if len(path.z) > 1)
+        if not paths:
+            raise
+        shown, partial = _shown(system, paths), Traced(Branches(paths), ())
+        begun = UncheckedResponse(system, partial, shown, system.work.seconds - before)
+        raise ResponseInterrupted(begun) from None
     shown = _shown(system, response.branches.paths)
     return UncheckedResponse(system, response, shown, system.work.seconds - before)
 

@@ -71,6 +71,8 @@ def refined_response(
     traced is told to keep, before more is.
     """
     found: UncheckedResponse = unchecked_response(system, progress)
+    if keep is not None and found.shown:
+        keep(found, np.nan, ())
     sure: RefinedResponse | None = None
     further, begun = tuple[int, ...](), False
     for _ in range(options.max_rounds):
@@ -131,7 +133,10 @@ def with_given_harmonics(
             before = _after(before, system.with_harmonics(system.harmonics[:count]))
             if keep is not None and before.shown:
                 keep(before, np.nan, system.harmonics)
-    return with_errors(_after(before, system, progress), np.inf)
+    found = _after(before, system, progress)
+    if keep is not None and found.shown:
+        keep(found, np.nan, ())
+    return with_errors(found, np.inf)
 
 
 def _after(

@@ -11,7 +11,7 @@ from fcm.continuation.corrector import Newton
 from fcm.continuation.events import Events
 from fcm.continuation.follow import Progress, follow
 from fcm.continuation.options import FOLLOW, PATH, FollowOptions, PathOptions
-from fcm.continuation.path import FloatArray, Path, Status
+from fcm.continuation.path import FloatArray, Path, PathInterrupted, Status
 from fcm.continuation.problem import Problem
 
 Follow = Callable[..., Path]  # as `follow`
@@ -30,6 +30,14 @@ class Branches:
         whole = (Status.COMPLETE, Status.RETURNED, Status.CLOSED)
         broken = [path.status for path in self.paths if path.status not in whole]
         return broken[0] if broken else Status.STALLED if self.lost else Status.COMPLETE
+
+
+class BranchesInterrupted(KeyboardInterrupt):
+    """Following branches was interrupted; branches: those up to there, the last as far as it had come."""
+
+    def __init__(self, branches: Branches) -> None:
+        super().__init__()
+        self.branches = branches
 
 
 def all_branches(
@@ -54,19 +62,28 @@ def all_branches(
         Follows a path, as `follow` does.
     known : sequence of Path
         Branches that were followed before, which are the first of those returned.
+
+    Raises
+    ------
+    BranchesInterrupted
+        With the branches up to there, where a `KeyboardInterrupt` comes.
     """
     events = Events(sorted({float(z[-1]) for z in solutions}))
     paths: list[Path] = list(known)
     lost: list[FloatArray] = []
-    for z in solutions:
-        problem = new_problem() if paths else None
-        if problem is not None and any(contains(path, z, problem) for path in paths):
-            continue
-        path = branch_through(new_problem, z, span, events, options, progress, along)
-        if not path.z.shape[0]:
-            lost.append(z)
-        elif problem is None or not _known(path, paths, problem):
-            paths.append(path)
+    try:
+        for z in solutions:
+            problem = new_problem() if paths else None
+            if problem is not None and any(contains(path, z, problem) for path in paths):
+                continue
+            path = branch_through(new_problem, z, span, events, options, progress, along)
+            if not path.z.shape[0]:
+                lost.append(z)
+            elif problem is None or not _known(path, paths, problem):
+                paths.append(path)
+    except KeyboardInterrupt as stopped:
+        last = (stopped.path,) if isinstance(stopped, PathInterrupted) else ()
+        raise BranchesInterrupted(Branches((*paths, *last))) from None
     return Branches(tuple(paths), tuple(lost))
 
 
@@ -132,7 +149,10 @@ def branch_through(
     path = along(new_problem(), z, span, events, options, forward=True, progress=progress)
     if path.status is Status.CLOSED or path.z.shape[0] == 0:
         return path
-    other = along(new_problem(), z, span, events, options, forward=False, progress=progress)
+    try:
+        other = along(new_problem(), z, span, events, options, forward=False, progress=progress)
+    except PathInterrupted as stopped:
+        raise PathInterrupted(path.backwards().then(stopped.path)) from None
     if other.z.shape[0] == 0:
         return path
     if other.status not in (Status.COMPLETE, Status.RETURNED):

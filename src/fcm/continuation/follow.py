@@ -24,7 +24,7 @@ from fcm.continuation.events import NO_EVENTS, End, Events, Landing, first_end
 from fcm.continuation.labelled_switching import LabelledSwitching
 from fcm.continuation.nonsmooth_points import NonsmoothPoints
 from fcm.continuation.options import FOLLOW, FollowOptions, StepOptions, SwitchingOptions
-from fcm.continuation.path import FloatArray, Mark, Path, Status
+from fcm.continuation.path import FloatArray, Mark, Path, PathInterrupted, Status
 from fcm.continuation.point import Point, PointStore
 from fcm.continuation.problem import Problem
 from fcm.continuation.recorder import Recorder, step_back
@@ -385,6 +385,11 @@ def follow(
     Path
         With status STALLED and without points where there is no curve at the start.
 
+    Raises
+    ------
+    PathInterrupted
+        With the points up to there, where a `KeyboardInterrupt` comes.
+
     Examples
     --------
     >>> import numpy as np
@@ -404,4 +409,7 @@ def follow(
         follower.resume(checkpoint)
     elif not follower.begin(start, forward, direction):
         return follower.path(Status.STALLED)
-    return follower.run(watch)
+    try:
+        return follower.run(watch)
+    except KeyboardInterrupt:
+        raise PathInterrupted(follower.path(Status.INTERRUPTED)) from None

@@ -25,6 +25,14 @@ class Status(Enum):
     INTERRUPTED = "interrupted"
 
 
+class PathInterrupted(KeyboardInterrupt):
+    """Following was interrupted; path: as far as it had come."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.path = path
+
+
 class Mark:
     """What a point of a curve is besides a point; plain bits, which arrays take far faster than an `enum`."""
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from fcm.continuation import Path
+from fcm.continuation import Path, PathInterrupted
 from fcm.continuation.follow import Progress
 from fcm.continuation.stepper import Stepper
 from fcm.harmonic_balance.modal_condensation import CONDENSATION, condensed_size
@@ -117,5 +117,8 @@ def charged_to_work(
 
     with system.exclusive_balance():
         path = follow(report)
-    add(path.evaluations)
+    try:
+        add(path.evaluations)
+    except KeyboardInterrupt:
+        raise PathInterrupted(path) from None
     return path

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 
 from fcm.accuracy.outline import UncheckedResponse
+from fcm.accuracy.refinement import RefinedResponse
 from fcm.results.result import INTERRUPTED
 from fcm.scene.errors import counted
 
@@ -19,12 +20,23 @@ class BestSoFar:
     def __init__(self, tell: Tell | None) -> None:
         self.tell, self.error, self.next = tell, math.nan, 0
         self.found: UncheckedResponse | None = None
+        self.cut = False  # whether that does not come to its end
 
     def __call__(self, found: UncheckedResponse, error: float, more: tuple[int, ...]) -> None:
         self.found, self.error, self.next = found, error, len(more)
         if self.tell is not None:
-            now = f"now {counted(self.next, 'harmonic')}" if self.next else "now its stability"
-            self.tell(f"{self._harmonics_reached()}; {now}")
+            self.tell(f"{self._harmonics_reached()}; now {self._missing()}")
+
+    def take_part(self, found: UncheckedResponse) -> None:
+        """A response that was interrupted, if there is no other."""
+        if self.found is None:
+            self.found, self.cut = found, True
+
+    def _missing(self) -> str:
+        """What comes next."""
+        if self.next:
+            return counted(self.next, "harmonic")
+        return "its stability" if isinstance(self.found, RefinedResponse) else "its errors"
 
     def _harmonics_reached(self) -> str:
         assert self.found is not None
@@ -34,5 +46,6 @@ class BestSoFar:
     def reason(self) -> str:
         """Why the curve is not complete, and what is missing."""
         missing = f" before it was traced with {self.next}" if self.next else " before it was judged"
-        reached = self._harmonics_reached()
-        return f"{INTERRUPTED}{missing}: this is the curve with {reached}; its stability is missing"
+        missing = " before it came to its end" if self.cut else missing
+        part, reached = "the part up to there" if self.cut else "the curve", self._harmonics_reached()
+        return f"{INTERRUPTED}{missing}: this is {part} with {reached}; its stability is missing"

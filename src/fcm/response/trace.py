@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.options import PAIR, VALIDITY
+from fcm.accuracy.outline import ResponseInterrupted
 from fcm.accuracy.refinement import RefinedResponse, refined_response, with_errors, with_given_harmonics
 from fcm.accuracy.stability_validity import unreliable_points
 from fcm.branches.options import FOLDS
@@ -56,7 +57,7 @@ def traced_curve(
     Raises
     ------
     fcm.run.Interrupted
-        With the best curve that there is, where an interruption comes after the first.
+        With the best curve that there is, or as much as there is of the first.
     """
     from fcm.response.groups import lost_curve
 
@@ -65,7 +66,9 @@ def traced_curve(
         curve = _traced_curve(scene, wanted, poll, so_far)
     except ContactLawError as useless:  # of a motion that was not tried before
         curve = lost_curve(scene, str(useless))
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as stopped:
+        if isinstance(stopped, ResponseInterrupted):
+            so_far.take_part(stopped.response)
         if so_far.found is None:
             raise
         curve = _unfinished(so_far, scene)
@@ -82,6 +85,7 @@ def _unfinished(so_far: BestSoFar, scene: Scene) -> Curve:
     found.system.work.poll = int  # which interrupts no more
     if not isinstance(found, RefinedResponse):
         found = with_errors(found, np.inf, options=NO_CHECKS)
+        so_far.error = found.max_error
     stable = [np.full(len(path.z), np.nan) for path in found.traced.branches.paths]
     every = found if found.system.scene is scene else with_all_dofs(found, scene, np.inf)
     curve = _curve(Refined(found, stable, every=every), quick=True)
