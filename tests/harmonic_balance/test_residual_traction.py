@@ -12,7 +12,7 @@ import pytest
 import fcm
 from fcm.continuation.corrector import Newton
 from fcm.harmonic_balance.modal_condensation import CondensationOptions
-from fcm.harmonic_balance.residual_traction import peak_changes
+from fcm.harmonic_balance.residual_traction import TractionOptions, peak_changes
 from fcm.harmonic_balance.system import System
 from fcm.response.exact import trace_exact
 from fcm.scene import scene_from_dict
@@ -119,3 +119,24 @@ def test_systems_condensed_to_modes_tell_the_same():
         stuck[:, 1] = True
         told.append(peak_changes(system, z[None], amplitude, np.zeros(3, dtype=np.intp), stuck)[0])
     assert told[0] > 0.005 and told[1] == pytest.approx(told[0], rel=1e-4)
+
+
+def test_the_way_to_the_limits_ends_where_it_takes_too_many_members():
+    """The first member is at the limits; with none allowed the change is not told."""
+    held = scene(1.0, [HELD])
+    system = System(held, (1, 3))
+    newton = Newton(system.new_balance())
+    newton.z[-1], newton.row[-1] = fcm.respond(held).peak_frequency.sel(dof="a").item(), 1.0
+    newton.problem.measure(newton.z)
+    newton.scale[:] = newton.problem.scale
+    assert newton.correct(1.0)
+    z = np.array(newton.z)
+    newton.problem.report(z, np.zeros(len(z)))
+    amplitude, stuck = np.array(newton.problem.output)[None], np.zeros((3, 2), dtype=bool)
+    stuck[:, 1] = True
+    top = np.zeros(3, dtype=np.intp)
+    one, none = (
+        peak_changes(system, z[None], amplitude, top, stuck, TractionOptions(max_members=most))[0]
+        for most in (1, 0)
+    )
+    assert one > 0.005 and np.isnan(none)

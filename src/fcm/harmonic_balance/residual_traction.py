@@ -44,6 +44,8 @@ class TractionOptions:
     min_factor, max_factor, min_step : float
         Times a step that the next is, where it led to no motion, and where it did, along the curve and on the
         way to the limits; and the part of that way below which none does.
+    max_members : int
+        On the way to the limits at most: near a corner of the curve steps may stay as short as they are.
     max_rounds : int
         Times that the limits are sought, of the motion and along the derivatives at the member found last.
     traction_tolerance : float
@@ -63,6 +65,7 @@ class TractionOptions:
     min_factor: float = 0.25
     max_factor: float = 2.0
     min_step: float = 1e-4
+    max_members: int = 20
     max_rounds: int = 6
     traction_tolerance: float = 1e-2
     stick_tolerance: float = 1e-9
@@ -321,9 +324,9 @@ class _Family:
         return float(law.mu * (abs(law.n_0) + law.k_v * normal) + law.k_u * x.sum())
 
     def _moved(self, z: FloatArray, row: FloatArray, begin: FloatArray, end: FloatArray) -> FloatArray | None:
-        """The peak with other forces, in as many steps as it takes."""
+        """The peak with other forces, in as many steps as it takes; None where that is too many."""
         members, done, share = self.members, 0.0, 1.0
-        while done < 1.0:
+        for _ in range(self.options.max_members):
             reach = min(done + share, 1.0)
             members.fix(self.contacts, begin + reach * (end - begin))
             found = self._top(z, row)
@@ -333,7 +336,9 @@ class _Family:
                     return None
                 continue
             z, done, share, row = found, reach, share * self.options.max_factor, self._row(row)
-        return z
+            if done == 1.0:
+                return z
+        return None
 
 
 def peak_changes(
