@@ -257,7 +257,7 @@ joint: $(VENV)/installed  ## two bolted beams with 100 pairs in the plane: bendi
 	$(BIN)/python -m tests.studies.joint
 
 docs: $(VENV)/installed-dev  ## the guide as a site that can be searched, in build/docs: to be served, as by python3 -m http.server -d build/docs
-	$(BIN)/python -m mkdocs build --quiet --config-file .github/mkdocs.yml
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --quiet --config-file .github/mkdocs.yml
 
 dist: $(VENV)/installed-dev  ## the source distribution and from it the wheel, in build/dist
 	rm -rf build/dist

@@ -79,7 +79,7 @@ def harmonic_balance(figure):
         )  # fmt: skip
     exact = fcm.respond(scene, method="exact").isel(curve=0).sel(dof="u")
     drawn(axes, "exact", exact.frequency, exact.amplitude, "k-", lw=0.8, label="exact motion")
-    axes.set(xlabel="frequency [rad/s]", ylabel="amplitude", xlim=(1.1, 1.35))
+    axes.set(xlabel="frequency [rad/s]", ylabel="amplitude", xlim=(1.1, 1.35), ylim=(-0.5, 16.5))
     axes.legend()
 
 
@@ -228,6 +228,7 @@ def two_masses(figure):
         )  # fmt: skip
         drawn(axes, f"{name}-marched", at, amplitudes[:, i], "k+", label="marched" if i else None)
     axes.set(xlabel="frequency", ylabel="amplitude")
+    axes.legend()
 
 
 ELLIPSE = {"u_x": [0, 1.0], "u_y": [0, -0.7j], "v": [0, 1.0]}  # which slips all the time

@@ -166,3 +166,8 @@ def test_a_file_of_nonlinear_modes_has_no_peaks(tmp_path):
     assert made.code == 0
     with pytest.raises(PlotError, match="nonlinear modes, which have no peaks; try fcm plot mode"):
         read_peaks(tmp_path / "mode.nc")
+
+
+def test_the_least_peak_has_its_unit():
+    drawn = replace(peaks(n_0=[5.0, 10.0, 20.0]), length="mm")
+    assert title(draw_peak(drawn).axes[0]) == "least peak 6 mm at $n_{0}$ = 10"

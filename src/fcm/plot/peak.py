@@ -175,7 +175,8 @@ def _mark_least(upper: Axes, lower: Axes, peaks: Peaks, key: str, column: int, k
     values = {name: float(values[least]) for name, values in peaks.parameters.items()}
     where = curve_label(values, units=peaks.units)
     stays = "" if peaks.stable is None or y == 0.0 else staying(float(peaks.stable[least, column]))
-    upper.set_title(f"least peak {y:.4g}{stays} at {where}", loc="right", fontsize=8, color=_MARK)
+    least_peak = f"{y:.4g} {unit_of(peaks.dofs[column], peaks.length)}".rstrip()
+    upper.set_title(f"least peak {least_peak}{stays} at {where}", loc="right", fontsize=8, color=_MARK)
 
 
 def _mark_unstable(both: tuple[Axes, Axes], peaks: Peaks, key: str, column: int, known: BoolArray) -> None:

@@ -209,5 +209,5 @@ def _mark_optimum(upper: Axes, lower: Axes, drawn: DrawnTracking) -> None:
     for axes in (upper, lower):
         axes.axvline(x, color=_MARK, linewidth=0.5, linestyle=(0, (4, 3)), zorder=0)
     (symbol,) = symbols([drawn.key])
-    at = f"{symbol} = {x:.5g} {drawn.unit}".rstrip()
-    upper.set_title(f"least peak {y:.5g}{drawn.stays} at {at}", loc="right", fontsize=8, color=_MARK)
+    at, least = f"{symbol} = {x:.5g} {drawn.unit}".rstrip(), f"{y:.5g} {drawn.length}".rstrip()
+    upper.set_title(f"least peak {least}{drawn.stays} at {at}", loc="right", fontsize=8, color=_MARK)
