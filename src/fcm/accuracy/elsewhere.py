@@ -1,5 +1,7 @@
 """Motions of the partner at frequencies to which no branch of it is known to come.
 
+Where the partner is another curve, few of its points lie normal to the path, and it is followed here alone,
+with as many harmonics as the work allows.
 They belong to the whole response: what is followed from one branch tells the others, too, and all of it has
 one budget.
 """
@@ -14,13 +16,16 @@ import numpy as np
 
 from fcm.accuracy.budget import Budget, share_of
 from fcm.accuracy.options import PairOptions
+from fcm.accuracy.partner import partner_of
 from fcm.accuracy.partner_curve import curve_piece
 from fcm.accuracy.partner_pieces import CurvePiece
 from fcm.accuracy.partner_stretch import StretchFollower
 from fcm.continuation import Path
+from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.normal_plane_prolongation import DampedOptions, Prolongation
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities
 from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray
 
 if TYPE_CHECKING:
     from fcm.accuracy.embedded_pair import Errors
@@ -74,6 +79,25 @@ def partner_elsewhere(
     # what the levels took is paid already
     system.work.add(sum(one.each * one.evaluations for one in followers.values()))
     return found
+
+
+def affordable_partner(
+    system: System, path: Path, share: FloatArray, options: PairOptions
+) -> tuple[int, ...]:
+    """The partner's harmonics where it is another curve; fewer where following it takes longer than it may.
+
+    That is about as many evaluations as the path took, for so many times as many harmonics. share as of
+    `partner_of`.
+    """
+    most, ports = Budget.elsewhere(system.work, options).seconds, system.layout.ports
+    more = partner_of(system.harmonics, share, ports, options)
+    for times in options.fewer_factors:
+        growth = len(more) / len(system.harmonics)
+        if seconds_of(system, 1, len(more)) * path.evaluations * growth <= most:
+            break
+        fewer = replace(options, harmonics_factor=times, max_named=1)
+        more = partner_of(system.harmonics, share, ports, fewer)
+    return more
 
 
 class _Untold:

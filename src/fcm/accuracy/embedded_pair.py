@@ -19,14 +19,13 @@ import numpy.typing as npt
 from fcm.accuracy.budget import Budget
 from fcm.accuracy.contact_load_errors import of_borne, relative
 from fcm.accuracy.crossings import with_crossings
-from fcm.accuracy.elsewhere import partner_elsewhere
+from fcm.accuracy.elsewhere import affordable_partner, partner_elsewhere
 from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.partner import partner_of
 from fcm.accuracy.partner_curve import FollowedStretch, Indices, PartnerCurve
 from fcm.accuracy.partner_pieces import CurvePiece, distinct, lengths, nearest, piece_of
 from fcm.accuracy.peaks import heights, rise_between_points
 from fcm.continuation import Mark, Path
-from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.harmonic_balance.response_quantities import ContactRecord
@@ -52,7 +51,7 @@ class Errors:
     share (harmonic,), from the first to the greatest that can be asked for: what each harmonic left out would
     have without feedback, at peaks and folds, of the greatest amplitude of the degree of freedom to which it
     matters most.
-    partner: its harmonics.
+    partner: the harmonics with which it is followed elsewhere.
     borne (point, contact, 4): of what the contacts bear, see `response_quantities.cycles`, each relative
     to itself; infinite where it is nothing, and something in the partner. greatest (contact, 4): of the
     greatest of each along the path. contacts: what those of the path itself do and bear. pieces: what is
@@ -107,7 +106,12 @@ def errors_along(
         told = none, none[:, 0], known, none[0], size, of_folds, share, more, borne, borne[0]
         return Errors(*told, contacts, own)
     seconds = budget or Budget(options.max_seconds)
-    partner = _partner(system, path, shown, contacts, share, options, seconds)
+    partner = PartnerCurve(system, path, shown, _flat(contacts.borne), more, options, seconds)
+    elsewhere = more
+    if not partner.is_same_curve():
+        elsewhere = affordable_partner(system, path, share, options)
+    if elsewhere != more:  # only with these it is followed
+        partner.stretches.budget = Budget(0.0)
     change = partner.displacements(np.union1d(partner.distinct_points(special), np.union1d(folds, met)))
     followed = partner.follow_stretches(change)
     compared, dofs = partner.compared_quantities(change), shown.amplitude.shape[1]
@@ -149,46 +153,12 @@ def errors_along(
         height=height,
         fold=of_folds,
         share=share,
-        partner=partner.more,
+        partner=elsewhere,
         borne=borne,
         greatest=greatest,
         contacts=contacts,
         pieces=partner.pieces(compared, followed),
     )
-
-
-def _partner(
-    system: System,
-    path: Path,
-    shown: ReportedQuantities,
-    contacts: ContactRecord,
-    share: FloatArray,
-    options: PairOptions,
-    budget: Budget,
-) -> PartnerCurve:
-    """The partner of a path; with fewer harmonics where it is another curve, too dear to be followed."""
-    ports, most = system.layout.ports, Budget.elsewhere(system.work, options).seconds
-    more = partner_of(system.harmonics, share, ports, options)
-    borne = _flat(contacts.borne)
-    partner = PartnerCurve(system, path, shown, borne, more, options, budget)
-    if partner.is_same_curve() or _seconds_along(system, path, more) <= most:
-        return partner
-    system.work.add(partner.seconds())
-    partner.release()
-    for times in options.fewer_factors:
-        more = partner_of(
-            system.harmonics, share, ports, replace(options, harmonics_factor=times, max_named=1)
-        )
-        if _seconds_along(system, path, more) <= most:
-            break
-    other = PartnerCurve(system, path, shown, borne, more, options, budget)
-    other.stretches.budget = Budget(0.0)  # see `elsewhere`
-    return other
-
-
-def _seconds_along(system: System, path: Path, more: tuple[int, ...]) -> float:
-    """About what following a partner takes: as many evaluations, for so many times as many harmonics."""
-    return seconds_of(system, 1, len(more)) * path.evaluations * len(more) / len(system.harmonics)
 
 
 def with_nearest(
