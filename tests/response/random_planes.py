@@ -3,7 +3,8 @@
 One to three contacts in a plane, two to six modes. Of each scene the highest peak is sought with the
 harmonics that an accuracy takes. The whole motion is marched by central differences, of all scenes at once.
 In a step the sliders are moved by radial return, once and in two halves, which errs by the first order, and
-the two are extrapolated to the second. Steps are halved, and the last change says how far the march errs.
+the two are extrapolated to the second. Steps are halved twice, and the changes say how far the march errs:
+the last, or half the one before, as openings fall between steps, where the order is the first.
 
 The march begins with the balance's state, sliders too. It has the peak by a parabola through three
 frequencies, the middle one where the balance has its own, and by another one half as wide: where these differ
@@ -21,6 +22,7 @@ from __future__ import annotations
 
 import sys
 from dataclasses import replace
+from itertools import pairwise
 from math import pi
 from pathlib import Path
 from typing import NamedTuple
@@ -238,14 +240,15 @@ def beyond(low: FloatArray, here: FloatArray, high: FloatArray) -> FloatArray:
 def halved(
     march: March, omega: FloatArray, state: State, place: FloatArray
 ) -> tuple[FloatArray, FloatArray, list[State]]:
-    """Amplitudes (scene, motion) of steps halved twice, their last change, states of the longest step."""
+    """Amplitudes (scene, motion) of steps halved twice, how far they err, states of the longest step."""
     heights, first = [], list[State]()
     for times in (1, 2, 4):
         height, states = march.run(omega, times * STEPS, state, place)
         first = first or states
         heights.append(height)
         state = states[-1]
-    return heights[2], np.abs(heights[2] - heights[1]), first
+    before, last = (np.abs(b - a) for a, b in pairwise(heights))
+    return heights[2], np.maximum(last, 0.5 * before), first
 
 
 def marched(seeds: list[int], found: list[Traced]) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -285,8 +288,8 @@ def over(middle: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
     return np.where(one_branch & inside, beyond(low, middle, high), 0.0)
 
 
-def main(count: int = 200, at_once: int = 2) -> None:
-    done = dict(in_time(traced, range(count), SECONDS, at_once))
+def main(count: int = 200, at_once: int = 2, first: int = 0) -> None:
+    done = dict(in_time(traced, range(first, count), SECONDS, at_once))
     told({seed: one for seed, one in sorted(done.items()) if one is not None})
     late = sorted(seed for seed, one in done.items() if one is None)
     print(f"not done within {SECONDS} s of a processor, or failed: {len(late)}: {late}")

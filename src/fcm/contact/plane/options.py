@@ -74,7 +74,7 @@ class PlanarOptions:
     near: float = 1.0
     ends: float = 1e-3
     unturned: float = 1e-9
-    deepest: float = 0.6
+    deepest: float = 0.8
     nothing: float = 1e-12
     negligible: float = 1e-10
     shortest: float = 1e-13
@@ -95,6 +95,6 @@ class PlanarOptions:
 
 OPTIONS = PlanarOptions()  # of a balance: forces within 1e-10, derivatives 1e-8 mostly, 1e-6 at worst
 FINE = replace(
-    OPTIONS, tolerance=1e-9, resolved=4.0, converged=1e-6, varied=1e-3, unturned=1e-11
+    OPTIONS, tolerance=1e-9, resolved=4.0, deepest=0.6, converged=1e-6, varied=1e-3, unturned=1e-11
 )  # of `planar_forces`: forces within 1e-11, derivatives 1e-8
 FINEST = replace(FINE, tolerance=1e-11)  # of a loop, whose polynomials are read between the ends of panels
