@@ -51,6 +51,20 @@ def test_rotations_are_in_radians_and_come_after_displacements():
     assert "7rz" not in header and rows[-1].endswith("greatest peaks, displacements before rotations")
 
 
+def test_where_a_peak_does_not_stay_the_greatest_motion_that_does_is_shown():
+    one, two = curve({"u": 3.0, "v": 2.0}), curve({"u": 4.0, "v": 1.0})
+    one["peak"]["u"] |= {
+        "stable": False,
+        "greatest_stable": {"amplitude": 1.25, "frequency": 1.5, "error": 0.01},
+    }
+    _, table = as_table({"curves": [one, two]}, "Hz").split("\n\n")
+    said, header, *rows = table.splitlines()
+    assert said == "the greatest motions that stay, where a peak does not, or may not:"
+    assert header.split() == ["stable", "u", "at", "Hz", "error", "stable", "v", "at", "Hz", "error"]
+    assert [row.split() for row in rows] == [["1.25000", "1.50000", "1.0e-02"]]
+    assert "stay, where" not in as_table({"curves": [two]}, "Hz")
+
+
 def test_a_peak_where_the_range_ends_is_marked():
     text = as_table({"curves": [curve({"u": 1.0, "v": 2.0}, edge=("v",))]}, "Hz")
     assert text.splitlines()[1].split()[:6] == ["1.00000", "1.50000", "-", "2.00000", "1.50000*", "-"]

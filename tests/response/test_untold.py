@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pickle
+from dataclasses import replace
 
 import netCDF4
 import numpy as np
@@ -14,6 +15,7 @@ from fcm.response import trace
 from fcm.response.exact import trace_exact
 from fcm.response.groups import KINDS
 from fcm.results.condensed_curves import without_points
+from fcm.results.curve_summary import curve_summary
 from fcm.results.jumps import swept
 from fcm.run.records import unpacked
 from fcm.scene import scene_from_dict
@@ -52,6 +54,25 @@ phase = 3.426
 [response]
 frequency = [0.915, 2.509]
 """
+
+
+def test_the_greatest_stable_motion_is_told_where_the_peak_is_none():
+    """Of a curve with its points, and of one that has little more than its gist."""
+    (curve,) = trace(replace(package.load_scene("yang1998-n5"), curves=()), harmonics=1).curves
+    assert all("greatest_stable" not in one for one in curve_summary(curve, "rad/s")["peak"].values())
+    high, marks = curve.amplitude[:, 0] > 8.0, iter((0.0, np.nan))
+    peaks = {dof: peak._replace(stable=next(marks)) for dof, peak in curve.peaks.items()}
+    lower = replace(curve, stable=np.where(high, 0.0, curve.stable), peaks=peaks)
+    for one in (lower, without_points(lower)):
+        for d, told in enumerate(curve_summary(one, "rad/s")["peak"].values()):
+            stays = told["greatest_stable"]
+            heights = {
+                float(curve.amplitude[i, d]): (float(curve.frequency[i]), float(curve.error[i, d]))
+                for i in range(len(high))
+                if curve.stable[i] == 1.0 and not high[i]
+            }
+            assert stays["amplitude"] == max(heights) < told["amplitude"]
+            assert (stays["frequency"], stays["error"]) == heights[stays["amplitude"]]
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fcm.cli.columns import UNKNOWN, UNSTABLE, aligned, number, ranges, share_of, short, stopped_early, swept
-from fcm.cli.jump_table import jump_table, untold_table
+from fcm.cli.jump_table import jump_table, stable_table, untold_table
 from fcm.cli.limits import SENTENCES
 from fcm.rotation import MOST_DOFS, greatest_first, is_rotation, unit_of
 
@@ -36,7 +36,8 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
     dofs, length = _greatest(curves, minimised), summary.get("units", {}).get("length", "")
     parts = [_curves(curves, names, dofs, unit, length, bool(minimised))]
     parts += [_blades(curves, names, unit, length)] if "blades" in curves[0] else []
-    parts += filter(None, [table(curves, names, dofs, unit) for table in (jump_table, untold_table)])
+    tables = (stable_table, jump_table, untold_table)
+    parts += filter(None, [table(curves, names, dofs, unit) for table in tables])
     parts += [_scatter(one, dofs, unit) for one in summary.get("scatter", ())]
     return "\n\n".join(parts)
 

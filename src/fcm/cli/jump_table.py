@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from fcm.cli.columns import aligned, number, swept
+from fcm.cli.columns import aligned, number, short, swept
 
 _LOST = "\n- the curve has no stable part there to land on"
 Row = tuple[str, float, list[str]]  # the sweep, where it begins, the cells between swept values and sweep
@@ -32,6 +32,28 @@ def jump_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: list
         return ""
     lost = any("-" in row[len(names) :] for row in cells)
     return aligned([[*names, f"jump at {unit}", *moves, "sweep"], *cells], left=1) + (_LOST if lost else "")
+
+
+def stable_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: list[str], unit: str) -> str:
+    """A line for each curve of which a peak is not known to be stable: the greatest motions that are."""
+    cells = []
+    for curve in curves:
+        peaks = [(curve["peak"].get(dof) or {}).get("greatest_stable") for dof in dofs]
+        if any(peaks):
+            each = (_stays(one) for one in peaks)
+            cells.append([*swept(curve), *(cell for stays in each for cell in stays)])
+    if not cells:
+        return ""
+    header = [*names, *(text for dof in dofs for text in (f"stable {dof}", f"at {unit}", "error"))]
+    said = "the greatest motions that stay, where a peak does not, or may not:"
+    return f"{said}\n{aligned([header, *cells], left=0)}"
+
+
+def _stays(one: Mapping[str, Any] | None) -> list[str]:
+    """The cells of a greatest stable motion; empty where the peak itself is one."""
+    return (
+        ["", "", ""] if not one else [number(one["amplitude"]), number(one["frequency"]), short(one["error"])]
+    )
 
 
 def untold_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: list[str], unit: str) -> str:

@@ -29,10 +29,12 @@ class Gist:
     swept: Swept  # of a slow upward and a slow downward sweep
     table_error: float | None  # the largest that is known
     truncation_error: float | None
+    # (dof, 3): amplitude, frequency [rad/s] and error of the greatest motion that is stable; NaN without one
+    stable_peaks: FloatArray
 
     def at(self, shown: npt.NDArray[np.bool_]) -> Gist:
         """At some of the degrees of freedom."""
-        return replace(self, swept=self.swept.at(shown))
+        return replace(self, swept=self.swept.at(shown), stable_peaks=self.stable_peaks[shown])
 
 
 def gist_of(curve: Curve) -> Gist:
@@ -46,6 +48,7 @@ def gist_of(curve: Curve) -> Gist:
         swept=curve.swept(),
         table_error=worst(curve.table_error),
         truncation_error=worst(curve.truncation_error),
+        stable_peaks=_stable_peaks(curve),
     )
 
 
@@ -76,6 +79,18 @@ def _stable(curve: Curve) -> bool | None:
     if (stable == 0.0).any():
         return False
     return True if stable.size and (stable == 1.0).all() else None
+
+
+def _stable_peaks(curve: Curve) -> FloatArray:
+    """The greatest amplitude of each degree of freedom where the motion is stable, of a curve over the
+    frequency."""
+    found = np.full((curve.amplitude.shape[1], 3), np.nan)
+    rows = np.flatnonzero(np.isfinite(curve.frequency) & (curve.stable == 1.0))
+    if rows.size and curve.level is None and curve.mode is None:
+        d = np.arange(len(found))
+        at = rows[curve.amplitude[rows].argmax(axis=0)]
+        found[:] = np.transpose((curve.amplitude[at, d], curve.frequency[at], curve.error[at, d]))
+    return found
 
 
 def _unstable(curve: Curve) -> list[Stretch]:

@@ -51,7 +51,10 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
         out["all_stick"] = True
     if curve.undetermined:
         out["may_not_be_unique"] = curve.undetermined
-    out["peak"] = {dof: _peak(curve, peak, gist, unit) for dof, peak in curve.peaks.items()}
+    out["peak"] = {
+        dof: _peak(curve, peak, gist, unit) | _stable_peak(peak, stays, unit)
+        for (dof, peak), stays in zip(curve.peaks.items(), gist.stable_peaks.tolist(), strict=True)
+    }
     if curve.greatest is not None and contacts:
         out["contacts"] = _contacts(curve.greatest, contacts, unit)
     out["folds"] = in_unit(curve.folds, unit).tolist()
@@ -104,6 +107,15 @@ def _peak(curve: Curve, peak: Peak, gist: Gist, unit: str) -> dict[str, Any]:
         "at_edge": bool(at_edge),
         "residual_change": peak.residual,
     }
+
+
+def _stable_peak(peak: Peak, stays: Sequence[float], unit: str) -> dict[str, Any]:
+    """The greatest stable motion (amplitude, frequency, error), where the peak is not known to be one."""
+    amplitude, frequency, error = stays
+    if peak.stable == 1.0 or np.isnan(amplitude):
+        return {}
+    at = float(in_unit(frequency, unit))
+    return {"greatest_stable": {"amplitude": amplitude, "frequency": at, "error": error}}
 
 
 def _all_stick(curve: Curve) -> bool:
