@@ -109,6 +109,20 @@ def test_curves_on_which_no_contact_slips_are_said_to_be_linear(fcm, scene, load
     assert run.code == 0 and (said in run.err if which else "no contact slips" not in run.err)
 
 
+@pytest.mark.parametrize(
+    ("loads", "said"),
+    [
+        ([-1e3], "no contact touches within the range"),
+        ([-1e3, 1e3], "each contact sticks, or is open, and none"),
+    ],
+)
+def test_curves_on_which_no_contact_touches_are_said_to_be_linear(fcm, scene, loads, said):
+    """Nothing was said of contacts that stay open."""
+    scene.write_text(scene.read_text() + f'[sweep]\n"contact.0.n_0" = {loads}\n')
+    run = fcm("respond", scene)
+    assert run.code == 0 and said in run.err and ": the response is linear; " in run.err
+
+
 @pytest.mark.parametrize("curves", [[], [{"parameters": {}}]])
 def test_nothing_is_said_where_something_is_stable_throughout(curves):
     assert nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table", **COMPUTED}) == ""

@@ -121,6 +121,7 @@ def test_wrong_files_of_pairs(tmp_path, text, words):
     with pytest.raises(SceneError) as caught:
         of_file(tmp_path, given | {"nodes": "pairs.csv"})
     assert words in str(caught.value)
+    assert "neither n_0 nor gap" not in str(caught.value) and "missing" not in str(caught.value)
 
 
 @pytest.mark.parametrize(

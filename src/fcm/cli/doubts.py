@@ -9,6 +9,14 @@ from typing import Any
 from fcm.cli.columns import share_of
 from fcm.cli.limits import SENTENCES
 
+_LINEAR = {  # keys of curves on which no contact changes its state: what is said, and what helps
+    "all_stick": ("no contact slips or opens {}", "less preload or more force"),
+    "all_open": ("no contact touches {}", "a smaller gap or more force"),
+    "all_stick_or_open": (
+        "each contact sticks, or is open, and none slips {}",
+        "another preload or more force",
+    ),
+}
 _BY_LEVEL = "--level 0:4 --at"  # follows the level of the forces, at a frequency
 
 
@@ -25,13 +33,14 @@ def short_of_accuracy(summary: Mapping[str, Any]) -> str:
 
 
 def linear(summary: Mapping[str, Any]) -> str:
-    """That no contact slips or opens in any curve, which may not be meant; empty if one does."""
-    if not summary["curves"] or not all(curve.get("all_stick") for curve in summary["curves"]):
+    """That every contact sticks, or is open, on all of each curve, which may not be meant; empty if not."""
+    curves = summary["curves"]
+    found = {key for curve in curves for key in _LINEAR if curve.get(key)}
+    if not curves or not all(any(curve.get(key) for key in _LINEAR) for curve in curves):
         return ""
-    which = "on any curve" if len(summary["curves"]) > 1 else "within the range"
-    return (
-        f"no contact slips or opens {which}: the response is linear; less preload or more force changes that"
-    )
+    which = "on any curve" if len(curves) > 1 else "within the range"
+    what, helps = _LINEAR[found.pop() if len(found) == 1 else "all_stick_or_open"]
+    return f"{what.format(which)}: the response is linear; {helps} changes that"
 
 
 def branches_unsure(summary: Mapping[str, Any]) -> str:

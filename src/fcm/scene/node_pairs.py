@@ -44,7 +44,7 @@ def read_pairs(section: Section, files: Files) -> PairTable:
     except DataFileError as error:
         for fault in error.faults:
             section.wrong("nodes", fault)
-        return PairTable([])
+        return PairTable([], unread=True)
     same = [pair for pair in table.pairs if len(set(pair)) < len(pair)]
     if same:
         section.wrong("nodes", f"{quoted(value)} has a pair of the same node twice, {same[0][0]}")
@@ -158,7 +158,7 @@ def read_numbers(section: Section, table: PairTable, files: Files) -> dict[str, 
     A total that the areas share is given as the total: see `shares`.
     """
     count = len(table.pairs)
-    load = load_key(section, table.numbers)
+    load = load_key(section, table)
     found: dict[str, list[float]] = {}
     for key in ("mu", "k_u", "k_v", load):
         column = table.numbers.get(key)
@@ -169,9 +169,8 @@ def read_numbers(section: Section, table: PairTable, files: Files) -> dict[str, 
         elif isinstance(value, str) or _is_list(value):
             found[key] = _of_each(section, key, table, files)
         else:
-            found[key] = [
-                section.number(key, RULES[key]) if key in section.data or key != load else nan
-            ] * count
+            needed = key != load and not table.unread
+            found[key] = [section.number(key, RULES[key]) if key in section.data or needed else nan] * count
     return found
 
 
@@ -198,12 +197,12 @@ def _is_list(value: Any) -> bool:
     return isinstance(value, list | tuple | np.ndarray)
 
 
-def load_key(section: Section, columns: Mapping[str, Any] | None = None) -> str:
-    """Which of preload and gap the contact is given by."""
-    given = [key for key in ("n_0", "gap") if key in section.data or key in (columns or {})]
+def load_key(section: Section, table: PairTable) -> str:
+    """Which of preload and gap the contact is given by, in the scene or in a table of pairs."""
+    given = [key for key in ("n_0", "gap") if key in section.data or key in table.numbers]
     if len(given) == 2:
         section.wrong("", "has both n_0 and gap; give one: gap means n_0 = -k_v * gap")
-    elif not given:
+    elif not given and not table.unread:
         section.wrong("", "has neither n_0 nor gap; give one: gap means n_0 = -k_v * gap")
     return given[0] if given else "n_0"
 

@@ -26,7 +26,8 @@ class PairTable:
     """Pairs of nodes, and what a file says of each.
 
     numbers: by column, (pair,); unused: names of columns that nothing is read from; places: coordinates
-    (pair, 3) that the file has; interface: where both nodes are; said: what is to be said of them.
+    (pair, 3) that the file has; interface: where both nodes are; said: what is to be said of them; unread:
+    whether its file could not be read, so that it may have any numbers.
     """
 
     pairs: list[tuple[str, ...]]
@@ -35,6 +36,7 @@ class PairTable:
     places: FloatArray | None = None
     interface: Interface | None = None
     said: tuple[str, ...] = ()
+    unread: bool = False
 
 
 def read_pair_table(path: Path) -> PairTable:

@@ -55,9 +55,10 @@ def _contacts(section: Section, dofs: Dofs, files: Files) -> list[dict[str, Any]
         section.wrong("name", fault)
     section.only(*names("contact"))
     if "nodes" not in section.data:
-        shares(section, PairTable([]))
+        alone = PairTable([])
+        shares(section, alone)
         draft: dict[str, Any] = {key: section.number(key, RULES[key]) for key in ("mu", "k_u", "k_v")}
-        load = load_key(section)
+        load = load_key(section, alone)
         draft[load] = section.number(load, RULES[load]) if load in section.data else nan
         found = read_directions(
             section,
