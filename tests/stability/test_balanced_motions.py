@@ -17,6 +17,7 @@ from fcm.scene import Contact, Force, Modal, Scene, scene_from_dict
 from fcm.shooting import periodic
 from fcm.stability.bifurcation_functions import multiplier_sample, predicted_minimum
 from fcm.stability.bifurcations import stability, with_points
+from fcm.stability.confirmation import confirmed_stable
 from fcm.stability.floquet import multipliers
 from fcm.stability.multipliers import Multipliers
 from fcm.stability.options import STABILITY
@@ -79,6 +80,17 @@ def test_of_several_points_each_verdict_is_as_alone(preload):
             list(found.z), turning, [False] * len(turning)
         )
         assert repr(together) == repr(alone)  # NaN is not equal to itself
+
+
+@pytest.mark.parametrize("preload", [5.0, 0.0, -5.0])
+def test_few_points_tell_where_further_harmonics_confirm_one(preload):
+    """Beside every point: without preload a window where they do not lies between two where they do."""
+    of, found = path(yang(preload), 1, (0.7, 1.7))
+    even = found.orientation * np.sign(found.direction[:, -1]) > 0.0
+    workspace, most = Multipliers(of, 1.7), STABILITY.confirmation.max_addition
+    each = np.array([workspace.confirmation(z, most).stable == 1.0 for z in found.z]) & even
+    assert 0.9 < each[even].mean() < 1.0
+    np.testing.assert_array_equal(confirmed_stable(of, found.z, even), each)
 
 
 @pytest.mark.parametrize(("preload", "looks"), [(5.0, 0.6), (0.0, 0.8), (-5.0, 0.6)])

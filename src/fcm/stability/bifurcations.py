@@ -25,7 +25,7 @@ from fcm.stability.along_branch import PathVerdicts
 from fcm.stability.bifurcation_functions import predicted_minimum
 from fcm.stability.inserted_points import Crossing, InsertedPoint, with_points
 from fcm.stability.options import STABILITY, StabilityOptions
-from fcm.stability.verdict import Bifurcation, Verdict, flip_function
+from fcm.stability.verdict import Bifurcation, flip_function, growth_is_linear
 
 IntArray = npt.NDArray[np.intp]
 
@@ -217,7 +217,7 @@ class _BifurcationSearch:
             bent = (
                 (a, middle, b)
                 for a, middle, b in wide
-                if not _growth_is_linear(seen[a], seen[middle], seen[b], self.many, self.options)
+                if not growth_is_linear(seen[a], seen[middle], seen[b], self.many, self.options)
             )
             ways = [half for a, middle, b in bent for half in ((a, middle), (middle, b))]
 
@@ -278,33 +278,6 @@ class _BifurcationSearch:
                 break
             sides.update(at, now)
         return found
-
-
-def _growth_is_linear(
-    one: Verdict, middle: Verdict, other: Verdict, many: bool, options: StabilityOptions = STABILITY
-) -> bool:
-    """Whether three verdicts agree, with growths so nearly on a line that none between has another sign.
-
-    Of many contacts one begins to slip everywhere, and of their many multipliers one is near to a flip: there
-    that is no reason to look more closely.
-    """
-    stable, growth = (one.stable, middle.stable, other.stable), (one.growth, middle.growth, other.growth)
-    if not stable[0] == stable[1] == stable[2]:
-        return math.isnan(stable[0]) and math.isnan(stable[1]) and math.isnan(stable[2])
-    # what is unstable is no less so by a flip besides
-    if (
-        not many
-        and stable[0] == 1.0
-        and min(one.before_flip, middle.before_flip, other.before_flip) < options.verdict.flip_angle
-    ):
-        return False
-    safe = max(growth) < options.sampling.safe_growth
-    if not many and not safe and not one.held == middle.held == other.held:
-        return False
-    if stable[0] == 1.0 and (safe or one.passive or middle.passive or other.passive):
-        return True
-    a, b, c = (max(size, options.sampling.sufficient_decay) for size in growth)
-    return abs(b - 0.5 * (a + c)) < options.sampling.max_deviation * min(abs(a), abs(b), abs(c))
 
 
 def _nearer(at: IntArray, first: int, last: int) -> IntArray:

@@ -130,6 +130,6 @@ class HillMultipliers:
         """Of several solutions."""
         return [self.verdict(*one) for one in zip(z, turning, strict=True)]
 
-    def confirms(self, z: FloatArray, stable: float, most: float = 0.0) -> bool:
+    def confirms(self, z: FloatArray, stable: float) -> bool:
         """Whether further harmonics say the same of a solution: none are balanced."""
         return True

@@ -301,18 +301,27 @@ class Multipliers:
         there = refined.rebalance(z, self.finer.x, persistent)
         return None if there is None else judge.verdict(there)._replace(rebalanced=True)
 
-    def confirms(self, z: FloatArray, stable: float, most: float = math.inf) -> bool:
-        """Whether a solution is as stable as told (1 or 0) with the further harmonics balanced, too; to these
-        those beyond them add no more than the most, as `EnrichedMotion.shift` says it."""
+    def confirms(self, z: FloatArray, stable: float) -> bool:
+        """Whether a solution is as stable as told (1 or 0) with the further harmonics balanced, too."""
         self.finer.at(z)
         self._seen = None  # whose states are not known
         if self.finer.shift == 0.0:  # it has none
             return True
         found = self.refined(z, persistent=True)
-        if found is None or found.stable != stable:
-            return False
+        return found is not None and found.stable == stable
+
+    def confirmation(self, z: FloatArray, most: float) -> Verdict:
+        """Of a solution with the further harmonics balanced, too: unknown where there is none near, or those
+        beyond them add more than the most to it, as `EnrichedMotion.shift` says it."""
+        self.finer.at(z)
+        self._seen = None  # whose states are not known
+        if self.finer.shift == 0.0:  # it has none
+            return self.verdict(z)
+        found = self.refined(z, persistent=True)
+        if found is None:
+            return UNKNOWN
         assert self.further is not None
-        return bool(self.further[1].finer.shift <= most)
+        return found if self.further[1].finer.shift <= most else UNKNOWN
 
     def _matrix(self, followed: VariationalProblem, omega: float) -> FloatArray | None:
         """The monodromy matrix of the motion that was looked at."""

@@ -105,7 +105,8 @@ class ConfirmationOptions:
     max_unknowns : int
         From so many on these are not tried.
     point_interval : int
-        Points from one that is confirmed to the next, between which all are.
+        Points from one that is looked at to the next; between them the middle is, too, and more where the
+        growth is not on a line.
     max_addition : float
         Part of the displacements that the harmonics beyond the further ones may add to a motion that
         confirms.
@@ -124,7 +125,7 @@ class ConfirmationOptions:
     max_change: float = 0.5
     homotopy_parts: tuple[float, ...] = (0.1, 0.25, 0.45, 0.7, 1.0)
     max_unknowns: int = 240
-    point_interval: int = 8
+    point_interval: int = 16
     max_addition: float = 0.05
 
 
