@@ -9,7 +9,8 @@ import pytest
 from fcm.accuracy.budget import Budget, share_of
 from fcm.accuracy.embedded_pair import errors_along
 from fcm.accuracy.options import PAIR, VALIDITY
-from fcm.accuracy.refinement import with_estimated_errors
+from fcm.accuracy.outline import unchecked_response
+from fcm.accuracy.refinement import with_errors, with_estimated_errors
 from fcm.accuracy.stability_validity import on_other_branch
 from fcm.continuation import Mark, Status
 from fcm.harmonic_balance.system import System
@@ -318,6 +319,18 @@ def test_a_curve_of_which_more_harmonics_have_another_is_told_of():
     less, half, most = np.nanquantile(told, (0.1, 0.5, 0.9))
     assert half == pytest.approx(0.126, rel=0.3)
     assert 0.037 / 2.0 < less < 0.037 * 2.0 and 0.552 / 2.0 < most < 0.552 * 2.0
+
+
+@pytest.mark.slow
+def test_a_partner_that_is_another_curve_is_told_of_by_fewer_harmonics_where_its_own_take_long():
+    """As far as the work allows three times as many harmonics come along a curve that four times do not."""
+    outline = unchecked_response(System(random_scene(7), (1, 2, 3)))
+    told, count = [], []
+    for options in (PAIR, replace(PAIR, fewer_factors=())):
+        errors = with_errors(outline, 1e-2, options=options).errors
+        told.append(np.concatenate([np.isfinite(one.truncation) for one in errors]).mean())
+        count.append(len(errors[0].partner))
+    assert count[0] < count[1] and told[0] > 1.5 * told[1]
 
 
 def test_the_partner_of_a_further_branch_takes_no_more_than_its_part_of_the_work():
