@@ -80,6 +80,26 @@ def test_points_between_two_that_are_confirmed_are_confirmed():
     assert 0.2 < found[doubted].mean() < 0.9
 
 
+def test_close_to_the_last_solution_the_same_is_found_sooner():
+    """As each by itself, beside points of the upper branch one after the other."""
+    system = System(elastic_strip((11.3, 20.0)), (1,))
+    path = traced(system).branches.paths[-1]
+    more = enriched_harmonics([1])
+    row = Rebalancing(system, more)
+    evaluations = []
+    for z in path.z[(path.parameter > 13.0) & (path.parameter < 15.0)][:4]:
+        alone = Rebalancing(system, more)
+        x = row.system.extended(z, (1,))[:-1]
+        expected = alone.rebalance(z, x)
+        before = row.newton.evaluations + row.damped.newton.evaluations
+        found = row.rebalance(z, x)
+        each = row.newton.evaluations + row.damped.newton.evaluations - before
+        evaluations.append((each, alone.newton.evaluations + alone.damped.newton.evaluations))
+        np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-6 * np.abs(z[:-1]).max())
+    assert evaluations[0][0] == evaluations[0][1]
+    assert sum(each for each, _ in evaluations[1:]) < sum(alone for _, alone in evaluations[1:])
+
+
 def test_where_the_pair_has_no_neighbour_none_is_sought(monkeypatch):
     """There a doubt is left, as it is where one is sought and not found; elsewhere the same is told."""
     looked = []

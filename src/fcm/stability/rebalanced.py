@@ -32,19 +32,22 @@ class Rebalancing:
         self.newton.row[-1] = 1.0  # holds the frequency
         balanced = np.isin(self.system.layout.harmonic_of(self.more), [0, *self.harmonics])
         self.balanced = np.tile(balanced, len(system.scene.contacts))
+        self.last: tuple[FloatArray, FloatArray] | None = None  # of many contacts: z there, what was added
 
     def take(self, system: System) -> None:
         """A system with the same structure and harmonics, whose contacts may be others."""
         self.fewer, self.system = system, system.with_harmonics(self.more)
         self.balance.laws = self.system.laws()
         self.balance.largest[:] = 0.0
+        self.last = None
 
     def rebalance(self, z: FloatArray, x: FloatArray, persistent: bool = False) -> FloatArray | None:
         """The solution (unknown of more + 1,) for z (unknown + 1,), sought from the finer motion x.
 
         The forces are those of z, whatever their level: what the harmonics balanced there lack is kept. None
         where Newton's method finds nothing near; nor, if it is persistent, by parts from z itself. Of many
-        contacts damped steps are taken then instead, see `normal_plane_prolongation`.
+        contacts damped steps are taken first, see `normal_plane_prolongation`; and before these, close to the
+        last solution, whole ones from where that was beside its own z.
         """
         here = self.system.extended(z, self.harmonics)
         self.balance.measure(here)
@@ -52,13 +55,35 @@ class Rebalancing:
         newton, lack = self.newton, np.array(self.balance.residual)
         newton.z[:-1], newton.z[-1] = x, z[-1]
         newton.scale[:] = self.balance.scale
+        if self.damped is not None:
+            found = self._of_many(here, lack)
+            if found is not None:
+                self.last = here, found - here
+            return found
         by_parts = persistent and len(lack) < self.options.max_unknowns
         if self._converges(lack, 1.0):
             return np.array(newton.z)
-        if self.damped is not None:
-            kept = np.where(self.balanced, lack, 0.0)
-            return np.array(self.damped.newton.z) if self.damped.rebalance(here, kept) else None
         return np.array(newton.z) if by_parts and self._by_homotopy(here, lack) else None
+
+    def _of_many(self, here: FloatArray, lack: FloatArray) -> FloatArray | None:
+        """The solution of many contacts: beside the last one, by damped steps, or by whole ones."""
+        newton, assumed = self.newton, np.array(self.newton.z)
+        if self.last is not None:
+            there, added = self.last
+            scale = np.asarray(self.balance.scale)
+            if np.linalg.norm((here - there) / scale) < np.linalg.norm(added / scale):
+                newton.z[:] = here + added
+                if self._converges(lack, 1.0) and self._is_near(here):
+                    return np.array(newton.z)
+        assert self.damped is not None
+        if self.damped.rebalance(here, np.where(self.balanced, lack, 0.0)):
+            return np.array(self.damped.newton.z)
+        newton.z[:] = assumed
+        return np.array(newton.z) if self._converges(lack, 1.0) else None
+
+    def _is_near(self, here: FloatArray) -> bool:
+        """Whether what Newton's method has found is no other motion."""
+        return bool(np.linalg.norm((self.newton.z - here) / self.balance.scale) <= self.options.max_change)
 
     def _converges(self, lack: FloatArray, part: float) -> bool:
         """Whether Newton's method leads to a solution near, of a part of the further harmonics' equations."""
@@ -71,4 +96,4 @@ class Rebalancing:
         self.newton.z[:] = here
         if not all(self._converges(lack, part) for part in self.options.homotopy_parts):
             return False
-        return bool(np.linalg.norm((self.newton.z - here) / self.balance.scale) <= self.options.max_change)
+        return self._is_near(here)
