@@ -71,6 +71,12 @@ def test_only_of_peaks_of_a_balance(fcm, scene, args):
     assert done.code == 2 and "--sensitivity is of no use with" in done.err
 
 
+@pytest.mark.parametrize(("args", "told"), [((), False), (("--json",), True), (("-o", "a.nc"), True)])
+def test_where_sensitivities_are_told_nowhere_it_is_said(fcm, scene, args, told):
+    done = fcm("respond", scene, "--sensitivity", "--harmonics", 1, *args)
+    assert done.code == 0 and ("the sensitivities are told nowhere" not in done.err) == told
+
+
 def test_a_hidden_degree_of_freedom_has_none(fcm, scene):
     scene.write_text(scene.read_text() + "output = []\n")
     scene.write_text(scene.read_text().replace('normal = "v"', "normal = { u = 0.5, v = 1.0 }"))
@@ -107,7 +113,7 @@ def test_after_an_interruption_none_is_begun(scene):
     response = trace(loaded, harmonics=1)
     cut_off = response.curves[1]
     cut_off.complete, cut_off.reason, cut_off.cause = False, "interrupted at 1 rad/s", Cause.INTERRUPTED
-    added(Messages(), response, loaded)
+    added(Messages(), response, loaded, True)
     assert [curve.sensitivity for curve in response.curves] == [None, None]
     reasons = ["interrupted before its sensitivities were known", "interrupted at 1 rad/s"]
     assert [curve.reason for curve in response.curves] == reasons and not response.curves[0].complete

@@ -45,6 +45,7 @@ def wrong(**tables):
         ({"base": BASE}, ["base: cannot be beside [cyclic]"]),
         ({"base": BASE, "cyclic": STILL, "sweep": {"cyclic.engine_order": [0, 1]}},
          ["base: cannot be beside [cyclic] with an engine_order other than 0"]),
+        ({"response": {"frequency": [50.0, 300.0], "output": ["tip@0"]}}, ["is that of all sectors"]),
         ({"contact": [rings.SHROUD | {"tangential": "next.tp"}]}, ['unknown degree of freedom "next.tp"']),
         ({"sweep": {"cyclic.engine_order": [1, 1.5]}}, ['"cyclic.engine_order"[1]: must be a whole number']),
         ({"sweep": {"cyclic.sectors": [5, 6]}}, ['did you mean "cyclic.engine_order"?']),
@@ -108,7 +109,7 @@ def test_engine_orders_are_swept():
 def test_what_is_not_computed_of_a_ring_is_refused_at_once(tmp_path, options, what):
     code, out, err = called("respond", "bladed-disk", "-o", tmp_path / "a.nc", *options)
     assert code == 2 and not out and not list(tmp_path.iterdir())
-    assert f"bladed-disk: cyclic: {what} of a ring of sectors are not computed" in err
+    assert f"bladed-disk: cyclic: {what} of a ring of sectors are not computed: write all" in err
 
 
 def test_a_sector_keeps_its_own_degree_of_freedom_of_a_next_one_that_is_used():

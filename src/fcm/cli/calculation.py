@@ -21,7 +21,7 @@ def calculated(messages: Messages, scene: Scene, asked: Asked, place: Any, keep:
     """
     response = _response(messages, scene, asked, {"jobs": asked.jobs, "place": place, "keep": keep})
     if asked.sensitivity:
-        sensitivity.added(messages, response, scene)
+        sensitivity.added(messages, response, scene, asked.to_json or asked.output is not None)
     if scene.schedule and asked.level is None and asked.track is None:
         response.histories = schedule.simulated(messages, scene, response, keep)
     return response

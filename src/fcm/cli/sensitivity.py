@@ -27,8 +27,11 @@ def check_options(wanted: bool, method: str, level: object, mode: int | None, pe
         )
 
 
-def added(messages: Messages, response: Response, scene: Scene) -> None:
-    """Give the curves of a response the sensitivities of their peaks; interrupted, no time is left for it."""
+def added(messages: Messages, response: Response, scene: Scene, told: bool) -> None:
+    """Give the curves of a response the sensitivities of their peaks; interrupted, no time is left for it.
+
+    Tables have none, so it is said where they are told nowhere.
+    """
     from fcm.response.sensitivity import add_sensitivities, remarks, without_sensitivities
 
     if response.interrupted:
@@ -38,3 +41,5 @@ def added(messages: Messages, response: Response, scene: Scene) -> None:
     messages.clear()
     for remark in remarks(response, scene):
         messages.info(remark)
+    if not told:
+        messages.warning("the sensitivities are told nowhere: -o FILE has them, and --json")

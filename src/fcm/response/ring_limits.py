@@ -43,7 +43,10 @@ def refuse_other_harmonics(scene: Scene, what: str) -> None:
 def check_no_ring(scene: Scene, what: str) -> None:
     """Raise ResponseError for a sector of a ring, of which this is not computed."""
     if scene.ring is not None:
-        raise ResponseError(f"{scene.name}: cyclic: {what} of a ring of sectors are not computed")
+        raise ResponseError(
+            f"{scene.name}: cyclic: {what} of a ring of sectors are not computed: write all its sectors out "
+            "as a scene without [cyclic], or take a [sweep]"
+        )
 
 
 def refuse_own_laws(scene: Scene, what: str) -> None:

@@ -165,6 +165,9 @@ def without_rounding(parts: Parts, ends: tuple[float, float], unit: str) -> tupl
     return parts | {"modal": parts["modal"] | {"frequency": zeroed}}, [note]
 
 
+OF_ALL_SECTORS = "; a name of the sector is that of all sectors"
+
+
 def read_output(section: Section, dofs: Names | None) -> list[str]:
     """Degrees of freedom that are asked for, by names or patterns such as "40*", in the order of the dofs."""
     if "output" not in section.data:
@@ -190,7 +193,8 @@ def _matching(section: Section, key: str, pattern: object, dofs: Names | None) -
         return set()
     matching = {name for name in dofs if fnmatchcase(name, pattern)} | ({dofs.find(pattern)} - {""})
     if not matching:
-        section.wrong(key, f"no degree of freedom matches {quoted(pattern)}", pattern, dofs)
+        of_all = "" if dofs.find(pattern.partition("@")[0]) == "" or "@" not in pattern else OF_ALL_SECTORS
+        section.wrong(key, f"no degree of freedom matches {quoted(pattern)}{of_all}", pattern, dofs)
     return matching
 
 
