@@ -40,6 +40,40 @@ def strip(contacts=12, kept=(1.0, 1.6, 2.7), stiff=(14.0, 40.0, 90.0), n_0=1.2):
     )
 
 
+def planar_strip(contacts=12, n_0=1.2, frequency=(0.9, 1.5)):
+    """As `strip`, with contacts that slide across the row, too."""
+    x = (np.arange(contacts) + 0.5) / contacts
+    natural = [1.0, 1.2, 1.6, 2.7, 14.0, 40.0]
+    shapes = [
+        np.ravel(
+            (np.cos(np.pi * i * x), 0.7 * np.cos(np.pi * (i + 1) * x), np.sin(np.pi * (i + 0.5) * x)), "F"
+        )
+        for i in range(len(natural))
+    ]
+    dofs = [f"{way}{i}" for i in range(contacts) for way in "xyv"]
+    law = {"mu": 0.4, "k_u": 1.5 / contacts, "k_v": 2.0 / contacts, "n_0": n_0 / contacts}
+    return scene_from_dict(
+        {
+            "modal": {
+                "dofs": dofs,
+                "frequency": natural,
+                "damping": [0.02] * len(natural),
+                "shapes": [shape.tolist() for shape in shapes],
+            },
+            "contact": [
+                {"name": f"c{i}", "tangential": [f"x{i}", f"y{i}"], "normal": f"v{i}", **law}
+                for i in range(contacts)
+            ],
+            "force": [
+                {"dof": "x0", "amplitude": 1.2},
+                {"dof": "y0", "amplitude": 0.8, "phase": 1.0},
+                {"dof": "v0", "amplitude": 0.4},
+            ],
+            "response": {"frequency": list(frequency)},
+        }
+    )
+
+
 def elastic_strip(span, contacts=12, modes=12):
     """Pressed on its foundation all along and driven at one end, where it lifts off on its upper branch."""
     dofs = [f"u{i}" for i in range(contacts)] + [f"v{i}" for i in range(contacts)]

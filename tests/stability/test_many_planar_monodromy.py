@@ -7,10 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fcm.branches.force_level import solutions
+from fcm.harmonic_balance.system import System
 from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy
+from fcm.stability.multipliers import Multipliers
 from fcm.stability.options import STABILITY
 from fcm.stability.planar_monodromy import PlanarMonodromy
 from fcm.stability.planar_sequence import PlanarSequence
+from fcm.stability.verdict import Bifurcation
+
+from ..harmonic_balance.strips import planar_strip
 
 OMEGA = 1.1
 # u_x, u_y, v of harmonics 0 to 2, and mu, k_u, k_v, n_0 of each contact
@@ -89,3 +95,43 @@ def test_contacts_that_mirror_one_another_take_no_more_steps_for_rounding_errors
         steps.append(monodromy.steps)
     assert steps[1] <= steps[0] + 1
     assert found[1] == pytest.approx(found[0], abs=1e-6)
+
+
+def marched(scene, omega, steps=500, cycles=30):
+    """Of the motion from rest (q, q' / omega) after each cycle; the slider is drawn back to its disc."""
+    modal, law = scene.modal, scene.contacts[0]
+    x, y, v = (
+        modal.shapes @ np.array([getattr(one, way) for one in scene.contacts]).T
+        for way in ("tangential", "second", "normal")
+    )
+    dt, natural = 2.0 * np.pi / omega / steps, modal.frequency
+    phase = np.linspace(0.0, 2.0 * np.pi, steps, endpoint=False)[:, None]
+    push = sum(
+        one.amplitude * np.sin(phase + one.phase) * (modal.shapes @ one.direction) for one in scene.forces
+    )
+    q, p, w, after = np.zeros(len(x)), np.zeros(len(x)), np.zeros((2, x.shape[1])), []
+    for _ in range(cycles):
+        for force in push:
+            n = np.maximum(law.n_0 + law.k_v * (q @ v), 0.0)
+            d = np.array((q @ x, q @ y)) - w
+            back = np.minimum(law.mu * n / (law.k_u * np.maximum(np.hypot(*d), 1e-12)), 1.0)
+            w += (1.0 - back) * d
+            f = law.k_u * back * d
+            p += dt * (force - 2.0 * modal.damping * natural * p - natural**2 * q)
+            p -= dt * (x @ f[0] + y @ f[1] + v @ (n - law.n_0))
+            q += dt * p
+        after.append(np.concatenate((q, p / omega)))
+    return np.array(after)
+
+
+@pytest.mark.parametrize(("omega", "stable"), [(0.92, False), (0.96, True)])
+def test_a_march_comes_to_rest_in_what_is_stable_and_doubles_its_period_in_what_is_not(omega, stable):
+    """Of twelve contacts that slip, open and close again, all of them, with three harmonics."""
+    scene = planar_strip()
+    (z,) = solutions(System(scene, (1, 2, 3)), omega).solutions
+    verdict = Multipliers(System(scene, (1, 2, 3)), omega).verdict(z)
+    after = marched(scene, omega)
+    once, twice = (np.linalg.norm(after[-1] - after[-1 - k]) / np.linalg.norm(after[-1]) for k in (1, 2))
+    assert verdict.stable == stable
+    assert (once < 1e-4) == stable and twice < 1e-2
+    assert stable or verdict.kind is Bifurcation.PERIOD_DOUBLING
