@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 import xarray
 
-from fcm.fit.solve import Problem, Reached
+from fcm.fit.solve import Reached
 from fcm.response import trace
 from fcm.response.fit import _fits
+from fcm.response.options import FITTED_RESPONSE
 from fcm.scene.load import load_scene
 
+from ..interrupted import Interrupting
 from ..oscillator import oscillator
 from ..program import called
 
@@ -107,31 +109,19 @@ def test_what_means_nothing_with_a_fit_is_refused(measured, option):
 
 
 class Evaluations:
-    """Counts those of a fit, and interrupts in one of them."""
+    """Counts those of a fit, and interrupts after one of them."""
 
-    def __init__(self, monkeypatch):
-        self.count, self.stop, whole = 0, None, Problem._parts
-
-        def counted(problem, x):
-            self.count += 1
-            if self.count == self.stop:
-                raise KeyboardInterrupt
-            return whole(problem, x)
-
-        monkeypatch.setattr(Problem, "_parts", counted)
-
-    def of(self, *arguments, stop=None):
+    def of(self, *arguments, stop=10**9):
         """A run, and how many it took."""
-        self.count, self.stop = 0, stop
-        return called("respond", *arguments, "--json"), self.count
+        messages = Interrupting("evaluation", stop)
+        run = called("respond", *arguments, "--json", messages=messages)
+        return run, sum("evaluation" in text for _, text in messages.shown)
 
 
 @pytest.mark.slow
-def test_a_fit_interrupted_anywhere_tells_the_best_so_far_and_is_gone_on_with(
-    measured, tmp_path, monkeypatch
-):
+def test_a_fit_interrupted_anywhere_tells_the_best_so_far_and_is_gone_on_with(measured, tmp_path):
     """It was begun afresh: nothing of a fit was kept, and before the end of a start nothing was told."""
-    path, evaluations = measured(points=12), Evaluations(monkeypatch)
+    path, evaluations = measured(points=12), Evaluations()
     whole, most = evaluations.of(path)
     expected = json.loads(whole.out)["fitted"]["numbers"]
     for stop in (3, most // 2, most - 1):
@@ -154,28 +144,23 @@ def test_a_fit_interrupted_anywhere_tells_the_best_so_far_and_is_gone_on_with(
         assert count < most if stop < most // 2 else count <= most // 2 + 8
 
 
-def test_numbers_found_are_told_where_their_response_is_interrupted(measured, tmp_path, monkeypatch):
+def test_numbers_found_are_told_where_their_response_is_interrupted(measured, tmp_path):
     """They were lost."""
-
-    def stop(*_, **__):
-        raise KeyboardInterrupt
-
     path, out = measured(points=8), tmp_path / "out.nc"
-    with monkeypatch.context() as patched:
-        patched.setattr("fcm.response.fit.trace", stop)
-        done = called("respond", path, "-o", out, "--json")
+    traced = Interrupting("curves", fraction=FITTED_RESPONSE.fit_share)
+    done = called("respond", path, "-o", out, "--json", messages=traced)
     assert done.code == 3 and "before the response with the numbers found was traced" in done.err
     first = json.loads(done.out)["fitted"]
     assert first["final"] and first["interrupted"]
-    evaluations = Evaluations(monkeypatch)
+    evaluations = Evaluations()
     again, count = evaluations.of(path, "-o", out, "--resume")
     assert again.code == 0 and count < 10  # of one each where the searches have come to
     told = json.loads(again.out)["fitted"]
     assert told["numbers"] == first["numbers"]
 
 
-def test_what_is_kept_of_other_data_is_not_gone_on_with(measured, tmp_path, monkeypatch):
-    path, out, evaluations = measured(points=8), tmp_path / "out.nc", Evaluations(monkeypatch)
+def test_what_is_kept_of_other_data_is_not_gone_on_with(measured, tmp_path):
+    path, out, evaluations = measured(points=8), tmp_path / "out.nc", Evaluations()
     assert evaluations.of(path, "-o", out, stop=6)[0].code == 3
     (tmp_path / "data.csv").write_text("frequency,amplitude\n1.1,2.0\n1.2,4.0\n1.3,2.0\n")
     done, _ = evaluations.of(path, "-o", out, "--resume", stop=4)

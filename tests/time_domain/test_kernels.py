@@ -16,6 +16,7 @@ from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.cycle_measures import extremes_by, measure
 from fcm.time_domain.event_detection import first_descent_of
 from fcm.time_domain.extremes import Rows, Scan
+from fcm.time_domain.options import FlowOptions, TimeOptions
 from fcm.time_domain.system import System
 
 from .cases import SCENES, one_mode, two_contacts, yang
@@ -187,12 +188,12 @@ def test_no_sample_is_beyond_the_extremes(name):
         assert found.least == pytest.approx(dense.min(axis=0), abs=1e-5 * size)
 
 
-def test_flows_that_were_used_longest_ago_make_room(monkeypatch):
+def test_flows_that_were_used_longest_ago_make_room():
     """The motion is the same with room for eight flows as with room for all."""
     scene = two_contacts()
     whole = simulate(scene, 1.3, 20)
-    monkeypatch.setattr("fcm.time_domain.segments.MOST_BYTES", 1)
-    little = simulate(replace(scene), 1.3, 20)  # a scene of its own, with flows of its own
+    few = TimeOptions(flows=FlowOptions(max_bytes=1.0))
+    little = simulate(replace(scene), 1.3, 20, options=few)  # a scene of its own, with flows of its own
     assert whole.cycles[0].system.flows.count > 8 == little.cycles[0].system.flows.count
     assert np.array_equal(whole.end.q, little.end.q)
     assert measure(little.cycles[-1]).amplitude == pytest.approx(

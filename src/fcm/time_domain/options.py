@@ -47,12 +47,24 @@ class HistoryOptions:
 
 
 @dataclass(frozen=True)
+class FlowOptions:
+    """The flows of a scene that are kept, each of one sequence of contact states.
+
+    min_count: that are kept at least. max_bytes: memory of those that are kept otherwise.
+    """
+
+    min_count: int = 8
+    max_bytes: float = 2.0**30
+
+
+@dataclass(frozen=True)
 class TimeOptions:
     """All of the package, by what they are for: see the class of each field."""
 
     simulation: SimulationOptions = SimulationOptions()
     settling: SettlingOptions = SettlingOptions()
     history: HistoryOptions = HistoryOptions()
+    flows: FlowOptions = FlowOptions()
 
 
 TIME = TimeOptions()  # where nothing else is said

@@ -130,7 +130,7 @@ def record(
             recorder.take(one)
         for number, phase in list(enumerate(scene.schedule))[len(passed) :]:
             for cycle, end in cycles_from(
-                System(scene, phase.frequency), phase.cycles, recorder.end, options
+                System(scene, phase.frequency, options.flows), phase.cycles, recorder.end, options
             ):
                 recorder.add(number, cycle, end)
                 if progress is not None:

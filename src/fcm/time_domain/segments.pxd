@@ -15,6 +15,8 @@ cdef class Pool:
     cdef readonly double[:, :, ::1] rotation
     cdef readonly double[::1] made_for
     cdef dict _pool
+    cdef Py_ssize_t min_count
+    cdef double max_bytes
     cdef readonly Py_ssize_t[::1] used
     cdef Py_ssize_t find(self, signed char[:, ::1] states, Py_ssize_t k) noexcept nogil
 

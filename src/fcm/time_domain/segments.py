@@ -14,6 +14,7 @@ from cython.cimports.libc.math import fabs
 
 from fcm.model.scene import FloatArray
 from fcm.time_domain.equations import Matrices
+from fcm.time_domain.options import TIME, FlowOptions
 
 ORDER = 19  # of the series of exp(A h): 1 / 20! is below rounding
 POWERS = 8  # of exp(A h): 1, 2, 4 ... 128 steps
@@ -23,7 +24,6 @@ SEPARATED, STICKING, POSITIVE_SLIP, NEGATIVE_SLIP = 0, 1, 2, 3  # states of a co
 SMALL = 256  # components up to which the Taylor coefficients of exp(A h x) are kept
 FITS = 1.0 + 1e-12  # radians of the forces that a step lasts at most: one, and rounding
 _FITS = cython.declare(cython.double, FITS)
-FEWEST, MOST_BYTES = 8, 2**30  # flows that are kept at least, and the memory that they otherwise have
 # of (A h)**k in what a force that grows as the j-th power of the time does in a step, for k + j < ORDER
 PUSHED = np.array(
     [[1.0 / factorial(k + j + 1) if k + j < ORDER else 0.0 for k in range(ORDER)] for j in range(ORDER)]
@@ -79,6 +79,7 @@ class Pool:
         self.size = self.linear + 2 * self.waves
         self.omega = 0.0
         self.count, self.clock = 0, 0
+        self.limit(TIME.flows)
         self._pool: dict[str, Any] = {}
         self._make_room(4)
 
@@ -133,10 +134,14 @@ class Pool:
         np.matmul(power[j], power[j], out=power[j + 1])
         self._pool["squared"][slot] = j + 1
 
+    def limit(self, options: FlowOptions) -> None:
+        """Keep so many flows from now on."""
+        self.min_count, self.max_bytes = options.min_count, options.max_bytes
+
     def _place(self) -> int:
         """A place for one more."""
         capacity = self.step.shape[0]
-        most = max(int(MOST_BYTES / (self.bytes() / capacity)), FEWEST)
+        most = max(int(self.max_bytes / (self.bytes() / capacity)), self.min_count)
         if self.count == capacity < most:
             capacity = min(16 * capacity, most)  # what is not used of it takes no memory
             self._make_room(capacity)

@@ -98,7 +98,9 @@ def simulate_phases(
     for phase in phases:
         if not (np.isfinite(phase.cycles) and phase.cycles > 0.0):
             raise SimulationError(f"a phase has {phase.cycles:g} cycles; it needs more than none")
-        for cycle, end in cycles_from(System(scene, phase.frequency), phase.cycles, state, options):
+        for cycle, end in cycles_from(
+            System(scene, phase.frequency, options.flows), phase.cycles, state, options
+        ):
             start = done[-1].start + done[-1].duration if done else 0.0
             done.append(replace(cycle, start=start))
             state = end

@@ -21,6 +21,7 @@ from fcm.time_domain.extremes import Rows, Scan
 from fcm.time_domain.flow import Flows
 from fcm.time_domain.integrals import Integrals, Powers
 from fcm.time_domain.integrator import March
+from fcm.time_domain.options import TIME, FlowOptions
 from fcm.time_domain.segment_walk import Steps, Walk
 from fcm.time_domain.segments import Segments
 from fcm.time_domain.variational import Derivative, Directional
@@ -45,6 +46,8 @@ class System:
     ----------
     scene : Scene
     omega : float
+    kept : FlowOptions, optional
+        How many flows, of a scene of which there are none yet.
 
     level is that of the forces, by which all harmonic ones are multiplied: 1 of the scene as it is. Where it
     is the parameter, motions are differentiated by it instead of the frequency.
@@ -52,7 +55,7 @@ class System:
 
     level, by_level = 1.0, False
 
-    def __init__(self, scene: Scene, omega: float) -> None:
+    def __init__(self, scene: Scene, omega: float, kept: FlowOptions = TIME.flows) -> None:
         self.scene, self.omega = scene, _checked(omega)
         if known := _LATEST.known(scene):
             self.__dict__.update(known)
@@ -82,6 +85,7 @@ class System:
         self.rough = [has_friction(contact) for contact in scene.contacts]
         self.limit_rows = self._limit_rows()
         self.flows = Flows(matrices_of(self))
+        self.flows.limit(kept)
         self._march, self._derivative = March(self.flows), Derivative(self.flows)
         self._along, self.integrals = Directional(self.flows), Integrals(self.flows)
         none = np.zeros(m)
