@@ -15,7 +15,6 @@ import numpy as np
 from fcm.cli.messages import Messages, pass_messages
 from fcm.compare.exact import exact_lines
 from fcm.model.scene import Scene
-from fcm.plot.convergence import Balanced, Line, draw_convergence
 from fcm.response.request import Request
 from fcm.response.sweep import trace
 from fcm.response.trace import traced_curve
@@ -23,6 +22,7 @@ from fcm.results.result import Curve
 from fcm.scene.load import load_scene
 from fcm.table import Table, open_table
 
+from .convergence_picture import Balanced, Line, draw_convergence
 from .measured import write_measured
 
 HARMONICS = (1, 2, 3, 5, 9, 15)

@@ -14,10 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.cli.messages import Messages, pass_messages
-from fcm.plot.kept_modes import Kept, draw_kept_modes
 from fcm.response.sweep import trace
 from fcm.scene import scene_from_dict
 
+from .kept_modes_picture import Kept, draw_kept_modes
 from .measured import write_measured
 from .plane_blade import blade, blade_scene
 

@@ -13,12 +13,12 @@ from fcm.branches.force_level import solutions
 from fcm.cli.messages import Messages, pass_messages
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Scene
-from fcm.plot.multipliers import Way, draw_multipliers
 from fcm.scene.load import load_scene
 from fcm.shooting import periodic
 from fcm.stability.floquet import ComplexArray, multipliers
 
 from .measured import write_measured
+from .multipliers_picture import Way, draw_multipliers
 
 HARMONICS = (1, 3, 9)
 SPAN, POINTS = (0.70, 0.80), 81

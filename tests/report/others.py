@@ -13,10 +13,10 @@ import click
 from fcm.cli.columns import aligned
 from fcm.cli.messages import Messages, pass_messages
 from fcm.files import replacing
-from fcm.plot.other_packages import Points, draw_others
 from fcm.plot.style import save
 
 from .measured import DPI
+from .others_picture import Points, draw_others
 from .page import Section, Table
 
 PACKAGES = {"pyharm": "pyHarm-os", "tmdsimpy": "tmdsimpy"}  # by the files of their results

@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from fcm.plot.convergence import Balanced, Line, draw_convergence
 from fcm.plot.style import LAYOUT, save
 
 from .convergence import as_text, convergence_order
+from .convergence_picture import Balanced, Line, draw_convergence
 
 HARMONICS = (1, 2, 3, 5, 9, 15)
 

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from fcm.plot.multipliers import draw_multipliers
-
 from ..time_domain.cases import yang
 from .multipliers import ways_of
+from .multipliers_picture import draw_multipliers
 
 
 @pytest.fixture(scope="module")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.response import exact_curve, friction_extent, resumable_branches
+from fcm.response import exact_curve, resumable_branches
 from fcm.response.groups import KINDS
 from fcm.response.orbit_curve import orbit_curve
 from fcm.results.orbits import Stuck
@@ -35,28 +36,17 @@ def scene():
     return replace(found, frequency_range=(1.4, 1.5), max_step=0.2)
 
 
-@pytest.fixture
-def searched(monkeypatch):
-    """How often an extent is sought, and how often it may be before an interruption; None without one."""
+class Looks:
+    """Progress that counts the looks for other motions, and interrupts after so many."""
 
-    class Searched:
-        times = 0
-        most: int | None = None
+    def __init__(self, most=None):
+        self.most, self.count = most, 0
 
-        def __init__(self):
-            self.family = friction_extent.family
-
-        def __call__(self, *args):
-            *_, poll = args
-            poll()
-            if self.times == self.most:
+    def __call__(self, _share, text):
+        if "looking for other motions" in text:
+            if self.count == self.most:
                 raise KeyboardInterrupt
-            self.times += 1
-            return self.family(*args)
-
-    found = Searched()
-    monkeypatch.setattr(friction_extent, "family", found)
-    return found
+            self.count += 1
 
 
 def assert_same(one, other):
@@ -67,42 +57,45 @@ def assert_same(one, other):
 
 
 @pytest.mark.parametrize("at", [None, AT])
-def test_points_are_kept_and_extents_found_again(scene, searched, tmp_path, at):
+def test_points_are_kept_and_extents_found_again(scene, tmp_path, at):
     whole = curve_of(scene, at=at)
-    searched.times, searched.most = 0, 0
-    first = curve_of(scene, at=at, keep=tmp_path / "kept")
+    first = curve_of(scene, at=at, keep=tmp_path / "kept", progress=Looks(0))
     assert not first.complete and first.reason.startswith("interrupted at its end")
     np.testing.assert_array_equal(first.amplitude, whole.amplitude)
     known = np.isfinite(whole.orbits.family_greatest).all(axis=1)
     assert known.any() and np.isnan(first.orbits.family_greatest).all()
     assert (first.orbits.family_complete[known] == 0.0).all()
-    searched.most = None
     assert_same(curve_of(scene, at=at, keep=tmp_path / "kept", resume=True), whole)
 
 
-def test_extents_that_were_found_are_not_sought_again(scene, searched, tmp_path):
-    whole = curve_of(scene, at=AT)
-    every, searched.times, searched.most = searched.times, 0, 1
-    first = curve_of(scene, at=AT, keep=tmp_path / "kept")
+def test_extents_that_were_found_are_not_sought_again(scene, tmp_path):
+    every, rest = Looks(), Looks()
+    whole = curve_of(scene, at=AT, progress=every)
+    first = curve_of(scene, at=AT, keep=tmp_path / "kept", progress=Looks(every.count // 2))
     told = first.orbits.family_complete == 1.0
-    assert set(first.frequency[told]) == {AT[0]}
-    searched.most = None
-    assert_same(curve_of(scene, at=AT, keep=tmp_path / "kept", resume=True), whole)
-    assert searched.times == every
+    assert 0 < len(set(first.frequency[told])) < len(AT)
+    again = curve_of(scene, at=AT, keep=tmp_path / "kept", resume=True, progress=rest)
+    assert_same(again, whole)
+    assert 0 < rest.count < every.count
 
 
-def test_after_an_interruption_no_other_motions_are_sought(scene, searched):
+def test_after_an_interruption_no_other_motions_are_sought(scene):
     """What was asked for is the end, not what takes longer than the curve itself."""
-    curve = curve_of(scene, progress=interrupted_after(3))
+    looks, stops = Looks(), interrupted_after(3)
+
+    def progress(share, text):
+        looks(share, text)
+        stops(share, text)
+
+    curve = curve_of(scene, progress=progress)
     assert curve.points > 0 and curve.reason.startswith("interrupted at 1.")
-    assert searched.times == 0
+    assert looks.count == 0
 
 
-def test_of_a_run_that_goes_on_and_is_stopped_at_once_there_is_all_that_was(scene, monkeypatch, tmp_path):
+def test_of_a_run_that_goes_on_and_is_stopped_at_once_there_is_all_that_was(scene, tmp_path):
     """Before it has come to the curve again that was begun: nothing of that is lost."""
     first = curve_of(scene, keep=tmp_path / "kept", progress=interrupted_after(5))
-    monkeypatch.setattr(trace, "find_initial_orbits", stopped)
-    again = curve_of(scene, keep=tmp_path / "kept", resume=True)
+    again = curve_of(scene, keep=tmp_path / "kept", resume=True, progress=interrupted_after(0))
     assert first.points > 0 and again.reason == first.reason
     np.testing.assert_array_equal(again.amplitude, first.amplitude)
 
@@ -129,30 +122,19 @@ def stopped(*_):
     raise KeyboardInterrupt
 
 
-def test_of_peaks_alone_those_that_were_found_are_kept(monkeypatch):
+def test_of_peaks_alone_those_that_were_found_are_kept():
     scene = between(yang(), 1.1, 1.3)
-    whole, steps = curve_of(scene, only="peaks"), []
-    monkeypatch.setattr(exact_curve, "peaks_only", stopped_after(2, exact_curve.peaks_only, steps))
-    curve = curve_of(scene, only="peaks")
+    whole = curve_of(scene, only="peaks")
+
+    def third(_share, text):
+        if re.search(r"\b[2-9] of [0-9]+ peaks and folds", text):
+            raise KeyboardInterrupt
+
+    curve = curve_of(scene, only="peaks", progress=third)
     found = curve.frequency[np.isfinite(curve.frequency)]
     assert 0 < found.size < np.isfinite(whole.frequency).sum()
     assert set(found) <= set(whole.frequency) and (np.diff(found) > 0.0).all()
     assert not curve.complete and curve.reason.startswith("interrupted at 1.")
-
-
-def stopped_after(count, peaks_only, steps):
-    """The same search, interrupted after so many of its places."""
-
-    def search(scene, known, report, poll):
-        def shown(share, text):
-            steps.append(text)
-            if len(steps) > count:
-                raise KeyboardInterrupt
-            report(share, text)
-
-        return peaks_only(scene, known, shown, poll)
-
-    return search
 
 
 def test_a_sweep_of_motions_that_repeat_after_two_periods_goes_on(tmp_path):
