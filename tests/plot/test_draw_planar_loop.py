@@ -99,3 +99,11 @@ def test_the_work_of_both_loops_is_the_dissipation():
     path = path_of(LOOP)
     area = sum(np.trapezoid(path.f[:, i], path.u[:, i]) for i in range(2))
     assert area == pytest.approx(LOOP.dissipation, rel=1e-4)
+
+
+def test_a_direction_in_which_there_is_rounding_alone_is_drawn_as_at_rest():
+    """Its loop was that of the rounding, at full size."""
+    path = path_of(
+        fcm.planar_loop([0.1, 1.0], [1e-19, 3e-18j], [0.0, 0.2j], mu=0.5, k_u=2.0, k_v=1.0, n_0=0.7)
+    )
+    assert np.ptp(path.f[:, 0]) > 0.5 and not path.f[:, 1].any() and not path.u[:, 1].any()

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from fcm.at_rest import at_rest
 from fcm.contact.plane.loop import PlanarLoop
 from fcm.plot.loop import STATES
 from fcm.plot.loop_marks import name_marks
@@ -53,12 +54,18 @@ class Path:
 
 
 def path_of(loop: PlanarLoop) -> Path:
-    """Samples, those of the transitions among them."""
+    """Samples, those of the transitions among them; 0 in a direction in which there is rounding alone."""
     theta = np.unique(np.concatenate((np.linspace(0.0, 2.0 * np.pi, LAYOUT.planar_samples + 1), loop.angles)))
     u, stiff = loop.displacement(theta), loop.k_u > 0.0
     w = loop.slider(theta) if stiff else u
     radius = loop.slip_limit(theta) / loop.k_u if stiff else np.zeros_like(theta)
-    return Path(theta, u, w, loop.force(theta), radius, np.asarray(loop.states(theta)))
+    u, w, f = (_without_rounding(one) for one in (u, w, loop.force(theta)))
+    return Path(theta, u, w, f, radius, np.asarray(loop.states(theta)))
+
+
+def _without_rounding(values: FloatArray) -> FloatArray:
+    """Both directions (sample, 2), one of them 0 where it is of the other's rounding."""
+    return np.where(at_rest(np.abs(values).max(axis=0)), 0.0, values)
 
 
 def draw_planar_loop(drawn: DrawnPlanarLoop) -> Figure:
