@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fcm.branches.force_level import linear_responses
+from fcm.branches.trace import traced as branches
 from fcm.continuation import Events, FollowOptions, Mark, Status, follow
 from fcm.harmonic_balance.system import System
 
@@ -32,6 +33,13 @@ def test_a_slider_between_two_discs_that_part_goes_on_to_slip_from_there():
     lowest = np.flatnonzero((path.parameter < 0.0277) & (path.mark & Mark.CORNER != 0))[-1]
     assert np.all(np.diff(path.parameter[lowest:]) > 0.0)  # it is passed once, and no level beyond it twice
     assert np.abs(path.z[lowest + 1] - path.z[lowest]).max() < 1e-5
+
+
+def test_a_contact_that_sticks_once_in_a_cycle_has_few_corners():
+    """Its slip takes the slider back to where it was, but for rounding, which once made 1567 corners."""
+    (path,) = branches(System(random_plane(220), (1, 2, 3))).branches.paths
+    assert path.status is Status.COMPLETE
+    assert path.where(Mark.CORNER).size < 30
 
 
 @pytest.mark.slow

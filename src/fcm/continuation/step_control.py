@@ -42,10 +42,14 @@ def acceptable(stepper: Stepper) -> cython.bint:
 def within_turn(stepper: Stepper) -> cython.bint:
     """Whether a short step misses the curve by no more than its turn explains: otherwise it is another part.
 
-    By the tangent of the turn, where the corner is at the start; by twice that, where it bends as a root.
+    By the tangent of the turn, where the corner is at the start; by twice that, where it bends as a root; and
+    by what is so short that corners there are not told apart.
     """
     turned: cython.double = sqrt(max(1.0 - stepper.cosine * stepper.cosine, 0.0))
-    return stepper.cosine * stepper.miss < 2.0 * turned + stepper.options.step.max_miss
+    options: StepOptions = stepper.options.step
+    if stepper.miss * stepper.step < options.any_turn_step:
+        return True
+    return stepper.cosine * stepper.miss < 2.0 * turned + options.max_miss
 
 
 @cython.cfunc

@@ -200,8 +200,8 @@ class PlanarMargins:
     def pushes(self) -> None:
         """Of every stick: the discs that nearly touch its slider, and how far the next slip takes it.
 
-        If there is one stick alone, or none but by rounding, where a period begins, the slip takes the slider
-        back to where it was, and tells nothing.
+        If there is one stick alone, which the beginning of a period may cut in two, or none but by rounding,
+        the slip takes the slider back to where it was, and tells nothing.
         """
         p: cython.int
         n: cython.int = self.cycle.slider.pieces
@@ -216,7 +216,8 @@ class PlanarMargins:
             self.within(p, end)
             if self.cycle.slider.state[follows] == SLIP:
                 after: cython.int = 0 if follows + 1 == n else follows + 1
-                if after == p:
+                whole: cython.bint = p == 0 and after == n - 1 and self.cycle.slider.state[after] == STICK
+                if after == p or whole:
                     continue
                 halt: float = self.cycle.slider.begin[after]
                 while halt <= end:
