@@ -248,15 +248,17 @@ def test_linear_responses_at_many_frequencies_take_one_matrix_at_a_time():
     assert most < 16 * ports**2 * 16
 
 
-def test_rounding_of_many_contacts_is_that_of_random_errors():
+@pytest.mark.parametrize("condensation", [EVERY_MODE, CondensationOptions(min_unknowns=10**6)])
+def test_rounding_of_many_contacts_is_that_of_random_errors(condensation):
     """Three times the root of the sum of squares of the inverse of the whole system times each error."""
-    system = System(mostly_stuck(), (1, 3), condensation=EVERY_MODE)
+    system = System(mostly_stuck(), (1, 3), condensation=condensation)
     balance = system.new_balance()
     path = follow(balance, np.append(np.zeros(balance.unknowns), 0.9), (0.9, 1.5), Events((1.15,)))
     (i,) = np.flatnonzero(path.parameter == 1.15)
     balance.evaluate(path.z[i])
     errors = np.random.default_rng(4).uniform(0.5, 1.0, balance.unknowns)
-    found = _moved_across_curve(balance, path.z[i], path.direction[i], errors, HARMONIC_BALANCE.digits)
+    many = replace(HARMONIC_BALANCE.digits, min_unknowns=balance.unknowns)
+    found = _moved_across_curve(balance, path.z[i], path.direction[i], errors, many)
     scale = np.array(balance.scale)
     row = path.direction[i] / scale
     matrix = np.vstack((jacobian_of(balance) * scale, row / np.linalg.norm(row)))

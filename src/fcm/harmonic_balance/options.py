@@ -70,8 +70,10 @@ class DigitOptions:
         Roundings that come together in a sum.
     points : int
         Of a curve of many contacts that are looked at.
+    min_unknowns : int
+        From which on contacts are many, of which no inverse is made.
     signs : int
-        Of errors that are looked at together, where contacts are many.
+        Of errors that are looked at together then.
     mean_squares : float
         Times the root of their mean square, that an error is then taken to be at most.
     dependent : float
@@ -82,6 +84,7 @@ class DigitOptions:
     last_digit: float = 2.2e-16
     together: float = 4.0
     points: int = 16
+    min_unknowns: int = 200
     signs: int = 8
     mean_squares: float = 3.0
     dependent: float = 1e10

@@ -224,22 +224,36 @@ def _moved_across_curve(
     scale = np.array(balance.scale)
     row = tangent / scale
     row /= np.linalg.norm(row)
-    if balance.condensed is not None:
-        signs = np.random.default_rng(0).choice((-1.0, 1.0), (options.signs, wrong.size))
-        if not balance.factor(row, scale):
-            return np.full(wrong.size, np.nan)
-        ways = np.hstack((signs * wrong / scale[:-1], np.zeros((options.signs, 1))))
-        for way in ways:
-            balance.solve(way)
-        typical: FloatArray = scale[:-1] * np.sqrt(np.square(ways[:, :-1]).mean(axis=0))
-        return options.mean_squares * typical
-    matrix = np.vstack((jacobian_of(balance) * scale, row))
+    condensed = balance.condensed is not None
+    matrix = None if condensed else np.vstack((jacobian_of(balance) * scale, row))
     try:
+        if condensed or wrong.size >= options.min_unknowns:
+            signs = np.random.default_rng(0).choice((-1.0, 1.0), (options.signs, wrong.size))
+            ways = _ways(balance, matrix, row, scale, signs * wrong)
+            typical: FloatArray = scale[:-1] * np.sqrt(np.square(ways[:, :-1]).mean(axis=0))
+            return options.mean_squares * typical
+        assert matrix is not None
         inverse = np.linalg.inv(matrix)[:-1, :-1]
     except np.linalg.LinAlgError:
         return np.full(wrong.size, np.nan)
     moved: FloatArray = scale[:-1] * (np.abs(inverse) @ wrong)
     return moved
+
+
+def _ways(
+    balance: Balance, matrix: FloatArray | None, row: FloatArray, scale: FloatArray, errors: FloatArray
+) -> FloatArray:
+    """The ways (way, unknown + 1) by which errors of the equations (way, unknown) move a point, in units of
+    scale: by the matrix, or where there is none by the condensed system."""
+    if matrix is not None:
+        right = np.vstack((errors.T, np.zeros(len(errors))))
+        return np.asarray(np.linalg.solve(matrix, right).T, dtype=np.float64)
+    if not balance.factor(row, scale):
+        raise np.linalg.LinAlgError
+    ways: FloatArray = np.hstack((errors / scale[:-1], np.zeros((len(errors), 1))))
+    for way in ways:
+        balance.solve(way)
+    return ways
 
 
 def _fundamental_positions(balance: Balance) -> npt.NDArray[np.intp]:
