@@ -213,14 +213,14 @@ convergence: build/convergence.txt  ## error against run time with 1 to 15 harmo
 	cp build/convergence.png .github/guide/figures/convergence.png
 	@cat $<
 
-build/convergence.txt: tests/report/convergence.py src/fcm/plot/convergence.py $(SIMULATION) $(VENV)/installed
+build/convergence.txt: tests/report/convergence.py tests/report/convergence_picture.py $(SIMULATION) $(VENV)/installed
 	@mkdir -p build
 	$(BIN)/python -m tests.report convergence build/convergence.json --picture build/convergence.png > $@
 
 multipliers: build/multipliers.json  ## Floquet multipliers, balanced and exact, as the picture of the guide's page of stability
 	cp build/multipliers.png .github/guide/figures/multipliers.png
 
-build/multipliers.json: tests/report/multipliers.py src/fcm/plot/multipliers.py $(SIMULATION) $(VENV)/installed
+build/multipliers.json: tests/report/multipliers.py tests/report/multipliers_picture.py $(SIMULATION) $(VENV)/installed
 	@mkdir -p build
 	$(BIN)/python -m tests.report multipliers $@ --picture build/multipliers.png
 

@@ -78,3 +78,9 @@ def test_modules_and_programs_that_a_page_names_exist():
 def test_bundled_scenes_are_named():
     text = "\n".join(map(read, PAGES))
     assert all(f"`{path.stem}`" in text for path in (ROOT / "src/fcm/scenes").glob("*.toml"))
+
+
+def test_files_that_the_makefile_names_exist():
+    """Targets whose sources were moved are found only when they are made."""
+    named = set(re.findall(r"\b(?:src|tests)/[\w/]+\.(?:py|txt)\b", read(ROOT / "Makefile")))
+    assert len(named) > 10 and not [name for name in named if not (ROOT / name).is_file()]
