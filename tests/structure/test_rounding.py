@@ -9,7 +9,9 @@ import scipy.sparse
 
 from fcm.scene import scene_from_dict
 from fcm.structure.eigen import StructureError
+from fcm.structure.options import REDUCTION
 from fcm.structure.reduced import ModeSelection, reduced
+from fcm.structure.rounding import of_receptances
 
 from . import beams
 from .solids import bricks
@@ -342,3 +344,17 @@ def test_a_loose_solid_by_lanczos():
         assert found.rigid == 6
         assert found.modes.stiffness[6:10] == pytest.approx(exact, rel=1e-9)
         assert np.abs(found.modes.shapes[:, :6].T @ (M @ found.modes.shapes[:, 6:10])).max() < 1e-9
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_of_many_loads_those_are_looked_at_of_which_most_is_lost(seed):
+    """Beside each alone: what the rounding of the worst is, to the factor that is spared."""
+    rng = np.random.default_rng(seed)
+    K, M = map(scipy.sparse.csc_array, chain(10.0 ** rng.uniform(0.0, 6.0, 80)))
+    loads = np.eye(80)
+    modes = reduced(K, M, loads[:, :1], 0.0, ModeSelection(80)).modes
+    top = 3.0 * np.sqrt(modes.stiffness[2])
+    each = [of_receptances(K, M, modes, loads[:, [i]], top) for i in range(80)]
+    told = of_receptances(K, M, modes, loads, top)
+    assert max(each) / REDUCTION.spare <= told <= REDUCTION.spare * max(each)
+    assert max(each) > 10.0 * min(each)

@@ -45,6 +45,9 @@ class RetainedModeOptions:
     # times the shift: a first elastic mode that is so much farther has lost five digits
     most_lost: float = 1e5
     most_between: int = 8  # places between resonances at which the rounding of a receptance is looked at
+    most_loads: int = (
+        24  # of many contacts, on which that is looked at: those off most, or moving least, at rest
+    )
     spare: float = 2.0  # times what is found at these places: beside them it is not much more
     apart: float = 0.01  # how far squares of frequencies are from resonances at least, relative
     same_shape: float = 1e-12  # relative: shapes this near are the same

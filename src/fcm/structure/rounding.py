@@ -36,13 +36,21 @@ def of_receptances(K: Matrix, M: Matrix, modes: Modes, loads: FloatArray, omega:
     """How far the answer to a load along itself is off, relative to the static one, up to omega.
 
     At rest, near it, between resonances and at omega; at a resonance by as much more as that is higher.
-    The answer of rigid-body modes, which have no static one, is that at omega.
+    The answer of rigid-body modes, which have no static one, is that at omega. Of many loads those are looked
+    at beside rest that at rest are off most, or move least.
     """
     elastic = modes.stiffness > 0.0
     if not (elastic.any() and loads.size):
         return 0.0
     some = Modes(modes.stiffness[elastic], modes.shapes[:, elastic])
     static, off = _energy_and_error(K, M, some, loads, 0.0)
+    if static.size > REDUCTION.most_loads:
+        share = np.divide(off, static, out=np.zeros_like(off), where=static > 0.0)
+        off_most, least = (
+            np.argsort(one, kind="stable")[: REDUCTION.most_loads // 2] for one in (-share, static)
+        )
+        worst = np.union1d(off_most, least)
+        static, off, loads = static[worst], off[worst], loads[:, worst]
     off = off + _energy_and_error(K, M, modes, loads, float(some.stiffness[0]))[1]
     between = [_energy_and_error(K, M, modes, loads, -(w**2))[1] for w in _between(some, omega)]
     off = REDUCTION.spare * np.max([off, *between], axis=0)
