@@ -6,11 +6,12 @@ import pytest
 from scipy.optimize import brentq
 
 from fcm.continuation.events import SignChange
+from fcm.continuation.options import SIGN_CHANGE, SignChangeOptions
 
 
-def looked(f, low, high, within, zero=1e-10, may_jump=True):
+def looked(f, low, high, within, zero=1e-10, may_jump=True, options=SIGN_CHANGE):
     """The sides, and at how many places the function was looked at until it was known."""
-    sides, count = SignChange(low, high, f(low), f(high), may_jump), 0
+    sides, count = SignChange(low, high, f(low), f(high), may_jump, options), 0
     while sides.width > within and count < 200:
         at = sides.at
         assert sides.low <= at <= sides.high
@@ -39,3 +40,12 @@ def test_a_jump_is_halved(jump, before, after):
     at, count = looked(lambda t: (before if t < jump else after) * (1.0 + 0.1 * t), 0.0, 1.0, 1e-7)
     assert at == pytest.approx(jump, abs=1e-7)
     assert count < math.log2(1e7) + 10
+
+
+def test_where_a_jump_is_not_looked_for_and_looks_seldom_halve_it_takes_more():
+    def lopsided(t):
+        return -1e-3 if t < 0.77 else 1.0
+
+    blind = SignChangeOptions(jump_difference=2.0, halving_interval=6)
+    counts = [looked(lopsided, 0.0, 1.0, 1e-7, options=one)[1] for one in (SIGN_CHANGE, blind)]
+    assert counts[1] > 1.5 * counts[0]

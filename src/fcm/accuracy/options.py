@@ -5,7 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from fcm.continuation.options import EventOptions, FollowOptions, NewtonOptions, StepOptions
+from fcm.continuation.options import (
+    SIGN_CHANGE,
+    EventOptions,
+    FollowOptions,
+    NewtonOptions,
+    SignChangeOptions,
+    StepOptions,
+)
 
 
 @dataclass(frozen=True)
@@ -268,6 +275,8 @@ class StabilityLimitOptions:
         Growth over a period, logarithmic, that is as good as any that is less.
     crossing_distance : float
         Part of the way to any other crossing, within which that of more harmonics is that of fewer.
+    sign_change : SignChangeOptions
+        How it is bracketed.
     """
 
     max_distance: float = 32.0
@@ -277,6 +286,7 @@ class StabilityLimitOptions:
     max_evaluations: int = 40
     min_growth: float = -0.3
     crossing_distance: float = 0.1
+    sign_change: SignChangeOptions = SIGN_CHANGE
 
 
 STABILITY_LIMITS = StabilityLimitOptions()

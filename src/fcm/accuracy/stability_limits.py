@@ -152,7 +152,8 @@ class _PartnerGrowth:
                 value = self.growth(at) if 0.0 <= at <= last else math.nan
                 if (value > 0.0) != (growth > 0.0) and not math.isnan(value):
                     (low, one), (high, other) = sorted(((known, growth), (at, value)))
-                    return SignChange(low, high, one, other, may_jump=True)
+                    bracket = STABILITY_LIMITS.sign_change
+                    return SignChange(low, high, one, other, True, bracket)
                 before[sign] = (at, value)
             before = {sign: side for sign, side in before.items() if not math.isnan(side[1])}
             near *= 2.0

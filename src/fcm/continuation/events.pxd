@@ -9,7 +9,8 @@ cdef class SignChange:
     cdef readonly double low, high, width, secant, at
     cdef bint may_jump
     cdef double before, after, last, last_value, now, now_value
-    cdef double first_width, first_difference, width_in_turn
+    cdef double first_width, first_difference, width_in_turn, jump_width, jump_difference
+    cdef int halving_interval
     cdef int evaluations
     cdef void choose_next(self) noexcept
     cdef bint seems_discontinuous(self) noexcept

@@ -18,7 +18,7 @@ import numpy as np
 from cython.cimports.libc.math import fabs, sqrt
 
 from fcm.continuation.extremum_search import ExtremumSearch, Sample
-from fcm.continuation.options import EventOptions
+from fcm.continuation.options import SIGN_CHANGE, EventOptions, SignChangeOptions
 from fcm.continuation.path import FloatArray, Mark
 from fcm.continuation.point import Point
 from fcm.continuation.stepper import Stepper
@@ -29,11 +29,6 @@ if cython.compiled:
 else:
     from fcm.continuation.predictor import dot
     from fcm.continuation.problem import COSTLY_SIZE
-
-# of the first distance of its sides, at which a function that does not jump
-JUMP_WIDTH = cython.declare(cython.double, 0.25)
-JUMP_DIFFERENCE = cython.declare(cython.double, 0.5)  # differs by less than this part of what it did
-HALVING_INTERVAL = cython.declare(cython.int, 3)  # looks that are to halve the distance
 
 
 @cython.cclass
@@ -50,8 +45,11 @@ class SignChange:
         before: cython.double,
         after: cython.double,
         may_jump: cython.bint = False,
+        options: SignChangeOptions = SIGN_CHANGE,
     ) -> None:
         self.low, self.high, self.may_jump = low, high, may_jump
+        self.jump_width, self.jump_difference = options.jump_width, options.jump_difference
+        self.halving_interval = options.halving_interval
         self.before, self.after = before, after  # the values there
         # the last two points and their values
         self.last, self.last_value, self.now, self.now_value = low, before, high, after
@@ -68,7 +66,7 @@ class SignChange:
             rise: cython.double = self.now_value - self.last_value
             self.secant = self.now - self.now_value * (self.now - self.last) / rise
         slow: cython.bint = (
-            self.evaluations % HALVING_INTERVAL == HALVING_INTERVAL - 1
+            self.evaluations % self.halving_interval == self.halving_interval - 1
             and self.width > 0.5 * self.width_in_turn
         )
         halved: cython.bint = slow or self.seems_discontinuous() or not self.low < self.secant < self.high
@@ -79,8 +77,8 @@ class SignChange:
     def seems_discontinuous(self) -> cython.bint:
         """Whether the function seems to."""
         difference: cython.double = fabs(self.after - self.before)
-        near: cython.bint = self.width < JUMP_WIDTH * self.first_width
-        return self.may_jump and near and difference > JUMP_DIFFERENCE * self.first_difference
+        near: cython.bint = self.width < self.jump_width * self.first_width
+        return self.may_jump and near and difference > self.jump_difference * self.first_difference
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -98,7 +96,7 @@ class SignChange:
     @cython.exceptval(-1, check=False)
     def update(self, at: cython.double, value: cython.double) -> cython.int:
         """Take the value there for that of one side."""
-        if self.evaluations % HALVING_INTERVAL == HALVING_INTERVAL - 1:
+        if self.evaluations % self.halving_interval == self.halving_interval - 1:
             self.width_in_turn = self.width
         self.evaluations += 1
         self.last, self.last_value, self.now, self.now_value = self.now, self.now_value, at, value

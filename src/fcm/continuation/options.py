@@ -267,6 +267,28 @@ class SwitchingOptions(Options):
     many_unknowns: cython.int = 64
 
 
+@dataclasses.dataclass(frozen=True)  # taken by a kernel when it begins
+class SignChangeOptions:
+    """How a change of sign of an event is bracketed; see `events`.
+
+    Attributes
+    ----------
+    jump_width : float
+        Part of the first distance of its sides, at which a function that does not jump
+    jump_difference : float
+        differs by less than this part of what it did.
+    halving_interval : int
+        Looks that are to halve the distance.
+    """
+
+    jump_width: float = 0.25
+    jump_difference: float = 0.5
+    halving_interval: int = 3
+
+
+SIGN_CHANGE = SignChangeOptions()
+
+
 @dataclasses.dataclass(frozen=True)  # of no kernel
 class LabelOptions:
     """Steps where switching functions are labels, which tell no distance; see `labelled_switching`.

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from fcm.continuation.options import SIGN_CHANGE, SignChangeOptions
 from fcm.stability.options import STABILITY, StabilityOptions
 
 
@@ -382,6 +383,8 @@ class StabilityChangeOptions:
     max_ranges : int
         Of the frequency without a stable motion, in whose middle the motion is simulated, the widest
         first.
+    sign_change : SignChangeOptions
+        How a change is bracketed.
     """
 
     max_evaluations: int = 60
@@ -389,6 +392,7 @@ class StabilityChangeOptions:
     max_divisions: int = 4
     safe_growth: float = -0.3
     max_ranges: int = 3
+    sign_change: SignChangeOptions = SIGN_CHANGE
 
 
 @dataclass(frozen=True)

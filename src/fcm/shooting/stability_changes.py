@@ -34,7 +34,8 @@ def crossing(problem: OrbitProblem, path: Path, first: int) -> Place | None:
     change of label is.
     """
     ends = [_place(problem, float(i), path.z[first + i], path.direction[first + i]) for i in (0, 1)]
-    sides = SignChange(0.0, 1.0, ends[0].excess, ends[1].excess, may_jump=True)
+    bracket = problem.options.stability.sign_change
+    sides = SignChange(0.0, 1.0, ends[0].excess, ends[1].excess, True, bracket)
     between, stable = Segment(problem, path, first), min(ends, key=lambda place: place.excess)
     for _ in range(problem.options.stability.max_evaluations):
         if stable.there or sides.width * between.length < FOLLOW.switching.reached_distance:

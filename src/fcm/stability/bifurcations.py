@@ -260,7 +260,8 @@ class _BifurcationSearch:
         by_flip = kind is Bifurcation.PERIOD_DOUBLING and flips[0] * before > 0.0 > flips[0] * flips[1]
         if by_flip:
             before, after = flips
-        sides = SignChange(a - first, b - first, before, after, may_jump=True)
+        bracket = self.options.sampling.sign_change
+        sides = SignChange(a - first, b - first, before, after, True, bracket)
         fine = self.options.sampling.tolerance
         narrow = fine if enough else self.options.sampling.confirmed_tolerance
         for _ in range(self.options.sampling.max_evaluations):

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from fcm.continuation.options import SIGN_CHANGE, SignChangeOptions
+
 
 @dataclass(frozen=True)
 class VerdictOptions:
@@ -196,6 +198,8 @@ class SamplingOptions:
         Growth at a crossing.
     max_evaluations : int
         At a crossing, at most.
+    sign_change : SignChangeOptions
+        How it is bracketed.
     """
 
     interval_one_harmonic: int = 16
@@ -209,6 +213,7 @@ class SamplingOptions:
     confirmed_tolerance: float = 1e-4
     growth_tolerance: float = 1e-10
     max_evaluations: int = 60
+    sign_change: SignChangeOptions = SIGN_CHANGE
 
 
 @dataclass(frozen=True)
