@@ -237,18 +237,15 @@ def beyond(low: FloatArray, here: FloatArray, high: FloatArray) -> FloatArray:
     return np.where(bend > 0.0, (high - low) ** 2 / (8.0 * np.maximum(bend, 1e-300)), 0.0)
 
 
-def halved(
-    march: March, omega: FloatArray, state: State, place: FloatArray
-) -> tuple[FloatArray, FloatArray, list[State]]:
-    """Amplitudes (scene, motion) of steps halved twice, how far they err, states of the longest step."""
-    heights, first = [], list[State]()
+def halved(march: March, omega: FloatArray, state: State, place: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Amplitudes (scene, motion) of steps halved twice, and how far they err."""
+    heights = []
     for times in (1, 2, 4):
         height, states = march.run(omega, times * STEPS, state, place)
-        first = first or states
         heights.append(height)
         state = states[-1]
     before, last = (np.abs(b - a) for a, b in pairwise(heights))
-    return heights[2], np.maximum(last, 0.5 * before), first
+    return heights[2], np.maximum(last, 0.5 * before)
 
 
 def marched(seeds: list[int], found: list[Traced]) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -267,7 +264,9 @@ def marched(seeds: list[int], found: list[Traced]) -> tuple[FloatArray, FloatArr
     state, rng = balance.of(0, omega.shape[1]), np.random.default_rng(0)
     for one in state[:2]:
         one[:, 1] *= 1.0 + LITTLE * rng.standard_normal(one[:, 1].shape)
-    height, change, states = halved(march, omega, state, place)
+    height, change = halved(march, omega, state, place)
+    # the longest step may be unstable by itself
+    _, states = march.run(omega[:, :2], 2 * STEPS, State(*(one[:, :2] for one in state)), place)
     apart = np.array([np.abs(one.q[:, 1] - one.q[:, 0]).max(axis=-1) for one in states])
     apart += np.array([np.abs(one.w[:, 1] - one.w[:, 0]).max(axis=(-2, -1)) for one in states])
     middle = height[:, 0]
