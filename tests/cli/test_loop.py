@@ -176,7 +176,7 @@ def test_the_picture_is_beside_the_file(fcm, folded):
         (("--units", "m", "N"), "the axes have no dimension"),
         (("--n0-bar", 1, *(x for phi in range(13) for x in ("--phi", phi))), "13 loops are too many"),
         (("-o", "a.txt"), "has to end in"),
-        (("-o", "."), "it is a folder"),
+        (("-o", "."), "it is this folder"),
         (("--at", 1, "--contact", "c", "--units", "m", "N"), "--at, --contact are of no use without a FILE"),
         (("--at", 1, "--units", "m", "N"), "--units is of no use: the axes have no dimension; --at is"),
         (
