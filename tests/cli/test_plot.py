@@ -3,6 +3,7 @@
 import netCDF4
 import pytest
 
+from fcm.cli.drawing import save_picture
 from fcm.plot import draw_response, read_response
 
 
@@ -28,11 +29,15 @@ def test_without_a_name_the_picture_is_beside_the_file(fcm, result, tmp_path):
     assert (tmp_path / "result.png").exists()
 
 
-def test_options_reach_the_picture(fcm, result, monkeypatch):
-    seen = {}
-    monkeypatch.setattr("fcm.plot.draw_response", lambda *a, **k: seen.update(k) or draw_response(*a, **k))
-    assert fcm("plot", "response", result, "--dof", "v", "--log", "--no-errors").code == 0
-    assert seen == {"dof": "v", "log": True, "errors": False, "points": None}
+def test_options_reach_the_picture(fcm, result, tmp_path):
+    options = ("--dof", "v", "--log", "--no-errors")
+    assert fcm("plot", "response", result, *options, "-o", "a.svg").code == 0
+    assert fcm("plot", "response", result, *options[:-1], "-o", "b.svg").code == 0
+    save_picture(
+        draw_response(read_response(result), dof="v", log=True, errors=False, points=None), tmp_path / "c.svg"
+    )
+    made, other, drawn = ((tmp_path / name).read_bytes() for name in ("a.svg", "b.svg", "c.svg"))
+    assert made == drawn != other
 
 
 @pytest.mark.parametrize(
