@@ -206,6 +206,9 @@ class UnitOptions:
         Part of its greatest value so far that the unit of a displacement is at least,
     greatest : float
         and of the greatest of all.
+    of_preload : float
+        Part of n_0 / k_v, that of a normal displacement is at least: some ten thousand times what rounding of
+        the preload makes of it.
     contacts : int
         Of so many and more all displacements have one unit. What a single contact does then matters as far as
         it moves beside the others, and its corners turn the curve by no more than that.
@@ -213,6 +216,7 @@ class UnitOptions:
 
     own: float = 0.1
     greatest: float = 1e-6
+    of_preload: float = 2e-12
     contacts: int = 12
 
 

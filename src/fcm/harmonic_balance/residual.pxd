@@ -32,6 +32,7 @@ cdef class Balance(Problem):
     cdef double[::1] size
     cdef double own
     cdef double greatest
+    cdef double of_preload
     cdef bint alike
     cdef public double[::1] evaluated
     cdef double[::1] now

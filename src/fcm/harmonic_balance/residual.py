@@ -188,7 +188,8 @@ class Balance(Problem):
         self.condensed: CondensedSystem | None = None  # of the rank, see `condense`
         self.answer: ModalCompliance | None = None  # then
         self.largest, self.size = np.zeros(layout.ports), np.zeros(layout.ports)
-        self.own, self.greatest, self.alike = units.own, units.greatest, len(laws) >= units.contacts
+        self.own, self.greatest, self.of_preload = units.own, units.greatest, units.of_preload
+        self.alike = len(laws) >= units.contacts
 
     def condense(self, condensed: CondensedSystem) -> None:
         """Solve the systems of Newton's method, of which there is a rank, by this."""
@@ -276,7 +277,8 @@ class Balance(Problem):
     @cython.exceptval(-1, check=False)
     def measure(self, z: cython.double[::1]) -> cython.int:
         """Displacements by their present size, in each direction of a contact, or where contacts are many of
-        all; both directions of sliding by that in the plane. The frequency by its range."""
+        all; both directions of sliding by that in the plane, normal ones by no less than the rounding of the
+        preload leaves of them. The frequency by its range."""
         p: cython.Py_ssize_t
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -295,6 +297,10 @@ class Balance(Problem):
         many: cython.double = sqrt(cython.cast(cython.double, self.ports))
         for p in range(self.ports):
             unit: cython.double = max(self.size[p], max(self.own * self.largest[p], self.greatest * overall))
+            if unit > 0.0 and not self.alike and p % self.directions == self.directions - 1:
+                law: Law = self.laws[p // self.directions]
+                if law.k_v > 0.0:
+                    unit = max(unit, self.of_preload * law.n_0 / law.k_v)
             unit = unit * many if unit > 0.0 else many
             self.scale[self.seen.mean_at[p]] = unit
             for i in range(self.seen.count):
