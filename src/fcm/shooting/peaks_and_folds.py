@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -73,24 +74,49 @@ def _within(
     found: list[tuple[OrbitRecord, PeakDofs]] = []
     options = FollowOptions(problem.scene.max_step)
     paths = [follow(problem, z, span, options=options, forward=forward) for forward in (True, False)]
-    for path in paths:
+    left = [_leaves_start(problem, path) for path in paths]
+    for path, first in zip(paths, left, strict=True):
         for k in np.flatnonzero(path.mark & (Mark.PEAK | Mark.FOLD | Mark.END)):
             mark = int(path.mark[k])
             if mark & Mark.END and path.parameter[k] not in problem.scene.frequency_range:
                 continue
+            if k < first and mark == Mark.PEAK:  # the start's own
+                continue
             here = recorded_point(problem, path.z[k], path.direction[k], mark)
             here = _with_stable_side(problem, path.z, path.direction, int(k), here)
             found.append((here, _peak_dofs(problem, path, int(k))))
-    return found + _peak_at_start(problem, *paths)
+    return found + _peak_at_start(problem, paths, left)
 
 
-def _peak_at_start(problem: OrbitProblem, ahead: Path, behind: Path) -> list[tuple[OrbitRecord, PeakDofs]]:
-    """The common start of two paths if it is a peak, which is then within no step of either."""
-    if min(len(ahead.z), len(behind.z)) < 2:
+def _leaves_start(problem: OrbitProblem, path: Path) -> int:
+    """The first point of a path that is another motion than its start: a peak there may be a point again."""
+    if not len(path.z):
+        return 0
+    tolerance, start = problem.options.peaks.peak_tolerance, _amplitudes(problem, path, 0)
+    for k in range(1, len(path.z)):
+        moved = np.abs(_amplitudes(problem, path, k) - start).max() > tolerance * start.max()
+        if moved or abs(path.parameter[k] - path.parameter[0]) > tolerance * path.parameter[0]:
+            return k
+    return len(path.z)
+
+
+def _peak_at_start(
+    problem: OrbitProblem, paths: Sequence[Path], left: Sequence[int]
+) -> list[tuple[OrbitRecord, PeakDofs]]:
+    """The common start of two paths if it is a peak, which is then within no step of either.
+
+    left : the first points of the paths that are other motions.
+    """
+    if any(k >= len(path.z) for path, k in zip(paths, left, strict=True)):
         return []
+    ahead = paths[0]
     here = _amplitudes(problem, ahead, 0)
     level = np.abs(np.asarray(problem.growth)) <= problem.options.peaks.min_growth * here
-    highest = level & _peak_dofs(problem, ahead, 0) & (here >= _amplitudes(problem, behind, 1))
+    if any((path.mark[:k] & Mark.PEAK).any() for path, k in zip(paths, left, strict=True)):
+        level[:] = True
+    highest = level & (here > 0.0)
+    for path, k in zip(paths, left, strict=True):
+        highest &= here >= _amplitudes(problem, path, k)
     if not highest.any():
         return []
     return [(recorded_point(problem, ahead.z[0], ahead.direction[0], Mark.PEAK), highest)]

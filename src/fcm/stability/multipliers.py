@@ -3,7 +3,7 @@ r"""Floquet multipliers of a balanced solution, and what they say of its stabili
 The growth over a period of a small disturbance, slow or fast, is an eigenvalue of the `Monodromy` of the
 motion. Its motion is the `EnrichedMotion` one; that of the harmonics balanced alone tells how sure the
 verdict is. Where it is in doubt, as of light impacts, whose multipliers change severalfold where amplitudes
-change by a hundredth, the further harmonics are balanced too (`Refined`).
+change by a hundredth, the further harmonics are balanced too (`Rebalancing`).
 Where no contact changes its state the motion is linear, and stable. That an extreme of its limit holds a
 slider is no matter then: with a little less residual friction the slider rests, in the same motion.
 Neither is quite a periodic solution of the structure, so that a real multiplier passes +1 beside the fold of
