@@ -66,7 +66,9 @@ def test_json_is_all_of_standard_output(fcm, scene):
 def test_a_number_that_does_not_exist_is_null(fcm, scene):
     untold = changed(peaks={"u": Peak(np.nan, np.nan), "v": Peak(np.nan, np.nan)})
     done = fcm("respond", scene, "--json", place=untold)
-    assert json.loads(done.out)["curves"][0]["peak"]["u"] == {
+    peak = json.loads(done.out)["curves"][0]["peak"]["u"]
+    assert peak.pop("greatest_stable")["amplitude"] > 0.0  # that of the points, as the peak may not be stable
+    assert peak == {
         "amplitude": None,
         "frequency": None,
         "error": None,

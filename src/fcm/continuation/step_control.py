@@ -29,7 +29,9 @@ def acceptable(stepper: Stepper) -> cython.bint:
         back: cython.bint = (
             stepper.problem.rooted and not keeps_orientation(stepper) and stepper.cosine < options.min_cosine
         )
-        return stepper.cosine > 0.0 and not back and within_turn(stepper)
+        # of labelled curves `LabelledSwitching` tells what a short step may miss
+        near: cython.bint = stepper.problem.labelled or within_turn(stepper)
+        return stepper.cosine > 0.0 and not back and near
     if not (
         keeps_orientation(stepper) and stepper.miss < options.max_miss and stepper.cosine > options.min_cosine
     ):

@@ -31,6 +31,7 @@ class Gist:
     truncation_error: float | None
     # (dof, 3): amplitude, frequency [rad/s] and error of the greatest motion that is stable; NaN without one
     stable_peaks: FloatArray
+    linear: str  # how the response is that of a linear structure; empty if it is not
 
     def at(self, shown: npt.NDArray[np.bool_]) -> Gist:
         """At some of the degrees of freedom."""
@@ -49,6 +50,7 @@ def gist_of(curve: Curve) -> Gist:
         table_error=worst(curve.table_error),
         truncation_error=worst(curve.truncation_error),
         stable_peaks=_stable_peaks(curve),
+        linear=_linear(curve),
     )
 
 
@@ -91,6 +93,16 @@ def _stable_peaks(curve: Curve) -> FloatArray:
         at = rows[curve.amplitude[rows].argmax(axis=0)]
         found[:] = np.transpose((curve.amplitude[at, d], curve.frequency[at], curve.error[at, d]))
     return found
+
+
+def _linear(curve: Curve) -> str:
+    """At all points of a curve: "all_stick", "all_open", or where each contact does one of these
+    "all_stick_or_open"."""
+    states = curve.regime[np.isfinite(curve.frequency)]
+    if not states.size or not np.isin(states, ("E", "S")).all() or (states != states[0]).any():
+        return ""
+    found = {str(one) for one in states[0]}
+    return {"E": "all_stick", "S": "all_open"}[found.pop()] if len(found) == 1 else "all_stick_or_open"
 
 
 def _unstable(curve: Curve) -> list[Stretch]:

@@ -47,8 +47,8 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
         out["levels_looked_at"] = list(curve.folds_between)
     if curve.mirrored:
         out["mirrored_branches"] = curve.mirrored
-    if curve.gist is None and (linear := _linear(curve)):
-        out[linear] = True
+    if gist.linear:
+        out[gist.linear] = True
     if curve.undetermined:
         out["may_not_be_unique"] = curve.undetermined
     out["peak"] = {
@@ -116,16 +116,6 @@ def _stable_peak(peak: Peak, stays: Sequence[float], unit: str) -> dict[str, Any
         return {}
     at = float(in_unit(frequency, unit))
     return {"greatest_stable": {"amplitude": amplitude, "frequency": at, "error": error}}
-
-
-def _linear(curve: Curve) -> str:
-    """How the response is that of a linear structure, at all points: "all_stick", "all_open", or where each
-    contact does one of these "all_stick_or_open"; empty if it is not."""
-    states = curve.regime[np.isfinite(curve.frequency)]
-    if not states.size or not np.isin(states, ("E", "S")).all() or (states != states[0]).any():
-        return ""
-    found = {str(one) for one in states[0]}
-    return {"E": "all_stick", "S": "all_open"}[found.pop()] if len(found) == 1 else "all_stick_or_open"
 
 
 def _contacts(found: Greatest, contacts: Sequence[str], unit: str) -> dict[str, Any]:
