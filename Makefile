@@ -21,7 +21,8 @@ KERNELS := $(shell sed -n 's/^.*sources = \["\([^"]*\)"\].*$$/\1/p' pyproject.to
 ALL        := src/fcm/on_demand.py src/fcm/room.py src/fcm/signals.py src/fcm/rotation.py src/fcm/units.py src/fcm/untold.py src/fcm/files.py src/fcm/at_rest.py
 CONTACT    := $(ALL) $(wildcard src/fcm/contact/*.py src/fcm/contact/*/*.py)
 SOLVER     := $(CONTACT) tables/default.nc \
-	$(wildcard $(foreach part,model scene table structure continuation harmonic_balance sensitivity nonlinear_modes mesh stability accuracy branches results reduction run response,src/fcm/$(part)/*.py))
+	$(wildcard $(foreach part,model scene table structure continuation harmonic_balance sensitivity nonlinear_modes mesh stability accuracy branches results reduction run response,src/fcm/$(part)/*.py)) \
+	$(foreach part,shooting tracking,src/fcm/$(part)/__init__.py src/fcm/$(part)/options.py)
 SIMULATION := $(SOLVER) $(wildcard src/fcm/time_domain/*.py src/fcm/shooting/*.py)
 DRAWING    := $(ALL) src/fcm/plot/style.py src/fcm/plot/options.py src/fcm/plot/read.py src/fcm/plot/measured.py src/fcm/plot/labels.py src/fcm/plot/dof.py src/fcm/plot/reader_process.py src/fcm/plot/layout.py src/fcm/cli/drawing.py
 LOOPS      := $(CONTACT) $(DRAWING) $(wildcard src/fcm/plot/loop*.py src/fcm/cli/loop*.py) src/fcm/plot/plane.py

@@ -20,7 +20,7 @@ from fcm.response.mode import trace_modes
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.shooting.orbit_record import recorded
-from fcm.shooting.periodic import periodic
+from fcm.shooting.periodic_orbit import periodic
 from fcm.shooting.problem import OrbitProblem
 from fcm.time_domain import SimulationError
 

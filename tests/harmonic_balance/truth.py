@@ -50,7 +50,7 @@ def state(system, z):
 
 def exact(system, z):
     """Amplitudes of the exact motion beside one of a balance of many harmonics; None if none is found."""
-    from fcm.shooting.periodic import periodic
+    from fcm.shooting.periodic_orbit import periodic
 
     try:
         return periodic(system.scene, float(z[-1]), state(system, z)).measure.amplitude

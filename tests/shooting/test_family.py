@@ -15,7 +15,7 @@ from fcm.response.resumable_branches import TimeOver
 from fcm.shooting import periodic
 from fcm.shooting import traction_families as family_of
 from fcm.shooting.initial_orbits import near_balance
-from fcm.shooting.periodic import converged
+from fcm.shooting.periodic_orbit import converged
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import resting_at
 from fcm.shooting.traction_families import family, member_at_start

@@ -9,7 +9,7 @@ import pytest
 
 from fcm.model.scene import Held
 from fcm.shooting import Shooting, periodic
-from fcm.shooting.periodic import converged
+from fcm.shooting.periodic_orbit import converged
 from fcm.time_domain import simulate
 
 from ..harmonic_balance.strips import strip

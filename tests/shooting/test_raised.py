@@ -17,7 +17,7 @@ from fcm.shooting import OrbitProblem
 from fcm.shooting.force_level import LevelMotions, level_motions, level_motions_at
 from fcm.shooting.force_level_problem import LevelProblem
 from fcm.shooting.options import SHOOTING
-from fcm.shooting.periodic import never_interrupt
+from fcm.shooting.periodic_orbit import never_interrupt
 from fcm.shooting.residual import Shooting
 from fcm.shooting.work_budget import BranchBudget
 from fcm.time_domain import State, simulate

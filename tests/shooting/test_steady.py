@@ -11,7 +11,7 @@ import pytest
 import fcm
 from fcm.response.exact import trace_exact
 from fcm.shooting import Shooting, periodic
-from fcm.shooting.periodic import converged
+from fcm.shooting.periodic_orbit import converged
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import resting_at
 from fcm.shooting.steady_state import SteadyMotion, steady

@@ -189,6 +189,8 @@ class EventOptions(Options):
         Part of the greatest unknown: points closer than this are one.
     far_tolerance : float
         The same, beyond which the curve has been elsewhere before it came to a corner again.
+    around_cosine : float
+        Cosine of the directions at a corner, beyond which the curve comes to it as it did before.
     closing_cosine : float
         Cosine beyond which a curve closes, and does not cross itself.
     landing_tolerance : float
@@ -208,6 +210,7 @@ class EventOptions(Options):
     many_outputs: cython.int = 24
     point_tolerance: cython.double = 1e-6
     far_tolerance: cython.double = 1e-4
+    around_cosine: cython.double = 0.9999
     closing_cosine: cython.double = 0.5
     landing_tolerance: cython.double = 0.25
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import cython
 import numpy as np
+from cython.cimports.libc.math import sqrt
 
 from fcm.continuation import events
 from fcm.continuation.checkpoint import Checkpoint
@@ -145,10 +146,14 @@ class Recorder:
                 elsewhere = not store.same(i, last, self.far)
             elif store.mark[i] & CORNER and store.same(i, last, self.same):
                 along: cython.double = 0.0
+                one: cython.double = 0.0
+                other: cython.double = 0.0
                 for j in range(self.n + 1):
                     along += store.direction[i, j] * store.direction[last, j]
-                if along > 0.0:
-                    return True
+                    one += store.direction[i, j] * store.direction[i, j]
+                    other += store.direction[last, j] * store.direction[last, j]
+                if along > self.stepper.options.events.around_cosine * sqrt(one * other):
+                    return True  # and does not cross itself there
         return False
 
     @cython.cfunc

@@ -20,7 +20,7 @@ from fcm.reduction.options import REDUCTION
 from fcm.reduction.sentences import named
 from fcm.results.result import Curve
 from fcm.shooting.harmonic_balance_branches import every_balance
-from fcm.shooting.periodic import never_interrupt
+from fcm.shooting.periodic_orbit import never_interrupt
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import resting
 from fcm.time_domain.equations import has_friction

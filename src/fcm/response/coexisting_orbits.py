@@ -22,7 +22,7 @@ from fcm.shooting.initial_orbits import first_point
 from fcm.shooting.linear_orbits import started_states
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.orbit_record import OrbitRecord, recorded_point, recorded_steady
-from fcm.shooting.periodic import Orbit, Poll, shoot, unloaded
+from fcm.shooting.periodic_orbit import Orbit, Poll, shoot, unloaded
 from fcm.shooting.problem import OrbitProblem
 from fcm.shooting.steady_state import SteadyMotion, steady
 from fcm.shooting.trace import with_unit

@@ -10,7 +10,7 @@ from fcm.model.scene import FloatArray
 from fcm.response.resumable_branches import TimeOver
 from fcm.results.orbits import Stuck
 from fcm.run import Report
-from fcm.shooting.periodic import Poll, never_interrupt
+from fcm.shooting.periodic_orbit import Poll, never_interrupt
 
 
 @dataclass(frozen=True)

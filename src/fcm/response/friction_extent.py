@@ -15,7 +15,7 @@ from fcm.response.resumable_branches import TimeOver
 from fcm.results.orbits import Stuck
 from fcm.shooting.orbit_record import OrbitRecord
 from fcm.shooting.partly_sticking_orbits import partly_stuck_motions
-from fcm.shooting.periodic import Poll
+from fcm.shooting.periodic_orbit import Poll
 from fcm.shooting.traction_families import Family, family
 from fcm.time_domain.equations import has_friction
 from fcm.time_domain.errors import SimulationError

@@ -28,7 +28,7 @@ from fcm.shooting.initial_orbits import near_balance
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.orbit_record import OrbitRecord
 from fcm.shooting.peaks_and_folds import Guess, located
-from fcm.shooting.periodic import Poll
+from fcm.shooting.periodic_orbit import Poll
 from fcm.shooting.problem import OrbitProblem
 from fcm.shooting.work_budget import UncertainFrequencies
 from fcm.time_domain.errors import SimulationError

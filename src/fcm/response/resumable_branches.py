@@ -17,7 +17,7 @@ from fcm.response.options import RESUMABLE
 from fcm.run import Report
 from fcm.shooting.orbit_record import recorded
 from fcm.shooting.period_doubling import DoubledPeriodProblem
-from fcm.shooting.periodic import never_interrupt
+from fcm.shooting.periodic_orbit import never_interrupt
 from fcm.shooting.problem import OrbitProblem
 
 

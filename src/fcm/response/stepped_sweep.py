@@ -23,7 +23,7 @@ from fcm.run import Report
 from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.initial_orbits import first_point, solution_at
 from fcm.shooting.orbit_record import OrbitRecord, recorded_point, recorded_steady
-from fcm.shooting.periodic import Poll, never_interrupt, shoot
+from fcm.shooting.periodic_orbit import Poll, never_interrupt, shoot
 from fcm.shooting.problem import OrbitProblem
 from fcm.shooting.steady_state import SteadyMotion, steady
 from fcm.shooting.trace import with_unit

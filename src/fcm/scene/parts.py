@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from functools import partial
 from math import nan
 from typing import Any
@@ -94,11 +94,17 @@ def unread_tables(top: Section, parts: Mapping[str, Any]) -> tuple[str, ...]:
         drafts = parts[table]
         named = {draft[name] for draft in drafts for name in ("name", "group") if name in draft}
         if not isinstance(written, list | tuple) or not all(
-            isinstance(one, Mapping) and (isinstance(one.get(key), Mapping) or one.get(key) in named)
+            isinstance(one, Mapping)
+            and (isinstance(one.get(key), Mapping) or _is_one_of(one.get(key), named))
             for one in written
         ):
             hidden.append(table)
     return tuple(hidden)
+
+
+def _is_one_of(given: object, named: Set[str]) -> bool:
+    """Whether what is given, which may be anything, is one of some names."""
+    return isinstance(given, str) and given in named
 
 
 def contact_of(draft: dict[str, Any]) -> Contact:

@@ -1,10 +1,18 @@
-"""Periodic motions: shooting, Floquet's multipliers, curves of them, motions of several periods."""
+"""Periodic motions: shooting, Floquet's multipliers, curves of them, motions of several periods.
 
-from fcm.shooting.harmonic_balance_state import harmonic_state
-from fcm.shooting.periodic import Orbit, periodic
-from fcm.shooting.problem import OrbitProblem
-from fcm.shooting.residual import Shooting
-from fcm.shooting.trace import Branch, trace_orbits
+The names below are imported when first used: its options are those of every response.
+"""
+
+from typing import TYPE_CHECKING
+
+from fcm.on_demand import on_demand
+
+if TYPE_CHECKING:
+    from fcm.shooting.harmonic_balance_state import harmonic_state
+    from fcm.shooting.periodic_orbit import Orbit, periodic
+    from fcm.shooting.problem import OrbitProblem
+    from fcm.shooting.residual import Shooting
+    from fcm.shooting.trace import Branch, trace_orbits
 
 __all__ = [
     "Branch",
@@ -15,3 +23,15 @@ __all__ = [
     "periodic",
     "trace_orbits",
 ]
+
+_HOME = {
+    "Branch": "trace",
+    "Orbit": "periodic_orbit",
+    "OrbitProblem": "problem",
+    "Shooting": "residual",
+    "harmonic_state": "harmonic_balance_state",
+    "periodic": "periodic_orbit",
+    "trace_orbits": "trace",
+}
+
+__getattr__ = on_demand(__name__, _HOME)

@@ -23,7 +23,7 @@ from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.force_level_problem import LevelProblem, ProblemAtLevel
 from fcm.shooting.linear_orbits import about_rest
 from fcm.shooting.options import SHOOTING, ShootingOptions
-from fcm.shooting.periodic import Poll, within_unit_circle
+from fcm.shooting.periodic_orbit import Poll, within_unit_circle
 from fcm.shooting.work_budget import BranchBudget
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.harmonic_balance_state import computed_state
 from fcm.shooting.options import SHOOTING, ShootingOptions
-from fcm.shooting.periodic import Poll
+from fcm.shooting.periodic_orbit import Poll
 from fcm.shooting.problem import OrbitProblem
 from fcm.time_domain.state import State
 

@@ -18,7 +18,7 @@ from fcm.shooting.harmonic_balance_state import balanced_states, computed_state
 from fcm.shooting.linear_orbits import started_states
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.partly_sticking_orbits import partly_stuck_as_started
-from fcm.shooting.periodic import Orbit, Poll, approached, never_interrupt, shoot
+from fcm.shooting.periodic_orbit import Orbit, Poll, approached, never_interrupt, shoot
 from fcm.shooting.problem import OrbitProblem
 from fcm.shooting.traction_families import member_at_start
 from fcm.shooting.undetermined import start_reason, undetermined_reason

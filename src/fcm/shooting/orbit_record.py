@@ -11,7 +11,7 @@ import numpy.typing as npt
 from fcm.continuation import Mark, Path
 from fcm.model.scene import FloatArray
 from fcm.shooting.options import SHOOTING, ShootingOptions
-from fcm.shooting.periodic import within_unit_circle
+from fcm.shooting.periodic_orbit import within_unit_circle
 from fcm.shooting.problem import OrbitProblem
 from fcm.shooting.residual import Shot
 from fcm.shooting.stability_changes import crossing

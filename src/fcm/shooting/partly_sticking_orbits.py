@@ -16,7 +16,15 @@ import numpy as np
 from fcm.model.scene import FloatArray, Held, Scene
 from fcm.shooting.linear_orbits import linear_answer, sticking
 from fcm.shooting.options import SHOOTING, ShootingOptions
-from fcm.shooting.periodic import Orbit, Poll, closed, converged, never_interrupt, shoot, within_unit_circle
+from fcm.shooting.periodic_orbit import (
+    Orbit,
+    Poll,
+    closed,
+    converged,
+    never_interrupt,
+    shoot,
+    within_unit_circle,
+)
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import always_stuck, resting, resting_at
 from fcm.shooting.traction_families import Family, family

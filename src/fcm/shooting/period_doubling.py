@@ -17,7 +17,7 @@ from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
 from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.orbit_record import OrbitRecord
-from fcm.shooting.periodic import Poll, converged, never_interrupt
+from fcm.shooting.periodic_orbit import Poll, converged, never_interrupt
 from fcm.shooting.problem import OrbitProblem
 from fcm.shooting.residual import Shot
 from fcm.shooting.steady_state import SteadyMotion, steady

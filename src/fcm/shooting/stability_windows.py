@@ -19,7 +19,7 @@ import numpy.typing as npt
 from fcm.continuation import Path, Segment
 from fcm.model.scene import FloatArray
 from fcm.shooting.options import ShootingOptions
-from fcm.shooting.periodic import within_unit_circle
+from fcm.shooting.periodic_orbit import within_unit_circle
 from fcm.shooting.problem import OrbitProblem
 from fcm.stability.bifurcation_functions import (
     MIN_LOGARITHM,

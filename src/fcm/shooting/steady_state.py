@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from fcm.model.scene import FloatArray
 from fcm.shooting.options import SHOOTING, ShootingOptions
-from fcm.shooting.periodic import Poll, converged, never_interrupt, within_unit_circle
+from fcm.shooting.periodic_orbit import Poll, converged, never_interrupt, within_unit_circle
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import resting_at
 from fcm.time_domain.contact_loads import borne

@@ -17,7 +17,7 @@ from fcm.shooting.harmonic_balance_branches import converged_balance, passes
 from fcm.shooting.initial_orbits import find_initial_orbits, first_point, height_of, orbits_along_balance
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.orbit_record import OrbitRecord, samples
-from fcm.shooting.periodic import Orbit, Poll, never_interrupt, periodic
+from fcm.shooting.periodic_orbit import Orbit, Poll, never_interrupt, periodic
 from fcm.shooting.problem import OrbitProblem
 from fcm.shooting.unstable_range_search import orbits_in_unstable_ranges
 from fcm.shooting.work_budget import BranchBudget, UncertainFrequencies

@@ -8,7 +8,7 @@ import numpy as np
 
 from fcm.model.scene import FloatArray
 from fcm.shooting.options import SHOOTING, ShootingOptions
-from fcm.shooting.periodic import Poll, converged, never_interrupt
+from fcm.shooting.periodic_orbit import Poll, converged, never_interrupt
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import always_stuck, limit_distances, resting_at
 from fcm.time_domain.errors import SimulationError

@@ -18,7 +18,7 @@ import numpy as np
 
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.options import SHOOTING, ShootingOptions
-from fcm.shooting.periodic import Poll, converged, never_interrupt, within_unit_circle
+from fcm.shooting.periodic_orbit import Poll, converged, never_interrupt, within_unit_circle
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import resting_at
 from fcm.shooting.traction_continuation import (

@@ -6,7 +6,7 @@ import numpy as np
 
 from fcm.model.scene import Scene
 from fcm.shooting.options import SHOOTING, ShootingOptions
-from fcm.shooting.periodic import Orbit
+from fcm.shooting.periodic_orbit import Orbit
 from fcm.shooting.residual import Shot
 from fcm.units import spoken
 

@@ -14,7 +14,7 @@ from fcm.continuation import Path
 from fcm.model.scene import FloatArray
 from fcm.shooting.initial_orbits import first_point
 from fcm.shooting.orbit_record import recorded
-from fcm.shooting.periodic import Poll, approached
+from fcm.shooting.periodic_orbit import Poll, approached
 from fcm.shooting.problem import OrbitProblem
 from fcm.stability.unstable_ranges import unstable_stretches
 from fcm.time_domain.errors import SimulationError

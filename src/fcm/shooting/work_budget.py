@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from fcm.shooting.options import SHOOTING, ShootingOptions
-from fcm.shooting.periodic import Poll
+from fcm.shooting.periodic_orbit import Poll
 
 if TYPE_CHECKING:
     from fcm.branches.trace import Traced
