@@ -94,7 +94,10 @@ def curve_with(stable, tail=()):
     kept = trace(fcm.load_scene("yang1998-n5"), "closed-form").curves[0]
     peaks = {"u": kept.peaks["u"]}
     told = np.concatenate((np.array(stable, dtype=float), more[:, 2]))
-    return replace(kept, frequency=frequency, amplitude=amplitude, stable=told, peaks=peaks, gist=None)
+    states = kept.regime[: frequency.size]  # of no matter
+    return replace(
+        kept, frequency=frequency, amplitude=amplitude, stable=told, regime=states, peaks=peaks, gist=None
+    )
 
 
 def test_a_first_jump_that_is_not_known_is_none_of_the_percentiles(scatter_of):
