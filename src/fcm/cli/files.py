@@ -13,6 +13,7 @@ import click
 
 from fcm.cli.options import FiniteRange
 from fcm.files import NOT_THERE, no_file, partial_of, real, same_file
+from fcm.signals import undisturbed
 
 
 def output_option(*names: str, endings: tuple[str, ...], **attributes: Any) -> Callable[..., Any]:
@@ -63,7 +64,8 @@ def alone(outputs: Iterable[Path | None]) -> Iterator[None]:
 
     with ExitStack() as held:
         for path in filter(None, outputs):
-            held.enter_context(Checkpoint(unfinished(path), resume=True))
+            with undisturbed():
+                held.enter_context(Checkpoint(unfinished(path), resume=True))
         yield
 
 

@@ -52,7 +52,8 @@ class Outputs:
         from fcm.run.checkpoint import unfinished
 
         with ExitStack() as held:
-            self.checkpoint = held.enter_context(Checkpoint(unfinished(anchor), resume))
+            with signals.undisturbed():  # a file that is made is one that is removed
+                self.checkpoint = held.enter_context(Checkpoint(unfinished(anchor), resume))
             held.enter_context(alone(files[1:]))
             if resume and not self.checkpoint.resumable:
                 self.messages.info(f"{plain(anchor)}: nothing of an unfinished run is kept: begun afresh")
