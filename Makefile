@@ -179,7 +179,8 @@ bench-others: $(VENV)/installed  ## beside pyHarm-os and tmdsimpy, in environmen
 	@for one in pyharm tmdsimpy; do $(MAKE) --no-print-directory $(OTHERS)/$$one.json || \
 		echo "bench-others: $$one is left out: its environment could not be made, or it failed; see above" >&2; done
 	$(BIN)/python -m tests.report others $(OTHERS)
-	@test ! -f $(OTHERS)/pyharm/installed || $(OTHERS)/pyharm/bin/python tests/benchmarks/others/with_pyharm_in_a_plane.py
+	@test ! -f $(OTHERS)/pyharm/installed || (cd $(OTHERS)/pyharm && \
+		bin/python $(CURDIR)/tests/benchmarks/others/with_pyharm_in_a_plane.py)
 
 $(OTHERS)/pyharm.json: $(OTHERS)/pyharm/installed $(OTHERS)/problems.json $(wildcard tests/benchmarks/others/*.py)
 	cd $(@D)/pyharm && bin/python $(CURDIR)/tests/benchmarks/others/with_pyharm.py \

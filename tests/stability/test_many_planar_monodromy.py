@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import fcm
 from fcm.branches.force_level import solutions
 from fcm.harmonic_balance.system import System
 from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy
@@ -135,3 +136,13 @@ def test_a_march_comes_to_rest_in_what_is_stable_and_doubles_its_period_in_what_
     assert verdict.stable == stable
     assert (once < 1e-4) == stable and twice < 1e-2
     assert stable or verdict.kind is Bifurcation.PERIOD_DOUBLING
+
+
+def test_one_harmonic_too_few_does_not_call_stable_what_doubles_its_period():
+    """The same structure: the march above doubles its period at 0.92, where one harmonic errs by a tenth."""
+    found = fcm.respond(planar_strip(frequency=(0.9, 0.96)), harmonics=1)
+    frequency, stable, error = (np.ravel(found[name]) for name in ("frequency", "stable", "truncation_error"))
+    near = (frequency > 0.907) & (frequency < 0.935)
+    assert near.any() and np.all(error[near] > 0.05)
+    assert not np.any(stable[near] == 1.0)
+    assert stable[frequency > 0.95].all()

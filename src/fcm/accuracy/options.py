@@ -246,7 +246,7 @@ class ValidityOptions:
         Part of the greatest displacement: a change by more is not believed, as another branch may be there.
     """
 
-    max_error: float = 0.2
+    max_error: float = 0.05
     max_fold_error: float = 1e-2
     max_unknown_points: int = 64
     max_change: float = 0.5
