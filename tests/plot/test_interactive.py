@@ -152,10 +152,10 @@ def test_contacts_have_a_page_with_all_that_one_bears_under_the_mouse(browser, j
     hover = """const plot = document.querySelector('.plotly-graph-div');
         Plotly.Fx.hover(plot, [{curveNumber: arguments[0], pointNumber: 4}]);
         return document.querySelector('.hoverlayer').textContent;"""
-    _, k, names, borne = greatest(joint)
+    _, k, names, contact_loads = greatest(joint)
     found = run(hover, 0)
     assert found.startswith(f"{names[4]}: ")
-    for value in borne[:, k, 4]:
+    for value in contact_loads[:, k, 4]:
         assert f": {value:.6g}" in found, (found, value)
     last = run(
         """const plot = document.querySelector('.plotly-graph-div');
@@ -165,7 +165,7 @@ def test_contacts_have_a_page_with_all_that_one_bears_under_the_mouse(browser, j
             () => JSON.stringify([plot.data.map(one => one.visible), plot.data[0].marker.color]));"""
     )
     visible, colours = json.loads(last)
-    assert visible == [False, True] and colours == pytest.approx(borne[2, k].tolist())
+    assert visible == [False, True] and colours == pytest.approx(contact_loads[2, k].tolist())
 
 
 def greatest(path):
@@ -174,5 +174,5 @@ def greatest(path):
         amplitude = np.ma.filled(data["amplitude"][0], np.nan)
         k = int(np.nanargmax(np.nanmax(amplitude, axis=1)))
         kinds = ("dissipated_energy", "slip_path", "greatest_normal_force")
-        borne = np.array([np.ma.filled(data[name][0], np.nan) for name in kinds])
-        return float(data["frequency"][0, k]), k, list(data["contact"][:]), borne
+        contact_loads = np.array([np.ma.filled(data[name][0], np.nan) for name in kinds])
+        return float(data["frequency"][0, k]), k, list(data["contact"][:]), contact_loads

@@ -52,7 +52,7 @@ def test_states_are_those_of_the_loops(file):
     amplitude = dataset.amplitude.values[0]
     k = int(np.nanargmax(np.nanmax(np.nan_to_num(amplitude, nan=-1.0), axis=1)))
     assert top.frequency == dataset.frequency.values[0, k]
-    assert np.array_equal(top.borne[0], dataset.dissipated_energy.values[0, k])
+    assert np.array_equal(top.contact_loads[0], dataset.dissipated_energy.values[0, k])
 
 
 def test_each_state_is_what_the_letters_of_the_loop_say(file):
@@ -80,7 +80,7 @@ def test_the_contacts_that_take_most_are_listed_first(file):
     rows = greatest_takers(read, top, 5)
     energy = [float(row[2]) for row in rows]
     assert energy == sorted(energy, reverse=True)
-    assert energy[0] == pytest.approx(np.nanmax(top.borne[0]), rel=1e-3)
+    assert energy[0] == pytest.approx(np.nanmax(top.contact_loads[0]), rel=1e-3)
     assert sum(float(row[3].split()[0]) for row in greatest_takers(read, top, 12)) == pytest.approx(
         100, abs=1
     )
@@ -152,7 +152,7 @@ def test_curves_of_a_sweep_are_columns_each_at_its_own_peak(tmp_path, fcm):
         for k, top in zip((0, 2), tops, strict=True):
             at.append(data["frequency"][k][np.any(data["amplitude"][k] == top, axis=1)])
     assert [one.frequency for one in points] == [float(one[0]) for one in at]
-    assert points[0].borne[0].sum() == 0.0 < points[1].borne[0].sum()  # the first sticks
+    assert points[0].contact_loads[0].sum() == 0.0 < points[1].contact_loads[0].sum()  # the first sticks
     figure = draw_interface(read, points)
     heads = [axes.get_title() for axes in figure.axes[:2]]
     assert "0.01" in heads[0] and "20" in heads[1]

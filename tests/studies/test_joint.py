@@ -108,13 +108,13 @@ def test_the_error_of_many_unknowns_is_told_at_a_few_points_as_more_harmonics_ch
     mode, finer = (
         nonlinear_mode(System(scene, harmonics), 7, (3e-6, 2e-5), 0.1) for harmonics in ((1,), (1, 2, 3))
     )
-    error, borne = truncation(
+    error, contact_loads = truncation(
         mode,
         NonlinearModeOptions(truncation=TruncationOptions(many_unknowns=1, min_points=3, time_fraction=0.0)),
     )
     told = np.flatnonzero(np.isfinite(error))
     assert told.size == 3 < mode.omega.size and told[-1] == mode.omega.size - 1
-    assert np.array_equal(np.isfinite(borne).all(axis=(1, 2)), np.isfinite(error))
+    assert np.array_equal(np.isfinite(contact_loads).all(axis=(1, 2)), np.isfinite(error))
     at = np.log(mode.amplitude[told])
     omega, damping = (np.interp(at, np.log(finer.amplitude), one) for one in (finer.omega, finer.damping))
     off = np.abs(damping - mode.damping[told]) / mode.damping.max()

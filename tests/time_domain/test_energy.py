@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from fcm.time_domain import energy, simulate
-from fcm.time_domain.contact_loads import borne
+from fcm.time_domain.contact_loads import contact_loads
 
 from .cases import one_mode, two_contacts, yang
 
@@ -30,6 +30,6 @@ def test_energy_balances_at_any_stiffness(stiffness, changes):
 
 def test_what_slip_takes_of_contacts_is_that_of_the_balance_and_is_not_added_up():
     motion = simulate(two_contacts(), 1.1, 3)
-    once, again = borne(motion.cycles), borne(motion.cycles)
+    once, again = contact_loads(motion.cycles), contact_loads(motion.cycles)
     assert once[:, 3].sum() * 3.0 == pytest.approx(energy(motion).slip, rel=1e-12)
     assert (once == again).all() and once[:, 3].sum() > 0.0

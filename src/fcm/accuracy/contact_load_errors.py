@@ -12,7 +12,7 @@ from fcm.accuracy.partner_curve import ComparedQuantities, FollowedStretch, Part
 from fcm.model.scene import FloatArray
 
 
-def of_borne(
+def contact_load_errors(
     partner: PartnerCurve,
     compared: ComparedQuantities,
     shift: FloatArray,
@@ -77,7 +77,7 @@ def _greatest(
     greatest: FloatArray = np.fmax.reduce(expected, axis=0, initial=-np.inf)
     for one in followed:
         for piece in one.pieces:
-            greatest = np.fmax(greatest, partner.borne_of(piece).max(axis=0))
+            greatest = np.fmax(greatest, partner.contact_loads_of(piece).max(axis=0))
     for one in followed:
         if not any(piece.whole for piece in one.pieces):
             rival = own[one.first : one.end].max(axis=0) > partner.options.rival_fraction * own.max(axis=0)

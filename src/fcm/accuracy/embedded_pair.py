@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.budget import Budget
-from fcm.accuracy.contact_load_errors import of_borne, relative
+from fcm.accuracy.contact_load_errors import contact_load_errors, relative
 from fcm.accuracy.crossings import with_crossings
 from fcm.accuracy.elsewhere import affordable_partner, partner_elsewhere
 from fcm.accuracy.options import PAIR, PairOptions
@@ -52,10 +52,10 @@ class Errors:
     have without feedback, at peaks and folds, of the greatest amplitude of the degree of freedom to which it
     matters most.
     partner: the harmonics with which it is followed elsewhere.
-    borne (point, contact, 4): of what the contacts bear, see `response_quantities.cycles`, each relative
-    to itself; infinite where it is nothing, and something in the partner. greatest (contact, 4): of the
-    greatest of each along the path. contacts: what those of the path itself do and bear. pieces: what is
-    known of the partner's curve.
+    contact_loads (point, contact, 4): of what the contacts bear, see `response_quantities.cycles`, each
+    relative to itself; infinite where it is nothing, and something in the partner. greatest (contact, 4): of
+    the greatest of each along the path. contacts: what those of the path itself do and bear. pieces: what
+    is known of the partner's curve.
     """
 
     amplitude: FloatArray
@@ -66,7 +66,7 @@ class Errors:
     fold: FloatArray
     share: FloatArray
     partner: tuple[int, ...]
-    borne: FloatArray
+    contact_loads: FloatArray
     greatest: FloatArray
     contacts: ContactRecord
     pieces: tuple[CurvePiece, ...] = field(default=(), repr=False)
@@ -99,14 +99,16 @@ def errors_along(
     if shown.linear.all() or nothing or more == system.harmonics:
         none = np.full_like(shown.amplitude, 0.0 if shown.linear.all() or nothing else np.nan)
         of_folds = np.full(len(folds), none[0, 0])
-        borne = np.full((len(path.z), len(system.scene.contacts), 4), none[0, 0])
+        contact_loads = np.full((len(path.z), len(system.scene.contacts), 4), none[0, 0])
         known: Mask = np.isfinite(none[:, 0])  # then the partner's curve is this one
-        own = (piece_of(path, shown, _flat(contacts.borne)),) if known.all() and len(path.z) > 1 else ()
+        own = (
+            (piece_of(path, shown, _flat(contacts.contact_loads)),) if known.all() and len(path.z) > 1 else ()
+        )
         more = system.harmonics
-        told = none, none[:, 0], known, none[0], size, of_folds, share, more, borne, borne[0]
+        told = none, none[:, 0], known, none[0], size, of_folds, share, more, contact_loads, contact_loads[0]
         return Errors(*told, contacts, own)
     seconds = budget or Budget(options.max_seconds)
-    partner = PartnerCurve(system, path, shown, _flat(contacts.borne), more, options, seconds)
+    partner = PartnerCurve(system, path, shown, _flat(contacts.contact_loads), more, options, seconds)
     elsewhere = more
     if not partner.is_same_curve():
         elsewhere = affordable_partner(system, path, share, options)
@@ -116,7 +118,7 @@ def errors_along(
     followed = partner.follow_stretches(change)
     compared, dofs = partner.compared_quantities(change), shown.amplitude.shape[1]
     shift = partner.shifts(compared, followed)
-    borne, greatest = of_borne(partner, compared, shift, followed, folds)
+    contact_loads, greatest = contact_load_errors(partner, compared, shift, followed, folds)
     shift = shift[:, :dofs]
     error = with_crossings(partner, shift, _of_points(partner, shift, change))
     error[folds] = np.nan  # the partner has two amplitudes at that frequency, or none
@@ -154,7 +156,7 @@ def errors_along(
         fold=of_folds,
         share=share,
         partner=elsewhere,
-        borne=borne,
+        contact_loads=contact_loads,
         greatest=greatest,
         contacts=contacts,
         pieces=partner.pieces(compared, followed),
@@ -187,22 +189,24 @@ def with_nearest(
         rows = np.flatnonzero(~every[k].is_same_curve)
         if not rows.size or not pieces:
             continue
-        now, error, borne = amplitude[rows], every[k].amplitude.copy(), every[k].borne.copy()
+        now, error, contact_loads = amplitude[rows], every[k].amplitude.copy(), every[k].contact_loads.copy()
         even = path.orientation[rows] * np.sign(path.direction[rows, -1])
         there = nearest(pieces, path.parameter[rows], even, now)
         off = np.abs(there[:, :dofs] - now)
         error[rows] = np.maximum(off / np.where(now > 0.0, now, 1.0), _truncation_of(off, now)[:, None])
-        bear = _flat(every[k].contacts.borne)
+        bear = _flat(every[k].contacts.contact_loads)
         change = there[:, dofs:] - bear[rows]
-        borne[rows] = relative(change, bear[rows], bear.max(axis=0), options).reshape(len(rows), -1, 4)
+        contact_loads[rows] = relative(change, bear[rows], bear.max(axis=0), options).reshape(
+            len(rows), -1, 4
+        )
         truncation = _truncation(error, amplitude)
-        every[k] = replace(every[k], amplitude=error, truncation=truncation, borne=borne)
+        every[k] = replace(every[k], amplitude=error, truncation=truncation, contact_loads=contact_loads)
     return tuple(every)
 
 
-def _flat(borne: FloatArray) -> FloatArray:
+def _flat(contact_loads: FloatArray) -> FloatArray:
     """What contacts bear (point, contact, 4) as columns (point, 4 contact)."""
-    return borne.reshape(len(borne), -1)
+    return contact_loads.reshape(len(contact_loads), -1)
 
 
 def _truncation(error: FloatArray, amplitude: FloatArray) -> FloatArray:

@@ -15,7 +15,7 @@ from fcm.accuracy.options import PAIR, VALIDITY, PairOptions
 from fcm.accuracy.partner import partner_of
 from fcm.continuation import Path
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
-from fcm.harmonic_balance.response_quantities import borne_along, recorded_at_levels
+from fcm.harmonic_balance.response_quantities import contact_loads_along, recorded_at_levels
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.floquet import multipliers_of
@@ -43,32 +43,38 @@ def errors_at_levels(
     z: FloatArray,
     level: FloatArray,
     amplitude: FloatArray,
-    borne: FloatArray,
+    contact_loads: FloatArray,
     even: npt.NDArray[np.bool_],
     options: PairOptions = PAIR,
 ) -> tuple[FloatArray, FloatArray]:
     """By how much the partner's amplitudes differ from amplitude (point, dof), and what its contacts bear
-    from borne (point, contact, 4), at the same levels, relative.
+    from contact_loads (point, contact, 4), at the same levels, relative.
 
     NaN where that is not found, as beside folds, where the curve with them has no such solution.
     """
-    further, error, of_borne = FurtherHarmonics(system), np.zeros_like(amplitude), np.zeros_like(borne)
+    further, error, contact_load_errors = (
+        FurtherHarmonics(system),
+        np.zeros_like(amplitude),
+        np.zeros_like(contact_loads),
+    )
     bent = np.flatnonzero(~further.linear(z))
     if not bent.size:
-        return error, of_borne
+        return error, contact_load_errors
     share = further.shares(z[bent], amplitude[bent]).max(axis=0)
     more = partner_of(system.harmonics, share, system.layout.ports, options)
     if more == system.harmonics:
-        error[bent], of_borne[bent] = np.nan, np.nan
-        return error, of_borne
+        error[bent], contact_load_errors[bent] = np.nan, np.nan
+        return error, contact_load_errors
     there, theirs = _balanced(system, system.with_harmonics(more), z[bent], level[bent], even[bent])
     now, size = amplitude[bent], amplitude[bent].max(axis=1, keepdims=True)
     change = np.abs(there - now)
     far = (change > VALIDITY.max_change * size).any(axis=1)
     change[far], theirs[far] = np.nan, np.nan
     error[bent] = change / np.where(now > 0.0, now, 1.0)
-    of_borne[bent] = relative(theirs - borne[bent], borne[bent], borne.max(axis=0), options)
-    return error, of_borne
+    contact_load_errors[bent] = relative(
+        theirs - contact_loads[bent], contact_loads[bent], contact_loads.max(axis=0), options
+    )
+    return error, contact_load_errors
 
 
 def _balanced(
@@ -94,6 +100,6 @@ def _balanced(
         found[i] = newton.z
         found[i, -1] = one[-1]
     amplitude = recorded_at_levels(finer, found, level)[2]
-    borne = borne_along(finer, found)
-    amplitude[~known], borne[~known] = np.nan, np.nan
-    return amplitude, borne
+    contact_loads = contact_loads_along(finer, found)
+    amplitude[~known], contact_loads[~known] = np.nan, np.nan
+    return amplitude, contact_loads

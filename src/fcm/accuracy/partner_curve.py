@@ -22,7 +22,7 @@ from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.normal_plane_prolongation import Prolongation
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
-from fcm.harmonic_balance.response_quantities import borne_along
+from fcm.harmonic_balance.response_quantities import contact_loads_along
 from fcm.harmonic_balance.runs import runs
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
@@ -85,7 +85,7 @@ class PartnerCurve:
     unit (point, dof) is what those of the amplitudes are relative to: the amplitude or, of a degree of
     freedom that hardly moves, a part of the greatest, as the others would be lost in its rounding.
     linear (point,): where no contact slips or separates, so that nothing is displaced.
-    borne (point, 4 contact): what the contacts bear.
+    contact_loads (point, 4 contact): what the contacts bear.
     """
 
     def __init__(
@@ -93,13 +93,13 @@ class PartnerCurve:
         system: System,
         path: Path,
         shown: ReportedQuantities,
-        borne: FloatArray,
+        contact_loads: FloatArray,
         more: tuple[int, ...],
         options: PairOptions,
         budget: Budget,
     ) -> None:
         self.path, self.shown, self.options, self.fewer = path, shown, options, system.harmonics
-        self.borne = borne
+        self.contact_loads = contact_loads
         self.amplitude, self.linear = shown.amplitude, _with_ends(path, shown.linear)
         least = system.options.spectrum.least_amplitude * self.amplitude.max(axis=1, keepdims=True)
         self.unit = np.maximum(self.amplitude, least)
@@ -349,21 +349,23 @@ class PartnerCurve:
     def compared_quantities(self, change: FloatArray) -> ComparedQuantities:
         """Amplitudes, with changes (point, 1 + dof) that are known everywhere, and what the contacts bear
         in units of the greatest along the curve; its changes are interpolated as those of amplitudes are."""
-        most = self.borne.max(axis=0)
-        unit = np.tile(np.where(most > 0.0, most, 1.0), (len(self.borne), 1))
-        found = np.zeros((len(change), 1 + self.borne.shape[1]))
+        most = self.contact_loads.max(axis=0)
+        unit = np.tile(np.where(most > 0.0, most, 1.0), (len(self.contact_loads), 1))
+        found = np.zeros((len(change), 1 + self.contact_loads.shape[1]))
         found[:, 0] = self.change[:, 0]
         there = self.known & ~self.linear & np.isfinite(self.change[:, 0])
-        theirs = borne_along(self.stretches.finer, self.theirs[there]).reshape(-1, self.borne.shape[1])
-        found[there, 1:] = (theirs - self.borne[there]) / unit[there]
+        theirs = contact_loads_along(self.stretches.finer, self.theirs[there]).reshape(
+            -1, self.contact_loads.shape[1]
+        )
+        found[there, 1:] = (theirs - self.contact_loads[there]) / unit[there]
         found[np.isnan(found[:, 0])] = np.nan
         every = np.empty_like(found)
         PartialInterpolant(self.place, found, self.known.view(np.uint8)).interpolate(
             np.arange(len(change)), every
         )
         return ComparedQuantities(
-            np.hstack((self.amplitude, self.borne)),
-            np.hstack((self.shown.growth, rates(self.borne, self.place))),
+            np.hstack((self.amplitude, self.contact_loads)),
+            np.hstack((self.shown.growth, rates(self.contact_loads, self.place))),
             np.hstack((self.unit, unit)),
             np.hstack((change, every[:, 1:])),
         )
@@ -434,9 +436,9 @@ class PartnerCurve:
     def _of_piece(self, piece: PartnerPiece) -> CurvePiece:
         return curve_piece(self.stretches.finer, piece)
 
-    def borne_of(self, piece: PartnerPiece) -> FloatArray:
+    def contact_loads_of(self, piece: PartnerPiece) -> FloatArray:
         """What the contacts bear along a piece (point, 4 contact)."""
-        return borne_along(self.stretches.finer, piece.path.z).reshape(len(piece.path.z), -1)
+        return contact_loads_along(self.stretches.finer, piece.path.z).reshape(len(piece.path.z), -1)
 
     def _numbers(self, one: FollowedStretch, rows: Indices) -> npt.NDArray[np.intc]:
         """Which passing of the partner (row,) belongs to points of a stretch with folds: the same in
@@ -461,8 +463,8 @@ class PartnerCurve:
 
 def curve_piece(finer: System, piece: PartnerPiece) -> CurvePiece:
     """A piece of the partner that was followed, with what the contacts bear."""
-    borne = borne_along(finer, piece.path.z).reshape(len(piece.path.z), -1)
-    return piece_of(piece.path, piece.shown, borne)
+    contact_loads = contact_loads_along(finer, piece.path.z).reshape(len(piece.path.z), -1)
+    return piece_of(piece.path, piece.shown, contact_loads)
 
 
 def _passes(parameter: FloatArray, omega: FloatArray) -> Mask:

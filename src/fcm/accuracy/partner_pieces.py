@@ -58,7 +58,7 @@ class CurvePiece:
         return found
 
 
-def piece_of(path: Path, shown: ReportedQuantities, borne: FloatArray) -> CurvePiece:
+def piece_of(path: Path, shown: ReportedQuantities, contact_loads: FloatArray) -> CurvePiece:
     """A path that has been followed, with what the contacts bear (point, 4 contact)."""
     parameter, rate = (np.ascontiguousarray(one[:, -1]) for one in (path.z, path.direction))
     place = lengths(path)
@@ -66,8 +66,8 @@ def piece_of(path: Path, shown: ReportedQuantities, borne: FloatArray) -> CurveP
         PartnerCurveData(place, parameter, rate),
         parameter,
         np.ascontiguousarray(path.orientation),
-        np.hstack((shown.amplitude, borne)),
-        np.hstack((shown.growth, rates(borne, place))),
+        np.hstack((shown.amplitude, contact_loads)),
+        np.hstack((shown.growth, rates(contact_loads, place))),
     )
 
 

@@ -17,7 +17,7 @@ cdef class Law:
     cdef public double[::1] angle
     cdef public int pieces
     cdef public int[::1] state
-    cdef public double[::1] borne
+    cdef public double[::1] contact_loads
     cpdef int evaluate(self, double[::1] x, Py_ssize_t first) except -1
     cpdef int probe(self, double[::1] x, Py_ssize_t first) except -1
     cpdef int bound(self, double[::1] x, Py_ssize_t first) except -1

@@ -41,7 +41,7 @@ class Law:
         By `compute_resistance`: derivatives of the forces by the displacements, in the mean over the cycle.
     pieces, state (piece,)
         By `cycle`: the states that follow one another, 0 stick, 1 slip, -1 slip the other way, 2 separation.
-    borne (4,)
+    contact_loads (4,)
         By `cycle`: greatest normal force, greatest friction force, way of the slip, and the energy that
         friction takes.
     """
@@ -61,7 +61,7 @@ class Law:
         self.force, self.tangent = np.zeros(width), np.zeros((width, width))
         self.margin, self.angle = np.ones(margins), np.zeros(margins)
         self.kind = np.arange(margins, dtype=np.intc)
-        self.resistance, self.borne = np.zeros((directions, directions)), np.zeros(4)
+        self.resistance, self.contact_loads = np.zeros((directions, directions)), np.zeros(4)
         self.pieces, self.state = 0, np.zeros(0, dtype=np.intc)
 
     def set_parameters(self, mu: float, k_u: float, k_v: float, n_0: float) -> None:

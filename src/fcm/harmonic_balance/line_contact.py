@@ -80,7 +80,10 @@ class LineLaw(KernelLaw):
         self.kernel.cycle.take(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0)
         self.pieces = self.kernel.cycle.pieces
         self.measures.bear(self.k_u)
-        self.borne[0] = max(self.measures.greatest_load, 0.0)
-        self.borne[1], self.borne[2] = self.measures.greatest_friction, self.measures.slip_path
-        self.borne[3] = self.measures.dissipation
+        self.contact_loads[0] = max(self.measures.greatest_load, 0.0)
+        self.contact_loads[1], self.contact_loads[2] = (
+            self.measures.greatest_friction,
+            self.measures.slip_path,
+        )
+        self.contact_loads[3] = self.measures.dissipation
         return 0

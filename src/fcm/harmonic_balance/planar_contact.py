@@ -87,6 +87,9 @@ class PlanarLaw(KernelLaw):
         self.forces(x, first, False)
         self.measures.bear(self.mu, self.k_u)
         self.pieces = self.measures.pieces
-        self.borne[0], self.borne[1] = self.measures.greatest_load, self.measures.greatest_friction
-        self.borne[2], self.borne[3] = self.measures.slip_path, self.measures.dissipation
+        self.contact_loads[0], self.contact_loads[1] = (
+            self.measures.greatest_load,
+            self.measures.greatest_friction,
+        )
+        self.contact_loads[2], self.contact_loads[3] = self.measures.slip_path, self.measures.dissipation
         return 0

@@ -440,11 +440,11 @@ def cycles_of(
     x: cython.double[:, ::1],
     first: cython.Py_ssize_t,
     state: cython.int[:, ::1],
-    borne: cython.double[:, ::1],
+    contact_loads: cython.double[:, ::1],
 ) -> None:
     """The cycles of a contact whose motions begin at x[:, first].
 
-    state (point, piece): beyond the last as before. borne (point, 4): see `Law`.
+    state (point, piece): beyond the last as before. contact_loads (point, 4): see `Law`.
     """
     i: cython.Py_ssize_t
     p: cython.int
@@ -453,4 +453,4 @@ def cycles_of(
         for p in range(law.pieces):
             state[i, p] = law.state[p]
         for p in range(4):
-            borne[i, p] = law.borne[p]
+            contact_loads[i, p] = law.contact_loads[p]

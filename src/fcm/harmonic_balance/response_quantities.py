@@ -49,7 +49,7 @@ class ContactRecord:
 
     loop: FloatArray
     words: npt.NDArray[np.str_]
-    borne: FloatArray
+    contact_loads: FloatArray
 
     @classmethod
     def at(cls, system: System, z: FloatArray) -> ContactRecord:
@@ -60,7 +60,9 @@ class ContactRecord:
     @classmethod
     def joined(cls, parts: Sequence[ContactRecord]) -> ContactRecord:
         """Of points one after the other."""
-        return cls(*(_joined([getattr(one, name) for one in parts]) for name in ("loop", "words", "borne")))
+        return cls(
+            *(_joined([getattr(one, name) for one in parts]) for name in ("loop", "words", "contact_loads"))
+        )
 
     def with_rows(self, after: IntArray, other: ContactRecord) -> ContactRecord:
         """With the points of another inserted after some points."""
@@ -68,7 +70,7 @@ class ContactRecord:
         return ContactRecord(
             np.insert(self.loop, at, other.loop, axis=0),
             np.insert(words, at, other.words, axis=0),
-            np.insert(self.borne, at, other.borne, axis=0),
+            np.insert(self.contact_loads, at, other.contact_loads, axis=0),
         )
 
 
@@ -161,8 +163,8 @@ def cycles(system: System, z: FloatArray, loop: FloatArray) -> tuple[npt.NDArray
     takes. loop: theirs, as of `loops`.
     """
     words, harmonics = [], system.harmonics
-    borne = np.zeros((len(system.scene.contacts), z.shape[0], 4))
-    for i, (c, state) in enumerate(_solved_contacts(system, z, borne)):
+    contact_loads = np.zeros((len(system.scene.contacts), z.shape[0], 4))
+    for i, (c, state) in enumerate(_solved_contacts(system, z, contact_loads)):
         if c.law is not None:
             words.append(np.full(z.shape[0], "", dtype="<U1"))
         elif c.mu * c.k_u == 0.0:
@@ -172,21 +174,21 @@ def cycles(system: System, z: FloatArray, loop: FloatArray) -> tuple[npt.NDArray
         else:
             words.append(sequences(*loop[:, i, :3].T))
     each = np.stack(words, axis=1) if words else np.empty((z.shape[0], 0), dtype="<U6")
-    return each, borne.swapaxes(0, 1)
+    return each, contact_loads.swapaxes(0, 1)
 
 
-def borne_along(system: System, z: FloatArray) -> FloatArray:
+def contact_loads_along(system: System, z: FloatArray) -> FloatArray:
     """What the contacts bear, (point, contact, 4), as of `cycles`."""
-    borne = np.zeros((len(system.scene.contacts), z.shape[0], 4))
-    for _ in _solved_contacts(system, z, borne):
+    contact_loads = np.zeros((len(system.scene.contacts), z.shape[0], 4))
+    for _ in _solved_contacts(system, z, contact_loads):
         pass
-    return np.ascontiguousarray(borne.swapaxes(0, 1))
+    return np.ascontiguousarray(contact_loads.swapaxes(0, 1))
 
 
 def _solved_contacts(
-    system: System, z: FloatArray, borne: FloatArray
+    system: System, z: FloatArray, contact_loads: FloatArray
 ) -> Iterator[tuple[Contact, npt.NDArray[np.intc]]]:
-    """Each contact and the states of its cycle (point, piece), which the next replaces; borne
+    """Each contact and the states of its cycle (point, piece), which the next replaces; contact_loads
     (contact, point, 4) is filled.
 
     Without friction nothing is known of a slider, and its way is 0.
@@ -196,9 +198,9 @@ def _solved_contacts(
     state = np.empty((z.shape[0], most), dtype=np.intc)
     for i, c in enumerate(system.scene.contacts):
         state[:] = NO_STATE
-        cycles_of(laws[i], z, i * system.layout.width, state, borne[i])
+        cycles_of(laws[i], z, i * system.layout.width, state, contact_loads[i])
         if c.mu * c.k_u == 0.0 and c.law is None:
-            borne[i, :, 2] = 0.0
+            contact_loads[i, :, 2] = 0.0
         yield c, state
 
 

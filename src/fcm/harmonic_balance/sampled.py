@@ -83,9 +83,9 @@ class SampledLaw(Law):
         force = self._sampled(motion, self.variation[:, :, :1])[0] + self.rest
         power = force * (self.rate @ np.asarray(x)[first : first + self.width])
         self.pieces = 0
-        self.borne[0] = force[-1].max()
-        self.borne[1] = np.sqrt((force[:-1] ** 2).sum(axis=0)).max()
-        self.borne[2], self.borne[3] = 0.0, 2.0 * np.pi * float(power.sum()) / motion.shape[1]
+        self.contact_loads[0] = force[-1].max()
+        self.contact_loads[1] = np.sqrt((force[:-1] ** 2).sum(axis=0)).max()
+        self.contact_loads[2], self.contact_loads[3] = 0.0, 2.0 * np.pi * float(power.sum()) / motion.shape[1]
         return 0
 
     def _motion(self, x: FloatArray, first: int) -> FloatArray:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from fcm.continuation import FollowOptions, Path
 from fcm.continuation.corrector import Newton
-from fcm.harmonic_balance.response_quantities import borne_along
+from fcm.harmonic_balance.response_quantities import contact_loads_along
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.nonlinear_modes.extended_periodic_motion import AutonomousProblem, ComplexArray, Guess
@@ -194,9 +194,9 @@ def truncation(mode: Mode, options: NonlinearModeOptions | None = None) -> tuple
             )
             error[i] = max(abs(omega - mode.omega[i]) / mode.omega[i], of_damping)
             contacts[i] = *(mode.amplitude[i] * np.asarray(newton.z)[: finer.contact_unknowns]), omega
-    borne = borne_along(larger, contacts)
-    borne[np.isnan(error)] = np.nan
-    return error, borne
+    contact_loads = contact_loads_along(larger, contacts)
+    contact_loads[np.isnan(error)] = np.nan
+    return error, contact_loads
 
 
 def _truncation_points(mode: Mode, unknowns: int, options: TruncationOptions) -> npt.NDArray[np.intp]:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from fcm.plot.errors import PlotError
-from fcm.plot.interface import BORNE, STATES_OF_CONTACTS, InterfaceFile, InterfacePoint
+from fcm.plot.interface import CONTACT_LOADS, STATES_OF_CONTACTS, InterfaceFile, InterfacePoint
 from fcm.plot.labels import short_names, with_unit
 from fcm.plot.peak import Peaks
 from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, FloatArray, wide
@@ -99,18 +99,23 @@ def contacts_page(
     """
     go = _plotly()
     figure, names = go.Figure(), np.array(file.contacts)
-    heads = [with_unit(f"{name[:1].upper()}{name[1:]}", file.units[k]) for k, (_, name) in enumerate(BORNE)]
+    heads = [
+        with_unit(f"{name[:1].upper()}{name[1:]}", file.units[k]) for k, (_, name) in enumerate(CONTACT_LOADS)
+    ]
     number = np.arange(1, len(names) + 1)
-    tops = [float(np.nanmax([one.borne[k] for one in points], initial=0.0)) or 1.0 for k in range(len(BORNE))]
+    tops = [
+        float(np.nanmax([one.contact_loads[k] for one in points], initial=0.0)) or 1.0
+        for k in range(len(CONTACT_LOADS))
+    ]
     for i, one in enumerate(points):
         states = np.array([STATES_OF_CONTACTS[k][0] for k in one.state])
         symbols = [_SYMBOLS[k] for k in one.state]
-        x, y = (number, one.borne[0]) if places is None else places.T
+        x, y = (number, one.contact_loads[0]) if places is None else places.T
         figure.add_scatter(
             x=x, y=y, mode="markers", name=f"{one.frequency:.6g} {file.unit}", visible=i == 0,
-            customdata=np.column_stack((names, states, *(one.borne[k].astype(str) for k in range(3)))),
+            customdata=np.column_stack((names, states, *one.contact_loads[:3].astype(str))),
             marker={"symbol": symbols, "size": 10, "line": {"color": "black", "width": 0.5},
-                    "color": one.borne[0], "colorscale": "Viridis", "cmin": 0.0, "cmax": tops[0],
+                    "color": one.contact_loads[0], "colorscale": "Viridis", "cmin": 0.0, "cmax": tops[0],
                     "showscale": places is not None},
             hovertemplate="<b>%{customdata[0]}</b>: %{customdata[1]}"
             + "".join(f"<br>{head}: %{{customdata[{2 + k}]:.6g}}" for k, head in enumerate(heads))
@@ -146,7 +151,7 @@ def _of_contacts(
     points: Sequence[InterfacePoint], k: int, head: str, top: float, heights: bool
 ) -> dict[str, Any]:
     """The button that shows what contacts bear, by heights or colours."""
-    values = [one.borne[k] for one in points]
+    values = [one.contact_loads[k] for one in points]
     change: dict[str, Any] = {"marker.color": values, "marker.cmax": top}
     change |= {"y": values} if heights else {}
     layout = {"yaxis.title.text": head} if heights else {}

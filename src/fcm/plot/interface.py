@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _NEEDED = ("frequency", "amplitude", "contact", "regime", "dissipated_energy")
-BORNE = (("dissipated_energy", "energy in a cycle"), ("slip_path", "slip path in a cycle"),
+CONTACT_LOADS = (("dissipated_energy", "energy in a cycle"), ("slip_path", "slip path in a cycle"),
           ("greatest_normal_force", "greatest normal force"))  # fmt: skip
 STATES_OF_CONTACTS = (  # word, colour and mark: told apart without colours, too
     ("sticks", "#0072B2", "o"),
@@ -48,7 +48,7 @@ class InterfaceFile:
     amplitude: FloatArray  # (curve, point, dof)
     stable: FloatArray  # (curve, point) 1, 0 or NaN
     states: npt.NDArray[np.str_]  # (curve, point, contact)
-    borne: FloatArray  # (3, curve, point, contact): energy, slip path, greatest normal force
+    contact_loads: FloatArray  # (3, curve, point, contact): energy, slip path, greatest normal force
     units: tuple[str, str, str]  # of these, where the file says them
     places: FloatArray | None = None  # (contact, 2) in the plane of the contacts, where the file says them
     names: tuple[str, ...] = ()  # of the curves of a sweep: the values of each
@@ -64,7 +64,7 @@ class InterfacePoint:
     frequency: float
     stable: float
     state: npt.NDArray[np.intp]
-    borne: FloatArray  # (3, contact)
+    contact_loads: FloatArray  # (3, contact)
     curve: str = ""  # its name, where there are several
     swept: Mapping[str, float] = field(default_factory=dict)  # of a sweep, by short names
     forced: bool = True  # and no nonlinear mode, which is neither stable nor unstable
@@ -73,7 +73,7 @@ class InterfacePoint:
 @apart
 def read_interface(path: Path) -> InterfaceFile:
     """Read what ``fcm respond -o`` has written; PlotError if the file says nothing of its contacts."""
-    names = tuple(name for name, _ in BORNE)
+    names = tuple(name for name, _ in CONTACT_LOADS)
     with opened(
         path, "a response with contacts", (*_NEEDED, *names[1:], "dof"), ("stable", "contact_position")
     ) as data:
@@ -83,7 +83,7 @@ def read_interface(path: Path) -> InterfaceFile:
         )
         frequency, amplitude = floats(variables["frequency"]), floats(variables["amplitude"])
         states = np.asarray(variables["regime"][:]).astype(str)
-        borne = np.stack([floats(variables[name]) for name in names])
+        contact_loads = np.stack([floats(variables[name]) for name in names])
         stable = floats(variables["stable"]) if "stable" in variables else np.full(frequency.shape, np.nan)
         unit = str(getattr(data, "frequency_unit", "rad/s"))
         places = _places(variables)
@@ -95,7 +95,7 @@ def read_interface(path: Path) -> InterfaceFile:
     units = energy, slip, normal
     values = [{key: float(one[k]) for key, one in swept.items()} for k in range(len(frequency))]
     curves = tuple(curve_label(one, units=units_of) for one in values) if swept else ()
-    of_contacts = contacts, dofs, frequency, amplitude, stable, states, borne, units, places, curves
+    of_contacts = contacts, dofs, frequency, amplitude, stable, states, contact_loads, units, places, curves
     short = short_names(swept)
     named = tuple({short[key]: value for key, value in one.items()} for one in values) if swept else ()
     return InterfaceFile(path, unit, *of_contacts, named, forced)
@@ -156,13 +156,15 @@ def _point(file: InterfaceFile, curve: int, k: int) -> InterfacePoint:
     omega, stable = float(file.frequency[curve, k]), float(file.stable[curve, k])
     several = len(file.names) > 1
     named = (file.names[curve], file.swept[curve]) if several else ("", {})
-    return InterfacePoint(omega, stable, state.astype(np.intp), file.borne[:, curve, k], *named, file.forced)
+    return InterfacePoint(
+        omega, stable, state.astype(np.intp), file.contact_loads[:, curve, k], *named, file.forced
+    )
 
 
 def greatest_takers(file: InterfaceFile, point: InterfacePoint, most: int) -> list[tuple[str, ...]]:
     """A row for each of the contacts that take most energy, if any: name, state, energy, its share, slip
     path and greatest normal force."""
-    energy = np.nan_to_num(point.borne[0])
+    energy = np.nan_to_num(point.contact_loads[0])
     total = float(energy.sum()) or 1.0
     order = np.argsort(-energy, kind="stable")[: min(most, np.count_nonzero(energy))]
     return [
@@ -171,7 +173,7 @@ def greatest_takers(file: InterfaceFile, point: InterfacePoint, most: int) -> li
             STATES_OF_CONTACTS[point.state[i]][0],
             f"{energy[i]:.4g}",
             f"{100.0 * energy[i] / total:.1f} %",
-            *(f"{value:.4g}" for value in point.borne[1:, i]),
+            *(f"{value:.4g}" for value in point.contact_loads[1:, i]),
         )
         for i in order.tolist()
     ]
@@ -227,12 +229,16 @@ def draw_interface(
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-    count, titles = len(points), [f"{name}" for _, name in BORNE]
+    count, titles = len(points), [f"{name}" for _, name in CONTACT_LOADS]
     with house_style():
         width = TWO_COLUMNS if count > 1 else LAYOUT.width
         figure = new_figure(width, 6.4 if places is None else _height(places, width, count))
         grid = figure.subplots(
-            1 + len(BORNE), count, sharex=True, sharey="row" if places is None else True, squeeze=False
+            1 + len(CONTACT_LOADS),
+            count,
+            sharex=True,
+            sharey="row" if places is None else True,
+            squeeze=False,
         )
         size = _size(len(file.contacts), places, width, count)
         for column, point in enumerate(points):
@@ -242,7 +248,7 @@ def draw_interface(
             head = f"{point.curve}\n" if point.curve else ""
             grid[0, column].set_title(f"{head}{point.frequency:.6g} {file.unit}{stays}", fontsize=8)
         for row, (title, unit) in enumerate(zip(titles, file.units, strict=True)):
-            values = np.array([point.borne[row] for point in points])
+            values = np.array([point.contact_loads[row] for point in points])
             top = float(np.nanmax(values, initial=0.0)) or 1.0
             label = f"{title} [{unit}]" if unit else title
             for column in range(count):
@@ -295,7 +301,7 @@ def _height(places: FloatArray, width: float, count: int) -> float:
     low, high = _limits(places)
     across, up = (high - low).tolist()
     panel = (width - _BAR) / count * up / across
-    return float(np.clip((panel + _ABOVE) * (1 + len(BORNE)) + _ABOVE, *_HEIGHTS))
+    return float(np.clip((panel + _ABOVE) * (1 + len(CONTACT_LOADS)) + _ABOVE, *_HEIGHTS))
 
 
 def _states(axes: Axes, point: InterfacePoint, places: FloatArray | None, size: float) -> None:

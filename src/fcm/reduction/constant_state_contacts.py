@@ -131,8 +131,8 @@ def whole_states(scene: Scene, states: Sequence[str]) -> tuple[str, ...]:
     return tuple(letters[i] for i in range(len(letters)))
 
 
-def whole_borne(scene: Scene, computed: FloatArray, held: FloatArray) -> FloatArray:
-    """What each contact of the whole scene bears, as of `borne`; those that are held do not slip.
+def whole_contact_loads(scene: Scene, computed: FloatArray, held: FloatArray) -> FloatArray:
+    """What each contact of the whole scene bears, as of `contact_loads`; those that are held do not slip.
 
     held : of these the normal and the friction force, (held, 2).
     """

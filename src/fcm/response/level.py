@@ -195,8 +195,8 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     X = 1j * X
     first, even = X[:, system.harmonics.index(1)], evenness(path)[inside]
     loop = loops(system, z)
-    words, borne = cycles(system, z, loop)
-    error, of_borne = errors_at_levels(system, z, level, amplitude, borne, even)
+    words, contact_loads = cycles(system, z, loop)
+    error, contact_load_errors = errors_at_levels(system, z, level, amplitude, contact_loads, even)
     truncation = (error * amplitude).max(axis=1) / np.where(size := amplitude.max(axis=1), size, 1.0)
     stable = stable_at_levels(system, z, even)
     # with more harmonics there may be no solution where it is not
@@ -214,8 +214,8 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
         "mean": mean,
         "regime": words,
         "loop": loop,
-        "cycle": borne,
-        "cycle_error": of_borne,
+        "cycle": contact_loads,
+        "cycle_error": contact_load_errors,
         "stable": stable,
         "table_error": np.zeros(level.size),
         "error": error,

@@ -162,7 +162,7 @@ def _recorded(
     amplitude = half_peak_to_peak(X, system.harmonics)
     X, rows, unknown = 1j * X, np.arange(mode.omega.size), np.full(mode.omega.size, np.nan)
     whole, loop = path.status is Status.COMPLETE, loops(system, mode.contacts)
-    words, borne = cycles(system, mode.contacts, loop)
+    words, contact_loads = cycles(system, mode.contacts, loop)
     lost = no_steady_states(system, mode.contacts, np.ones(mode.omega.size))
     reason = "" if whole else _reason(mode)
     for why, which in lost.items():
@@ -178,8 +178,8 @@ def _recorded(
         mean=mean,
         regime=pick(words, rows),
         loop=loop,
-        cycle=borne,
-        cycle_error=relative(theirs - borne, borne, borne.max(axis=0), PAIR),
+        cycle=contact_loads,
+        cycle_error=relative(theirs - contact_loads, contact_loads, contact_loads.max(axis=0), PAIR),
         stable=unknown,
         table_error=unknown,
         error=np.full(amplitude.shape, np.nan),

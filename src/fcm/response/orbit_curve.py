@@ -14,7 +14,7 @@ from fcm.model.scene import Scene
 from fcm.reduction.constant_state_contacts import (
     NotKeptError,
     lost_by,
-    whole_borne,
+    whole_contact_loads,
     whole_state,
     whole_states,
 )
@@ -72,8 +72,11 @@ def orbit_curve(groups: Sequence[OrbitBranches], reason: str, search: Search) ->
 
 def _of_whole(scene: Scene, point: OrbitRecord) -> OrbitRecord:
     """A point with the contacts that are held."""
-    states, borne = whole_states(scene, point.states), whole_borne(scene, point.borne, point.held[:, 1:])
-    return replace(point, state=whole_state(scene, point.state), states=states, borne=borne)
+    states, contact_loads = (
+        whole_states(scene, point.states),
+        whole_contact_loads(scene, point.contact_loads, point.held[:, 1:]),
+    )
+    return replace(point, state=whole_state(scene, point.state), states=states, contact_loads=contact_loads)
 
 
 def _kept(scene: Scene, points: Sequence[OrbitRecord]) -> FloatArray:
@@ -126,7 +129,7 @@ def _curve(
     untold = undetermined(scene, regime) & ~told
     residual = _residual(amplitude, others, untold)
     zero = np.where(np.isnan(frequency), np.nan, 0.0)  # neither a table nor a truncation
-    cycle = _borne(points, empty)
+    cycle = _contact_loads(points, empty)
     curve = replace(
         empty,
         frequency=frequency,
@@ -183,10 +186,12 @@ def _rows(points: Sequence[OrbitRecord | None], name: str, empty: Curve) -> Floa
     return np.array(rows).reshape(len(points), len(empty.peaks))
 
 
-def _borne(points: Sequence[OrbitRecord | None], empty: Curve) -> FloatArray:
+def _contact_loads(points: Sequence[OrbitRecord | None], empty: Curve) -> FloatArray:
     """What the contacts bear at each point, (point, contact, 4)."""
     none = np.full(empty.cycle.shape[1:], np.nan)
-    return np.array([none if p is None else p.borne for p in points]).reshape(len(points), *none.shape)
+    return np.array([none if p is None else p.contact_loads for p in points]).reshape(
+        len(points), *none.shape
+    )
 
 
 def _cycles(points: Sequence[OrbitRecord | None], name: str, empty: Curve) -> FloatArray:

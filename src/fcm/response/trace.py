@@ -142,7 +142,7 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
     ends, rows = np.flatnonzero(np.diff(points.path)) + 1, np.arange(points.path.size)
     rows = np.insert(rows, ends, -1) if ends.size else rows
     contacts = ContactRecord.joined([one.contacts for one in found.errors])
-    words, borne, plane = contacts.words, contacts.borne, planar_quantities(system, points.z)
+    words, contact_loads, plane = contacts.words, contacts.contact_loads, planar_quantities(system, points.z)
     X = 1j * points.X  # from Re(X exp(i theta)) to Im(X exp(i theta))
     reason, nowhere = incomplete(found, points)
     stable = np.where(nowhere, 0.0, np.concatenate(parts))  # what creeps away, or floats, is no steady state
@@ -170,8 +170,8 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
         mean=pick(points.mean, rows),
         regime=pick(words, rows),
         loop=pick(contacts.loop, rows),
-        cycle=pick(_without_slip_of_own_laws(scene, borne), rows),
-        cycle_error=pick(np.concatenate([one.borne for one in found.errors]), rows),
+        cycle=pick(_without_slip_of_own_laws(scene, contact_loads), rows),
+        cycle_error=pick(np.concatenate([one.contact_loads for one in found.errors]), rows),
         stable=pick(stable, rows),
         table_error=pick(table_errors(system, points), rows),
         error=pick(error, rows),
@@ -195,29 +195,31 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
         folds_between=(FOLDS.min_level, FOLDS.max_level) if scene.contacts else None,
         mirrored=len(found.traced.mirrored),
     )
-    of_borne = _of_greatest(found, points.path, borne)
+    contact_load_errors = _of_greatest(found, points.path, contact_loads)
     if system.table is not None:
         laws = {id(one): one for one in (system.coefficients, response.found.system.coefficients)}
         system.table.outside += sum(getattr(one, "outside", 0) for one in laws.values())
-    curve.greatest = greatest_of(curve, np.full_like(of_borne, np.nan) if response.exceeded else of_borne)
+    curve.greatest = greatest_of(
+        curve, np.full_like(contact_load_errors, np.nan) if response.exceeded else contact_load_errors
+    )
     if response.found is not found:
         curve.peaks = with_tops(curve.peaks, found)
     return curve
 
 
-def _without_slip_of_own_laws(scene: Scene, borne: FloatArray) -> FloatArray:
+def _without_slip_of_own_laws(scene: Scene, contact_loads: FloatArray) -> FloatArray:
     """What contacts bear (point, contact, 4), with NaN for the way of the slip where the law is one's own."""
     own = [i for i, one in enumerate(scene.contacts) if one.law is not None]
     if own:
-        borne = borne.copy()
-        borne[:, own, 2] = np.nan
-    return borne
+        contact_loads = contact_loads.copy()
+        contact_loads[:, own, 2] = np.nan
+    return contact_loads
 
 
-def _of_greatest(found: RefinedResponse, path: Rows, borne: FloatArray) -> FloatArray:
-    """Errors (contact, 4) of the greatest forces, slip and energy of all paths, which are borne
+def _of_greatest(found: RefinedResponse, path: Rows, contact_loads: FloatArray) -> FloatArray:
+    """Errors (contact, 4) of the greatest contact loads of all paths, from `contact_loads`
     (point, contact, 4); unknown where that of one nearly as great is."""
-    heights = np.array([borne[path == k].max(axis=0) for k in range(len(found.errors))])
+    heights = np.array([contact_loads[path == k].max(axis=0) for k in range(len(found.errors))])
     errors = np.array([one.greatest for one in found.errors])
     unknown = (np.isnan(errors) & (heights > PAIR.rival_fraction * heights.max(axis=0))).any(axis=0)
     own = np.take_along_axis(errors, heights.argmax(axis=0)[None], axis=0)[0]

@@ -62,7 +62,9 @@ def _rows(c: Curve, unit: str, planar: Sequence[int]) -> Iterator[list[Any]]:
     parts = (c.amplitude, c.phase, c.mean, c.fundamental, c.error, *own)
     stacked = np.stack(parts, axis=2)
     values = stacked.reshape(c.frequency.size, stacked.shape[1] * stacked.shape[2])  # of no points, too
-    borne = np.stack((c.cycle, c.cycle_error), axis=-1).reshape(c.frequency.size, 8 * c.cycle.shape[1])
+    contact_loads = np.stack((c.cycle, c.cycle_error), axis=-1).reshape(
+        c.frequency.size, 8 * c.cycle.shape[1]
+    )
     for k in np.flatnonzero(np.isfinite(c.frequency)):
         row = [c.branch[k], *c.parameters.values(), repr(float(frequency[k]))]
         row += [] if c.level is None else [repr(float(c.level[k]))]
@@ -70,7 +72,7 @@ def _rows(c: Curve, unit: str, planar: Sequence[int]) -> Iterator[list[Any]]:
         row += map(repr, values[k].tolist())
         row += [
             *c.regime[k].tolist(),
-            *map(repr, borne[k].tolist()),
+            *map(repr, contact_loads[k].tolist()),
             *csv_values(c, int(k), planar),
             f"{c.stable[k]:g}",
         ]

@@ -17,7 +17,7 @@ from fcm.shooting.residual import Shot
 from fcm.shooting.stability_changes import crossing
 from fcm.shooting.stability_windows import with_windows
 from fcm.shooting.steady_state import SteadyMotion, several
-from fcm.time_domain.contact_loads import borne
+from fcm.time_domain.contact_loads import contact_loads
 from fcm.time_domain.cycle_measures import Measure, measure
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.state import State
@@ -32,7 +32,7 @@ class OrbitRecord:
     state: State  # at the forces' angle 0
     states: tuple[str, ...]  # of each contact over the period
     measure: Measure
-    borne: FloatArray  # (contact, 4) as of `borne`
+    contact_loads: FloatArray  # (contact, 4) as of `contact_loads`
     multipliers: npt.NDArray[np.complex128]  # Floquet's, the greatest first
     residual: float  # by which the period fails to close, relative to the motion
     stable: bool  # whether small disturbances die out, or at least do not grow
@@ -67,7 +67,8 @@ def _record_of(shot: Shot, z: FloatArray, options: ShootingOptions = SHOOTING) -
     multipliers, found = shot.multipliers, shot.scanned
     return OrbitRecord(
         float(z[-1]), shot.state, shot.cycle.states, measure(shot.cycle, found.displaced),
-        borne([shot.cycle], found), multipliers, shot.residual, within_unit_circle(multipliers, options),
+        contact_loads([shot.cycle], found), multipliers, shot.residual,
+        within_unit_circle(multipliers, options),
         z, np.zeros(z.size), held=_held_distances(shot), steady=several(shot),
     )  # fmt: skip
 
@@ -92,7 +93,7 @@ def recorded_steady(omega: float, motion: SteadyMotion) -> OrbitRecord:
     """What is kept of a motion that a simulation has come to."""
     none = np.zeros(0)
     return OrbitRecord(
-        omega, motion.state, motion.states, motion.measure, motion.borne, motion.multipliers,
+        omega, motion.state, motion.states, motion.measure, motion.contact_loads, motion.multipliers,
         motion.error, True, none, none, steady=motion,
     )  # fmt: skip
 

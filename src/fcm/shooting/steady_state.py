@@ -19,7 +19,7 @@ from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic_orbit import Poll, converged, never_interrupt, within_unit_circle
 from fcm.shooting.residual import Shot
 from fcm.shooting.residual_traction import resting_at
-from fcm.time_domain.contact_loads import borne
+from fcm.time_domain.contact_loads import contact_loads
 from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.cycle_measures import Measure, measure
 from fcm.time_domain.errors import SimulationError
@@ -40,7 +40,7 @@ class SteadyMotion(NamedTuple):
     shares: FloatArray  # (contact, 3) of the time in stick, in slip, open
     multipliers: npt.NDArray[np.complex128]  # Floquet's over the periods; none of periods 0
     error: float  # by which it fails to repeat, relative to the motion; nan of periods 0
-    borne: FloatArray  # (contact, 4) as of `borne`
+    contact_loads: FloatArray  # (contact, 4) as of `contact_loads`
 
 
 def steady(
@@ -126,7 +126,7 @@ def _of_shot(shot: Shot) -> SteadyMotion:
     return SteadyMotion(
         shot.periods, shot.state, shot.cycle.states, measure(shot.cycle), amplitude.min(axis=0),
         amplitude.max(axis=0), shares([shot.cycle]), shot.multipliers, shot.residual,
-        borne([shot.cycle]),
+        contact_loads([shot.cycle]),
     )  # fmt: skip
 
 
@@ -187,7 +187,7 @@ def _ranging(cycles: Sequence[Cycle], options: ShootingOptions = SHOOTING) -> St
     state = State(y[system.q].copy(), y[system.p].copy(), y[system.f].copy(), start.angle)
     return SteadyMotion(
         0, state, cycles[-1].states, combined_measure(measures), amplitude.min(axis=0), amplitude.max(axis=0),
-        shares(cycles), none, np.nan, borne(cycles),
+        shares(cycles), none, np.nan, contact_loads(cycles),
     )  # fmt: skip
 
 

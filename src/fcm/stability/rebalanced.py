@@ -15,7 +15,7 @@ from fcm.stability.options import STABILITY, StabilityOptions
 
 
 class Rebalancing:
-    """`beside` a point of a system's balance is one of the balance with more harmonics; a workspace."""
+    """Finds beside a solution of a balance one of the balance with more harmonics; a workspace."""
 
     def __init__(self, system: System, more: Sequence[int], options: StabilityOptions = STABILITY) -> None:
         self.options = options.confirmation

@@ -18,9 +18,9 @@ def unstable_stretches(parts: Iterable[tuple[FloatArray, FloatArray]], span: Str
     parts: of each path its frequencies (point,), and stable (point,): 1 where the motion is, 0 where it is
     not, NaN where that is not known, so that it may be.
     """
-    borne = [ends for frequency, stable in parts for ends in _stable_ranges(frequency, stable)]
+    stable_ranges = [ends for frequency, stable in parts for ends in _stable_ranges(frequency, stable)]
     reached, found = span[0], []
-    for low, high in [*sorted(borne), (span[1], span[1])]:
+    for low, high in [*sorted(stable_ranges), (span[1], span[1])]:
         if low > reached:
             found.append((reached, low))
         reached = max(reached, high)

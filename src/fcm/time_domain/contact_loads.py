@@ -11,7 +11,7 @@ from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.cycle_measures import Scanned, scanned
 
 
-def borne(cycles: Sequence[Cycle], known: Scanned | None = None) -> FloatArray:
+def contact_loads(cycles: Sequence[Cycle], known: Scanned | None = None) -> FloatArray:
     """Of each contact the greatest normal and friction force; slip and energy in a period of the force.
 
     Parameters
@@ -31,7 +31,7 @@ def borne(cycles: Sequence[Cycle], known: Scanned | None = None) -> FloatArray:
     >>> import fcm
     >>> from fcm.shooting import periodic
     >>> orbit = periodic(fcm.load_scene("yang1998-n5"), 1.3)  # mu is 0.4
-    >>> borne([orbit.cycle]).round(3)
+    >>> contact_loads([orbit.cycle]).round(3)
     array([[11.715,  4.686, 14.069, 23.449]])
     """
     out = _of(cycles[0], known)

@@ -2,7 +2,7 @@ from fcm.time_domain.flow cimport Flows
 
 cdef double first_descent(double[:, ::1] powers, Py_ssize_t k, double floor, double[:, ::1] work) noexcept nogil
 
-cdef class Lookout:
+cdef class EventDetector:
     cdef readonly Flows flows
     cdef Py_ssize_t slot, exit
     cdef double base, left, inside

@@ -263,7 +263,7 @@ _WHOLE = cython.declare(cython.int, 3)  # BLOCK is 2**3 steps
 
 
 @cython.cclass
-class Lookout:
+class EventDetector:
     """Goes along the flow `slot`; of exits that are zero at its start, `touched`, the series are in `powers`.
 
     Where the segment ends, `there` is the state before the last part of a step, which is `inside`, at the

@@ -1,10 +1,10 @@
-from fcm.time_domain.event_detection cimport Lookout
+from fcm.time_domain.event_detection cimport EventDetector
 from fcm.time_domain.flow cimport Flows
 from fcm.time_domain.segments cimport Segments
 
 cdef class Successor:
     cdef readonly Flows flows
-    cdef Lookout ahead
+    cdef EventDetector ahead
     cdef double[:, ::1] y
     cdef signed char[:, ::1] states
     cdef Py_ssize_t _passes
@@ -25,7 +25,7 @@ cdef class March:
     cdef readonly double time, duration
     cdef readonly double[:, ::1] y
     cdef readonly signed char[:, ::1] states
-    cdef Lookout _ahead
+    cdef EventDetector _ahead
     cdef Successor _next
     cdef bint _settled
     cdef void _enter(self, Py_ssize_t j)

@@ -17,11 +17,11 @@ from fcm.model.scene import FloatArray
 from fcm.time_domain.stop_reason import Stopped
 
 if cython.compiled:
-    from cython.cimports.fcm.time_domain.event_detection import Lookout
+    from cython.cimports.fcm.time_domain.event_detection import EventDetector
     from cython.cimports.fcm.time_domain.flow import Flows
     from cython.cimports.fcm.time_domain.segments import Segments
 else:
-    from fcm.time_domain.event_detection import Lookout
+    from fcm.time_domain.event_detection import EventDetector
     from fcm.time_domain.flow import Flows
     from fcm.time_domain.segments import Segments
 
@@ -41,7 +41,7 @@ _POSITIVE_SLIP = cython.declare(cython.int, 2)
 class Successor:
     """Sets `states` (1, contact) to what lasts from `y` (1, d) on, and the lookout `ahead` to its flow."""
 
-    def __init__(self, ahead: Lookout, y: FloatArray, states: npt.NDArray[np.int8]) -> None:
+    def __init__(self, ahead: EventDetector, y: FloatArray, states: npt.NDArray[np.int8]) -> None:
         self.flows, self.ahead, self.y, self.states = ahead.flows, ahead, y, states
         self._noise, self._failed = (
             np.zeros(ahead.flows.size),
@@ -186,7 +186,7 @@ class March:
     """The motion from a state on: its `segments`, and `y` and `states` to which it has come."""
 
     def __init__(self, flows: Flows) -> None:
-        self.flows, self._ahead = flows, Lookout(flows)
+        self.flows, self._ahead = flows, EventDetector(flows)
         d, c = flows.size, flows.contacts
         self.y, self.states = np.zeros((1, d)), np.zeros((1, c), np.int8)
         self._next, self.segments = Successor(self._ahead, self.y, self.states), Segments(d, c)

@@ -12,7 +12,7 @@ from fcm.accuracy.contact_load_errors import relative
 from fcm.accuracy.options import PAIR
 from fcm.accuracy.refinement import with_estimated_errors
 from fcm.continuation import Mark
-from fcm.harmonic_balance.response_quantities import borne_along
+from fcm.harmonic_balance.response_quantities import contact_loads_along
 from fcm.harmonic_balance.system import System
 from fcm.response.exact import trace_exact
 from fcm.response.level import trace_levels
@@ -39,24 +39,24 @@ def exactly(truth, z):
     if np.abs(orbit.measure.amplitude / truth.amplitude(z) - 1.0).max() > SAME:
         return None
     problem = OrbitProblem(truth.many.scene)
-    return recorded(problem, problem.z(orbit.state, orbit.frequency)).borne
+    return recorded(problem, problem.z(orbit.state, orbit.frequency)).contact_loads
 
 
 def pairs(system, number):
     """(told, true) of each output, and how many of the points are told."""
     found, truth, both, told = with_estimated_errors(system, 0.0), Truth(system), [[], [], [], []], []
     for path, errors in zip(found.traced.branches.paths, found.errors, strict=True):
-        own = borne_along(system, path.z)
+        own = contact_loads_along(system, path.z)
         at = np.linspace(1, len(path.z) - 2, number).astype(int)
         for i in np.setdiff1d(at, path.where(Mark.FOLD)):
-            told.append(not np.isnan(errors.borne[i]).any())
+            told.append(not np.isnan(errors.contact_loads[i]).any())
             z = truth.at(path.z[i], path.direction[i]) if told[-1] else None
             there = None if z is None else exactly(truth, z)
             if there is None:
                 continue
             for k, c in np.ndindex(4, own.shape[1]):
                 if own[i, c, k] > 1e-3 * own[:, c, k].max():
-                    both[k].append((errors.borne[i, c, k], abs(there[c, k] / own[i, c, k] - 1.0)))
+                    both[k].append((errors.contact_loads[i, c, k], abs(there[c, k] / own[i, c, k] - 1.0)))
     return both, np.mean(told)
 
 
@@ -129,7 +129,7 @@ def test_of_nothing_an_error_is_nothing_or_infinite():
 def test_where_nothing_slips_or_opens_there_is_no_error():
     for preload in (100, -60):
         found = with_estimated_errors(System(scene("yang1998", preload)), 0.0)
-        assert (found.errors[0].borne == 0.0).all() and (found.errors[0].greatest == 0.0).all()
+        assert (found.errors[0].contact_loads == 0.0).all() and (found.errors[0].greatest == 0.0).all()
 
 
 @pytest.mark.parametrize(
