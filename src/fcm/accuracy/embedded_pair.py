@@ -114,7 +114,7 @@ def errors_along(
         elsewhere = affordable_partner(system, path, share, options)
     if elsewhere != more:  # only with these it is followed
         partner.stretches.budget = Budget(0.0)
-    change = partner.displacements(np.union1d(partner.distinct_points(special), np.union1d(folds, met)))
+    change = partner.displacements(np.concatenate((partner.distinct_points(special), folds, met)))
     followed = partner.follow_stretches(change)
     compared, dofs = partner.compared_quantities(change), shown.amplitude.shape[1]
     shift = partner.shifts(compared, followed)

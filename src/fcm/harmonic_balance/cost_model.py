@@ -27,7 +27,7 @@ def seconds_of(system: System, evaluations: int, harmonics: int) -> float:
     A condensed matrix is formed first, see `condensed`, by 2 multiplications for each mode and entry.
     """
     layout = layout_of(len(system.scene.contacts), system.scene.directions_of_contact, harmonics)
-    rank = condensed_size(system.modal_compliance, layout.ports, harmonics, system.condensation)
+    rank = condensed_size(system, layout.ports, harmonics)
     return evaluations * _evaluation(layout, rank, system.options.cost)
 
 

@@ -21,6 +21,7 @@ condensed to, see `fcm.harmonic_balance.held_contacts`.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -89,13 +90,23 @@ def retained_modes(yields: FloatArray, ports: int, options: CondensationOptions 
     return 0
 
 
-def condensed_size(
-    yields: FloatArray, ports: int, harmonics: int, options: CondensationOptions = CONDENSATION
-) -> int:
-    """Size of the condensed system; 0 where the system itself is to be solved."""
+class Condensable(Protocol):
+    """A system of many contacts: how it may be condensed, and how much its modes yield beside these."""
+
+    @property
+    def condensation(self) -> CondensationOptions: ...
+
+    @property
+    def modal_compliance(self) -> FloatArray: ...
+
+
+def condensed_size(system: Condensable, ports: int, harmonics: int) -> int:
+    """Size of the condensed system; 0 where the system itself is to be solved, as where its unknowns are few:
+    then nobody asks how much its modes yield."""
     parts = 1 + 2 * harmonics
-    many = yields.size > 0 and ports * parts >= options.min_unknowns
-    return retained_modes(yields, ports, options) * parts if many else 0
+    if ports * parts < system.condensation.min_unknowns or not system.modal_compliance.size:
+        return 0
+    return retained_modes(system.modal_compliance, ports, system.condensation) * parts
 
 
 class CondensedSystem:

@@ -204,8 +204,8 @@ class System:
     def new_balance(self) -> Balance:
         """A problem of its own, to be followed in the frequency."""
         low, high = self.scene.frequency_range
-        linear, yields = self.linear, self.modal_compliance
-        rank = condensed_size(yields, linear.ports.shape[1], len(self.harmonics), self.condensation)
+        linear = self.linear
+        rank = condensed_size(self, linear.ports.shape[1], len(self.harmonics))
         seen = linear.receptance(np.array(self.harmonics, dtype=np.float64), not rank)
         shown = _displacements(linear, seen)
         balance = Balance(
@@ -213,7 +213,7 @@ class System:
         )
         if rank:
             tangent, options = np.asarray(balance.tangent), self.condensation
-            stuck, counted = self.springs(stuck=True), linear.counted
+            stuck, yields, counted = self.springs(stuck=True), self.modal_compliance, linear.counted
             balance.condense(
                 CondensedSystem(seen, linear.flexibility, tangent, yields, stuck, counted, options)
             )

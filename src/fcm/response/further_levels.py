@@ -113,10 +113,12 @@ def _excited_frequencies(found: RefinedResponse, options: LevelOptions) -> Itera
     """Where low harmonics come to a highest peak, and between that and the nearest resonance, as those of
     smaller motions are: single frequencies, as stretches of no width."""
     low, high = found.system.scene.frequency_range
+    harmonics = [h for h in found.system.harmonics if 1 < h <= options.strong_harmonics]
+    if not harmonics:
+        return
     known, inside = [one.omega for one in found.traced.found], resonances(found.system)
     for top in _highest_peaks(found):
         nearest = min(inside, key=lambda omega: abs(omega - top), default=top)
-        harmonics = (h for h in found.system.harmonics if 1 < h <= options.strong_harmonics)
         for omega in (omega / h for h in harmonics for omega in (top, 0.5 * (top + nearest))):
             if low < omega < high and all(
                 abs(omega - other) > options.distinct_frequency * omega for other in known
