@@ -6,6 +6,8 @@ from scipy.optimize import brentq
 
 from fcm.continuation import End, Events, FollowOptions, Mark, Problem, Status, all_branches, follow
 from fcm.continuation.corrector import Newton
+from fcm.continuation.options import NewtonOptions
+from fcm.continuation.path import PathInterrupted
 from fcm.continuation.stepper import Stepper
 
 STEPS = (0.2, 0.1, 0.05, 0.02, 0.01)
@@ -887,6 +889,35 @@ def test_where_derivatives_change_as_a_root_the_last_step_takes_its_own():
         assert newton.z[0] == pytest.approx(1e-6, rel=1e-9)
         assert probed == int(costly)
         assert newton.tangent[2] / newton.tangent[0] == pytest.approx(1.0015, rel=off)
+
+
+def test_where_places_are_costly_each_may_interrupt_the_curve():
+    """And not only every few steps: one at a corner may take many."""
+    problem, left = Counted(circle().f), iter(range(20))
+    problem.costly = True
+
+    def poll():
+        if next(left, None) is None:
+            raise KeyboardInterrupt
+
+    stepper = Stepper(problem)
+    stepper.newton.poll = poll
+    with pytest.raises(PathInterrupted) as stopped:
+        follow(problem, start(1.0, 2.0), (-1.0, 5.0), stepper=stepper)
+    assert 0 < len(stopped.value.path.z) < problem.evaluated == 20
+
+
+def test_folds_are_known_to_what_points_are_where_only_stations_matter():
+    """Folds at p = 4 and 0, with fewer looks than to rounding."""
+    taken = []
+    for hasty in (False, True):
+        problem = soft_circle()
+        seen = evaluations_at(problem)
+        newton = NewtonOptions(preliminary_tolerance=1e-4)
+        path = follow(problem, start(5.0, 2.0), (-1.0, 5.0), options=FollowOptions(0.2, hasty, newton=newton))
+        assert path.parameter[path.where(Mark.FOLD)] == pytest.approx([4.0, 0.0], abs=1e-3)
+        taken.append(len(seen) - len(path.z))
+    assert taken[1] < taken[0]
 
 
 def test_a_point_that_need_not_be_close_takes_fewer_evaluations():

@@ -5,9 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fcm.branches.force_level import LEVEL_REACH, LevelReachOptions, level_curve, level_frequencies, solutions
+from fcm.branches.force_level import (
+    LEVEL_REACH,
+    LevelReachOptions,
+    _turned,
+    level_curve,
+    level_frequencies,
+    solutions,
+)
 from fcm.branches.linear_limits import highest_linear_limit, lowest_linear_limit
 from fcm.branches.options import LEVEL_CURVE
+from fcm.continuation import Path, Status
 from fcm.harmonic_balance.system import System
 from fcm.scene import load_scene
 
@@ -55,3 +63,32 @@ def test_with_many_contacts_the_level_is_followed_no_further_than_allowed():
         assert near.complete and len(near.solutions) == len(far.solutions) > 0
         assert np.allclose(near.solutions, far.solutions, rtol=1e-9, atol=1e-12)
     assert taken[0] < 0.8 * taken[1]
+
+
+def test_beyond_the_level_of_the_scene_the_curve_takes_no_more_than_a_share_and_says_so():
+    """To the same solutions with less, but whether the curve comes back is not known."""
+    scene, found, taken = strip(), [], []
+    for options in (LevelReachOptions(), LevelReachOptions(beyond_fraction=0.0, min_seconds_beyond=0.0)):
+        system = System(scene, other_options=(options,))
+        found.append([solutions(system, omega) for omega in level_frequencies(system)])
+        taken.append(system.work.seconds)
+    for whole, short in zip(*found, strict=True):
+        assert whole.complete and not short.complete and np.isinf(short.max_level)
+        assert np.allclose(whole.solutions, short.solutions, rtol=1e-9, atol=1e-12)
+        assert len(short.solutions) > 0
+    assert taken[1] < taken[0]
+
+
+def test_a_curve_that_turned_far_below_the_level_of_the_scene_is_followed_no_further():
+    """As contacts begin to slip the level may turn back; a resonance that keeps itself up turns it near 1."""
+    near, options = LEVEL_REACH.max_level_without_fold, LEVEL_REACH
+
+    def turned(*levels):
+        z = np.array(levels)[:, None]
+        return _turned(
+            Path(z, z, np.zeros(len(z), dtype=np.intp), np.ones(len(z)), Status.COMPLETE, 0), options
+        )
+
+    assert not turned(0.01, 0.0133, 0.0129, 0.5, near)
+    assert turned(0.5, 1.4, 1.2, near) and turned(0.5, 0.9, 0.5, near)
+    assert not turned(0.5, 1.4, 1.3999, near)

@@ -176,6 +176,23 @@ def test_one_curve_of_levels_is_followed_for_a_sweep_of_preloads():
     assert all(one.preload_unit for one in systems) and not drawn.preload_unit
 
 
+def test_a_curve_of_levels_in_common_is_interrupted_as_that_of_a_system_of_its_own():
+    """By what is polled now: later that may be nothing."""
+
+    def stop():
+        raise KeyboardInterrupt
+
+    def followed(system, omega):
+        return level_curve(system, omega, (0.0, highest_linear_limit(system, omega)))
+
+    system = System(preloaded(isola(), -15.0))
+    system.normalised.work.poll()
+    system.work.poll = stop
+    clear()
+    with pytest.raises(KeyboardInterrupt):
+        shared_curve(system, 1.22, followed)
+
+
 @pytest.mark.parametrize("harmonics", [1, 3])
 def test_the_errors_of_a_curve_of_levels_are_those_of_the_exact_motion(harmonics):
     """Half the peak-to-peak of v where a march of the contact law settles, of `isola` at 1.22 rad/s: 1.838

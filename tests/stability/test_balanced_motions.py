@@ -93,6 +93,13 @@ def test_few_points_tell_where_further_harmonics_confirm_one(preload):
     np.testing.assert_array_equal(confirmed_stable(of, found.z, even), each)
 
 
+def test_each_look_at_a_motion_may_interrupt():
+    of, found = path(yang(5.0), 3, (0.7, 1.7))
+    polled = []
+    of.work.poll = lambda: polled.append(1)
+    assert 0 < stability(of, found).evaluations <= len(polled)
+
+
 @pytest.mark.parametrize(("preload", "looks"), [(5.0, 0.6), (0.0, 0.8), (-5.0, 0.6)])
 def test_few_points_tell_the_stability_of_three_harmonics(preload, looks):
     """Beside the multipliers of every point: without preload a pair leaves, and comes back."""

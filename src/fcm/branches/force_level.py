@@ -24,7 +24,7 @@ from fcm.branches.linear_limits import (
 )
 from fcm.branches.options import LEVEL_CURVE, LINEAR_LIMITS
 from fcm.branches.shared_levels import shared_curve, solutions_at_level_one
-from fcm.continuation import Events, FollowOptions, Path, Status, follow
+from fcm.continuation import End, Events, FollowOptions, Path, Status, follow
 from fcm.continuation.corrector import Newton
 from fcm.harmonic_balance.cost_model import charged_to_work, seconds_of
 from fcm.harmonic_balance.system import System
@@ -66,6 +66,11 @@ class LevelReachOptions:
     target_turn, target_miss, min_cosine, max_miss, tolerance : float
         Of the steps of a curve of which the passings of the level 1 alone matter, as of
         `fcm.continuation.options`, and to what its other points are known.
+    corner_tolerance : float
+        Part of a step, to which its corners are known.
+    beyond_fraction, min_seconds_beyond : float
+        Part of what the way to the level 1 takes, that the way beyond may take, and seconds of work that it
+        may in any case. A curve that is left there is not complete: it may come back to 1.
     """
 
     min_contacts: int = 12
@@ -77,6 +82,9 @@ class LevelReachOptions:
     min_cosine: float = 0.5
     max_miss: float = 1.0
     tolerance: float = 1e-6
+    corner_tolerance: float = 1e-6
+    beyond_fraction: float = 1.0
+    min_seconds_beyond: float = 5.0
 
 
 LEVEL_REACH = LevelReachOptions()  # where nothing else is said
@@ -130,7 +138,8 @@ def _found(system: System, omega: float, linear: float, top: float) -> LevelSolu
     path, near = None, options.max_level_without_fold
     if len(system.scene.contacts) >= options.min_contacts and linear < near < top:
         path = _coarse_curve(system, omega, linear, near, (1.0,))
-        path = None if _turned(path, options) or path.status is not Status.COMPLETE else path
+        again = path.status is not Status.COMPLETE or _turned(path, options)
+        path = None if again and path.status is not Status.EVENT else path
     path = path or _coarse_curve(system, omega, linear, top, (1.0,))
     found = path.z[path.parameter == 1.0]
     found[:, -1] = omega
@@ -140,8 +149,9 @@ def _found(system: System, omega: float, linear: float, top: float) -> LevelSolu
 
 
 def _turned(path: Path, options: LevelReachOptions) -> bool:
-    """Whether a curve turns back by more than a beginning slip does."""
-    levels = path.parameter
+    """Whether a curve turns back by more than a beginning slip does, no further below 1 than it was followed
+    above."""
+    levels = path.parameter[path.parameter > 1.0 / options.max_level_without_fold]
     return bool((levels < (1.0 - options.max_reversal) * np.maximum.accumulate(levels)).any())
 
 
@@ -184,7 +194,7 @@ def _coarse_curve(
     options = system.option(LEVEL_CURVE)
     for step, lightly in ((options.max_step_stations, True), (options.max_step, False)):
         path = level_curve(system, omega, (0.0, top), step, stations, linear, True, lightly)
-        if path.status is Status.COMPLETE and not _skips_station(path, stations):
+        if path.status in (Status.COMPLETE, Status.EVENT) and not _skips_station(path, stations):
             return path
     for step in (options.max_step, options.stalled_fraction * options.max_step):
         path = level_curve(system, omega, (0.0, top), step, stations, linear)
@@ -271,9 +281,31 @@ def _follow_level(
             max_miss=reach.max_miss,
         )
         newton = replace(options.newton, preliminary_tolerance=reach.tolerance)
-        options = replace(options, step=steps, newton=newton)
+        events = replace(options.events, tolerance=reach.corner_tolerance)
+        options = replace(options, step=steps, newton=newton, events=events)
+        if 1.0 in stations:
+            enough = _WayBeyond(stepper.newton, seconds_of(system, 1, len(system.harmonics)), reach)
+            wanted = replace(wanted, ends=(End(enough),))
     along = partial(follow, level, start, span, wanted, options, stepper=stepper)
     return charged_to_work(system, stepper, None, lambda report: along(progress=report))
+
+
+class _WayBeyond:
+    """Of a curve of the level: 1 as long as it may be followed, then -1; see `LevelReachOptions`."""
+
+    def __init__(self, newton: Newton, each: float, options: LevelReachOptions) -> None:
+        """Each evaluation of newton takes so many seconds of work."""
+        self.newton, self.each, self.options = newton, each, options
+        self.to_one: float | None = None
+
+    def __call__(self, z: FloatArray) -> float:
+        taken = self.each * self.newton.evaluations
+        if self.to_one is None and z[-1] < 1.0:
+            return 1.0
+        if self.to_one is None:
+            self.to_one = taken
+        most = max(self.options.beyond_fraction * self.to_one, self.options.min_seconds_beyond)
+        return 1.0 if taken - self.to_one <= most else -1.0
 
 
 def _comes_back(path: Path, low: float) -> bool:

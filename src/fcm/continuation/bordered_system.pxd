@@ -15,6 +15,7 @@ cdef class BorderedSystem:
     cdef double sign
     cdef public double moved
     cdef public int evaluations
+    cdef public object poll
     cdef double[::1] guess
     cdef double[::1] delta
     cdef double[::1] weights

@@ -7,6 +7,8 @@ curve, and the step that rounding makes; the sign of its determinant is the curv
 
 from __future__ import annotations
 
+from typing import Any
+
 import cython
 import numpy as np
 from cython.cimports.libc.math import fabs, isfinite, sqrt
@@ -38,6 +40,7 @@ class BorderedSystem:
         self.scale, self.row, self.tangent = np.ones(size), np.zeros(size), np.zeros(size)
         self.orientation, self.sign, self.moved = 0.0, 0.0, 0.0
         self.evaluations = 0
+        self.poll: Any = None  # called before each evaluation of a costly problem, which it may interrupt
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -47,6 +50,8 @@ class BorderedSystem:
         j: cython.Py_ssize_t
         n: cython.Py_ssize_t = self.problem.unknowns
         unit: cython.double
+        if self.poll is not None and self.problem.costly:
+            self.poll()
         self.problem.evaluate(self.z)
         self.evaluations += 1
         if self.problem.rank:

@@ -73,6 +73,10 @@ class ExtremumSearch:
             if stepper.problem.outputs >= events.many_outputs
             else events.peak_tolerance
         )
+        # where only values of the parameter matter, points are known to no more than that
+        known = stepper.options.newton.preliminary_tolerance if stepper.options.stations_only else 0.0
+        self.fold_tolerance = max(options.fold_tolerance, known)
+        self.corner_tolerance = max(options.corner_tolerance, known)
         self.stepper, self.scale = stepper, np.array(stepper.newton.scale)
         self.known = [self._sample(0.0, stepper.here), self._sample(stepper.step, stepper.there)]
 
@@ -118,7 +122,7 @@ class ExtremumSearch:
     def _is_root(self, sample: Sample, low: Sample, high: Sample, output: int | None) -> bool:
         """Whether the extreme is higher than this by no more than rounding."""
         now, size = abs(self._slope(sample, output)), abs(float(sample.z[-1]))
-        smooth, corner = self.options.fold_tolerance, self.options.corner_tolerance
+        smooth, corner = self.fold_tolerance, self.corner_tolerance
         if output is not None:
             size, smooth, corner = float(sample.output[output]), self.high, self.high
         if now * (high.at - low.at) < corner * size:

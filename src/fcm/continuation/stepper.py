@@ -175,7 +175,7 @@ class Stepper:
         self.interpolate(at)
         for i in range(self.guess.shape[0]):
             self.newton.z[i], self.newton.row[i] = self.guess[i], self.here.tangent[i]
-        if not self.newton.correct(at):
+        if not self.correct_to(at, self.tolerance):
             return False
         self.record(self.between, margins, outputs)
         return True
@@ -187,7 +187,7 @@ class Stepper:
         is that exactly there."""
         self.newton.z[:] = guess
         self.newton.row[:] = self.here.tangent
-        return self.newton.correct(at) and self.sharpen(False, True)
+        return self.correct_to(at, self.tolerance) and self.sharpen(False, True)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)

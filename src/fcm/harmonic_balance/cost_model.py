@@ -116,7 +116,11 @@ def charged_to_work(
             progress(share)
 
     with system.exclusive_balance():
-        path = follow(report)
+        stepper.newton.poll = system.work.poll
+        try:
+            path = follow(report)
+        finally:
+            stepper.newton.poll = None
     try:
         add(path.evaluations)
     except KeyboardInterrupt:
