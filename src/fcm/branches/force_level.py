@@ -118,9 +118,16 @@ def solutions_at(
     system: System, frequencies: Sequence[float], fewer: Sequence[LevelSolutions] = ()
 ) -> tuple[LevelSolutions, ...]:
     """Solutions at some frequencies; those of fewer harmonics tell how far the level is to be followed."""
+    return tuple(solutions_in_turn(system, frequencies, fewer))
+
+
+def solutions_in_turn(
+    system: System, frequencies: Sequence[float], fewer: Sequence[LevelSolutions] = ()
+) -> Iterator[LevelSolutions]:
+    """The same as each is asked for."""
     precompute(system, frequencies)
     reach = {one.omega: one.max_level for one in fewer if np.isfinite(one.max_level)}
-    return tuple(solutions(system, omega, reach.get(omega)) for omega in frequencies)
+    yield from (solutions(system, omega, reach.get(omega)) for omega in frequencies)
 
 
 def _followed(system: System, omega: float, linear: float, top: float, most: float) -> LevelSolutions:

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
-from fcm.branches.force_level import LevelSolutions, level_frequencies, solutions_at
+from fcm.branches.force_level import LevelSolutions, level_frequencies, solutions_at, solutions_in_turn
 from fcm.branches.narrow_resonances import narrow_resonances
 from fcm.continuation import Branches, Events, FollowOptions, Path, all_branches, follow
 from fcm.continuation.all_branches import Follow
 from fcm.continuation.follow import Progress
+from fcm.continuation.path import PathInterrupted
 from fcm.continuation.problem import Problem
 from fcm.harmonic_balance.cost_model import charged_to_work
 from fcm.harmonic_balance.response_quantities import recorded
@@ -50,10 +51,24 @@ def traced(
     fewer: what was found there with fewer harmonics, if anything; near: solutions (unknown + 1,) known from
     elsewhere, whose branches are traced too if they are within the range.
     """
-    before = system.work.seconds
-    found, passed = _level_solutions(system, fewer)
-    work = system.work.seconds - before
-    return Traced(_branches_through(system, [*passed, *near], progress), found, work)
+    levels, found, work = level_frequencies(system), list[LevelSolutions](), 0.0
+
+    def starts() -> Iterator[FloatArray]:
+        nonlocal work
+        ahead = solutions_in_turn(system, levels, fewer)
+        for _ in levels:  # a branch is there before the next level is followed
+            before = system.work.seconds
+            try:
+                found.append(next(ahead))
+            except PathInterrupted:  # its path is one of levels, and no branch
+                raise KeyboardInterrupt from None
+            work += system.work.seconds - before
+            yield from found[-1].solutions
+        yield from near
+
+    stations = [*levels, *(float(z[-1]) for z in near)]
+    branches = _branches_through(system, starts(), stations, progress)
+    return Traced(branches, tuple(found), work)
 
 
 def traced_from(
@@ -61,7 +76,10 @@ def traced_from(
 ) -> Traced | None:
     """The branches through solutions near those of fewer harmonics; None if there is no such. No level is
     followed: what was found is as before."""
-    return replace(before, branches=_branches_through(system, near, progress)) if near else None
+    if not near:
+        return None
+    places = [float(z[-1]) for z in near]
+    return replace(before, branches=_branches_through(system, near, places, progress))
 
 
 def with_levels(system: System, before: Traced) -> Traced:
@@ -81,14 +99,16 @@ def _level_solutions(
     return found, [z for one in found for z in one.solutions]
 
 
-def _branches_through(system: System, starts: Sequence[FloatArray], progress: Progress | None) -> Branches:
+def _branches_through(
+    system: System, starts: Iterable[FloatArray], stations: Sequence[float], progress: Progress | None
+) -> Branches:
     """The branches through solutions, of which those outside the range do not count."""
-    span = system.scene.frequency_range
-    inside = [z for z in starts if span[0] <= z[-1] <= span[1]]
-    step, along = system.scene.max_step, _follow_shared(system)
-    return _without_unsteady(
-        system, all_branches(system.reset_balance, inside, span, FollowOptions(step), progress, along)
-    )
+    low, high = system.scene.frequency_range
+    inside = (z for z in starts if low <= z[-1] <= high)
+    options, along = FollowOptions(system.scene.max_step), _follow_shared(system)
+    places = [omega for omega in stations if low <= omega <= high]
+    found = all_branches(system.reset_balance, inside, (low, high), options, progress, along, stations=places)
+    return _without_unsteady(system, found)
 
 
 def with_further(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,12 +42,13 @@ class BranchesInterrupted(KeyboardInterrupt):
 
 def all_branches(
     new_problem: Callable[[], Problem],
-    solutions: Sequence[FloatArray],
+    solutions: Iterable[FloatArray],
     span: tuple[float, float],
     options: FollowOptions = FOLLOW,
     progress: Progress | None = None,
     along: Follow = follow,
     known: Sequence[Path] = (),
+    stations: Sequence[float] | None = None,
 ) -> Branches:
     """Follow every solution that no branch followed before contains.
 
@@ -55,20 +56,25 @@ def all_branches(
     ----------
     new_problem : callable
         Makes the problem anew; what it made before is not used any more.
-    solutions : sequence of (n + 1,)
+    solutions : iterable of (n + 1,)
         In the order in which they are to be followed; those at an end of the span lead inwards, those inside
         it both ways.
     along : callable
         Follows a path, as `follow` does.
     known : sequence of Path
         Branches that were followed before, which are the first of those returned.
+    stations : sequence of float, optional
+        Parameters of all solutions, where these are found in turn.
 
     Raises
     ------
     BranchesInterrupted
         With the branches up to there, where a `KeyboardInterrupt` comes.
     """
-    events = Events(sorted({float(z[-1]) for z in solutions}))
+    if stations is None:
+        solutions = list(solutions)
+        stations = [float(z[-1]) for z in solutions]
+    events = Events(sorted(set(stations)))
     paths: list[Path] = list(known)
     lost: list[FloatArray] = []
     try:
