@@ -189,11 +189,15 @@ class System:
     def exclusive_balance(self) -> Iterator[None]:
         """While a curve is followed no other system takes its balance, as one of a progress would.
 
-        Nor does one after an error, in the middle of which it was left.
+        Nor does one after an error, in the middle of which it was left: it is forgotten.
         """
         mine = self._workspace
         before, mine.exclusive = mine.exclusive, True
-        yield
+        try:
+            yield
+        except BaseException:
+            _WORKSPACES.forget(mine)
+            raise
         mine.exclusive = before
 
     def reset_balance(self) -> Balance:
@@ -315,6 +319,11 @@ class _WorkspaceCache(threading.local):
 
     def __init__(self) -> None:
         self.by_key: OrderedDict[tuple[object, ...], _Workspace] = OrderedDict()
+
+    def forget(self, workspace: _Workspace) -> None:
+        """Give a workspace to no further system."""
+        for key in [key for key, kept in self.by_key.items() if kept is workspace]:
+            del self.by_key[key]
 
 
 _WORKSPACES = _WorkspaceCache()
