@@ -33,7 +33,7 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
 
         return of_modes(summary, names, unit)
     minimised = _minimised(summary)
-    dofs, length = _greatest(curves, minimised), summary.get("units", {}).get("length", "")
+    dofs, length = shown_dofs(summary), summary.get("units", {}).get("length", "")
     parts = [_curves(curves, names, dofs, unit, length, bool(minimised))]
     parts += [_blades(curves, names, unit, length)] if "blades" in curves[0] else []
     tables = (stable_table, jump_table, untold_table)
@@ -99,11 +99,12 @@ def _minimised(summary: Mapping[str, Any]) -> list[str]:
     return [name.partition(".")[2] for one in summary.get("optimum", ()) for name in one["minimise"]]
 
 
-def _greatest(curves: Sequence[Curve], minimised: Sequence[str]) -> list[str]:
+def shown_dofs(summary: Mapping[str, Any]) -> list[str]:
     """Those degrees of freedom whose peaks are the greatest, and what is minimised, in the order of the file.
 
     Rotations, which are of another unit, come after all displacements.
     """
+    curves, minimised = summary["curves"], _minimised(summary)
 
     def peak(dof: str) -> float:
         found = ((curve["peak"].get(dof) or {}).get("amplitude") for curve in curves)
@@ -237,7 +238,7 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
             for dof, one in curve["peak"].items()
             if one and one.get("error")
         ]
-        shown = _greatest(curves, _minimised(summary))  # of which the table has the peaks
+        shown = shown_dofs(summary)  # of which the table has the peaks
         peaks = [error for error, dof in told if dof in shown]
         harmonic = max([harmonic, *(error for error, _ in told)])  # also where what lies around is not told
         if harmonic > 0.0 or not untold:  # the 0 of a motion at rest tells nothing of peaks

@@ -7,6 +7,7 @@ from math import isclose
 from typing import Any
 
 from fcm.cli.columns import share_of
+from fcm.cli.curves import shown_dofs
 from fcm.cli.limits import SENTENCES
 
 _LINEAR = {  # keys of curves on which no contact changes its state: what is said, and what helps
@@ -216,7 +217,9 @@ def residual_friction(summary: Mapping[str, Any]) -> str:
     curves = [one for one in summary["curves"] if one.get("may_not_be_unique") and _range_told(one)]
     if not curves:
         return ""
-    worst = max(one["residual_change"] for curve in curves for one in curve["peak"].values() if one)
+    shown = shown_dofs(summary)  # one that hardly moves may change by any part of that
+    peaks = [curve["peak"].get(dof) for curve in curves for dof in shown]
+    worst = max((one["residual_change"] for one in peaks if one), default=0.0)
     share = share_of(worst)
     changes = "no peak" if share == "0" else f"a peak by at most {share} of it, estimated"
     how = _how(summary) if share != "0" else ""
