@@ -203,26 +203,11 @@ def pushed_aside(rng):
         yield Planar(*u, v, 1.0, n_0=rng.uniform(0.6, 1.0) * greatest + 0.5)
 
 
-def passing_near(rng):
-    """Motions that pass near to their sliders where the load is least: two discs in turn hold them."""
-    u_x, u_y = (np.array([-0.038, 0.040 + 0.689j]), np.array([0.045, -0.266 - 0.513j]))
-    yield Planar(u_x, u_y, np.array([-0.032, 0.042 + 0.519j]), 0.53, 0.147, 0.818, 0.458)
-    size = np.array([1.0, 1.0, 0.25, 1.0 / 9.0])
-    wave = np.exp(1j * np.multiply.outer(np.linspace(0.0, 2.0 * np.pi, 2000), np.arange(4)))
-    for harmonics in rng.integers(1, 4, 300):
-        u_x, u_y, v = (rng.standard_normal((3, 4)) + 1j * rng.standard_normal((3, 4))) * size
-        u_x[0], u_y[0], v[0] = u_x[0].real, u_y[0].real, v[0].real
-        u_x, u_y, v = u_x[: harmonics + 1], u_y[: harmonics + 1], v[: harmonics + 1]
-        least = (wave[:, : harmonics + 1] @ v).real.min()
-        n_0 = 10.0 ** rng.uniform(-4.0, -1.0) - least
-        yield Planar(u_x, u_y, v, 1.0, 10.0 ** rng.uniform(-1.0, 0.0), 1.0, n_0)
-
-
 def test_a_slider_that_never_slips_rests_where_it_began_or_as_near_as_the_discs_allow():
-    """Against places around it that a thousand discs have in common."""
+    """Against places around it that three hundred discs have in common."""
     rng, met = np.random.default_rng(9), {0: 0, 1: 0, 2: 0}
-    theta = np.linspace(0.0, 2.0 * np.pi, 1001)
-    cases = [*random_planars(200, 10, 3), *pushed_aside(rng), *passing_near(rng)]
+    theta = np.linspace(0.0, 2.0 * np.pi, 301)
+    cases = [*random_planars(200, 10, 3), *pushed_aside(rng)]
     for case in cases:
         cycle = case.cycle()
         if cycle.kind != STUCK:
@@ -234,7 +219,7 @@ def test_a_slider_that_never_slips_rests_where_it_began_or_as_near_as_the_discs_
         f_x, f_y, _ = case.forces()
         w = np.array([(case.u_x[0] - f_x[0] / case.k_u).real, (case.u_y[0] - f_y[0] / case.k_u).real])
         assert np.all(np.hypot(*(u - w[:, None])) <= r + 1e-12 * np.abs(u).max())
-        near = w[:, None] + rng.standard_normal((2, 20)) * 0.05 * np.abs(u).max()
+        near = w[:, None] + rng.standard_normal((2, 60)) * 0.05 * np.abs(u).max()
         inside = np.all(np.hypot(*(u[:, :, None] - near[:, None])) <= r[:, None], axis=0)
         assert np.all(np.hypot(*near[:, inside]) >= np.hypot(*w) - 1e-4 * np.abs(u).max())
     assert min(met.values()) >= 3, met

@@ -162,7 +162,21 @@ class PlanarMargins:
 
     def other(self) -> float:
         """How far the next disc is from holding the place that one disc holds."""
-        self.resting.next_farthest()
+        j: cython.int
+        n: cython.int = self.resting.nodes
+        near: float = self.resting.basis[0, 3]
+        self.resting.farthest(self.resting.w_x, self.resting.w_y)
+        self.resting.beyond = -FAR
+        for j in range(n):
+            here: float = self.resting.gap[j]
+            theta: float = self.resting.step * (j + 0.1171)
+            off: float = fabs(theta - near)
+            while off > 0.5 * TWO_PI:
+                off = fabs(off - TWO_PI)
+            if off <= 2.0 * self.resting.step or here < self.resting.gap[j - 1 if j > 0 else n - 1]:
+                continue
+            if here >= self.resting.gap[j + 1 if j + 1 < n else 0]:
+                self.resting.refine(theta)
         room: float = min(-self.resting.beyond, PAST)
         return room
 
@@ -224,7 +238,7 @@ class PlanarMargins:
             if old > older and old >= new:
                 self.resting.x, self.resting.y = self.cycle.slider.rest_x[p], self.cycle.slider.rest_y[p]
                 self.resting.beyond = -FAR
-                self.resting.refine(begin + (i - 1) * step, self.resting.step)
+                self.resting.refine(begin + (i - 1) * step)
                 if begin < self.resting.angle < end:
                     self.note(PUSHES, self.resting.angle, min(self.resting.beyond, 0.0))
             older, old = old, new

@@ -9,7 +9,7 @@ cdef class Resting:
     cdef double[:, ::1] node_cos, node_sin, at
     cdef double[::1] gap
     cdef readonly double[:, ::1] basis
-    cdef double x, y, t, but
+    cdef double x, y, t
     cdef bint found, sampled
     cdef bint stays(self, double s_x, double s_y) noexcept nogil
     cdef bint encloses(self, bint exact) noexcept nogil
@@ -19,10 +19,7 @@ cdef class Resting:
     cdef void sample(self) noexcept nogil
     cdef void farthest(self, double w_x, double w_y) noexcept nogil
     cdef double outside(self, double theta) noexcept nogil
-    cdef void refine(self, double theta, double reach) noexcept nogil
-    cdef void next_farthest(self) noexcept nogil
-    cdef void passes(self) noexcept nogil
-    cdef void between(self, double begin, double before, double after, double length) noexcept nogil
+    cdef void refine(self, double theta) noexcept nogil
     cdef void exchange(self, bint near, double s_x, double s_y) noexcept nogil
     cdef void attempt(self, bint near, double s_x, double s_y, int i, int j) noexcept nogil
     cdef bint fits(self, double x, double y, double t) noexcept nogil

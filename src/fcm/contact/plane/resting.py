@@ -56,7 +56,6 @@ class Resting:
         self.held = self.best_i = self.best_j = 0
         self.w_x = self.w_y = self.overlap = self.beyond = self.angle = 0.0
         self.x = self.y = self.t = self.best = 0.0
-        self.but = FAR
         self.found = self.sampled = False
 
     def stays(self, s_x: float, s_y: float) -> bool:
@@ -127,7 +126,7 @@ class Resting:
     def sharpen_one(self, i: cython.int, w_x: float, w_y: float) -> None:
         """The angle near that of a disc at which a place misses its disc most."""
         self.x, self.y, self.beyond = w_x, w_y, -FAR
-        self.refine(self.basis[i, 3], self.step)
+        self.refine(self.basis[i, 3])
         self.basis[i, 3] = self.angle
 
     def sample(self) -> None:
@@ -170,50 +169,10 @@ class Resting:
             before = self.gap[j - 1 if j > 0 else self.nodes - 1]
             after = self.gap[j + 1 if j + 1 < self.nodes else 0]
             if self.gap[j] >= before and self.gap[j] >= after and self.gap[j] + rise >= most:
-                self.refine(self.step * (FIRST + j), self.step)
-        self.passes()
-
-    def next_farthest(self) -> None:
-        """`beyond`: how far the place is outside the disc that it misses most but the one that holds it."""
-        j: cython.int
-        self.farthest(self.w_x, self.w_y)
-        self.beyond, self.but = -FAR, self.basis[0, 3]
-        for j in range(self.nodes):
-            self.refine(self.step * (FIRST + j), self.step)
-        self.passes()
-        self.but = FAR
-
-    def passes(self) -> None:
-        """Discs between two nodes, where the motion passes nearer to the place than they tell."""
-        j: cython.int
-        for j in range(self.nodes):
-            k: cython.int = j + 1 if j + 1 < self.nodes else 0
-            d: float = min(self.gap[j] + self.at[2, j], self.gap[k] + self.at[2, k])
-            if d < self.motion.motion_bound[1] * self.step:
-                self.between(self.step * (FIRST + j), self.gap[j], self.gap[k], self.step)
-
-    def between(self, begin: float, before: float, after: float, length: float) -> None:
-        """A greater gap than `beyond` within a length, of whose ends the gaps are known.
-
-        The gap bends down no more than U and R do, so it is below a parabola through both. Along a way past
-        the place it can bend up by any amount, and so have two maxima, unless the way is shorter than the
-        distance.
-        """
-        bend: float = self.motion.motion_bound[2] + self.motion.reach_bound[2]
-        fall: float = bend * length * length
-        change: float = fabs(after - before)
-        most: float = max(before, after)
-        if change < 0.5 * fall:
-            most = 0.5 * (before + after) + 0.125 * fall + 0.5 * change * change / fall
-        if most <= self.beyond + 4.0 * EPSILON * (self.motion.size + self.motion.reach):
-            return
-        middle: float = begin + 0.5 * length
-        gap: float = self.outside(middle)
-        if gap + self.motion.value[SCAN, 2] >= self.motion.motion_bound[1] * length:
-            self.refine(middle, 0.5 * length)
-            return
-        self.between(begin, before, gap, 0.5 * length)
-        self.between(middle, gap, after, 0.5 * length)
+                self.refine(self.step * (FIRST + j))
+        # two discs less than a step apart, between which no node tells: each goes on from where it was
+        for j in range(self.held):
+            self.refine(self.basis[j, 3])
 
     def outside(self, theta: float) -> float:
         """How far the place in `x`, `y` is outside the disc of an angle; see `refine` for the slope."""
@@ -222,15 +181,11 @@ class Resting:
         gap -= self.motion.value[SCAN, 2]
         return gap
 
-    def refine(self, theta: float, reach: float) -> None:
-        """The greatest gap no further than that from an angle, if it is greater than any before.
-
-        Of the angle `but` it is not, nor where another would be greater.
-        """
+    def refine(self, theta: float) -> None:
+        """The greatest gap within a step of a node, if it is greater than any before."""
         i: cython.int
-        inside: cython.bint = False
-        low: float = theta - reach
-        high: float = theta + reach
+        low: float = theta - self.step
+        high: float = theta + self.step
         gap: float = self.outside(theta)
         step: float
         slope: float
@@ -254,8 +209,7 @@ class Resting:
             else:
                 high = theta
             step = -slope / bend if bend < 0.0 else high - low
-            inside = low < theta + step < high
-            if not inside:
+            if not low < theta + step < high:
                 step = 0.5 * (low + high) - theta
             if fabs(step) < 1e-15 or high - low < 1e-15:
                 break
@@ -263,8 +217,6 @@ class Resting:
             gap = self.outside(theta)
             if fabs(step) < 1e-9 and bend < 0.0:
                 break
-        if self.but < FAR and not (inside and fabs(sin(0.5 * (theta - self.but))) > self.same):
-            return
         if gap > self.beyond:
             self.beyond, self.angle = gap, theta
 
