@@ -24,6 +24,7 @@ from fcm.stability.options import STABILITY
 from fcm.stability.verdict import Bifurcation, MultiplierSpectrum, Verdict, even_verdict
 from fcm.time_domain import simulate
 
+from ..harmonic_balance.strips import strip
 from ..harmonic_balance.truth import state
 from ..time_domain.cases import SCENES, one_mode, yang
 
@@ -93,8 +94,8 @@ def test_few_points_tell_where_further_harmonics_confirm_one(preload):
     np.testing.assert_array_equal(confirmed_stable(of, found.z, even), each)
 
 
-def test_each_look_at_a_motion_may_interrupt():
-    of, found = path(yang(5.0), 3, (0.7, 1.7))
+def test_each_look_at_a_motion_of_many_contacts_may_interrupt():
+    of, found = path(strip(), 1, (0.9, 1.5))
     polled = []
     of.work.poll = lambda: polled.append(1)
     assert 0 < stability(of, found).evaluations <= len(polled)

@@ -168,7 +168,10 @@ class Multipliers:
 
     def _look(self, z: FloatArray, turning: bool, alone: bool) -> _Look | Verdict:
         """At a solution and its finer motion; the verdict where no multipliers are needed for it."""
-        self.system.work.poll()
+        if (
+            self.contacts >= self.options.structure.many_contacts
+        ):  # a look takes long, and nobody shares these
+            self.system.work.poll()
         fine, plain = self.fine.states, self.plain.states
         self.finer.at(z)
         self._seen = z
