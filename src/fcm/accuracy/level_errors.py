@@ -52,11 +52,8 @@ def errors_at_levels(
 
     NaN where that is not found, as beside folds, where the curve with them has no such solution.
     """
-    further, error, contact_load_errors = (
-        FurtherHarmonics(system),
-        np.zeros_like(amplitude),
-        np.zeros_like(contact_loads),
-    )
+    further = FurtherHarmonics(system)
+    error, contact_load_errors = np.zeros_like(amplitude), np.zeros_like(contact_loads)
     bent = np.flatnonzero(~further.linear(z))
     if not bent.size:
         return error, contact_load_errors

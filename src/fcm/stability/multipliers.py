@@ -168,9 +168,8 @@ class Multipliers:
 
     def _look(self, z: FloatArray, turning: bool, alone: bool) -> _Look | Verdict:
         """At a solution and its finer motion; the verdict where no multipliers are needed for it."""
-        if (
-            self.contacts >= self.options.structure.many_contacts
-        ):  # a look takes long, and nobody shares these
+        # a look at many contacts takes long; what looks at few is shared, and what is polled may look with it
+        if self.contacts >= self.options.structure.many_contacts:
             self.system.work.poll()
         fine, plain = self.fine.states, self.plain.states
         self.finer.at(z)

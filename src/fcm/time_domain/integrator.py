@@ -39,7 +39,7 @@ _POSITIVE_SLIP = cython.declare(cython.int, 2)
 
 @cython.cclass
 class Successor:
-    """Sets `states` (1, contact) to what lasts from `y` (1, d) on, and the lookout `ahead` to its flow."""
+    """Sets `states` (1, contact) to what lasts from `y` (1, d) on, and the detector `ahead` to its flow."""
 
     def __init__(self, ahead: EventDetector, y: FloatArray, states: npt.NDArray[np.int8]) -> None:
         self.flows, self.ahead, self.y, self.states = ahead.flows, ahead, y, states
