@@ -34,7 +34,7 @@ def test_every_kernel_is_listed_to_be_compiled():
 def test_a_run_says_once_that_kernels_are_not_compiled(tmp_path):
     compiled = not import_module("fcm.contact.closed_form").__file__.endswith(".py")
     expected = 0 if compiled else 1
-    assert warnings("-c", "import fcm.table, fcm.contact.cycle, fcm.contact.loop") == expected
+    assert warnings("-c", "import fcm.table, fcm.contact.closed_form, fcm.contact.loop") == expected
     assert warnings(*AS_A_MODULE, "respond", "yang1998", "-o", tmp_path / "curves.nc") == expected
     assert warnings(*AS_A_MODULE, "--help") == warnings("-c", "import fcm") == 0
 

@@ -5,7 +5,7 @@ code, which then lies beside the source; where it could not be, the source itsel
 ``python src/fcm/build_kernels.py`` in the top folder, or ``make kernels``, compiles them in place.
 
 What the .pxd beside a kernel declares is C: functions, methods and attributes that need no Python, no lock,
-and that other kernels import as ``from cython.cimports.fcm...``; see `fcm.contact.cycle` and `closed_form`.
+and that other kernels import as ``from cython.cimports.fcm...``; see `fcm.contact.closed_form`.
 There a float is a double; other types are named as Cython does. What is not declared is for Python to call.
 A function that calls Python declares what it returns for an exception (``except -1``): declared ``noexcept``
 it would print an interruption and go on with numbers that were not computed. Such a kernel is refused.
@@ -48,16 +48,13 @@ DECISIONS = (
     "fcm.accuracy.curve_distance",
     "fcm.continuation.events",
     "fcm.continuation.follow",
-    "fcm.continuation.nonsmooth_points",
     "fcm.continuation.options",
     "fcm.continuation.problem",
     "fcm.continuation.recorder",
     "fcm.continuation.step_control",
     "fcm.continuation.stepper",
-    "fcm.continuation.switching_functions",
-    "fcm.time_domain.event_detection",
-    "fcm.time_domain.extremes",
     "fcm.time_domain.integrator",
+    "fcm.time_domain.measures",
     "fcm.time_domain.segment",
 )
 # What Cython adds to a kernel, two thirds of its C, is in no loop: to set it up is not optimised at all, and

@@ -17,7 +17,7 @@ from scipy.interpolate import RegularGridInterpolator
 from unit import SINE, seconds, sine
 
 import fcm
-from fcm.contact.cycle import __file__ as kernel
+from fcm.contact.closed_form import __file__ as kernel
 from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.plane.forces import PlanarContact
 from fcm.model.scene import Scene

@@ -11,7 +11,7 @@ import pytest
 
 from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.periodic.margins import Measures
-from fcm.harmonic_balance.line_contact import LineLaw
+from fcm.harmonic_balance.contact_law import LineLaw
 
 from .motions import SINE, STILL, Case, random_case, random_cases
 

@@ -159,8 +159,8 @@ AS_PYTHON = """
 import sys, warnings
 warnings.simplefilter("ignore")
 import numpy as np
-from fcm.contact.periodic import cycle, events, forces, margins, motion
-kernels = cycle, events, forces, margins, motion
+from fcm.contact.periodic import cycle, forces, margins, motion
+kernels = cycle, forces, margins, motion
 assert all(m.__file__.endswith(".py") for m in kernels)
 import fcm
 data = np.load(sys.argv[1])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fcm.harmonic_balance.homotopy import ForceLevelProblem
+from fcm.harmonic_balance.prolongation import ForceLevelProblem
 from fcm.harmonic_balance.system import System
 
 from ..time_domain.cases import yang
@@ -70,7 +70,7 @@ def test_the_level_scales_the_external_forces(harmonics):
 def test_one_harmonic_by_the_closed_form_is_the_general_case(seed):
     """The kernel for any harmonics, given one, has the forces of the paper's closed form."""
     from fcm.contact.periodic.forces import PeriodicContact
-    from fcm.harmonic_balance.line_contact import LineLaw
+    from fcm.harmonic_balance.contact_law import LineLaw
 
     for scene in SCENES.values():
         system = System(scene, (1,))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fcm.branches.trace import traced
-from fcm.harmonic_balance.normal_plane_prolongation import Prolongation
+from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.system import System
 from fcm.scene import load_scene
 

@@ -16,8 +16,7 @@ from fcm.branches.trace import traced
 from fcm.contact.periodic.workspace import periodic_contact
 from fcm.contact.plane.workspace import planar_contact
 from fcm.continuation import Mark, Status
-from fcm.harmonic_balance.line_contact import LineLaw
-from fcm.harmonic_balance.planar_contact import PlanarLaw
+from fcm.harmonic_balance.contact_law import LineLaw, PlanarLaw
 from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.system import System
 from fcm.response import ResponseError

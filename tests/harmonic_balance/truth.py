@@ -9,7 +9,7 @@ import numpy as np
 
 import fcm
 from fcm.continuation import FollowOptions, follow
-from fcm.harmonic_balance.normal_plane_prolongation import Prolongation
+from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.time_domain import SimulationError, State
 
 SCENES = Path(__file__).parent / "scenes"

@@ -14,8 +14,8 @@ from fcm.time_domain import simulate
 from fcm.time_domain.contact_states import made
 from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.cycle_measures import extremes_by, measure
-from fcm.time_domain.event_detection import first_descent_of
-from fcm.time_domain.extremes import Rows, Scan
+from fcm.time_domain.integrator import first_descent_of
+from fcm.time_domain.measures import Rows, Scan
 from fcm.time_domain.options import FlowOptions, TimeOptions
 from fcm.time_domain.system import System
 

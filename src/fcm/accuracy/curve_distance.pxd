@@ -1,4 +1,4 @@
-from fcm.harmonic_balance.normal_plane_prolongation cimport Prolongation
+from fcm.harmonic_balance.prolongation cimport Prolongation
 
 cdef class PointwiseDisplacement:
     cdef public Prolongation lifted

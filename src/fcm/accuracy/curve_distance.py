@@ -11,7 +11,7 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import fabs, isnan, sqrt
 
-from fcm.harmonic_balance.normal_plane_prolongation import Prolongation
+from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.model.scene import FloatArray
 
 NEAR = cython.declare(cython.double, 1e-4)  # of the length of a curve: points nearer coincide

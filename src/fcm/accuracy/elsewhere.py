@@ -22,7 +22,7 @@ from fcm.accuracy.partner_pieces import CurvePiece
 from fcm.accuracy.partner_stretch import StretchFollower
 from fcm.continuation import Path
 from fcm.harmonic_balance.cost_model import seconds_of
-from fcm.harmonic_balance.normal_plane_prolongation import DampedOptions, Prolongation
+from fcm.harmonic_balance.prolongation import DampedOptions, Prolongation
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray

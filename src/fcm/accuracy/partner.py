@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fcm.accuracy.options import PAIR, PairOptions
-from fcm.harmonic_balance.normal_plane_prolongation import Prolongation
+from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.scene.options import LIMITS

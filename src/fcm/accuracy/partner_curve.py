@@ -19,7 +19,7 @@ from fcm.accuracy.partner_stretch import PartnerPiece, StretchFollower
 from fcm.accuracy.residual import changes_left_out
 from fcm.continuation import Mark, Path
 from fcm.harmonic_balance.cost_model import seconds_of
-from fcm.harmonic_balance.normal_plane_prolongation import Prolongation
+from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.harmonic_balance.response_quantities import contact_loads_along

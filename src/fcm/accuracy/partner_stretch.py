@@ -19,7 +19,7 @@ from fcm.continuation import Events, Path, Status
 from fcm.continuation.follow import Follower
 from fcm.continuation.stepper import Stepper
 from fcm.harmonic_balance.cost_model import seconds_of
-from fcm.harmonic_balance.normal_plane_prolongation import Prolongation
+from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
 from fcm.harmonic_balance.system import System
 from fcm.harmonic_balance.work_budget import WorkLimitError

@@ -19,7 +19,7 @@ from fcm.accuracy.options import PAIR, REFINEMENT, PairOptions, RefinementOption
 from fcm.accuracy.outline import UncheckedResponse
 from fcm.accuracy.partner import give_back, partner_of, prolongation_to
 from fcm.continuation import Mark, Path
-from fcm.harmonic_balance.normal_plane_prolongation import Prolongation
+from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.model.scene import FloatArray
 from fcm.scene.options import LIMITS

@@ -18,7 +18,7 @@ from fcm.accuracy.partner import give_back, partner_of, prolongation_to
 from fcm.accuracy.required_harmonics import RequiredHarmonics, needed
 from fcm.continuation import Path, Segment
 from fcm.continuation.events import SignChange
-from fcm.harmonic_balance.normal_plane_prolongation import Prolongation
+from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.harmonic_balance.system import System

@@ -21,7 +21,7 @@ from fcm.branches.surface import Surface
 from fcm.continuation import Path
 from fcm.continuation.all_branches import contains
 from fcm.harmonic_balance.cost_model import seconds_of
-from fcm.harmonic_balance.normal_plane_prolongation import Prolongation
+from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.system import System
 from fcm.harmonic_balance.work_budget import WorkLimitError
 from fcm.model.scene import FloatArray

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from fcm.branches.options import PROLONGATION, ProlongationOptions
 from fcm.continuation import Mark, Path
-from fcm.harmonic_balance.normal_plane_prolongation import Prolongation
+from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 

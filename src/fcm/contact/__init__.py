@@ -64,7 +64,7 @@ _HOME = {
 __getattr__ = on_demand(__name__, _HOME)
 
 
-if (kernel := find_spec("fcm.contact.cycle")) and str(kernel.origin).endswith(".py"):
+if (kernel := find_spec("fcm.contact.closed_form")) and str(kernel.origin).endswith(".py"):
     import multiprocessing
 
     if multiprocessing.parent_process() is None:  # workers need not say it again

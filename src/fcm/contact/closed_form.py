@@ -1,5 +1,24 @@
-"""Kernel: Fourier coefficients of the friction force, equation (27), and their derivatives, in closed form.
+"""Kernel: one steady cycle of the contact, and its Fourier coefficients, in closed form.
 
+The cycle is that of sections 3.2 to 3.4 of the paper and its appendix, event by event.
+
+While the contact is closed, |f| <= n says that the slip motion w = u - f lies between
+
+    lower(theta) = sin(theta) - n(theta) =  ell_1 cos(theta - theta_P) - n0_bar
+    upper(theta) = sin(theta) + n(theta) = -ell_2 cos(theta - theta_N) + n0_bar
+
+Where the greatest of the lower limit is no more than the least of the upper one, it sticks (`SlipLimits`).
+
+Positive slip is the lower limit pushing w up, so it ends at theta_P, where that limit is greatest; negative
+slip is the upper limit pushing w down, and ends at theta_N. Between consecutive extremes of the two limits
+the whole of sections 3.2.1 to 3.2.4 is one clip, ``w_end = max(lower, min(w_start, upper))``, and at most one
+slip, which lasts until the end of that *span*. A cycle has at most three spans: those ended by theta_P, by
+theta_N, and by the separation (or by theta_N again when the contact never opens). Nothing has to be searched
+for, and a rounding error can shift an event but never choose a wrong sequence by more than that (`Cycle`).
+
+The states of the cycle, as a word and with the angles at which they begin, are a `Sequence`.
+
+Of it come the Fourier coefficients of the friction force, equation (27), and their derivatives.
 While the contact slips the force is +-n, while it sticks u - w with w at rest. So (27) is a sum over the
 spans of a cycle of integrals of sines and cosines. The force is continuous in theta: the derivative of the
 integral is the integral of the derivative, +-(dn/dx) in a slip, and in a stick the constant that the contact
@@ -16,13 +35,350 @@ from __future__ import annotations
 
 import cython
 import numpy as np
+from cython.cimports.libc.math import atan2, cos, fabs, hypot, isfinite, isnan, sin, sqrt
 
-if cython.compiled:
-    from cython.cimports.fcm.contact.cycle import PI, SLIPPING, STUCK, UNKNOWN, Cycle, SlipLimits, arc
-else:
-    from fcm.contact.cycle import PI, SLIPPING, STUCK, UNKNOWN, Cycle, SlipLimits, arc
+LARGEST = cython.declare(cython.double, 1e300)  # beyond, sums of a few terms would overflow
+FARTHEST = cython.declare(cython.double, 1e304)  # preloads beyond, infinite ones too, are this
+SHRINK = cython.declare(cython.double, 2.0**-32)  # both by this, where b is beyond LARGEST
+
+# what a contact does over a cycle, by the numbers that `periodic` has for it as well
+OPEN = cython.declare(cython.int, 0)  # below n0 = -b
+UNKNOWN = cython.declare(cython.int, 3)  # an argument is no number
+STUCK = cython.declare(cython.int, 4)  # above the slip limit (25)
+SLIPPING = cython.declare(cython.int, 5)
+
+
+@cython.cclass
+class SlipLimits:
+    """`behaviour` takes the arguments of a contact and says what it does.
+
+    n0 and b are the preload and the amplitude of the load as they are calculated with; ell_1 and ell_2 the
+    amplitudes of the limits, lower_P the greatest of the lower one, at theta_P, upper_N the least of the
+    upper one, at theta_N.
+    """
+
+    def behaviour(self, n0_bar: float, b_bar: float, phi: float) -> cython.int:
+        """What a contact does. An infinite n0_bar is as any very large one."""
+        if isnan(n0_bar) or not isfinite(b_bar) or not isfinite(phi):
+            return UNKNOWN
+        # above LARGEST only the ratio matters: the spacing of float64 is far more than 1 there
+        shrink: float = SHRINK if b_bar > LARGEST else 1.0
+        self.n0 = min(max(n0_bar * shrink, -FARTHEST), FARTHEST)
+        self.b = b_bar * shrink
+        self._limits(phi)
+        if self.n0 <= -self.b or (self.b == 0.0 and self.n0 <= 0.0):
+            return OPEN
+        if self.n0 >= self.b and self.lower_P <= self.upper_N:
+            return STUCK
+        return SLIPPING
+
+    def stuck_force(self) -> cython.double:
+        """Mean force of a contact that never slips: the admissible one nearest to zero."""
+        return min(max(0.0, -self.upper_N), max(-self.lower_P, -self.upper_N))
+
+    def _limits(self, phi: float) -> None:
+        """Amplitudes ell_1, ell_2 of (A9) and the directions of theta_P, theta_N, for every phi.
+
+        theta_P = atan2(1 - b cos phi, -b sin phi) and theta_N = atan2(-(1 + b cos phi), -b sin phi) are the
+        branch-free forms of (A4), (A5). Only their sines and cosines are needed. Where an amplitude vanishes
+        (b = 1 at phi = 0 or pi) the limit is constant, and any angle serves.
+        """
+        b: float = self.b
+        sin_half: float = sin(0.5 * phi)
+        cos_half: float = cos(0.5 * phi)
+        self.sin_phi = 2.0 * sin_half * cos_half
+        self.cos_phi = (cos_half - sin_half) * (cos_half + sin_half)
+        # 1 -+ b cos(phi), written so that nothing cancels near b = 1 with phi near 0 or pi
+        minus: float = (1.0 - b) + 2.0 * b * sin_half * sin_half
+        plus: float = (1.0 - b) + 2.0 * b * cos_half * cos_half
+        side: float = b * self.sin_phi
+        self.ell_1, self.ell_2 = hypot(minus, side), hypot(plus, side)
+        self.sin_P, self.cos_P, self.sin_N, self.cos_N = 1.0, 0.0, -1.0, 0.0
+        if self.ell_1 > 0.0:
+            self.sin_P, self.cos_P = minus / self.ell_1, -side / self.ell_1
+        if self.ell_2 > 0.0:
+            self.sin_N, self.cos_N = -plus / self.ell_2, -side / self.ell_2
+        # the extremes of the limits, by ell - b without the cancellation at large b
+        twice: float = 2.0 * b * self.cos_phi
+        self.lower_P = (1.0 - twice) / (self.ell_1 + b) - (self.n0 - b)
+        self.upper_N = (self.n0 - b) - (1.0 + twice) / (self.ell_2 + b)
+
+
+PI = cython.declare(cython.double, 3.141592653589793)
+
+
+def arc(y: float) -> tuple[float, float, float]:
+    """sin(y), 1 - cos(y) and y - sin(y), each with a relative error of some roundings, see `beyond_sine`."""
+    sin_half: float = sin(0.5 * y)
+    sine: float = 2.0 * sin_half * cos(0.5 * y)
+    return sine, 2.0 * sin_half * sin_half, beyond_sine(y, sine)
+
+
+def beyond_sine(y: float, sine: float) -> float:
+    """y - sin(y) to 2e-14 of itself, where it is small by its series: the term left out is 1e-15 at most."""
+    square: float = y * y
+    if y < 0.25:
+        rest: float = 1.0 - square / 72.0 * (1.0 - square / 110.0)
+        return y * square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0 * rest))
+    return y - sine
+
+
+def angle_from(sin_0: float, cos_0: float, sin_1: float, cos_1: float) -> float:
+    """Angle from direction 0 forward to direction 1, in [0, 2 pi) [rad]."""
+    turn: float = atan2(sin_1 * cos_0 - cos_1 * sin_0, cos_1 * cos_0 + sin_1 * sin_0)
+    return turn + 2.0 * PI if turn < 0.0 else turn
+
+
+@cython.cclass
+class Cycle(SlipLimits):
+    """Goes through the cycle of a contact, span by span; what is made of the spans is for subclasses to say.
+
+    Of the cycle: ``theta_1`` is half the contact duration [rad], pi where the contact never opens, and
+    ``closing_rate`` is b sin(theta_1), d n / d theta when it closes. It starts in the direction ``first``, at
+    the end of the separation or, where there is none, of negative slip. ``pull``: there d w = -pull d n at
+    fixed theta, which is what a first stick remembers.
+
+    Of a span: from the direction ``start`` to ``end`` it is ``length`` [rad]: stick, then slip; either may be
+    absent. The slip is ``slip`` [rad], from the direction ``begin`` on; ``sin``, ``versine`` and ``deficit``
+    are the three of `arc`. ``side`` is +1 for positive slip, -1 for negative, 0 for none; w goes from
+    ``w_start`` to ``w_end``, and side (slope sin(y) + curvature (1 - cos(y))) of it in the last y [rad].
+    """
+
+    def take(self) -> None:
+        """What is made of a span; called at the end of each."""
+
+    def find(self, n0_bar: float, b_bar: float, phi: float) -> cython.int:
+        """What a contact does; where it is SLIPPING, its cycle has been gone through."""
+        behaviour: cython.int = self.behaviour(n0_bar, b_bar, phi)
+        if behaviour == SLIPPING:
+            self._pass()
+        return behaviour
+
+    def _pass(self) -> None:
+        """Through the spans, in the order in which theta_P and theta_N come while the contact is closed."""
+        self._start()
+        length: float = 2.0 * self.theta_1
+        to_P: float = angle_from(self.first_sin, self.first_cos, self.sin_P, self.cos_P)
+        to_N: float = length
+        if self.opens:
+            to_N = angle_from(self.first_sin, self.first_cos, self.sin_N, self.cos_N)
+        else:  # always comes by theta_P, if only at the very end
+            to_P = min(to_P, length)
+        P_comes: cython.bint = to_P < length or not self.opens
+        N_comes: cython.bint = to_N < length
+        if P_comes and N_comes and to_P <= to_N:
+            self._until_P(to_P)
+            self._until_N(to_N - to_P)
+            length -= to_N
+        elif P_comes and N_comes:
+            self._until_N(to_N)
+            self._until_P(to_P - to_N)
+            length -= to_P
+        elif P_comes:
+            self._until_P(to_P)
+            length -= to_P
+        elif N_comes:
+            self._until_N(to_N)
+            length -= to_N
+        if self.opens:
+            self._until_open(length)
+        else:
+            self._until_N(length)
+
+    def _start(self) -> None:
+        """Where the cycle starts, (A3), and what follows a separation, (20) to (22)."""
+        self.span = 0
+        self.opens = self.n0 < self.b
+        self.goes_on, self.side = False, 0.0
+        if not self.opens:
+            self.theta_1, self.closing_rate, self.pull = PI, 0.0, -1.0
+            self.first_sin, self.first_cos, self.w_end = self.sin_N, self.cos_N, self.upper_N
+        else:
+            # b +- n0 are exact or nearly so where they are small: theta_1 is accurate at both ends
+            above: float = sqrt(self.b + self.n0)
+            below: float = sqrt(self.b - self.n0)
+            self.theta_1, self.closing_rate = 2.0 * atan2(above, below), above * below
+            cos_1: float = -self.n0 / self.b
+            sin_1: float = self.closing_rate / self.b
+            self.first_sin = self.cos_phi * cos_1 - self.sin_phi * sin_1
+            self.first_cos = self.sin_phi * cos_1 + self.cos_phi * sin_1
+            self.w_end = self.first_sin
+            self.goes_on = fabs(self.first_cos) >= self.closing_rate
+            if self.goes_on:
+                self.side = self.pull = 1.0 if self.first_cos >= 0.0 else -1.0
+            else:
+                self.pull = self.first_cos / self.closing_rate
+        self.end_sin, self.end_cos = self.first_sin, self.first_cos
+
+    def _until_P(self, length: float) -> None:
+        """Up to theta_P, where positive slip ends."""
+        self._until(self.lower_P, 2.0 * self.sin_P - self.lower_P, length)
+        self.end_sin, self.end_cos = self.sin_P, self.cos_P
+        if self.side > 0.0:
+            self._slip(0.0, self.ell_1, True)
+        elif self.side < 0.0:
+            self._slip(-2.0 * self.cos_P, self.ell_1 - 2.0 * self.sin_P, False)
+        self._end()
+
+    def _until_N(self, length: float) -> None:
+        """Up to theta_N, where negative slip ends."""
+        self._until(2.0 * self.sin_N - self.upper_N, self.upper_N, length)
+        self.end_sin, self.end_cos = self.sin_N, self.cos_N
+        if self.side < 0.0:
+            self._slip(0.0, self.ell_2, True)
+        elif self.side > 0.0:
+            self._slip(2.0 * self.cos_N, self.ell_2 + 2.0 * self.sin_N, False)
+        self._end()
+
+    def _until_open(self, length: float) -> None:
+        """Up to the separation, (A2), where both limits are sin(theta)."""
+        cos_1: float = -self.n0 / self.b
+        sin_1: float = self.closing_rate / self.b
+        sin_end: float = self.cos_phi * cos_1 + self.sin_phi * sin_1
+        self._until(sin_end, sin_end, length)
+        self.end_sin, self.end_cos = sin_end, self.sin_phi * cos_1 - self.cos_phi * sin_1
+        if self.side != 0.0:
+            self._slip(
+                self.closing_rate + self.side * self.end_cos, self.n0 + self.side * self.end_sin, False
+            )
+        self._end()
+
+    def _until(self, lower: float, upper: float, length: float) -> None:
+        """The whole of a span in one clip: w between the limits as they are at its end."""
+        self.start_sin, self.start_cos, self.length = self.end_sin, self.end_cos, length
+        self.w_start = self.w_end
+        self.w_end = max(lower, min(self.w_start, upper))
+        before: float = self.side
+        self.side = 0.0
+        if self.w_end > self.w_start:
+            self.side = 1.0
+        elif self.w_end < self.w_start:
+            self.side = -1.0
+        self.goes_on = self.goes_on and self.side == before
+
+    def _slip(self, slope: float, curvature: float, turns: bool) -> None:
+        """How long the slip of a span lasts: slope sin(y) + curvature (1 - cos(y)) = change of w.
+
+        This is (A8), (A11) to (A13) measured back from the end of the slip, in the form that keeps its
+        relative accuracy for the shortest slips and has no arccos of a number that may exceed 1.
+        """
+        self.slope, self.curvature, self.slip = slope, curvature, self.length
+        if not self.goes_on:
+            scale: float = 1.0 / max(1.0, self.b)
+            change: float = fabs(self.w_end - self.w_start) * scale
+            rise: float = slope * scale
+            root: float = sqrt(max(rise * rise + change * (2.0 * curvature * scale - change), 0.0))
+            self.slip = min(2.0 * atan2(change, max(rise + root, 0.0)), self.length)
+        # one that its own limit ends is over; one by a limit that recedes, a rounding error made up
+        self.goes_on = not turns and slope >= 0.0
+
+    def _end(self) -> None:
+        """The end of a span."""
+        if self.side == 0.0:
+            self.goes_on = False
+            self.slip = self.sin = self.versine = self.deficit = 0.0
+            self.begin_sin, self.begin_cos = self.end_sin, self.end_cos
+        else:
+            self.sin, self.versine, self.deficit = arc(self.slip)
+            self.begin_sin = self.end_sin - self.end_sin * self.versine - self.end_cos * self.sin
+            self.begin_cos = self.end_cos - self.end_cos * self.versine + self.end_sin * self.sin
+        self.take()
+        self.span += 1
+
 
 NAN = cython.declare(cython.double, float("nan"))
+# A slip that moves w by less than this, a stick shorter than this, is below what float64 can tell from none.
+INVISIBLE = cython.declare(cython.double, 1e-15)
+
+LETTER_E = cython.declare(cython.int, ord("E"))
+LETTER_P = cython.declare(cython.int, ord("P"))
+LETTER_N = cython.declare(cython.int, ord("N"))
+LETTER_S = cython.declare(cython.int, ord("S"))
+MOST = cython.declare(cython.int, 7)  # states of a cycle, and one more
+
+
+@cython.cclass
+class Sequence(Cycle):
+    """The regions of a cycle that float64 can tell from none, and those without which the others cannot be.
+
+    Between opposite slips there is always a stick, however short. A stick after a slip ends in the opposite
+    slip: the limit that pushed w is past its extreme, and w must leave it to be at the other one at the end.
+
+    ``regions`` has a row for each, ``count`` in all: its letter, its angle since the first begins, and w
+    while it sticks. ``state`` is +1 in positive slip, -1 in negative slip, 0 in stick, 2 in separation.
+    """
+
+    def __init__(self) -> None:
+        self.regions = np.empty((MOST, 3))
+
+    def of(self, n0_bar: float, b_bar: float, phi: float) -> None:
+        """Fill the regions; none where an argument is no number."""
+        self.count = 0
+        behaviour: cython.int = self.find(n0_bar, b_bar, phi)
+        if behaviour == STUCK:
+            self._region(LETTER_E, 0.0, -self.stuck_force())
+        elif behaviour == OPEN:
+            self._region(LETTER_S, 0.0, NAN)
+        elif behaviour == SLIPPING and self.opens and self.state == 0.0 and self.last_slip != 0.0:
+            self._region(LETTER_N if self.last_slip > 0.0 else LETTER_P, self.since, NAN)
+
+    def take(self) -> None:
+        """Adds the regions of a span."""
+        if self.span == 0:
+            self.since, self.last_slip = 2.0 * (PI - self.theta_1), 0.0
+            self.state = 2.0 if self.opens else -1.0
+            if self.opens:
+                self._region(LETTER_S, 0.0, NAN)
+        side: float = self._seen()
+        slip: float = self.slip if side == self.side else 0.0
+        stick: float = self.length - (self.slip if side != 0.0 else 0.0)
+        if self.state != 0.0 and (stick > INVISIBLE or (side != 0.0 and self.state == -side)):
+            self._region(LETTER_E, self.since, self.w_start)
+            self.state = 0.0
+        self.since += self.length
+        if side != 0.0 and side != self.state:
+            self._region(LETTER_P if side > 0.0 else LETTER_N, self.since - slip, NAN)
+        if side != 0.0:
+            self.state = self.last_slip = side
+
+    def _seen(self) -> float:
+        """Side of the slip in a span, 0 where there is none to be seen."""
+        if self.opens:
+            return self.side if fabs(self.w_end - self.w_start) > INVISIBLE else 0.0
+        if self.lower_P - self.upper_N <= INVISIBLE:  # there are both slips, equally large, or none
+            return 0.0
+        return 1.0 if self.span == 0 else -1.0
+
+    def _region(self, letter: cython.int, since: float, w: float) -> None:
+        self.regions[self.count, 0], self.regions[self.count, 1], self.regions[self.count, 2] = (
+            letter,
+            since,
+            w,
+        )
+        self.count += 1
+
+    def loop(
+        self, n0_bar: cython.double, b_bar: cython.double, phi: cython.double
+    ) -> tuple[float, np.ndarray]:
+        """Angle at which the first region begins [rad], and the regions (region, 3); arguments all finite."""
+        self.of(n0_bar, b_bar, phi)
+        at: float = 0.0
+        if self.count > 1:
+            at = atan2(self.end_sin, self.end_cos) if self.opens else atan2(self.first_sin, self.first_cos)
+        return at, np.array(self.regions[: self.count])
+
+    def words(self, points: cython.double[:, ::1]) -> np.ndarray:
+        """The words of many contacts, (point,); rows (3, point) of n0_bar, b_bar, phi."""
+        i: cython.Py_ssize_t
+        k: cython.int
+        letters = np.zeros((points.shape[1], MOST - 1), dtype=np.uint32)
+        out: cython.uint[:, ::1] = letters
+        with cython.nogil:
+            for i in range(points.shape[1]):
+                self.of(points[0, i], points[1, i], points[2, i])
+                for k in range(min(self.count, MOST - 1)):
+                    out[i, k] = cython.cast(cython.uint, self.regions[k, 0])
+        return letters.view(f"U{MOST - 1}")[:, 0]
 
 
 @cython.cclass

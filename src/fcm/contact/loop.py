@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from fcm.contact.cycle import Sequence
+from fcm.contact.closed_form import Sequence
 from fcm.contact.limits import FloatArray
 from fcm.contact.pieces import friction, piece_at
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fcm.continuation.path import FloatArray, Path, Status
-from fcm.continuation.point import PointStore, Stored
+from fcm.continuation.problem import PointStore, Stored
 from fcm.continuation.stepper import Stepper
 
 

@@ -1,5 +1,5 @@
 from fcm.continuation.options cimport EventOptions
-from fcm.continuation.point cimport Point
+from fcm.continuation.problem cimport Point
 from fcm.continuation.stepper cimport Stepper
 
 cdef double NOT_FOUND

@@ -20,7 +20,7 @@ from cython.cimports.libc.math import fabs, sqrt
 from fcm.continuation.extremum_search import ExtremumSearch, Sample
 from fcm.continuation.options import SIGN_CHANGE, EventOptions, SignChangeOptions
 from fcm.continuation.path import FloatArray, Mark
-from fcm.continuation.point import Point
+from fcm.continuation.problem import Point
 from fcm.continuation.stepper import Stepper
 
 if cython.compiled:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.continuation.path import FloatArray
-from fcm.continuation.point import Point
+from fcm.continuation.problem import Point
 from fcm.continuation.stepper import Stepper
 
 

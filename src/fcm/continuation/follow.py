@@ -22,42 +22,41 @@ import numpy as np
 from fcm.continuation.checkpoint import Checkpoint, restore_stepper, stepper_state
 from fcm.continuation.events import NO_EVENTS, End, Events, Landing, first_end
 from fcm.continuation.labelled_switching import LabelledSwitching
-from fcm.continuation.nonsmooth_points import NonsmoothPoints
 from fcm.continuation.options import FOLLOW, FollowOptions, StepOptions, SwitchingOptions
 from fcm.continuation.path import FloatArray, Mark, Path, PathInterrupted, Status
-from fcm.continuation.point import Point, PointStore
-from fcm.continuation.problem import Problem
-from fcm.continuation.recorder import Recorder, step_back
+from fcm.continuation.problem import Point, PointStore, Problem
+from fcm.continuation.recorder import NonsmoothPoints, Recorder, step_back
 from fcm.continuation.stepper import Stepper
 
 if cython.compiled:
-    from cython.cimports.fcm.continuation.nonsmooth_points import before_corner
+    from cython.cimports.fcm.continuation.recorder import before_corner
     from cython.cimports.fcm.continuation.step_control import (
         acceptable,
+        changes_sign,
+        hidden_reversal,
+        hidden_sign_change,
+        next_corner,
+        next_extrapolated_root,
         next_step,
+        parameter_is_even,
+        parameter_reversal,
         smooth_step,
         solution_size,
     )
-    from cython.cimports.fcm.continuation.switching_functions import (
-        changes_sign,
-        hidden_reversal,
-        hidden_sign_change,
-        next_corner,
-        next_extrapolated_root,
-        parameter_is_even,
-        parameter_reversal,
-    )
 else:
-    from fcm.continuation.nonsmooth_points import before_corner
-    from fcm.continuation.step_control import acceptable, next_step, smooth_step, solution_size
-    from fcm.continuation.switching_functions import (
+    from fcm.continuation.recorder import before_corner
+    from fcm.continuation.step_control import (
+        acceptable,
         changes_sign,
         hidden_reversal,
         hidden_sign_change,
         next_corner,
         next_extrapolated_root,
+        next_step,
         parameter_is_even,
         parameter_reversal,
+        smooth_step,
+        solution_size,
     )
 
 __all__ = ["Progress", "Watch", "follow"]

@@ -218,7 +218,7 @@ class EventOptions(Options):
 @cython.cclass
 @dataclass(frozen=True, eq=False, repr=False)
 class SwitchingOptions(Options):
-    """How corners are come to and left where a switching function changes its sign; see `nonsmooth_points`.
+    """How corners are come to and left where a switching function changes its sign; see `NonsmoothPoints`.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-from fcm.continuation.point cimport Point
+from fcm.continuation.problem cimport Point
 
 cdef double MIN_COSINE
 

@@ -11,7 +11,7 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import sqrt
 
-from fcm.continuation.point import Point
+from fcm.continuation.problem import Point
 
 MIN_COSINE = cython.declare(cython.double, 0.1)  # cosine of a turn, below which a step is no cubic any more
 

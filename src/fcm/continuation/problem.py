@@ -2,17 +2,30 @@
 
 A problem knows nothing of the curve, and the follower nothing of what the unknowns mean. A problem writes
 what it is asked for into arrays of its own, so that a step of the follower makes no new ones. It is smooth
-while none of its margins changes sign.
+while none of its margins changes sign. A `Point` of its curve holds what the problem says there; a
+`PointStore` keeps many.
 """
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import cython
 import numpy as np
+import numpy.typing as npt
+from cython.cimports.libc.math import fabs
+
+from fcm.continuation.path import FloatArray, Path, Status
 
 BOUNDLESS = cython.declare(cython.double, 1e9)  # `unbounded` where a problem says nothing else
 COSTLY_SIZE = cython.declare(cython.int, 100)  # unknowns, from which on most of the work is to solve for them
 NONE = cython.declare(cython.int, -1)  # kind of a margin that is none
+
+
+PI = cython.declare(cython.double, 3.141592653589793)
+DIFFERENCE_LENGTH = cython.declare(cython.double, 1e-6)  # length over which margins have their slopes
+MAX_ANGLE = cython.declare(cython.double, 1.0)  # [rad] margins this far from one another are not the same
+ROOM = 256  # points of a store for which there is room at first
 
 
 @cython.cclass
@@ -94,3 +107,283 @@ class Problem:
     def solve(self, right: cython.double[::1]) -> cython.int:
         """Replace a right side (n + 1,) of the equations factored last by the solution, in their units."""
         return 0
+
+
+@cython.cclass
+class Point:
+    """A point of the curve with what the problem says of it; the tangent in scaled coordinates, a unit
+    vector."""
+
+    def __init__(self, problem: Problem) -> None:
+        self.z, self.tangent = np.zeros(problem.unknowns + 1), np.zeros(problem.unknowns + 1)
+        self.margin, self.angle = np.zeros(problem.margins), np.zeros(problem.margins)
+        self.kind = np.zeros(problem.margins, dtype=np.intc)
+        self.slope = np.zeros(problem.margins)  # of the margins, along a unit of length
+        self.output, self.growth = np.zeros(problem.outputs), np.zeros(problem.outputs)
+        self.orientation, self.group = 0.0, problem.group
+        self.has_margin_slopes = False  # whether the slopes are those there
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def set_margins(self, problem: Problem) -> cython.int:
+        """Take the margins that a problem was last asked for."""
+        k: cython.Py_ssize_t
+        for k in range(problem.margins):
+            self.margin[k], self.kind[k], self.angle[k] = problem.margin[k], problem.kind[k], problem.angle[k]
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def copy_from(self, other: Point, unit: cython.double) -> cython.int:
+        """Take everything from another point, whose unit of length is so many of the new."""
+        i: cython.Py_ssize_t
+        self.orientation, self.has_margin_slopes = other.orientation, other.has_margin_slopes
+        for i in range(other.z.shape[0]):
+            self.z[i], self.tangent[i] = other.z[i], other.tangent[i]
+        for i in range(other.slope.shape[0]):
+            self.margin[i], self.kind[i], self.angle[i] = other.margin[i], other.kind[i], other.angle[i]
+            self.slope[i] = other.slope[i] / unit
+        for i in range(other.growth.shape[0]):
+            self.output[i], self.growth[i] = other.output[i], other.growth[i] / unit
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-2, check=False)
+    def partner(
+        self, k: cython.Py_ssize_t, kind: cython.int[::1], angle: cython.double[::1]
+    ) -> cython.Py_ssize_t:
+        """Which of other margins is the one with number k here; -1 if none is.
+
+        It is that of its group and kind nearest to it, if it is also nearest to that.
+        """
+        i: cython.Py_ssize_t
+        first: cython.Py_ssize_t = k - k % self.group
+        end: cython.Py_ssize_t = first + self.group
+        if self.kind[k] == NONE:
+            return -1
+        if kind[k] == self.kind[k] and angle[k] == self.angle[k]:
+            return k
+        i = nearest(self.kind[k], self.angle[k], kind, angle, first, end)
+        return i if i >= 0 and nearest(kind[i], angle[i], self.kind, self.angle, first, end) == k else -1
+
+    @cython.ccall
+    @cython.exceptval(-1e300, check=False)
+    def margin_at(self, k: cython.Py_ssize_t, other: Point) -> cython.double:
+        """The margin at another point that is the one with number k here; 0 if none is."""
+        i: cython.Py_ssize_t = self.partner(k, other.kind, other.angle)
+        return other.margin[i] if i >= 0 else 0.0
+
+    @cython.cfunc
+    @cython.exceptval(-1e300, check=False)
+    def margin_of_problem(self, k: cython.Py_ssize_t, problem: Problem) -> cython.double:
+        """The margin that a problem was last asked for and is the one with number k here; 0 if none is."""
+        i: cython.Py_ssize_t = self.partner(k, problem.kind, problem.angle)
+        return problem.margin[i] if i >= 0 else 0.0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def differentiate_margins(
+        self, problem: Problem, scale: cython.double[::1], probe: cython.double[::1]
+    ) -> cython.int:
+        """The slopes of the margins along the tangent, from differences to a point that is put beside."""
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        self.has_margin_slopes = True
+        if problem.margins == 0 or problem.labelled:
+            return 0
+        for i in range(probe.shape[0]):
+            probe[i] = self.z[i] + DIFFERENCE_LENGTH * scale[i] * self.tangent[i]
+        problem.bound(probe)
+        for k in range(problem.margins):
+            self.slope[k] = 0.0
+            i = self.partner(k, problem.kind, problem.angle)
+            if i >= 0:
+                self.slope[k] = (problem.margin[i] - self.margin[k]) / DIFFERENCE_LENGTH
+        return 0
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def nearest(
+    wanted: cython.int,
+    at: cython.double,
+    kind: cython.int[::1],
+    angle: cython.double[::1],
+    first: cython.Py_ssize_t,
+    end: cython.Py_ssize_t,
+) -> cython.Py_ssize_t:
+    """Of those from first to before end the number of that of a kind whose angle is nearest to one given.
+
+    -1 if there is none near it.
+    """
+    i: cython.Py_ssize_t
+    best: cython.Py_ssize_t = -1
+    least: cython.double = MAX_ANGLE
+    for i in range(first, end):
+        if kind[i] == wanted:
+            off: cython.double = fabs(at - angle[i])
+            off = off if off <= PI else fabs(2.0 * PI - off)
+            if off < least:
+                least, best = off, i
+    return best
+
+
+class Points(NamedTuple):
+    """Points of a store."""
+
+    z: FloatArray  # (point, unknown + 1)
+    direction: FloatArray
+    mark: npt.NDArray[np.int64]  # (point,)
+    orientation: FloatArray  # (point,)
+
+
+class Stored(NamedTuple):
+    """The points of a store: those before the last do not change any more, and are not copied."""
+
+    before: Points
+    last: tuple[FloatArray, FloatArray, int, float]  # to be put again
+
+    @property
+    def number(self) -> int:
+        """How many there are."""
+        return len(self.before.mark) + 1
+
+
+@cython.cclass
+class PointStore:
+    """count points: z, direction (point, unknown + 1), mark, orientation (point,), as of a `Path`."""
+
+    def __init__(self, size: cython.int) -> None:
+        self.count, self.size = 0, size
+        self.z, self.direction = np.empty((ROOM, size)), np.empty((ROOM, size))
+        self.mark, self.orientation = np.empty(ROOM, dtype=np.int64), np.empty(ROOM)
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def add(self, point: Point, scale: cython.double[::1], mark: cython.long) -> cython.int:
+        """Keep a point, with lengths in units of scale."""
+        i: cython.Py_ssize_t
+        self.widen()
+        for i in range(self.size):
+            self.z[self.count, i] = point.z[i]
+            self.direction[self.count, i] = scale[i] * point.tangent[i]
+        self.mark[self.count] = mark
+        self.orientation[self.count] = point.orientation
+        self.count += 1
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def put(
+        self,
+        z: cython.double[::1],
+        direction: cython.double[::1],
+        mark: cython.long,
+        orientation: cython.double,
+    ) -> cython.int:
+        """Keep a point."""
+        self.widen()
+        self.z[self.count, :], self.direction[self.count, :] = z, direction
+        self.mark[self.count] = mark
+        self.orientation[self.count] = orientation
+        self.count += 1
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def widen(self) -> cython.int:
+        """Make room for one more point."""
+        if self.count < self.mark.shape[0]:
+            return 0
+        self.z, self.direction = _twice(self.z), _twice(self.direction)
+        self.mark, self.orientation = _twice(self.mark), _twice(self.orientation)
+        return 0
+
+    def last(self) -> FloatArray:
+        """The last point."""
+        return np.array(self.z[self.count - 1])
+
+    def tail(self) -> tuple[FloatArray, FloatArray, int, float]:
+        """A copy of the last point, to be put again."""
+        k = self.count - 1
+        return self.last(), np.array(self.direction[k]), int(self.mark[k]), float(self.orientation[k])
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def ends_at(self, point: Point) -> cython.bint:
+        """Whether the last point is a point."""
+        i: cython.Py_ssize_t
+        for i in range(self.size):  # noqa: SIM110 - a loop in C
+            if self.z[self.count - 1, i] != point.z[i]:
+                return False
+        return True
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def same(self, i: cython.Py_ssize_t, k: cython.Py_ssize_t, part: cython.double) -> cython.bint:
+        """Whether two points differ by less than a part of the greatest unknown of the second."""
+        j: cython.Py_ssize_t
+        off: cython.double = fabs(self.z[i, self.size - 1] - self.z[k, self.size - 1])
+        size: cython.double = 0.0
+        for j in range(self.size - 1):
+            off = max(off, fabs(self.z[i, j] - self.z[k, j]))
+            size = max(size, fabs(self.z[k, j]))
+        return off < part * size
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def mark_last(self, mark: cython.long) -> cython.int:
+        """Mark the last point by that, too."""
+        self.mark[self.count - 1] |= mark
+        return 0
+
+    def cut(self, count: int) -> None:
+        """Forget all but so many points."""
+        self.count = count
+
+    def drop(self) -> int:
+        """Forget the last point; its mark."""
+        self.count -= 1
+        return int(self.mark[self.count])
+
+    def close(self) -> None:
+        """End at the first point."""
+        first = np.array(self.z[0]), np.array(self.direction[0])
+        self.put(*first, self.mark[0], self.orientation[0])
+
+    def points(self) -> Points:
+        """The points as they are now."""
+        return self._first(self.count)
+
+    def _first(self, count: int) -> Points:
+        z, direction = np.asarray(self.z)[:count], np.asarray(self.direction)[:count]
+        return Points(z, direction, np.asarray(self.mark)[:count], np.asarray(self.orientation)[:count])
+
+    def state(self) -> Stored:
+        """The points as they will be kept, whatever comes after."""
+        return Stored(self._first(self.count - 1), self.tail())
+
+    def restore(self, kept: Stored) -> None:
+        """Have these points and no others."""
+        self.count = 0
+        for z, direction, mark, orientation in zip(*kept.before, strict=True):
+            self.put(np.array(z), np.array(direction), mark, orientation)
+        self.put(*kept.last)
+
+    def path(self, status: Status, evaluations: int) -> Path:
+        """The points as they are."""
+        z, direction, mark, orientation = self.points()
+        return Path(
+            z=np.array(z),
+            direction=np.array(direction),
+            mark=np.array(mark),
+            orientation=np.array(orientation),
+            status=status,
+            evaluations=evaluations,
+        )
+
+
+def _twice(kept: object) -> Any:
+    """With as much room again."""
+    array = np.asarray(kept)
+    return np.concatenate((array, np.empty_like(array)))

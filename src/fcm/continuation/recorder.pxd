@@ -1,6 +1,5 @@
+from fcm.continuation.problem cimport Point, PointStore
 from fcm.continuation.stepper cimport Stepper
-from fcm.continuation.point cimport Point
-from fcm.continuation.point cimport PointStore
 
 cdef class Recorder:
     cdef readonly Stepper stepper
@@ -22,3 +21,23 @@ cdef class Recorder:
     cdef void update_greatest(self) noexcept
     cdef bint closed(self) except -1
     cdef bint inside(self) noexcept
+
+cdef double before_corner(Stepper stepper) except? -1
+
+cdef class NonsmoothPoints:
+    cdef Recorder recorder
+    cdef bint labelled
+    cdef double[::1] growth_before
+    cdef int pass_corner(self, Point point, double length, double past) except -1
+    cdef bint is_peak(self) noexcept
+
+cpdef int go_to_corner(Stepper stepper, Point point, double pass_corner) except -1
+cpdef bint cross_corner(Stepper stepper, double[::1] stops) except -1
+cpdef bint cross_label(Stepper stepper, double past) except -1
+cdef void predict_past_label(Stepper stepper, double past) noexcept
+cdef bint point_beyond(Stepper stepper, double length) except -1
+cdef bint close_to_prediction(Stepper stepper, double length) noexcept
+cdef bint without_sign_change(Stepper stepper, double length) except -1
+cdef bint predict_beyond(Stepper stepper, double length) except -1
+cdef bint passes_station(Stepper stepper, double[::1] stops) noexcept
+cdef int accept_beyond(Stepper stepper, double length, bint go) except -1

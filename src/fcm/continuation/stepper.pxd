@@ -1,8 +1,7 @@
 from fcm.continuation.corrector cimport Newton
 from fcm.continuation.options cimport FollowOptions
-from fcm.continuation.point cimport Point
+from fcm.continuation.problem cimport Point, Problem
 from fcm.continuation.predictor cimport Predictor
-from fcm.continuation.problem cimport Problem
 
 cdef class Stepper:
     cdef public Problem problem

@@ -12,8 +12,7 @@ from cython.cimports.libc.math import fabs, sqrt
 
 from fcm.continuation.corrector import Newton
 from fcm.continuation.options import FOLLOW, FollowOptions
-from fcm.continuation.point import Point
-from fcm.continuation.problem import Problem
+from fcm.continuation.problem import Point, Problem
 
 if cython.compiled:
     from cython.cimports.fcm.continuation.predictor import MIN_COSINE, Predictor, dot

@@ -1,3 +1,9 @@
+from fcm.contact.closed_form cimport CoefficientLaw
+from fcm.contact.periodic.forces cimport PeriodicContact
+from fcm.contact.periodic.margins cimport Margins, Measures
+from fcm.contact.plane.forces cimport PlanarContact
+from fcm.contact.plane.margins cimport PlanarMargins, PlanarMeasures
+
 cdef int KINDS
 
 cdef class Law:
@@ -28,3 +34,26 @@ cdef class KernelLaw(Law):
     cdef int forces(self, double[::1] x, Py_ssize_t first, bint tangent) except -1
     cdef void take_forces(self, double[::1] forces) noexcept
     cdef int take_margins(self, int count, int[::1] kind, double[::1] value, double[::1] angle) except -1
+
+cdef class LineLaw(KernelLaw):
+    cdef public PeriodicContact kernel
+    cdef public Margins bounds
+    cdef Measures measures
+
+cdef class PlanarLaw(KernelLaw):
+    cdef public PlanarContact kernel
+    cdef public PlanarMargins bounds
+    cdef PlanarMeasures measures
+
+cdef class SingleHarmonicLaw(Law):
+    cdef public CoefficientLaw coefficients
+    cdef double[::1] numbers
+    cdef double[:, ::1] slopes
+    cdef double least, most
+    cpdef bint rests(self) except -1
+    cdef double limit(self, double[::1] x, Py_ssize_t first, double sign) noexcept
+    cdef void limits(self, double[::1] x, Py_ssize_t first, double b) noexcept
+    cdef void slipping(self, double[::1] x, Py_ssize_t first, double b) noexcept
+    cdef void chain(self, double[::1] x, Py_ssize_t first, double n0_bar, double b_bar, double a, double b) noexcept
+    cdef void stuck(self, double[::1] x, Py_ssize_t first) noexcept
+    cdef void normal(self, double[::1] x, Py_ssize_t first, double b) noexcept

@@ -6,7 +6,8 @@ alike: the friction along its tangential directions, and the normal force, which
 n - max(n_0, 0), in equilibrium with the structure at rest.
 
 How many directions there are, which harmonics its forces have, and where they are not smooth is for the law
-to say; nothing else knows.
+to say; nothing else knows. There are laws of the contact on a line and in a plane, exact for a mean and any
+harmonics, and in closed form of one on a line with a mean and one harmonic (section 4 of the paper).
 """
 
 from __future__ import annotations
@@ -15,13 +16,38 @@ from typing import Any
 
 import cython
 import numpy as np
+from cython.cimports.libc.math import atan2, hypot, sqrt
+
+from fcm.contact.closed_form import CoefficientLaw
+from fcm.contact.periodic.forces import PeriodicContact
+from fcm.contact.periodic.margins import Margins, Measures
+from fcm.contact.plane.forces import PlanarContact
+from fcm.contact.plane.margins import PlanarMargins, PlanarMeasures
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
+    from cython.cimports.fcm.contact.periodic.motion import CLOSED, MIXED
+    from cython.cimports.fcm.contact.plane.cycle import STUCK
+    from cython.cimports.fcm.contact.plane.integrals import CONTACT, SLIPS_X, SLIPS_Y, STICKS
     from cython.cimports.fcm.continuation.problem import NONE
 else:
+    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
+    from fcm.contact.periodic.motion import CLOSED, MIXED
+    from fcm.contact.plane.cycle import STUCK
+    from fcm.contact.plane.integrals import CONTACT, SLIPS_X, SLIPS_Y, STICKS
     from fcm.continuation.problem import NONE
 
+
 KINDS = cython.declare(cython.int, 9)  # of margins, at most
+
+
+PI = cython.declare(cython.double, 3.141592653589793)
+MIN_AMPLITUDE = cython.declare(cython.double, 1e-150)  # amplitudes below this count as this in a division
+CLOSES = cython.declare(cython.int, 0)  # margins, see `bound`
+OPENS = cython.declare(cython.int, 1)
+SLIPS = cython.declare(cython.int, 2)
+MOST = cython.declare(cython.int, 3)
+LEAST = cython.declare(cython.int, 4)
 
 
 @cython.cclass
@@ -162,3 +188,355 @@ class KernelLaw(Law):
 def kind_of(law: Law, i: int, contact: int) -> int:
     """Of the margin i of a contact, which it is among those of all contacts; for problems in Python."""
     return NONE if law.kind[i] == NONE else int(law.kind[i] + contact * KINDS)
+
+
+@cython.cclass
+class LineLaw(KernelLaw):
+    """Forces of a periodic motion with their derivatives; the kernel is a workspace, whose array the tangent
+    is."""
+
+    def __init__(
+        self,
+        kernel: PeriodicContact,
+        mu: cython.double,
+        k_u: cython.double,
+        k_v: cython.double,
+        n_0: cython.double,
+    ) -> None:
+        self.kernel, self.bounds = kernel, Margins(kernel.cycle)
+        KernelLaw.__init__(self, kernel, 2, self.bounds.most, mu, k_u, k_v, n_0)
+        self.state = kernel.cycle.state
+        self.measures: Measures | None = None  # made when it is asked for
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
+        """And their tangent, if that is wanted."""
+        self.kernel.evaluate(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0, tangent)
+        self.take_forces(self.kernel.forces)
+        self.nonlinear = self.kernel.kind == MIXED
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def bound(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+        self.bounds.find(x, first, self.mu, self.k_u, self.k_v, self.n_0)
+        return self.take_margins(self.bounds.count, self.bounds.kind, self.bounds.value, self.bounds.angle)
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def compute_resistance(self) -> cython.int:
+        p: cython.int
+        stick: cython.double = 0.0
+        closed: cython.double = 0.0
+        pushed: cython.double = 0.0
+        for p in range(self.kernel.cycle.pieces):
+            state: cython.int = self.kernel.cycle.state[p]
+            last: cython.bint = p + 1 == self.kernel.cycle.pieces
+            end: cython.double = self.kernel.cycle.begin[0] if last else self.kernel.cycle.begin[p + 1]
+            length: cython.double = end - self.kernel.cycle.begin[p]
+            while length < 0.0 or (last and length <= 0.0):
+                length += TWO_PI
+            length /= TWO_PI
+            closed += length if state != SEPARATION else 0.0
+            stick += length if state == STICK else 0.0
+            pushed += length if state == POSITIVE else -length if state == NEGATIVE else 0.0
+        self.resistance[0, 0] = stick * self.k_u if self.mu > 0.0 else 0.0
+        self.resistance[0, 1] = pushed * self.mu * self.k_v
+        self.resistance[1, 1] = closed * self.k_v
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def cycle(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+        if self.measures is None:
+            self.measures = Measures(self.kernel.cycle)
+        self.kernel.cycle.take(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0)
+        self.pieces = self.kernel.cycle.pieces
+        self.measures.bear(self.k_u)
+        self.contact_loads[0] = max(self.measures.greatest_load, 0.0)
+        self.contact_loads[1], self.contact_loads[2] = (
+            self.measures.greatest_friction,
+            self.measures.slip_path,
+        )
+        self.contact_loads[3] = self.measures.dissipation
+        return 0
+
+
+@cython.cclass
+class PlanarLaw(KernelLaw):
+    """Forces of a periodic motion with their derivatives; the kernel is a workspace, whose array the tangent
+    is."""
+
+    def __init__(
+        self,
+        kernel: PlanarContact,
+        mu: cython.double,
+        k_u: cython.double,
+        k_v: cython.double,
+        n_0: cython.double,
+    ) -> None:
+        self.kernel, self.bounds = kernel, PlanarMargins(kernel.cycle)
+        KernelLaw.__init__(self, kernel, 3, self.bounds.most, mu, k_u, k_v, n_0)
+        self.measures = PlanarMeasures(kernel.cycle)
+        self.state = self.measures.state
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
+        """And their tangent, if that is wanted."""
+        self.kernel.evaluate(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0, 0.0, tangent)
+        self.take_forces(self.kernel.forces)
+        # without friction it slides to and fro, and its forces have no further harmonics if it stays closed
+        smooth: cython.bint = self.kernel.cycle.behaviour == CLOSED and not self.mu * self.k_u > 0.0
+        self.nonlinear = self.kernel.kind == MIXED and not smooth
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def bound(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+        self.bounds.find(x, first, self.mu, self.k_u, self.k_v, self.n_0)
+        return self.take_margins(self.bounds.count, self.bounds.kind, self.bounds.value, self.bounds.angle)
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def compute_resistance(self) -> cython.int:
+        """While it sticks k_u, while it slips mu k_v along its direction by the normal displacement."""
+        sums = self.kernel.sums
+        rubs: cython.bint = self.mu * self.k_u > 0.0
+        stick: cython.double = 0.0
+        closed: cython.double = 0.0
+        x: cython.double = 0.0
+        y: cython.double = 0.0
+        if self.kernel.kind == STUCK:
+            stick = closed = 1.0
+        elif self.kernel.kind == MIXED:
+            closed = sums.cos_sum[CONTACT, 0] / TWO_PI
+            if rubs:
+                stick = sums.cos_sum[STICKS, 0] / TWO_PI
+                x, y = sums.cos_sum[SLIPS_X, 0] / TWO_PI, sums.cos_sum[SLIPS_Y, 0] / TWO_PI
+        self.resistance[0, 0] = self.resistance[1, 1] = stick * self.k_u if rubs else 0.0
+        self.resistance[0, 2], self.resistance[1, 2] = x * self.mu * self.k_v, y * self.mu * self.k_v
+        self.resistance[2, 2] = closed * self.k_v
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def cycle(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+        self.forces(x, first, False)
+        self.measures.bear(self.mu, self.k_u)
+        self.pieces = self.measures.pieces
+        self.contact_loads[0], self.contact_loads[1] = (
+            self.measures.greatest_load,
+            self.measures.greatest_friction,
+        )
+        self.contact_loads[2], self.contact_loads[3] = self.measures.slip_path, self.measures.dissipation
+        return 0
+
+
+@cython.cclass
+class SingleHarmonicLaw(Law):
+    """Forces (27) and (29) with their derivatives by u_0, v_0, U, V.
+
+    Its coefficients are a law's: the closed form, or a table.
+    """
+
+    def __init__(
+        self,
+        coefficients: CoefficientLaw,
+        mu: cython.double,
+        k_u: cython.double,
+        k_v: cython.double,
+        n_0: cython.double,
+    ) -> None:
+        Law.__init__(self, 6, 2, 5, mu, k_u, k_v, n_0)
+        self.coefficients = coefficients
+        self.numbers, self.slopes = np.zeros(12), np.zeros((3, 6))
+        self.least, self.most = 0.0, 0.0  # see `limits`
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def evaluate(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+        b: cython.double = hypot(x[first + 4], x[first + 5])
+        self.force[:] = 0.0
+        self.tangent[:, :] = 0.0
+        self.nonlinear = False
+        if self.k_v > 0.0:
+            self.normal(x, first, b)
+        if self.mu > 0.0 and self.k_u > 0.0:
+            self.limits(x, first, b)
+            if self.rests():
+                self.stuck(x, first)
+            elif self.margin[CLOSES] > 0.0:
+                self.nonlinear = True
+                self.slipping(x, first, b)
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def bound(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+        """Forces by which a contact is closed at some time, and at all times; by which it is beyond the slip
+        limit (25); and, where it never slips, by which its mean friction is within its limits.
+        """
+        self.limits(x, first, hypot(x[first + 4], x[first + 5]))
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def limits(self, x: cython.double[::1], first: cython.Py_ssize_t, b: cython.double) -> cython.void:
+        """The same where |V| is b; and between which limits a contact's mean friction is where it sticks."""
+        load: cython.double = self.n_0 + self.k_v * x[first + 1]
+        variation: cython.double = self.k_v * b
+        self.margin[CLOSES] = load + variation if variation > 0.0 else load
+        self.margin[OPENS] = load - variation
+        self.most = self.mu * load - self.limit(x, first, -1.0)
+        self.least = self.limit(x, first, 1.0) - self.mu * load
+        self.margin[SLIPS] = self.most - self.least
+        within: cython.bint = self.most > self.least and load > variation
+        self.margin[MOST] = self.most - self.k_u * x[first] if within else 0.0
+        self.margin[LEAST] = self.k_u * x[first] - self.least if within else 0.0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def rests(self) -> cython.bint:
+        """Whether the contact never slips nor opens, by the margins as they were last asked for."""
+        return self.margin[SLIPS] > 0.0 and self.margin[OPENS] > 0.0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def limit(self, x: cython.double[::1], first: cython.Py_ssize_t, sign: cython.double) -> cython.double:
+        """|k_u U + sign mu k_v V|: k_u a times ell_1 (sign -1) or ell_2 (sign 1) of (A9)."""
+        m: cython.double = sign * self.mu * self.k_v
+        return hypot(self.k_u * x[first + 2] + m * x[first + 4], self.k_u * x[first + 3] + m * x[first + 5])
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def stuck(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.void:
+        """A spring; it resists the mean displacement too, as far as the `limits` of its friction allow."""
+        k: cython.double = self.k_u
+        sign: cython.double = 0.0
+        i: cython.Py_ssize_t
+        for i in range(2, 4):
+            self.force[i] = k * x[first + i]
+            self.tangent[i, i] = k
+        if k * x[first] > self.most:
+            sign, self.force[0] = -1.0, self.most
+        elif k * x[first] < self.least:
+            sign, self.force[0] = 1.0, self.least
+        else:
+            self.force[0], self.tangent[0, 0] = k * x[first], k
+            return
+        # the derivative of sign (|k_u U + sign mu k_v V| - mu n)
+        m: cython.double = sign * self.mu * self.k_v
+        size: cython.double = max(self.limit(x, first, sign), MIN_AMPLITUDE)
+        for i in range(2):
+            along: cython.double = (k * x[first + 2 + i] + m * x[first + 4 + i]) / size
+            self.tangent[0, 2 + i] = sign * k * along
+            self.tangent[0, 4 + i] = sign * m * along
+        self.tangent[0, 1] = -m
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def normal(self, x: cython.double[::1], first: cython.Py_ssize_t, b: cython.double) -> cython.void:
+        """(28) to (31): k_v b (N_b + N_s cos), less the preload that the structure at rest balances."""
+        k: cython.double = self.k_v
+        load: cython.double = self.n_0 + k * x[first + 1]
+        preload: cython.double = max(self.n_0, 0.0)
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        if load >= k * b:
+            # closed throughout, without the preload: it may be far larger than what is left
+            self.force[1] = k * x[first + 1] + min(self.n_0, 0.0)
+            self.tangent[1, 1] = k
+            for i in range(4, 6):
+                self.force[i] = k * x[first + i]
+                self.tangent[i, i] = k
+            return
+        self.force[1] = -preload
+        if load <= -k * b:
+            return
+        self.nonlinear = True
+        star: cython.double = load / (k * b)
+        closed: cython.double = sqrt(1.0 + star)
+        opened: cython.double = sqrt(1.0 - star)
+        theta_1: cython.double = 2.0 * atan2(closed, opened)
+        sin_1: cython.double = closed * opened
+        N_s: cython.double = (star * sin_1 + theta_1) / PI
+        slope: cython.double = 2.0 * sin_1 / PI  # of N_s by n0_star
+        self.force[1] = k * b * (sin_1 + star * theta_1) / PI - preload
+        self.tangent[1, 1] = k * theta_1 / PI
+        for i in range(2):
+            self.force[4 + i] = k * N_s * x[first + 4 + i]
+            along_i: cython.double = x[first + 4 + i] / b
+            self.tangent[1, 4 + i] = k * sin_1 / PI * along_i
+            self.tangent[4 + i, 1] = k * slope * along_i
+            for j in range(2):
+                self.tangent[4 + i, 4 + j] = -k * slope * star * along_i * x[first + 4 + j] / b
+            self.tangent[4 + i, 4 + i] += k * N_s
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def slipping(self, x: cython.double[::1], first: cython.Py_ssize_t, b: cython.double) -> cython.void:
+        """(27) with the phase of u restored: k_u U (F_s + i F_c), and the mean k_u a F_b."""
+        k: cython.double = self.k_u
+        U_r: cython.double = x[first + 2]
+        U_i: cython.double = x[first + 3]
+        V_r: cython.double = x[first + 4]
+        V_i: cython.double = x[first + 5]
+        a: cython.double = max(hypot(U_r, U_i), MIN_AMPLITUDE)
+        ratio: cython.double = self.mu / (k * a)
+        n0_bar: cython.double = ratio * (self.n_0 + self.k_v * x[first + 1])
+        b_bar: cython.double = ratio * self.k_v * b
+        phi: cython.double = atan2(V_i * U_r - V_r * U_i, V_r * U_r + V_i * U_i)
+        self.coefficients.evaluate(n0_bar, b_bar, phi, True, self.numbers, 0)
+        self.chain(x, first, n0_bar, b_bar, a, max(b, MIN_AMPLITUDE))
+        F_b: cython.double = self.numbers[0]
+        F_s: cython.double = self.numbers[1]
+        F_c: cython.double = self.numbers[2]
+        cos_u: cython.double = U_r / a
+        sin_u: cython.double = U_i / a
+        i: cython.Py_ssize_t
+        for i in range(6):
+            self.tangent[0, i] = k * self.slopes[0, i]
+            self.tangent[2, i] = k * (cos_u * self.slopes[1, i] - sin_u * self.slopes[2, i])
+            self.tangent[3, i] = k * (sin_u * self.slopes[1, i] + cos_u * self.slopes[2, i])
+        self.force[0] = k * a * F_b
+        self.force[2] = k * (F_s * U_r - F_c * U_i)
+        self.force[3] = k * (F_s * U_i + F_c * U_r)
+        self.tangent[0, 2] += k * F_b * cos_u
+        self.tangent[0, 3] += k * F_b * sin_u
+        self.tangent[2, 2] += k * F_s
+        self.tangent[3, 3] += k * F_s
+        self.tangent[2, 3] -= k * F_c
+        self.tangent[3, 2] += k * F_c
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def chain(
+        self,
+        x: cython.double[::1],
+        first: cython.Py_ssize_t,
+        n0_bar: cython.double,
+        b_bar: cython.double,
+        a: cython.double,
+        b: cython.double,
+    ) -> cython.void:
+        """slopes: a times the derivatives of F_b, F_s, F_c by the unknowns, from those by n0_bar, b_bar,
+        phi."""
+        k: cython.double = self.mu / self.k_u * self.k_v
+        relative: cython.double = a / b
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        for j in range(3):
+            by_n0: cython.double = self.numbers[3 + 3 * j]
+            by_b: cython.double = self.numbers[4 + 3 * j]
+            by_phi: cython.double = self.numbers[5 + 3 * j]
+            self.slopes[j, 1] = by_n0 * k
+            for i in range(2):
+                along: cython.double = x[first + 2 + i] / a
+                self.slopes[j, 2 + i] = -(by_n0 * n0_bar + by_b * b_bar) * along
+                self.slopes[j, 4 + i] = by_b * k * x[first + 4 + i] / b
+            self.slopes[j, 2] += by_phi * x[first + 3] / a
+            self.slopes[j, 3] -= by_phi * x[first + 2] / a
+            self.slopes[j, 4] -= by_phi * relative * x[first + 5] / b
+            self.slopes[j, 5] += by_phi * relative * x[first + 4] / b

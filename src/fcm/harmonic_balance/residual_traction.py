@@ -21,10 +21,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation.corrector import Newton
-from fcm.harmonic_balance.contact_law import Law
+from fcm.harmonic_balance.contact_law import Law, LineLaw, PlanarLaw
 from fcm.harmonic_balance.dense_jacobian import apply_compliance, jacobian_of
-from fcm.harmonic_balance.line_contact import LineLaw
-from fcm.harmonic_balance.planar_contact import PlanarLaw
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray

@@ -16,10 +16,8 @@ from fcm.contact.closed_form import ClosedForm, CoefficientLaw
 from fcm.contact.periodic.workspace import periodic_contact
 from fcm.contact.plane.workspace import planar_contact
 from fcm.continuation.stepper import Stepper
-from fcm.harmonic_balance.contact_law import Law
+from fcm.harmonic_balance.contact_law import Law, LineLaw, PlanarLaw, SingleHarmonicLaw
 from fcm.harmonic_balance.displacement import Displacements, TravellingDisplacements
-from fcm.harmonic_balance.homotopy import ForceLevelProblem
-from fcm.harmonic_balance.line_contact import LineLaw
 from fcm.harmonic_balance.modal_condensation import (
     CONDENSATION,
     CondensationOptions,
@@ -28,10 +26,9 @@ from fcm.harmonic_balance.modal_condensation import (
     modal_compliance,
 )
 from fcm.harmonic_balance.options import HARMONIC_BALANCE, HarmonicBalanceOptions
-from fcm.harmonic_balance.planar_contact import PlanarLaw
+from fcm.harmonic_balance.prolongation import ForceLevelProblem
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.sampled import SampledLaw
-from fcm.harmonic_balance.single_harmonic_contact import SingleHarmonicLaw
 from fcm.harmonic_balance.work_budget import WorkCount
 from fcm.model.scene import FloatArray, Scene
 from fcm.structure.layout import Layout, layout_of

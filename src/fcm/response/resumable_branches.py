@@ -11,7 +11,7 @@ import numpy as np
 
 from fcm.continuation import Checkpoint, Events, FollowOptions, Path, Status, follow
 from fcm.continuation.options import PATH
-from fcm.continuation.point import Points, Stored
+from fcm.continuation.problem import Points, Stored
 from fcm.model.scene import FloatArray
 from fcm.response.options import RESUMABLE
 from fcm.run import Report

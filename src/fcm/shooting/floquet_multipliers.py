@@ -10,8 +10,7 @@ from fcm.stability.eigenvalues import eigenvalues
 from fcm.stability.many_monodromy import ManyMonodromy
 from fcm.stability.monodromy import Monodromy
 from fcm.stability.options import STABILITY, StabilityOptions
-from fcm.time_domain.segment_sequence import SegmentSequence
-from fcm.time_domain.segments import Segments
+from fcm.time_domain.segments import Segments, SegmentSequence
 from fcm.time_domain.system import System
 
 ComplexArray = npt.NDArray[np.complex128]

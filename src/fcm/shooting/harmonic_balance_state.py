@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from fcm.contact import hysteresis_loop, periodic_forces
 from fcm.contact.closed_form import ClosedForm
-from fcm.harmonic_balance.single_harmonic_contact import SingleHarmonicLaw
+from fcm.harmonic_balance.contact_law import SingleHarmonicLaw
 from fcm.model.scene import Contact, FloatArray, Scene
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.time_domain.equations import has_friction

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fcm.continuation.corrector import Newton, correct_with_kept_jacobian
-from fcm.harmonic_balance.homotopy import Homotopy
-from fcm.harmonic_balance.normal_plane_prolongation import DAMPED, Prolongation
+from fcm.harmonic_balance.prolongation import DAMPED, Homotopy, Prolongation
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.options import STABILITY, StabilityOptions
@@ -46,7 +45,7 @@ class Rebalancing:
 
         The forces are those of z, whatever their level: what the harmonics balanced there lack is kept. None
         where Newton's method finds nothing near; nor, if it is persistent, by parts from z itself. Of many
-        contacts damped steps are taken first, see `normal_plane_prolongation`; and before these, close to the
+        contacts damped steps are taken first, see `Prolongation`; and before these, close to the
         last solution, whole ones from where that was beside its own z.
         """
         here = self.system.extended(z, self.harmonics)

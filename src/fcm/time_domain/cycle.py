@@ -8,8 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from fcm.model.scene import FloatArray
-from fcm.time_domain.segment_walk import sample
-from fcm.time_domain.segments import Segments
+from fcm.time_domain.segments import Segments, sample
 from fcm.time_domain.system import LETTERS, System
 
 

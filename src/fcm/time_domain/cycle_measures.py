@@ -9,7 +9,7 @@ import numpy as np
 
 from fcm.model.scene import FloatArray
 from fcm.time_domain.cycle import Cycle
-from fcm.time_domain.extremes import Scan
+from fcm.time_domain.measures import Scan
 from fcm.time_domain.segments import Segments
 from fcm.time_domain.system import System
 

@@ -9,7 +9,7 @@ import numpy as np
 from fcm.model.scene import Contact, FloatArray
 from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.equations import sines_and_cosines
-from fcm.time_domain.integrals import Powers
+from fcm.time_domain.measures import Powers
 from fcm.time_domain.state import entry
 from fcm.time_domain.system import System
 from fcm.time_domain.trajectory import Motion

@@ -27,7 +27,7 @@ import numpy as np
 from cython.cimports.libc.math import fabs
 
 from fcm.time_domain.equations import Matrices
-from fcm.time_domain.segments import ORDER
+from fcm.time_domain.forcing import ORDER
 
 if cython.compiled:
     from cython.cimports.fcm.time_domain.forcing import Forced

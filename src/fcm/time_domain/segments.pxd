@@ -1,24 +1,5 @@
-cdef class Pool:
-    cdef readonly Py_ssize_t modes, contacts, springs, linear, size, waves, count, clock
-    cdef readonly double omega, highest
-    cdef readonly double[::1] harmonic, stiffness, damping, mu, k_u, k_v, n_0
-    cdef readonly double[::1] hold
-    cdef readonly double[:, ::1] constant, square, drive, slope, tangential, normal, push_u, push_v, stretch, pull
-    cdef readonly signed char[::1] rough, halved
-    cdef readonly signed char[:, ::1] states
-    cdef readonly double[::1] step
-    cdef readonly Py_ssize_t[::1] exits, reached, watched, squared, spelled
-    cdef readonly Py_ssize_t[:, ::1] owner, first, spread
-    cdef readonly signed char[:, ::1] goal
-    cdef readonly double[:, :, ::1] terms, row, table, table_forced, series, series_forced, sizes, sizes_forced
-    cdef readonly double[:, :, :, ::1] power, forced, push, pushed, kick
-    cdef readonly double[:, :, ::1] rotation
-    cdef readonly double[::1] made_for
-    cdef dict _pool
-    cdef Py_ssize_t min_count
-    cdef double max_bytes
-    cdef readonly Py_ssize_t[::1] used
-    cdef Py_ssize_t find(self, signed char[:, ::1] states, Py_ssize_t k) noexcept nogil
+from fcm.stability.state_sequence cimport StateSequence
+from fcm.time_domain.flow cimport Flows
 
 cdef class Segments:
     cdef public Py_ssize_t count
@@ -27,3 +8,27 @@ cdef class Segments:
     cdef readonly signed char[:, ::1] states
     cdef readonly double[:] start, length, ended
     cdef void _part(self, Py_ssize_t size)
+
+cdef class Walk:
+    cdef readonly Flows flows
+    cdef readonly Segments segments
+    cdef readonly Py_ssize_t at, span
+    cdef double[:, ::1] ahead
+    cdef int _go(self) except -2 nogil
+    cdef int visit(self, Py_ssize_t slot) except -1 nogil
+
+cdef class Steps:
+    cdef readonly Flows flows
+    cdef readonly Segments segments
+    cdef readonly Py_ssize_t at, slot
+    cdef readonly double left, length, time, h
+    cdef readonly double[:, ::1] y, terms
+    cdef int next(self) except -2 nogil
+
+cdef class SegmentSequence(StateSequence):
+    cdef int computed
+    cdef double[:, ::1] law, tangential, normal
+    cpdef int take(self, Segments segments, double duration) except -1
+    cdef int _state(self, Segments segments, Py_ssize_t k, int c) noexcept
+    cdef void _change(self, Segments segments, Py_ssize_t k, Py_ssize_t before, int c, double angle) noexcept
+    cdef double _velocity(self, double[:, ::1] shape, Segments segments, Py_ssize_t k, int c) noexcept

@@ -1,199 +1,41 @@
-"""The segments of a motion: what happens between two transitions; and the arrays of the flows they follow.
+"""The segments of a motion: what happens between two transitions.
 
-`Pool` is the pool of flows of a scene, the arrays of all combinations of contact states that have been met.
+`Walk` goes through them, one after the other, `Steps` step by step, each step as a polynomial; `sample` has
+the motion at given instants. `SegmentSequence` is their sequence of contact states.
 """
 
 from __future__ import annotations
-
-from math import factorial
-from typing import Any
 
 import cython
 import numpy as np
 from cython.cimports.libc.math import fabs
 
 from fcm.model.scene import FloatArray
-from fcm.time_domain.equations import Matrices
-from fcm.time_domain.options import TIME, FlowOptions
+from fcm.time_domain.forcing import ORDER, SMALL
 
-ORDER = 19  # of the series of exp(A h): 1 / 20! is below rounding
-POWERS = 8  # of exp(A h): 1, 2, 4 ... 128 steps
-BLOCK = 8  # steps that are looked at together: a power of two
-WATCHED = 3  # g, g' h and g'''' h**4 of each exit
-SEPARATED, STICKING, POSITIVE_SLIP, NEGATIVE_SLIP = 0, 1, 2, 3  # states of a contact
-SMALL = 256  # components up to which the Taylor coefficients of exp(A h x) are kept
-FITS = 1.0 + 1e-12  # radians of the forces that a step lasts at most: one, and rounding
-_FITS = cython.declare(cython.double, FITS)
-# of (A h)**k in what a force that grows as the j-th power of the time does in a step, for k + j < ORDER
-PUSHED = np.array(
-    [[1.0 / factorial(k + j + 1) if k + j < ORDER else 0.0 for k in range(ORDER)] for j in range(ORDER)]
-)
-
-
-# arrays of the pool that are no floating-point numbers
-KINDS = dict.fromkeys(("states", "halved", "goal"), np.int8) | dict.fromkeys(
-    ("exits", "owner", "first", "used", "reached", "watched", "spread", "squared", "spelled"), np.intp
-)
-
-
-def _shapes(n: int, contacts: int, waves: int) -> dict[str, tuple[int, ...]]:
-    """What the pool keeps of one flow whose state has n components, and forces at so many harmonics."""
-    e = max(2 * contacts, 1)  # exits: of a contact two at most
-    wide = (BLOCK + 1) * WATCHED * e
-    return {
-        "states": (contacts,), "step": (), "halved": (), "exits": (), "owner": (e,), "goal": (e,),
-        "first": (e,), "made_for": (), "used": (), "squared": (), "spelled": (), "row": (e, n),
-        "power": (POWERS, n, n), "forced": (POWERS, 4 * waves, n), "rotation": (POWERS, 2 * waves),
-        "reached": (), "watched": (), "terms": (ORDER + 1 if n <= SMALL else 0, n * n), "sizes": (n, n),
-        "sizes_forced": (2 * waves, n), "table": (n, wide), "table_forced": (2 * waves, wide),
-        "push": (2, 4 * waves, n), "pushed": (4 * waves, ORDER, n), "kick": (e, 4 * waves, ORDER),
-        "spread": (e,), "series": (n, e * (ORDER + 1)), "series_forced": (2 * waves, e * (ORDER + 1)),
-    }  # fmt: skip
-
-
-@cython.cclass
-class Pool:
-    """The flows of a scene; where there is no room for more, the one that was used longest ago goes.
-
-    Of many flows only short pieces are followed, and never their derivatives: the powers of more than a step,
-    and the Taylor coefficients, are made where they are needed.
-    """
-
-    def __init__(self, matrices: Matrices) -> None:
-        modal, ports, law, springs, harmonics = matrices
-        self.stiffness, self.damping, self.hold, self.constant, self.square = (
-            np.ascontiguousarray(x, dtype=np.float64) for x in modal
-        )
-        self.drive, self.slope = np.array(self.constant), np.zeros_like(self.constant)
-        self.tangential, self.normal, self.push_u, self.push_v = (
-            np.ascontiguousarray(x, dtype=np.float64) for x in ports
-        )
-        self.stretch, self.pull = (np.ascontiguousarray(x, dtype=np.float64) for x in springs)
-        self.springs = self.stretch.shape[0]
-        self.mu, self.k_u, self.k_v, self.n_0 = (np.ascontiguousarray(x, dtype=np.float64) for x in law[:4])
-        self.rough = np.ascontiguousarray(law[4], dtype=np.int8)
-        self.modes, self.contacts = self.stiffness.shape[0], self.mu.shape[0]
-        self.linear = 2 * self.modes + 2 * self.contacts + 1
-        self.harmonic = np.ascontiguousarray(harmonics, dtype=np.float64)
-        self.waves, self.highest = self.harmonic.shape[0], float(np.max(harmonics))
-        self.size = self.linear + 2 * self.waves
-        self.omega = 0.0
-        self.count, self.clock = 0, 0
-        self.limit(TIME.flows)
-        self._pool: dict[str, Any] = {}
-        self._make_room(4)
-
-    def at(self, omega: float) -> None:
-        """Set the frequency [rad/s]."""
-        i: cython.Py_ssize_t
-        b: cython.Py_ssize_t
-        if omega == self.omega:
-            return
-        self.omega = omega
-        for b in range(2 * self.waves):
-            for i in range(self.modes):
-                self.drive[b, i] = self.constant[b, i] + self.omega * self.omega * self.square[b, i]
-                self.slope[b, i] = 2.0 * self.omega * self.square[b, i]
-
-    def bytes(self) -> int:
-        """Memory of the pool."""
-        return sum(made.nbytes for made in self._pool.values())
-
-    def add(self, flow: Any) -> int:
-        """Put a `fcm.time_domain.contact_states.Flow` into the pool; returns its place."""
-        k, exits, made = self._place(), len(flow.owner), self._pool
-        rows, table, series, pushes = flow.rows, flow.table, flow.series, flow.pushes
-        made["states"][k], made["step"][k], made["halved"][k] = flow.states, flow.step, flow.halved
-        made["exits"][k], made["made_for"][k] = exits, -1.0
-        made["owner"][k, :exits], made["goal"][k, :exits], made["row"][k, :exits] = (
-            flow.owner,
-            flow.goal,
-            rows,
-        )
-        made["first"][k, :exits] = (rows != 0.0).argmax(axis=1) if exits else 0
-        made["power"][k, 0], made["sizes"][k], made["used"][k] = flow.power, flow.sizes, self.clock
-        made["squared"][k] = made["spelled"][k] = 0
-        if made["terms"].shape[1]:
-            made["terms"][k, 0], made["terms"][k, 1] = np.eye(self.linear).ravel(), flow.change.ravel()
-        made["table"][k, :, : table.shape[1]], made["series"][k, :, : series.shape[1]] = table, series
-        made["push"][k], made["kick"][k, :exits] = pushes[:2], np.einsum("ei,kci->eck", rows, pushes)
-        made["pushed"][k] = np.tensordot(PUSHED, pushes, 1).swapaxes(0, 1)
-        return k
-
-    def spell(self, slot: int) -> None:
-        """Make the Taylor coefficients (A h)**j / j! of a flow, of which those to j = 1 are there."""
-        terms = self._pool["terms"][slot].reshape(ORDER + 1, self.linear, self.linear)
-        for j in range(2, ORDER + 1):
-            np.matmul(terms[j - 1], terms[1], out=terms[j])
-            terms[j] /= j
-        self._pool["spelled"][slot] = 1
-
-    def next_power(self, slot: int) -> None:
-        """Make the power of a flow over twice as many steps as the last."""
-        power, j = self._pool["power"][slot], int(self._pool["squared"][slot])
-        np.matmul(power[j], power[j], out=power[j + 1])
-        self._pool["squared"][slot] = j + 1
-
-    def limit(self, options: FlowOptions) -> None:
-        """Keep so many flows from now on."""
-        self.min_count, self.max_bytes = options.min_count, options.max_bytes
-
-    def _place(self) -> int:
-        """A place for one more."""
-        capacity = self.step.shape[0]
-        most = max(int(self.max_bytes / (self.bytes() / capacity)), self.min_count)
-        if self.count == capacity < most:
-            capacity = min(16 * capacity, most)  # what is not used of it takes no memory
-            self._make_room(capacity)
-        if self.count == capacity:
-            return int(np.argmin(np.asarray(self.used)))
-        self.count += 1
-        return int(self.count - 1)
-
-    def _make_room(self, capacity: int) -> None:
-        """Arrays for so many flows, with those that are there; typed views of them for the kernels."""
-        old, made = self._pool, {}
-        for name, shape in _shapes(self.linear, self.contacts, self.waves).items():
-            made[name] = np.zeros((capacity, *shape), KINDS.get(name, np.float64))
-            if self.count:
-                made[name][: self.count] = old[name][: self.count]
-        self.states, self.step, self.exits = made["states"], made["step"], made["exits"]
-        self.halved = made["halved"]
-        self.owner, self.goal = made["owner"], made["goal"]
-        self.row, self.first = made["row"], made["first"]
-        self.made_for, self.power, self.forced = made["made_for"], made["power"], made["forced"]
-        self.terms, self.squared, self.spelled = made["terms"], made["squared"], made["spelled"]
-        self.rotation, self.table, self.table_forced = made["rotation"], made["table"], made["table_forced"]
-        self.reached, self.watched, self.spread = made["reached"], made["watched"], made["spread"]
-        self.push, self.pushed, self.kick = made["push"], made["pushed"], made["kick"]
-        self.sizes, self.sizes_forced, self.used = made["sizes"], made["sizes_forced"], made["used"]
-        self.series, self.series_forced = made["series"], made["series_forced"]
-        self._pool = made
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def find(self, states: cython.schar[:, ::1], k: cython.Py_ssize_t) -> cython.Py_ssize_t:
-        """The flow of the states in row k, in the steps that they have at the frequency; -1 if there is none.
-
-        Whichever flows there are, these steps are the same: the lengths of segments are counted in them.
-        """
-        i: cython.Py_ssize_t
-        j: cython.Py_ssize_t
-        angle: cython.double
-        for i in range(self.count):
-            angle = self.highest * self.omega * self.step[i]
-            if angle > _FITS or (self.halved[i] and 2.0 * angle <= _FITS):
-                continue
-            j = 0
-            while j < self.contacts and self.states[i, j] == states[k, j]:
-                j += 1
-            if j == self.contacts:
-                return i
-        return -1
+if cython.compiled:
+    from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
+    from cython.cimports.fcm.stability.state_sequence import FREE, StateSequence
+    from cython.cimports.fcm.time_domain.flow import Flows, summed
+    from cython.cimports.fcm.time_domain.forcing import Pool
+else:
+    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
+    from fcm.stability.state_sequence import FREE, StateSequence
+    from fcm.time_domain.flow import Flows, summed
+    from fcm.time_domain.forcing import Pool
 
 
 TINY = cython.declare(cython.double, 1e-300)  # instead of a division by zero where nothing moves
+
+
+DENSE = 32  # components from which many steps are sooner made at once, by BLAS
+DOUBLINGS = 7  # of the steps that are made at once
+SPAN = 2**DOUBLINGS
+
+
+_SEPARATED = cython.declare(cython.int, 0)
+_STICKING = cython.declare(cython.int, 1)
+_POSITIVE_SLIP = cython.declare(cython.int, 2)
 
 
 @cython.cclass
@@ -322,3 +164,261 @@ class Segments:
             np.asarray(self.states)[:k],
         )
         return made
+
+
+@cython.cclass
+class Walk:
+    """`visit` is what is done along each segment that lasts; `at` is the one where it is.
+
+    Of a large system `ahead` are the state vectors on a `span` of so many steps; else that is 0.
+    """
+
+    def __init__(self, flows: Flows) -> None:
+        self.flows, self.segments, self.at = flows, Segments(flows.size, flows.contacts, 0), -1
+        self.span = SPAN if DENSE <= flows.linear <= SMALL else 0
+        self.ahead = np.zeros((self.span + 1, flows.size))
+
+    def begins(self, segments: Segments) -> None:
+        """Stand before the first segment."""
+        self.segments, self.at = segments, -1
+
+    def go(self) -> int:
+        """Go through all segments: 0 when done, -1 where the flow of the next one is missing."""
+        stopped: cython.int
+        with cython.nogil:
+            stopped = self._go()
+        return int(stopped)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(-2, check=False)
+    def _go(self) -> cython.int:
+        slot: cython.Py_ssize_t
+        while self.at + 1 < self.segments.count:
+            if self.segments.length[self.at + 1] > 0.0:
+                slot = self.flows.find(self.segments.states, self.at + 1)
+                if slot < 0:
+                    return -1
+                self.flows.refresh(slot)
+                self.at += 1
+                self.visit(slot)
+            else:
+                self.at += 1
+        return 0
+
+    def reach(self, slot: cython.Py_ssize_t) -> None:
+        """Fill the rows of `ahead` after the first, each time as many as there are."""
+        self.flows.reach(slot, DOUBLINGS)
+        n, y = self.flows.linear, np.asarray(self.ahead)
+        powers, waves = np.asarray(self.flows.power)[slot], self.flows.waves
+        forced = (
+            np.asarray(self.flows.forced)[slot].reshape(-1, waves, 4, n)[:, :, :2].reshape(-1, 2 * waves, n)
+        )
+        for j in range(DOUBLINGS + 1):
+            k = 1 << j
+            last = min(2 * k, SPAN + 1)
+            old, new = y[: last - k], y[k:last]
+            new[:, :n] = old[:, :n] @ powers[j] + old[:, n:] @ forced[j]
+            for b in range(0, 2 * waves, 2):
+                c, s = np.asarray(self.flows.rotation)[slot, j, b : b + 2]
+                new[:, n + b : n + b + 2] = old[:, n + b : n + b + 2] @ np.array([[c, -s], [s, c]])
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(-1, check=False)
+    def visit(self, slot: cython.Py_ssize_t) -> cython.int:
+        """Along the segment `at`, whose flow is in that place of the pool."""
+        return 0
+
+
+MISSING = -1
+
+
+@cython.cclass
+class Steps:
+    """The steps of segments: from `time` [s] on, y is the sum of terms[j] x**j, x to `length` of `h` [s]."""
+
+    def __init__(self, flows: Flows, segments: Segments) -> None:
+        self.flows, self.segments = flows, segments
+        self.y, self.terms = np.zeros((1, flows.size)), np.zeros((ORDER + 1, flows.size))
+        self.at, self.slot, self.left, self.length = -1, -1, 0.0, 0.0
+        self.time, self.h = 0.0, 1.0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(-2, check=False)
+    def next(self) -> cython.int:
+        """Go to the next step: 1 if there is one, 0 at the end, -1 if segment at + 1 has no flow yet."""
+        i: cython.Py_ssize_t
+        slot: cython.Py_ssize_t
+        self.left -= self.length
+        if self.left > 0.0:
+            summed(self.terms, self.length, self.y, 0)
+            self.time += self.h
+        else:
+            while self.at + 1 < self.segments.count and self.segments.length[self.at + 1] <= 0.0:
+                self.at += 1
+            if self.at + 1 >= self.segments.count:
+                self.left = self.length = 0.0
+                return 0
+            slot = self.flows.find(self.segments.states, self.at + 1)
+            if slot < 0:
+                self.left = self.length = 0.0
+                return -1
+            self.flows.refresh(slot)
+            self.at += 1
+            self.slot, self.h = slot, self.flows.step[slot]
+            self.left, self.time = self.segments.length[self.at], self.segments.start[self.at]
+            for i in range(self.flows.size):
+                self.y[0, i] = self.segments.y[self.at, i]
+        self.length = min(self.left, 1.0)
+        self.flows.taylor(self.slot, self.y, 0, self.terms)
+        return 1
+
+
+_ORDER = cython.declare(cython.int, 19)
+
+
+def sample(
+    steps: Steps, times: cython.double[::1], out: cython.double[:, ::1], done: cython.Py_ssize_t
+) -> int:
+    """State vectors at increasing times [s], into the rows of out from `done` on; returns how many there are.
+
+    Fewer than all where a flow is missing; the last step serves later times too.
+    """
+    with cython.nogil:
+        done = _sample(steps, times, out, done)
+    return int(done)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(-1, check=False)
+def _sample(
+    steps: Steps, times: cython.double[::1], out: cython.double[:, ::1], done: cython.Py_ssize_t
+) -> cython.Py_ssize_t:
+    stopped: cython.int
+    until: cython.double
+    x: cython.double
+    i: cython.Py_ssize_t
+    j: cython.int
+    while done < times.shape[0]:
+        stopped = steps.next()
+        if stopped != 1:
+            return done
+        last: cython.bint = steps.left <= 1.0
+        until = steps.time + steps.h * steps.length
+        if last and steps.at + 1 < steps.segments.count:
+            until = steps.segments.start[steps.at + 1]
+        while done < times.shape[0] and (
+            times[done] < until or (last and steps.at + 1 == steps.segments.count)
+        ):
+            x = (times[done] - steps.time) / steps.h
+            for i in range(steps.flows.size):
+                out[done, i] = steps.terms[_ORDER, i]
+            for j in range(_ORDER - 1, -1, -1):
+                for i in range(steps.flows.size):
+                    out[done, i] = out[done, i] * x + steps.terms[j, i]
+            done += 1
+    return done
+
+
+@cython.cclass
+class SegmentSequence(StateSequence):
+    """`take` segments of a motion that repeats after them; angles are counted from their start to 2 pi.
+
+    The contacts that are held follow those that are computed, and never change their state.
+
+    Parameters
+    ----------
+    law : (contact, 4)
+        mu, k_u, k_v, n_0 of the computed contacts and of those that are held.
+    held : int
+        How many are.
+    tangential, normal : (contact, mode)
+        Shapes of the displacements u and v of the computed contacts.
+    """
+
+    def __init__(self, law: FloatArray, held: int, tangential: FloatArray, normal: FloatArray) -> None:
+        StateSequence.__init__(self, len(law), 16)
+        self.law, self.computed = law, len(law) - held
+        self.tangential, self.normal = tangential, normal
+        c: cython.int
+        for c in range(self.computed, self.contacts):
+            self.state[c] = STICK if law[c, 0] > 0.0 and law[c, 1] > 0.0 else FREE
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def take(self, segments: Segments, duration: cython.double) -> cython.int:
+        """Segments that last for a duration [s]."""
+        k: cython.Py_ssize_t
+        c: cython.int
+        last: cython.Py_ssize_t = segments.count - 1
+        most: cython.Py_ssize_t = segments.count * self.computed
+        if self.angle.shape[0] < most:
+            self.allocate(2 * most)
+        self.events = 0
+        for c in range(self.computed):
+            self.state[c], self.remembers[c] = self._state(segments, 0, c), 0
+        for k in range(1, segments.count):
+            for c in range(self.computed):
+                if segments.states[k, c] != segments.states[k - 1, c]:
+                    self._change(segments, k, k - 1, c, TWO_PI * segments.start[k] / duration)
+        for c in range(self.computed):
+            if segments.states[0, c] != segments.states[last, c]:
+                self._change(segments, 0, last, c, 0.0)
+        self.sort()
+        self.begin()
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def _state(self, segments: Segments, k: cython.Py_ssize_t, c: cython.int) -> cython.int:
+        """Of a contact in a segment, as a `StateSequence` has it."""
+        state: cython.int = segments.states[k, c]
+        if state == _SEPARATED:
+            return SEPARATION
+        if state == _STICKING:
+            return STICK if self.law[c, 0] > 0.0 and self.law[c, 1] > 0.0 else FREE
+        return POSITIVE if state == _POSITIVE_SLIP else NEGATIVE
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def _change(
+        self,
+        segments: Segments,
+        k: cython.Py_ssize_t,
+        before: cython.Py_ssize_t,
+        c: cython.int,
+        angle: cython.double,
+    ) -> cython.void:
+        """A contact's state in segment k is not that of the segment before.
+
+        `along` as of a `StateSequence`: at the end of a slip the place is a limit's. At a closing w = u where
+        the load vanishes, and that moves by -dn / n'.
+        """
+        into: cython.int = self._state(segments, k, c)
+        was: cython.int = self._state(segments, before, c)
+        along: cython.double = 0.0
+        if into == STICK and was != SEPARATION:
+            along = -1.0 if was == POSITIVE else 1.0
+        elif into == STICK:
+            u: cython.double = self.law[c, 1] * self._velocity(self.tangential, segments, k, c)
+            limit: cython.double = (
+                self.law[c, 0] * self.law[c, 2] * self._velocity(self.normal, segments, k, c)
+            )
+            along = -u / limit if fabs(u) < limit else -1.0 if u > 0.0 else 1.0
+        self.add_event(angle, c, into, along)
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def _velocity(
+        self, shape: cython.double[:, ::1], segments: Segments, k: cython.Py_ssize_t, c: cython.int
+    ) -> cython.double:
+        """Of a contact along its shape, where segment k begins."""
+        i: cython.Py_ssize_t
+        m: cython.Py_ssize_t = shape.shape[1]
+        total: cython.double = 0.0
+        for i in range(m):
+            total += shape[c, i] * segments.y[k, m + i]
+        return total

@@ -17,13 +17,11 @@ from fcm.structure.loads import driven_harmonics, loads_of
 from fcm.time_domain.contact_states import Codes, made
 from fcm.time_domain.equations import has_friction, held_as_springs, held_limits, held_rows, matrices_of
 from fcm.time_domain.errors import SimulationError
-from fcm.time_domain.extremes import Rows, Scan
 from fcm.time_domain.flow import Flows
-from fcm.time_domain.integrals import Integrals, Powers
 from fcm.time_domain.integrator import March
+from fcm.time_domain.measures import Integrals, Powers, Rows, Scan
 from fcm.time_domain.options import TIME, FlowOptions
-from fcm.time_domain.segment_walk import Steps, Walk
-from fcm.time_domain.segments import Segments
+from fcm.time_domain.segments import Segments, Steps, Walk
 from fcm.time_domain.variational import Derivative, Directional
 
 LETTERS = "SEPN"  # of the codes SEPARATED, STICKING, POSITIVE_SLIP, NEGATIVE_SLIP

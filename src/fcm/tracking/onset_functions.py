@@ -25,8 +25,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic_balance.contact_law import Law
-from fcm.harmonic_balance.planar_contact import PlanarLaw
+from fcm.harmonic_balance.contact_law import Law, PlanarLaw
 from fcm.model.scene import FloatArray
 from fcm.structure.layout import Layout
 from fcm.tracking.options import TRACKING, TrackingOptions

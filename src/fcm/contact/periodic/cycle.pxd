@@ -1,4 +1,4 @@
-from fcm.contact.periodic.events cimport Crossings, Events
+from fcm.contact.periodic.motion cimport Crossings, Events
 
 cdef int STICK, POSITIVE, NEGATIVE, SEPARATION, STUCK
 cdef double TWO_PI

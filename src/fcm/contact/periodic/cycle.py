@@ -19,41 +19,45 @@ import numpy as np
 from cython.cimports.libc.math import fabs, isfinite
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.events import (
-        BOTTOM,
-        CLOSES,
-        MEETS,
-        OPENS,
-        TOP,
-        Crossings,
-        Events,
-    )
     from cython.cimports.fcm.contact.periodic.motion import (
+        BOTTOM,
         CLOSED,
+        CLOSES,
         LOAD,
         LOWER,
         LOWER_RATE,
+        MEETS,
         MIXED,
         OPEN,
+        OPENS,
         REACH,
+        TOP,
         UNKNOWN,
         UPPER,
         UPPER_RATE,
+        Crossings,
+        Events,
         Motion,
     )
 else:
-    from fcm.contact.periodic.events import BOTTOM, CLOSES, MEETS, OPENS, TOP, Crossings, Events
     from fcm.contact.periodic.motion import (
+        BOTTOM,
         CLOSED,
+        CLOSES,
         LOAD,
         LOWER,
         LOWER_RATE,
+        MEETS,
         MIXED,
         OPEN,
+        OPENS,
         REACH,
+        TOP,
         UNKNOWN,
         UPPER,
         UPPER_RATE,
+        Crossings,
+        Events,
         Motion,
     )
 

@@ -1,6 +1,5 @@
 from fcm.contact.periodic.cycle cimport Cycle
-from fcm.contact.periodic.events cimport Crossings
-from fcm.contact.periodic.motion cimport Motion
+from fcm.contact.periodic.motion cimport Crossings, Motion
 
 cdef class Margins:
     cdef readonly Motion motion

@@ -32,8 +32,8 @@ if cython.compiled:
         TWO_PI,
         Cycle,
     )
-    from cython.cimports.fcm.contact.periodic.events import BOTTOM, TOP, Crossings
     from cython.cimports.fcm.contact.periodic.motion import (
+        BOTTOM,
         CLOSED,
         FORCE,
         FORCE_RATE,
@@ -44,14 +44,16 @@ if cython.compiled:
         MIXED,
         OPEN,
         REACH,
+        TOP,
         UNKNOWN,
         UPPER,
         UPPER_RATE,
+        Crossings,
     )
 else:
     from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, STUCK, TWO_PI, Cycle
-    from fcm.contact.periodic.events import BOTTOM, TOP, Crossings
     from fcm.contact.periodic.motion import (
+        BOTTOM,
         CLOSED,
         FORCE,
         FORCE_RATE,
@@ -62,9 +64,11 @@ else:
         MIXED,
         OPEN,
         REACH,
+        TOP,
         UNKNOWN,
         UPPER,
         UPPER_RATE,
+        Crossings,
     )
 
 CLOSES = cython.declare(cython.int, 0)  # kinds of margins

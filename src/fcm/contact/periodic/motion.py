@@ -6,6 +6,13 @@ amplitude, the limits between which the slider k_u w is held are
     lower(theta) = k_u u - mu n,   upper(theta) = k_u u + mu n,   n = n_0 + k_v v where that is positive.
 
 The mean of u is left out: it matters only to a slider that never moves.
+
+Where a row of that changes its sign none is missed. Between two nodes a row is its cubic Hermite interpolant
+within bound * step**4 / 384, its slope that of the interpolant within bound * step**3 sqrt(3) / 216, with the
+bound of the fourth derivative. So the Bernstein coefficients of the interpolant prove that the row has no
+zero, or that it is monotone; where they do not, the interval is halved, until what could be hidden is no more
+than the rounding of the row itself (`Crossings`). Each event has the limits of the slider there, and their
+rates (`Events`).
 """
 
 from __future__ import annotations
@@ -13,12 +20,21 @@ from __future__ import annotations
 import cython
 import numpy as np
 import numpy.typing as npt
-from cython.cimports.libc.math import cos, fabs, floor, hypot, isfinite, sin
+from cython.cimports.libc.math import atan2, ceil, cos, fabs, floor, hypot, isfinite, sin, sqrt
 
 # Nodes lie beside the multiples of pi / 2, where symmetric motions have their events.
 FIRST_NODE = cython.declare(cython.double, 0.1171)
 NODES_PER_HARMONIC = cython.declare(cython.int, 4)  # at first: where that proves nothing it is halved
 TWO_PI = cython.declare(cython.double, 6.283185307179586)
+
+
+# Of the cubic with the values and slopes at both ends of a length h, over its greatest fourth derivative:
+# of the value h^4 / 384 at most, of the slope h^3 sqrt(3) / 216.
+VALUE_ERROR = cython.declare(cython.double, 1.0 / 384.0)
+SLOPE_ERROR = cython.declare(cython.double, 3.0**0.5 / 216.0)
+PI = cython.declare(cython.double, 3.141592653589793)
+DEEPEST = cython.declare(cython.int, 60)  # halvings; at half of them rounding has long been reached
+SHORTEST = cython.declare(cython.double, 1e-15)  # [rad] an interval that is not halved further
 
 
 @cython.cclass
@@ -285,3 +301,294 @@ class Motion(Nodes):
     def node_before(self, theta: float) -> cython.int:
         """Number of the last node at or before an angle; not reduced to one turn."""
         return cython.cast(cython.int, floor((theta - self.first) / self.step))
+
+
+@cython.cclass
+class Crossings:
+    """Angles where rows of a motion change sign, in `angle` up to `count`, in the order of each search."""
+
+    def __init__(self, motion: Motion) -> None:
+        self.motion = motion
+        self.capacity = 4 * motion.highest + 4  # twice as many zeros as harmonics, and as many extremes
+        self.angle = np.empty(self.capacity)
+        self.kind = np.empty(self.capacity, dtype=np.intc)
+        self.open = np.zeros(motion.at.shape[1], dtype=np.intc)
+        self.stack = np.empty((DEEPEST + 2, 3))
+        self.count = self.row = self.rising = self.falling = self.sign = 0
+        self.curvature = self.fourth = self.noise = 0.0
+        self.last = self.last_value = self.last_slope = 0.0
+
+    def begin(self) -> None:
+        """Forget the crossings of another motion."""
+        j: cython.int
+        self.count = 0
+        for j in range(self.motion.nodes):
+            self.open[j] = 0
+
+    def search(self, row: cython.int, rising: cython.int, falling: cython.int) -> None:
+        """Append the crossings of LOAD or of a rate, as kinds `rising` and `falling`; -1 leaves one kind out.
+
+        The search of LOAD, which has to come first, finds the intervals that are open, which others skip.
+        """
+        j: cython.int
+        self.row, self.rising, self.falling = row, rising, falling
+        self.bounds()
+        self.sign = 0
+        start: cython.int = self.definite_node()
+        if self.motion.alone and row != LOAD:
+            _of_one(self, self.motion, self.motion.first + start * self.motion.step)
+            return
+        for j in range(start, start + self.motion.nodes):
+            self.interval(j)
+
+    def bounds(self) -> None:
+        """Of the second and fourth derivative, and what the value may err by, at a rounded angle."""
+        k: cython.int
+        amplitude: float
+        order: cython.int = 0 if self.row == LOAD else 1
+        if self.row <= LOAD_RATE:
+            self.noise = self.motion.load_bound[order] + self.motion.load_bound[order + 1]
+        else:
+            self.noise = self.motion.limit_bound[order] + self.motion.limit_bound[order + 1]
+        self.noise = EPSILON * (4.0 * self.noise + 2.0 * fabs(self.motion.mean[self.row]))
+        self.curvature = self.fourth = 0.0
+        for k in range(self.motion.moving):
+            amplitude = fabs(self.motion.re[self.row, k]) + fabs(self.motion.im[self.row, k])
+            amplitude *= self.motion.order[k] * self.motion.order[k]
+            self.curvature += amplitude
+            self.fourth += amplitude * self.motion.order[k] * self.motion.order[k]
+
+    def definite_node(self) -> cython.int:
+        """The last node at which the sign is certain, before the turn of nodes: -nodes to 0."""
+        j: cython.int
+        for j in range(self.motion.nodes):
+            if fabs(self.motion.at[self.row, self.motion.nodes - 1 - j]) > self.noise:
+                return -1 - j
+        return 0
+
+    def interval(self, j: cython.int) -> None:
+        """Walk from node j to the next, halving where nothing is proved."""
+        left: cython.int = j if j >= 0 else j + self.motion.nodes
+        right: cython.int = left + 1 if left + 1 < self.motion.nodes else 0
+        row: cython.int = self.row
+        if row != LOAD and self.open[left]:
+            self.sign = 0
+            return
+        begin: float = self.motion.first + j * self.motion.step
+        g: float = self.motion.at[row, left]
+        d: float = self.motion.at[row + 1, left]
+        if self.sign == 0:
+            self.note(begin, g, d)
+        if row == LOAD and self.proved(
+            self.motion.step, g, d, self.motion.at[row, right], self.motion.at[row + 1, right]
+        ):
+            self.open[left] = g < -self.noise and self.motion.at[row, right] < -self.noise
+        depth: cython.int = 0
+        self.stack[0, 0], self.stack[0, 1] = begin + self.motion.step, self.motion.at[row, right]
+        self.stack[0, 2] = self.motion.at[row + 1, right]
+        while depth >= 0:
+            end: float = self.stack[depth, 0]
+            length: float = end - begin
+            if (
+                depth == DEEPEST
+                or length < SHORTEST
+                or self.proved(length, g, d, self.stack[depth, 1], self.stack[depth, 2])
+            ):
+                begin, g, d = end, self.stack[depth, 1], self.stack[depth, 2]
+                self.note(begin, g, d)
+                depth -= 1
+            else:
+                depth += 1
+                middle: float = begin + 0.5 * length
+                value, slope = self.motion.evaluate(row, middle)
+                self.stack[depth, 0], self.stack[depth, 1], self.stack[depth, 2] = middle, value, slope
+
+    def proved(self, length: float, g_0: float, d_0: float, g_1: float, d_1: float) -> bool:
+        """Whether the row has no zero inside, or is monotone, or is nothing but rounding."""
+        error: float = self.fourth * length * length * length
+        b_1: float = g_0 + length * d_0 / 3.0
+        b_2: float = g_1 - length * d_1 / 3.0
+        low: float = min(g_0, b_1, b_2, g_1) - VALUE_ERROR * error * length
+        high: float = max(g_0, b_1, b_2, g_1) + VALUE_ERROR * error * length
+        if low > 0.0 or high < 0.0 or (low >= -self.noise and high <= self.noise):
+            return True
+        middle: float = 3.0 * (b_2 - b_1) / length
+        error *= SLOPE_ERROR
+        return min(d_0, middle, d_1) > error or max(d_0, middle, d_1) < -error
+
+    def note(self, theta: float, value: float, slope: float) -> None:
+        """The next point of the walk; if its sign is certain and another, there was a crossing."""
+        if fabs(value) <= self.noise:
+            return
+        sign: cython.int = 1 if value > 0.0 else -1
+        kind: cython.int = self.rising if sign > 0 else self.falling
+        if sign == -self.sign and kind >= 0 and self.count < self.capacity:  # which all zeros have
+            self.angle[self.count] = self.root(
+                self.row, 0.0, self.last, self.last_value, self.last_slope, theta, value, slope
+            )
+            self.kind[self.count] = kind
+            self.count += 1
+        self.sign, self.last, self.last_value, self.last_slope = sign, theta, value, slope
+
+    def root(
+        self,
+        row: cython.int,
+        level: float,
+        low: float,
+        g_low: float,
+        d_low: float,
+        high: float,
+        g_high: float,
+        d_high: float,
+    ) -> float:
+        """Where a row takes a value, between angles where it is on different sides of it: Halley, bracketed.
+
+        g_low, g_high: row minus level there; not zero, but the first where the row turns in between.
+        """
+        up: bool = g_high > 0.0
+        length: float = high - low
+        # near an end where it turns, the sign of the row is that of a rounding error
+        rounding: float = 4.0 * EPSILON * (self.motion.limit_bound[0] + self.motion.limit_bound[1])
+        floor: float = rounding if g_low == 0.0 else 0.0
+        x: float = low + length * _cubic(g_low, length * d_low, g_high, length * d_high)
+        third: float = 2.0 * self.motion.highest  # derivative, relative to the second: twice its bound
+        for _ in range(100):
+            c, s = cos(x), sin(x)
+            slope, value = self.motion.rate_and_value(row, row, c, s)
+            value -= level
+            if value == 0.0:
+                return x
+            if (value > 0.0) == up and fabs(value) > floor:
+                high = x
+            else:
+                low = x
+            step: float = high - low
+            if (slope > 0.0) == up and slope != 0.0:
+                step = -value / slope
+                part: float = 0.5 * step * self.motion.bend(row, c, s) / slope
+                step /= 1.0 + part if fabs(part) < 0.5 else 1.0
+            rest: float = (3.0 * self.curvature + third * fabs(slope)) * fabs(step) * step * step
+            if not low < x + step < high:
+                step = 0.5 * (low + high) - x
+            elif self.curvature * rest <= 6.0 * EPSILON * slope * slope:
+                return x + step
+            x += step
+            if high - low <= EPSILON * fabs(x):
+                return x
+        return x
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def _of_one(found: Crossings, motion: Motion, begin: float) -> cython.void:
+    """Append those of a rate a cos(theta) - b sin(theta), within a turn from an angle; see `search`."""
+    i: cython.int
+    a: float = motion.re[found.row, 0]
+    b: float = motion.im[found.row, 0]
+    angle: float = atan2(a, b)
+    angle += PI * ceil((begin - angle) / PI)
+    falls: cython.int = a * sin(angle) + b * cos(angle) > 0.0
+    for i in range(2 if hypot(a, b) > found.noise else 0):  # noqa: B007
+        kind: cython.int = found.falling if falls else found.rising
+        if kind >= 0 and not found.open[(motion.node_before(angle) + 2 * motion.nodes) % motion.nodes]:
+            found.angle[found.count], found.kind[found.count] = angle, kind
+            found.count += 1
+        angle, falls = angle + PI, 1 - falls
+
+
+def _cubic(g_0: float, d_0: float, g_1: float, d_1: float) -> float:
+    """About where in [0, 1] the cubic of given values and slopes at 0 and 1 vanishes, beside 0 itself."""
+    c_2: float = 3.0 * (g_1 - g_0) - 2.0 * d_0 - d_1
+    c_3: float = d_0 + d_1 - 2.0 * (g_1 - g_0)
+    if g_0 == 0.0:
+        return _last_root(d_0, c_2, c_3)
+    t: float = g_0 / (g_0 - g_1) if (g_0 > 0.0) != (g_1 > 0.0) else 0.5
+    i: cython.int
+    for i in range(3):  # noqa: B007
+        value: float = g_0 + t * (d_0 + t * (c_2 + t * c_3))
+        slope: float = d_0 + t * (2.0 * c_2 + t * 3.0 * c_3)
+        if slope == 0.0 or not 0.0 < t - value / slope < 1.0:
+            return t
+        t -= value / slope
+    return t
+
+
+def _last_root(c_0: float, c_1: float, c_2: float) -> float:
+    """The greatest root of a quadratic in [0.01, 1], else the middle."""
+    root: float = c_1 * c_1 - 4.0 * c_0 * c_2
+    if root < 0.0:
+        return 0.5
+    root = -0.5 * (c_1 + sqrt(root) if c_1 >= 0.0 else c_1 - sqrt(root))
+    one: float = c_0 / root if root != 0.0 else 0.0
+    other: float = root / c_2 if c_2 != 0.0 else 0.0
+    one = one if one <= 1.0 else 0.0
+    other = other if other <= 1.0 else 0.0
+    return max(one, other) if max(one, other) >= 0.01 else 0.5
+
+
+CLOSES = cython.declare(cython.int, 0)  # kinds of cuts
+OPENS = cython.declare(cython.int, 1)
+TOP = cython.declare(cython.int, 2)
+BOTTOM = cython.declare(cython.int, 3)
+MEETS = cython.declare(cython.int, 4)  # where a limit meets the slider: an event that is no cut
+
+
+@cython.cclass
+class Events:
+    """Angles of a cycle in no order, up to `events`, with what a motion's limits are there.
+
+    Attributes
+    ----------
+    event_kind, event_angle, event_cos, event_sin
+        The kind, the angle [rad], its cosine and sine.
+    lower, upper, moved
+        Both limits and k_u u, divided by the scale of the motion.
+    lower_rate, upper_rate, load_rate, motion_rate
+        Their derivatives by the angle; that of the load is divided by its own scale.
+    margin
+        Of a TOP or BOTTOM, how far the limit is beyond the slider there: it slips if that is positive.
+        Of an instant that OPENS, which way the slider has to go to be there. Divided by the scale.
+    """
+
+    def __init__(self, motion: Motion, size: int) -> None:
+        self.motion = motion
+        self.events = 0
+        self.event_kind, self.event_angle = np.zeros(size, dtype=np.intc), np.zeros(size)
+        self.event_cos, self.event_sin, self.margin = np.zeros((3, size))
+        self.lower, self.upper, self.moved = np.zeros((3, size))
+        self.lower_rate, self.upper_rate, self.load_rate, self.motion_rate = np.zeros((4, size))
+
+    def place(self, theta: float, kind: cython.int) -> cython.int:
+        """A new event at an angle: its limits and their rates."""
+        c_1: float = cos(theta)
+        s_1: float = sin(theta)
+        c: float = c_1
+        s: float = s_1
+        turned: float
+        u: float = 0.0
+        u_1: float = 0.0
+        y: float = 0.0
+        y_1: float = 0.0
+        h: cython.int = 1
+        k: cython.int
+        e: cython.int = self.events
+        for k in range(self.motion.moving):
+            while h < self.motion.number[k]:
+                turned = c * c_1 - s * s_1
+                s = s * c_1 + c * s_1
+                c = turned
+                h += 1
+            u += self.motion.re[FORCE, k] * c - self.motion.im[FORCE, k] * s
+            y += self.motion.re[REACH, k] * c - self.motion.im[REACH, k] * s
+            u_1 -= self.motion.order[k] * (self.motion.re[FORCE, k] * s + self.motion.im[FORCE, k] * c)
+            y_1 -= self.motion.order[k] * (self.motion.re[LOAD, k] * s + self.motion.im[LOAD, k] * c)
+        y = max(y + self.motion.mean[REACH], 0.0)
+        self.event_kind[e], self.margin[e] = kind, 0.0
+        self.event_angle[e], self.event_cos[e], self.event_sin[e] = theta, c_1, s_1
+        self.moved[e], self.lower[e], self.upper[e] = u, u - y, u + y
+        self.motion_rate[e], self.load_rate[e] = u_1, y_1
+        self.lower_rate[e] = u_1 - self.motion.ratio * y_1
+        self.upper_rate[e] = u_1 + self.motion.ratio * y_1
+        self.events += 1
+        return e

@@ -1,4 +1,4 @@
-from fcm.contact.periodic.events cimport Crossings
+from fcm.contact.periodic.motion cimport Crossings
 from fcm.contact.plane.motion cimport PlaneMotion
 from fcm.contact.plane.resting cimport Resting
 from fcm.contact.plane.slider cimport Slider

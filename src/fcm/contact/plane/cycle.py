@@ -23,7 +23,7 @@ else:
     from fcm.contact.plane.resting import Resting
     from fcm.contact.plane.slider import SEPARATION, SLIP, STICK, Slider
 
-from fcm.contact.periodic.events import Crossings
+from fcm.contact.periodic.motion import Crossings
 
 STUCK = cython.declare(cython.int, 4)  # of a whole cycle, beside OPEN, MIXED and UNKNOWN
 UNSOLVED = cython.declare(cython.int, 5)

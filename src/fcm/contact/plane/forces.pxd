@@ -1,7 +1,6 @@
 from fcm.contact.plane.motion cimport PlaneMotion
 from fcm.contact.plane.cycle cimport Cycle
-from fcm.contact.plane.sums cimport Sums
-from fcm.contact.plane.derivatives cimport Derivatives
+from fcm.contact.plane.integrals cimport Derivatives, Sums
 
 cdef class PlanarContact:
     cdef readonly PlaneMotion motion

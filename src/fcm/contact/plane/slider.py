@@ -13,16 +13,14 @@ import numpy as np
 from cython.cimports.libc.math import exp, fabs, hypot, sqrt
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.plane.derivatives import Derivatives
+    from cython.cimports.fcm.contact.plane.integrals import Derivatives, Sums
     from cython.cimports.fcm.contact.plane.motion import SCAN, PlaneMotion
     from cython.cimports.fcm.contact.plane.panel import STAGES, Panel
-    from cython.cimports.fcm.contact.plane.sums import Sums
 else:
-    from fcm.contact.plane.derivatives import Derivatives
+    from fcm.contact.plane.integrals import Derivatives, Sums
     from fcm.contact.plane.motion import SCAN, PlaneMotion
     from fcm.contact.plane.panel import Panel
     from fcm.contact.plane.radau import STAGES
-    from fcm.contact.plane.sums import Sums
 
 STICK = cython.declare(cython.int, 0)  # states
 SLIP = cython.declare(cython.int, 1)
