@@ -41,7 +41,7 @@ LOOPS = (
     "fcm.contact.",
     "fcm.harmonic_balance.",
     "fcm.continuation.dense_solver",
-    "fcm.stability.many_monodromy",
+    "fcm.stability.monodromy",
 )
 # What decides, once a step, is compiled in two thirds of the time with -O1, and no slower for that.
 DECISIONS = (

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from fcm.branches.trace import traced
+from fcm.harmonic_balance.residual_spectrum import enriched_harmonics
 from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.shooting import periodic
 from fcm.stability.bifurcations import stability
 from fcm.stability.confirmation import confirmed_stable
 from fcm.stability.floquet import multipliers_of
-from fcm.stability.force_harmonics import enriched_harmonics
 from fcm.stability.rebalanced import Rebalancing
 
 from ..harmonic_balance.strips import elastic_strip, strip

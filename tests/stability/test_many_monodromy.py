@@ -6,8 +6,7 @@ import pytest
 from fcm.branches.force_level import solutions
 from fcm.harmonic_balance.system import System
 from fcm.stability.disturbance import Stiffness
-from fcm.stability.many_monodromy import ManyMonodromy
-from fcm.stability.monodromy import Monodromy
+from fcm.stability.monodromy import ManyMonodromy, Monodromy
 from fcm.stability.state_sequence import BalancedSequence
 
 from ..harmonic_balance.strips import strip

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from fcm.branches.trace import traced
+from fcm.harmonic_balance.residual_spectrum import enriched_harmonics
 from fcm.scene import Contact, Force, Modal, Scene, load_scene
 from fcm.shooting import periodic
-from fcm.stability.force_harmonics import enriched_harmonics
 from fcm.stability.multipliers import Multipliers
 from fcm.stability.rebalanced import Rebalancing
 

@@ -7,8 +7,7 @@ import numpy.typing as npt
 
 from fcm.stability.disturbance import Stiffness
 from fcm.stability.eigenvalues import eigenvalues
-from fcm.stability.many_monodromy import ManyMonodromy
-from fcm.stability.monodromy import Monodromy
+from fcm.stability.monodromy import ManyMonodromy, Monodromy
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.time_domain.segments import Segments, SegmentSequence
 from fcm.time_domain.system import System

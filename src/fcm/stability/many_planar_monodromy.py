@@ -24,8 +24,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.plane.radau import radau
+from fcm.stability.planar_monodromy import VariationalSteps
 from fcm.stability.planar_sequence import PlanarSequence, states
-from fcm.stability.variational_steps import VariationalSteps
 
 FloatArray = npt.NDArray[np.float64]
 STICK, SLIP, SEPARATION = states()

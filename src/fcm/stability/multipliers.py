@@ -20,14 +20,13 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from fcm.harmonic_balance.residual_spectrum import PORTS, EnrichedMotion, enriched_harmonics
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.disturbance import Propagator, Stiffness
 from fcm.stability.eigenvalues import eigenvalues
-from fcm.stability.force_harmonics import PORTS, EnrichedMotion, enriched_harmonics
-from fcm.stability.many_monodromy import ManyMonodromy
 from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy
-from fcm.stability.monodromy import Monodromy
+from fcm.stability.monodromy import ManyMonodromy, Monodromy
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.planar_monodromy import PlanarMonodromy
 from fcm.stability.planar_sequence import PlanarSequence

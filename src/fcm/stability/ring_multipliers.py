@@ -14,11 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from fcm.harmonic_balance.residual_spectrum import EnrichedMotion, enriched_harmonics
 from fcm.harmonic_balance.system import System
 from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray
 from fcm.stability.disturbance import Stiffness
-from fcm.stability.force_harmonics import EnrichedMotion, enriched_harmonics
 from fcm.stability.monodromy import RingMonodromy
 from fcm.stability.multipliers import Multipliers, VariationalProblem, quasi_static_modes
 from fcm.stability.options import STABILITY, StabilityOptions

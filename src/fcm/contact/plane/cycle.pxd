@@ -1,5 +1,5 @@
 from fcm.contact.periodic.motion cimport Crossings
-from fcm.contact.plane.motion cimport PlaneMotion
+from fcm.contact.plane.panel cimport PlaneMotion
 from fcm.contact.plane.resting cimport Resting
 from fcm.contact.plane.slider cimport Slider
 

@@ -14,12 +14,12 @@ from cython.cimports.libc.math import fabs, hypot
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.motion import CLOSED, LOAD, MIXED, OPEN, UNKNOWN
-    from cython.cimports.fcm.contact.plane.motion import SCAN, PlaneMotion
+    from cython.cimports.fcm.contact.plane.panel import SCAN, PlaneMotion
     from cython.cimports.fcm.contact.plane.resting import Resting
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK, Slider
 else:
     from fcm.contact.periodic.motion import CLOSED, LOAD, MIXED, OPEN, UNKNOWN
-    from fcm.contact.plane.motion import SCAN, PlaneMotion
+    from fcm.contact.plane.panel import SCAN, PlaneMotion
     from fcm.contact.plane.resting import Resting
     from fcm.contact.plane.slider import SEPARATION, SLIP, STICK, Slider
 

@@ -1,4 +1,4 @@
-from fcm.contact.plane.motion cimport PlaneMotion
+from fcm.contact.plane.panel cimport PlaneMotion
 from fcm.contact.plane.cycle cimport Cycle
 from fcm.contact.plane.integrals cimport Derivatives, Sums
 

@@ -13,13 +13,12 @@ if cython.compiled:
     from cython.cimports.fcm.contact.periodic.motion import CLOSED, MIXED, UNKNOWN
     from cython.cimports.fcm.contact.plane.cycle import STUCK, UNSOLVED, Cycle
     from cython.cimports.fcm.contact.plane.integrals import CONTACT, SLIPS_X, SLIPS_Y, STICKS
-    from cython.cimports.fcm.contact.plane.motion import LOAD, REACH, SCAN, PlaneMotion, X, Y
-    from cython.cimports.fcm.contact.plane.panel import STAGES
+    from cython.cimports.fcm.contact.plane.panel import LOAD, REACH, SCAN, STAGES, PlaneMotion, X, Y
 else:
     from fcm.contact.periodic.motion import CLOSED, MIXED, UNKNOWN
     from fcm.contact.plane.cycle import STUCK, UNSOLVED, Cycle
     from fcm.contact.plane.integrals import CONTACT, SLIPS_X, SLIPS_Y, STICKS
-    from fcm.contact.plane.motion import LOAD, REACH, SCAN, PlaneMotion, X, Y
+    from fcm.contact.plane.panel import LOAD, REACH, SCAN, PlaneMotion, X, Y
     from fcm.contact.plane.radau import STAGES
 
 from fcm.contact.plane.options import OPTIONS, PlanarOptions

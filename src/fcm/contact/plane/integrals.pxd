@@ -1,5 +1,4 @@
-from fcm.contact.plane.motion cimport PlaneMotion
-from fcm.contact.plane.panel cimport Panel
+from fcm.contact.plane.panel cimport Panel, PlaneMotion
 
 cdef int STICKS, CONTACT, SLIPS_X, SLIPS_Y
 

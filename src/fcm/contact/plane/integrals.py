@@ -28,11 +28,9 @@ from cython.cimports.libc.math import cos, fabs, sin
 
 if cython.compiled:
     from cython.cimports.fcm.contact.plane.integrals import carry_eight, turn_eight
-    from cython.cimports.fcm.contact.plane.motion import SCAN, PlaneMotion
-    from cython.cimports.fcm.contact.plane.panel import STAGES, Panel
+    from cython.cimports.fcm.contact.plane.panel import SCAN, STAGES, Panel, PlaneMotion
 else:
-    from fcm.contact.plane.motion import SCAN, PlaneMotion
-    from fcm.contact.plane.panel import Panel
+    from fcm.contact.plane.panel import SCAN, Panel, PlaneMotion
     from fcm.contact.plane.radau import STAGES
 
 

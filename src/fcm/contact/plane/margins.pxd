@@ -1,6 +1,6 @@
 from fcm.contact.periodic.motion cimport Crossings
 from fcm.contact.plane.cycle cimport Cycle
-from fcm.contact.plane.motion cimport PlaneMotion
+from fcm.contact.plane.panel cimport PlaneMotion
 from fcm.contact.plane.resting cimport Resting
 
 cdef class PlanarMargins:

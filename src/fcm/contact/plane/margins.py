@@ -30,12 +30,12 @@ if cython.compiled:
         Crossings,
     )
     from cython.cimports.fcm.contact.plane.cycle import STUCK, UNSOLVED, Cycle
-    from cython.cimports.fcm.contact.plane.motion import SCAN
+    from cython.cimports.fcm.contact.plane.panel import SCAN
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK
 else:
     from fcm.contact.periodic.motion import CLOSED, LOAD, LOAD_RATE, MIXED, OPEN, UNKNOWN, Crossings
     from fcm.contact.plane.cycle import STUCK, UNSOLVED, Cycle
-    from fcm.contact.plane.motion import SCAN
+    from fcm.contact.plane.panel import SCAN
     from fcm.contact.plane.slider import SEPARATION, SLIP, STICK
 
 

@@ -1,4 +1,4 @@
-from fcm.contact.plane.motion cimport PlaneMotion
+from fcm.contact.plane.panel cimport PlaneMotion
 
 cdef class Resting:
     cdef double same

@@ -16,9 +16,9 @@ import numpy as np
 from cython.cimports.libc.math import fabs, hypot, sin, sqrt
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.plane.motion import REACH, SCAN, PlaneMotion, X, Y
+    from cython.cimports.fcm.contact.plane.panel import REACH, SCAN, PlaneMotion, X, Y
 else:
-    from fcm.contact.plane.motion import REACH, SCAN, PlaneMotion, X, Y
+    from fcm.contact.plane.panel import REACH, SCAN, PlaneMotion, X, Y
 
 TWO_PI = cython.declare(cython.double, 6.283185307179586)
 FIRST = cython.declare(cython.double, 0.1171)  # of a step: nodes lie beside the multiples of pi / 2

@@ -1,5 +1,4 @@
-from fcm.contact.plane.motion cimport PlaneMotion
-from fcm.contact.plane.panel cimport Panel
+from fcm.contact.plane.panel cimport Panel, PlaneMotion
 from fcm.contact.plane.integrals cimport Derivatives, Sums
 
 cdef int STICK, SLIP, SEPARATION

@@ -14,12 +14,10 @@ from cython.cimports.libc.math import exp, fabs, hypot, sqrt
 
 if cython.compiled:
     from cython.cimports.fcm.contact.plane.integrals import Derivatives, Sums
-    from cython.cimports.fcm.contact.plane.motion import SCAN, PlaneMotion
-    from cython.cimports.fcm.contact.plane.panel import STAGES, Panel
+    from cython.cimports.fcm.contact.plane.panel import SCAN, STAGES, Panel, PlaneMotion
 else:
     from fcm.contact.plane.integrals import Derivatives, Sums
-    from fcm.contact.plane.motion import SCAN, PlaneMotion
-    from fcm.contact.plane.panel import Panel
+    from fcm.contact.plane.panel import SCAN, Panel, PlaneMotion
     from fcm.contact.plane.radau import STAGES
 
 STICK = cython.declare(cython.int, 0)  # states
