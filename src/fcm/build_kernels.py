@@ -52,7 +52,6 @@ DECISIONS = (
     "fcm.continuation.problem",
     "fcm.continuation.recorder",
     "fcm.continuation.step_control",
-    "fcm.continuation.stepper",
     "fcm.time_domain.integrator",
     "fcm.time_domain.measures",
     "fcm.time_domain.segment",

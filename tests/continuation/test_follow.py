@@ -8,7 +8,7 @@ from fcm.continuation import End, Events, FollowOptions, Mark, Problem, Status, 
 from fcm.continuation.corrector import Newton
 from fcm.continuation.options import NewtonOptions
 from fcm.continuation.path import PathInterrupted
-from fcm.continuation.stepper import Stepper
+from fcm.continuation.step_control import Stepper
 
 STEPS = (0.2, 0.1, 0.05, 0.02, 0.01)
 CLOSE = 1e-10  # to which a point is on its curve

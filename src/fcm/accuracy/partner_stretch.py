@@ -17,7 +17,7 @@ from fcm.branches.force_level import solutions
 from fcm.branches.options import LEVEL_CURVE
 from fcm.continuation import Events, Path, Status
 from fcm.continuation.follow import Follower
-from fcm.continuation.stepper import Stepper
+from fcm.continuation.step_control import Stepper
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities

@@ -8,7 +8,7 @@ import numpy as np
 
 from fcm.continuation.path import FloatArray, Path, Status
 from fcm.continuation.problem import PointStore, Stored
-from fcm.continuation.stepper import Stepper
+from fcm.continuation.step_control import Stepper
 
 
 class Checkpoint(NamedTuple):

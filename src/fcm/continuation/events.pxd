@@ -1,6 +1,6 @@
 from fcm.continuation.options cimport EventOptions
 from fcm.continuation.problem cimport Point
-from fcm.continuation.stepper cimport Stepper
+from fcm.continuation.step_control cimport Stepper
 
 cdef double NOT_FOUND
 cdef int MARGIN, FOLD, PEAK, STATION

@@ -21,7 +21,7 @@ from fcm.continuation.extremum_search import ExtremumSearch, Sample
 from fcm.continuation.options import SIGN_CHANGE, EventOptions, SignChangeOptions
 from fcm.continuation.path import FloatArray, Mark
 from fcm.continuation.problem import Point
-from fcm.continuation.stepper import Stepper
+from fcm.continuation.step_control import Stepper
 
 if cython.compiled:
     from cython.cimports.fcm.continuation.predictor import dot

@@ -15,7 +15,7 @@ import numpy as np
 
 from fcm.continuation.path import FloatArray
 from fcm.continuation.problem import Point
-from fcm.continuation.stepper import Stepper
+from fcm.continuation.step_control import Stepper
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ from fcm.continuation.options import FOLLOW, FollowOptions, StepOptions, Switchi
 from fcm.continuation.path import FloatArray, Mark, Path, PathInterrupted, Status
 from fcm.continuation.problem import Point, PointStore, Problem
 from fcm.continuation.recorder import NonsmoothPoints, Recorder, step_back
-from fcm.continuation.stepper import Stepper
+from fcm.continuation.step_control import Stepper
 
 if cython.compiled:
     from cython.cimports.fcm.continuation.recorder import before_corner

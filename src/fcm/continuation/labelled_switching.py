@@ -17,8 +17,7 @@ import numpy as np
 from fcm.continuation.options import LabelOptions
 from fcm.continuation.path import FloatArray, Mark, Status
 from fcm.continuation.problem import Point, PointStore
-from fcm.continuation.step_control import next_corner
-from fcm.continuation.stepper import Stepper
+from fcm.continuation.step_control import Stepper, next_corner
 
 
 class Follower(Protocol):

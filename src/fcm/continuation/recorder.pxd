@@ -1,5 +1,5 @@
 from fcm.continuation.problem cimport Point, PointStore
-from fcm.continuation.stepper cimport Stepper
+from fcm.continuation.step_control cimport Stepper
 
 cdef class Recorder:
     cdef readonly Stepper stepper

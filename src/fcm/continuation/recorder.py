@@ -20,7 +20,7 @@ from fcm.continuation.checkpoint import Checkpoint
 from fcm.continuation.events import Events
 from fcm.continuation.path import Mark, Path, Status
 from fcm.continuation.problem import Point, PointStore
-from fcm.continuation.stepper import Stepper
+from fcm.continuation.step_control import Stepper
 
 if cython.compiled:
     from cython.cimports.fcm.continuation.events import closes_curve, without_events

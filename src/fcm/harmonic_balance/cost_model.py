@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from fcm.continuation import Path, PathInterrupted
 from fcm.continuation.follow import Progress
-from fcm.continuation.stepper import Stepper
+from fcm.continuation.step_control import Stepper
 from fcm.harmonic_balance.modal_condensation import CONDENSATION, condensed_size
 from fcm.harmonic_balance.options import HARMONIC_BALANCE, EvaluationCost
 from fcm.harmonic_balance.system import System

@@ -15,7 +15,7 @@ import numpy as np
 from fcm.continuation import Checkpoint, Path
 from fcm.continuation.checkpoint import stepper_state
 from fcm.continuation.problem import Points, Stored
-from fcm.continuation.stepper import Stepper
+from fcm.continuation.step_control import Stepper
 from fcm.model.scene import FloatArray
 from fcm.response.options import CONTACT_CHANGES
 from fcm.response.resumable_branches import BranchLeg, kind_of

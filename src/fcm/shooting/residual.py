@@ -14,7 +14,7 @@ from fcm.shooting.residual_traction import Choice, choices, one_sided_slips, res
 from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.cycle_measures import Displaced, Scanned, displaced, scanned
 from fcm.time_domain.equations import has_friction
-from fcm.time_domain.forcing import STICKING
+from fcm.time_domain.flow import STICKING
 from fcm.time_domain.simulation import march_from
 from fcm.time_domain.state import State
 from fcm.time_domain.system import System

@@ -16,7 +16,7 @@ from fcm.model.scene import Contact, FloatArray, Scene
 from fcm.shooting.options import SHOOTING, ResidualFrictionOptions
 from fcm.shooting.period_derivative import derivative_at
 from fcm.time_domain.cycle_measures import Extreme, extremes_by
-from fcm.time_domain.forcing import NEGATIVE_SLIP, POSITIVE_SLIP, SEPARATED, STICKING
+from fcm.time_domain.flow import NEGATIVE_SLIP, POSITIVE_SLIP, SEPARATED, STICKING
 from fcm.time_domain.segments import Segments
 from fcm.time_domain.state import State
 from fcm.time_domain.system import System

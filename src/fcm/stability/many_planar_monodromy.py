@@ -25,7 +25,7 @@ import numpy.typing as npt
 
 from fcm.contact.plane.radau import radau
 from fcm.stability.planar_monodromy import VariationalSteps
-from fcm.stability.planar_sequence import PlanarSequence, states
+from fcm.stability.state_sequence import PlanarSequence, states
 
 FloatArray = npt.NDArray[np.float64]
 STICK, SLIP, SEPARATION = states()

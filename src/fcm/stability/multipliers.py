@@ -29,9 +29,8 @@ from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy
 from fcm.stability.monodromy import ManyMonodromy, Monodromy
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.planar_monodromy import PlanarMonodromy
-from fcm.stability.planar_sequence import PlanarSequence
 from fcm.stability.rebalanced import Rebalancing
-from fcm.stability.state_sequence import BalancedSequence
+from fcm.stability.state_sequence import BalancedSequence, PlanarSequence
 from fcm.stability.verdict import (
     PASSIVE,
     UNKNOWN,

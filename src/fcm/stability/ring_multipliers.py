@@ -23,8 +23,7 @@ from fcm.stability.monodromy import RingMonodromy
 from fcm.stability.multipliers import Multipliers, VariationalProblem, quasi_static_modes
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.planar_monodromy import PlanarMonodromy
-from fcm.stability.planar_sequence import PlanarSequence
-from fcm.stability.state_sequence import BalancedSequence
+from fcm.stability.state_sequence import BalancedSequence, PlanarSequence
 from fcm.stability.verdict import Verdict
 from fcm.structure.ring import RingLinear
 

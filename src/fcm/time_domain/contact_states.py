@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from fcm.model.scene import FloatArray
 from fcm.time_domain.errors import SimulationError
-from fcm.time_domain.forcing import BLOCK, FITS, NEGATIVE_SLIP, ORDER, POSITIVE_SLIP, SEPARATED, STICKING
+from fcm.time_domain.flow import BLOCK, FITS, NEGATIVE_SLIP, ORDER, POSITIVE_SLIP, SEPARATED, STICKING
 
 if TYPE_CHECKING:
     from fcm.time_domain.system import System

@@ -14,7 +14,10 @@ the structure.
 Over a step h = 1 / rate the series of exp(A h) is complete to rounding after `ORDER` terms, whatever A is:
 defective, singular, resonant without damping. Whole steps are powers of exp(A h). The functions that end a
 combination are known on `BLOCK` steps at once from a table of their rows times those powers. The frequency
-enters only the columns of the forces (`forced`): everything else of a flow is made once for a scene.
+enters only the columns of the forces: everything else of a flow is made once for a scene (`Pool`). A column
+is what sin(h theta) or cos(h theta) = 1 alone at the start has done after a step, or after 2**j, and its
+derivative by the frequency; there are four for each harmonic h (`Forced`). Within a step the motion of each
+combination is a power series by the position, which is counted in steps (`Series`).
 
 The exits of a combination are functions of the state vector that end it where they become negative (`Exits`).
 Like the motion itself they are known by columns: on the steps of a block, and as power series in one step.
@@ -22,19 +25,611 @@ Like the motion itself they are known by columns: on the steps of a block, and a
 
 from __future__ import annotations
 
+from math import factorial
+from typing import Any
+
 import cython
 import numpy as np
-from cython.cimports.libc.math import fabs
+from cython.cimports.libc.math import cos, fabs, sin
 
 from fcm.time_domain.equations import Matrices
-from fcm.time_domain.forcing import ORDER
+from fcm.time_domain.options import TIME, FlowOptions
 
-if cython.compiled:
-    from cython.cimports.fcm.time_domain.forcing import Forced
-else:
-    from fcm.time_domain.forcing import Forced
+ORDER = 19  # of the series of exp(A h): 1 / 20! is below rounding
+POWERS = 8  # of exp(A h): 1, 2, 4 ... 128 steps
+BLOCK = 8  # steps that are looked at together: a power of two
+WATCHED = 3  # g, g' h and g'''' h**4 of each exit
+SEPARATED, STICKING, POSITIVE_SLIP, NEGATIVE_SLIP = 0, 1, 2, 3  # states of a contact
+SMALL = 256  # components up to which the Taylor coefficients of exp(A h x) are kept
+FITS = 1.0 + 1e-12  # radians of the forces that a step lasts at most: one, and rounding
+_ORDER = cython.declare(cython.int, ORDER)
+_FITS = cython.declare(cython.double, FITS)
+# of (A h)**k in what a force that grows as the j-th power of the time does in a step, for k + j < ORDER
+PUSHED = np.array(
+    [[1.0 / factorial(k + j + 1) if k + j < ORDER else 0.0 for k in range(ORDER)] for j in range(ORDER)]
+)
 
-_ORDER = cython.declare(cython.int, 19)
+
+_SEPARATED = cython.declare(cython.int, 0)
+_STICKING = cython.declare(cython.int, 1)
+_POSITIVE_SLIP = cython.declare(cython.int, 2)
+
+
+# arrays of the pool that are no floating-point numbers
+KINDS = dict.fromkeys(("states", "halved", "goal"), np.int8) | dict.fromkeys(
+    ("exits", "owner", "first", "used", "reached", "watched", "spread", "squared", "spelled"), np.intp
+)
+
+
+def _shapes(n: int, contacts: int, waves: int) -> dict[str, tuple[int, ...]]:
+    """What the pool keeps of one flow whose state has n components, and forces at so many harmonics."""
+    e = max(2 * contacts, 1)  # exits: of a contact two at most
+    wide = (BLOCK + 1) * WATCHED * e
+    return {
+        "states": (contacts,), "step": (), "halved": (), "exits": (), "owner": (e,), "goal": (e,),
+        "first": (e,), "made_for": (), "used": (), "squared": (), "spelled": (), "row": (e, n),
+        "power": (POWERS, n, n), "forced": (POWERS, 4 * waves, n), "rotation": (POWERS, 2 * waves),
+        "reached": (), "watched": (), "terms": (ORDER + 1 if n <= SMALL else 0, n * n), "sizes": (n, n),
+        "sizes_forced": (2 * waves, n), "table": (n, wide), "table_forced": (2 * waves, wide),
+        "push": (2, 4 * waves, n), "pushed": (4 * waves, ORDER, n), "kick": (e, 4 * waves, ORDER),
+        "spread": (e,), "series": (n, e * (ORDER + 1)), "series_forced": (2 * waves, e * (ORDER + 1)),
+    }  # fmt: skip
+
+
+@cython.cclass
+class Pool:
+    """The flows of a scene; where there is no room for more, the one that was used longest ago goes.
+
+    Of many flows only short pieces are followed, and never their derivatives: the powers of more than a step,
+    and the Taylor coefficients, are made where they are needed.
+    """
+
+    def __init__(self, matrices: Matrices) -> None:
+        modal, ports, law, springs, harmonics = matrices
+        self.stiffness, self.damping, self.hold, self.constant, self.square = (
+            np.ascontiguousarray(x, dtype=np.float64) for x in modal
+        )
+        self.drive, self.slope = np.array(self.constant), np.zeros_like(self.constant)
+        self.tangential, self.normal, self.push_u, self.push_v = (
+            np.ascontiguousarray(x, dtype=np.float64) for x in ports
+        )
+        self.stretch, self.pull = (np.ascontiguousarray(x, dtype=np.float64) for x in springs)
+        self.springs = self.stretch.shape[0]
+        self.mu, self.k_u, self.k_v, self.n_0 = (np.ascontiguousarray(x, dtype=np.float64) for x in law[:4])
+        self.rough = np.ascontiguousarray(law[4], dtype=np.int8)
+        self.modes, self.contacts = self.stiffness.shape[0], self.mu.shape[0]
+        self.linear = 2 * self.modes + 2 * self.contacts + 1
+        self.harmonic = np.ascontiguousarray(harmonics, dtype=np.float64)
+        self.waves, self.highest = self.harmonic.shape[0], float(np.max(harmonics))
+        self.size = self.linear + 2 * self.waves
+        self.omega = 0.0
+        self.count, self.clock = 0, 0
+        self.limit(TIME.flows)
+        self._pool: dict[str, Any] = {}
+        self._make_room(4)
+
+    def at(self, omega: float) -> None:
+        """Set the frequency [rad/s]."""
+        i: cython.Py_ssize_t
+        b: cython.Py_ssize_t
+        if omega == self.omega:
+            return
+        self.omega = omega
+        for b in range(2 * self.waves):
+            for i in range(self.modes):
+                self.drive[b, i] = self.constant[b, i] + self.omega * self.omega * self.square[b, i]
+                self.slope[b, i] = 2.0 * self.omega * self.square[b, i]
+
+    def bytes(self) -> int:
+        """Memory of the pool."""
+        return sum(made.nbytes for made in self._pool.values())
+
+    def add(self, flow: Any) -> int:
+        """Put a `fcm.time_domain.contact_states.Flow` into the pool; returns its place."""
+        k, exits, made = self._place(), len(flow.owner), self._pool
+        rows, table, series, pushes = flow.rows, flow.table, flow.series, flow.pushes
+        made["states"][k], made["step"][k], made["halved"][k] = flow.states, flow.step, flow.halved
+        made["exits"][k], made["made_for"][k] = exits, -1.0
+        made["owner"][k, :exits], made["goal"][k, :exits], made["row"][k, :exits] = (
+            flow.owner,
+            flow.goal,
+            rows,
+        )
+        made["first"][k, :exits] = (rows != 0.0).argmax(axis=1) if exits else 0
+        made["power"][k, 0], made["sizes"][k], made["used"][k] = flow.power, flow.sizes, self.clock
+        made["squared"][k] = made["spelled"][k] = 0
+        if made["terms"].shape[1]:
+            made["terms"][k, 0], made["terms"][k, 1] = np.eye(self.linear).ravel(), flow.change.ravel()
+        made["table"][k, :, : table.shape[1]], made["series"][k, :, : series.shape[1]] = table, series
+        made["push"][k], made["kick"][k, :exits] = pushes[:2], np.einsum("ei,kci->eck", rows, pushes)
+        made["pushed"][k] = np.tensordot(PUSHED, pushes, 1).swapaxes(0, 1)
+        return k
+
+    def spell(self, slot: int) -> None:
+        """Make the Taylor coefficients (A h)**j / j! of a flow, of which those to j = 1 are there."""
+        terms = self._pool["terms"][slot].reshape(ORDER + 1, self.linear, self.linear)
+        for j in range(2, ORDER + 1):
+            np.matmul(terms[j - 1], terms[1], out=terms[j])
+            terms[j] /= j
+        self._pool["spelled"][slot] = 1
+
+    def next_power(self, slot: int) -> None:
+        """Make the power of a flow over twice as many steps as the last."""
+        power, j = self._pool["power"][slot], int(self._pool["squared"][slot])
+        np.matmul(power[j], power[j], out=power[j + 1])
+        self._pool["squared"][slot] = j + 1
+
+    def limit(self, options: FlowOptions) -> None:
+        """Keep so many flows from now on."""
+        self.min_count, self.max_bytes = options.min_count, options.max_bytes
+
+    def _place(self) -> int:
+        """A place for one more."""
+        capacity = self.step.shape[0]
+        most = max(int(self.max_bytes / (self.bytes() / capacity)), self.min_count)
+        if self.count == capacity < most:
+            capacity = min(16 * capacity, most)  # what is not used of it takes no memory
+            self._make_room(capacity)
+        if self.count == capacity:
+            return int(np.argmin(np.asarray(self.used)))
+        self.count += 1
+        return int(self.count - 1)
+
+    def _make_room(self, capacity: int) -> None:
+        """Arrays for so many flows, with those that are there; typed views of them for the kernels."""
+        old, made = self._pool, {}
+        for name, shape in _shapes(self.linear, self.contacts, self.waves).items():
+            made[name] = np.zeros((capacity, *shape), KINDS.get(name, np.float64))
+            if self.count:
+                made[name][: self.count] = old[name][: self.count]
+        self.states, self.step, self.exits = made["states"], made["step"], made["exits"]
+        self.halved = made["halved"]
+        self.owner, self.goal = made["owner"], made["goal"]
+        self.row, self.first = made["row"], made["first"]
+        self.made_for, self.power, self.forced = made["made_for"], made["power"], made["forced"]
+        self.terms, self.squared, self.spelled = made["terms"], made["squared"], made["spelled"]
+        self.rotation, self.table, self.table_forced = made["rotation"], made["table"], made["table_forced"]
+        self.reached, self.watched, self.spread = made["reached"], made["watched"], made["spread"]
+        self.push, self.pushed, self.kick = made["push"], made["pushed"], made["kick"]
+        self.sizes, self.sizes_forced, self.used = made["sizes"], made["sizes_forced"], made["used"]
+        self.series, self.series_forced = made["series"], made["series_forced"]
+        self._pool = made
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def find(self, states: cython.schar[:, ::1], k: cython.Py_ssize_t) -> cython.Py_ssize_t:
+        """The flow of the states in row k, in the steps that they have at the frequency; -1 if there is none.
+
+        Whichever flows there are, these steps are the same: the lengths of segments are counted in them.
+        """
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        angle: cython.double
+        for i in range(self.count):
+            angle = self.highest * self.omega * self.step[i]
+            if angle > _FITS or (self.halved[i] and 2.0 * angle <= _FITS):
+                continue
+            j = 0
+            while j < self.contacts and self.states[i, j] == states[k, j]:
+                j += 1
+            if j == self.contacts:
+                return i
+        return -1
+
+
+@cython.cclass
+class Series(Pool):
+    """Flows as power series. What is done for a whole series is done in one call: y' = A y is little work."""
+
+    def __init__(self, matrices: Matrices) -> None:
+        Pool.__init__(self, matrices)
+        self._own = np.zeros((ORDER + 1, self.size))
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def derive(
+        self,
+        slot: cython.Py_ssize_t,
+        y: cython.double[:, ::1],
+        a: cython.Py_ssize_t,
+        z: cython.double[:, ::1],
+        b: cython.Py_ssize_t,
+    ) -> cython.void:
+        """Row b of z becomes A y, y being row a."""
+        i: cython.Py_ssize_t
+        for i in range(self.size):
+            self._own[0, i] = y[a, i]
+        self.extend(slot, self._own, 1, 1.0, self._own, False)
+        for i in range(self.size):
+            z[b, i] = self._own[1, i]
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def extend(
+        self,
+        slot: cython.Py_ssize_t,
+        z: cython.double[:, ::1],
+        last: cython.Py_ssize_t,
+        step: cython.double,
+        y: cython.double[:, ::1],
+        graded: cython.bint,
+    ) -> cython.void:
+        """Taylor coefficients from row 0 of z on, by the position in a step of that length [s].
+
+        If it is graded, those of the derivative by the frequency of the motion with the coefficients y:
+        z[a + 1] = step / (a + 1) (A z[a] + dA / d omega y[a]).
+        """
+        a: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        factor: cython.double
+        for a in range(last):
+            factor = step / (a + 1)
+            structure(self, z, a, factor)
+            for j in range(self.springs):
+                spring(self, j, z, a, factor)
+            for j in range(self.contacts):
+                contact(self, j, self.states[slot, j], z, a, factor)
+            if graded:
+                grade(self, z, a, y, factor)
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def structure(
+    series: Series, z: cython.double[:, ::1], a: cython.Py_ssize_t, factor: cython.double
+) -> cython.void:
+    """Row a + 1 of z becomes the factor times what modes and forces make of row a."""
+    m: cython.Py_ssize_t = series.modes
+    end: cython.Py_ssize_t = series.linear
+    i: cython.Py_ssize_t
+    b: cython.Py_ssize_t = a + 1
+    h: cython.Py_ssize_t
+    one: cython.double = z[a, end - 1]
+    sine: cython.double = z[a, end]
+    cosine: cython.double = z[a, end + 1]
+    z[b, end - 1] = 0.0
+    for h in range(series.waves):
+        z[b, end + 2 * h] = factor * series.omega * series.harmonic[h] * z[a, end + 2 * h + 1]
+        z[b, end + 2 * h + 1] = -factor * series.omega * series.harmonic[h] * z[a, end + 2 * h]
+    for i in range(m):
+        z[b, i] = factor * z[a, m + i]
+        z[b, m + i] = factor * (
+            series.drive[0, i] * sine + series.drive[1, i] * cosine + series.hold[i] * one
+            - series.stiffness[i] * z[a, i] - series.damping[i] * z[a, m + i]
+        )  # fmt: skip
+    for h in range(2, 2 * series.waves, 2):  # of most scenes there is none
+        sine, cosine = factor * z[a, end + h], factor * z[a, end + h + 1]
+        for i in range(m):
+            z[b, m + i] += series.drive[h, i] * sine + series.drive[h + 1, i] * cosine
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def spring(
+    series: Series,
+    j: cython.Py_ssize_t,
+    z: cython.double[:, ::1],
+    a: cython.Py_ssize_t,
+    factor: cython.double,
+) -> cython.void:
+    """Add what spring j does."""
+    m: cython.Py_ssize_t = series.modes
+    i: cython.Py_ssize_t
+    u: cython.double = 0.0
+    for i in range(m):
+        u += series.stretch[j, i] * z[a, i]
+    u *= factor
+    for i in range(m):
+        z[a + 1, m + i] -= series.pull[j, i] * u
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def contact(
+    series: Series,
+    j: cython.Py_ssize_t,
+    state: cython.int,
+    z: cython.double[:, ::1],
+    a: cython.Py_ssize_t,
+    factor: cython.double,
+) -> cython.void:
+    """Add what contact j does in a state, and how its forces change."""
+    m: cython.Py_ssize_t = series.modes
+    v: cython.double = factor * series.k_v[j] * velocity(series.normal, j, z, a)
+    u: cython.double = 0.0
+    f: cython.double = z[a, 2 * m + j]
+    n: cython.double = z[a, 2 * m + series.contacts + j]
+    if state == _SEPARATED:  # the preload is missing
+        f, n = 0.0, -max(series.n_0[j], 0.0) * z[a, series.linear - 1]
+    else:  # a gap is not pressed
+        n += min(series.n_0[j], 0.0) * z[a, series.linear - 1]
+        if state != _STICKING:
+            u = series.mu[j] * v if state == _POSITIVE_SLIP else -series.mu[j] * v
+        elif series.rough[j]:
+            u = factor * series.k_u[j] * velocity(series.tangential, j, z, a)
+    push(series.push_u, j, f * factor, z, a + 1)
+    push(series.push_v, j, n * factor, z, a + 1)
+    z[a + 1, 2 * m + j] = u
+    z[a + 1, 2 * m + series.contacts + j] = v
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def grade(
+    series: Series,
+    z: cython.double[:, ::1],
+    a: cython.Py_ssize_t,
+    y: cython.double[:, ::1],
+    factor: cython.double,
+) -> cython.void:
+    """Add what the derivative of A by the frequency makes of the forces' phase in row a of y."""
+    i: cython.Py_ssize_t
+    h: cython.Py_ssize_t
+    b: cython.Py_ssize_t = a + 1
+    n: cython.Py_ssize_t = series.linear
+    sine: cython.double
+    cosine: cython.double
+    for h in range(series.waves):
+        sine, cosine = factor * y[a, n + 2 * h], factor * y[a, n + 2 * h + 1]
+        z[b, n + 2 * h] += series.harmonic[h] * cosine
+        z[b, n + 2 * h + 1] -= series.harmonic[h] * sine
+        for i in range(series.modes):
+            z[b, series.modes + i] += series.slope[2 * h, i] * sine + series.slope[2 * h + 1, i] * cosine
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def velocity(
+    shape: cython.double[:, ::1], j: cython.Py_ssize_t, z: cython.double[:, ::1], a: cython.Py_ssize_t
+) -> cython.double:
+    """Of contact j along its shape, by row a of z."""
+    m: cython.Py_ssize_t = shape.shape[1]
+    half: cython.Py_ssize_t = m // 2
+    i: cython.Py_ssize_t
+    one: cython.double = 0.0
+    other: cython.double = 0.0  # two sums, for one would wait for each addition
+    for i in range(half):
+        one += shape[j, i] * z[a, m + i]
+        other += shape[j, half + i] * z[a, m + half + i]
+    if m % 2:
+        other += shape[j, m - 1] * z[a, m + m - 1]
+    return one + other
+
+
+@cython.cfunc
+@cython.inline
+@cython.nogil
+@cython.exceptval(check=False)
+def push(
+    shape: cython.double[:, ::1],
+    j: cython.Py_ssize_t,
+    force: cython.double,
+    z: cython.double[:, ::1],
+    b: cython.Py_ssize_t,
+) -> cython.void:
+    """Take the force of contact j, by its shape over the masses, from the accelerations in row b of z."""
+    m: cython.Py_ssize_t = shape.shape[1]
+    i: cython.Py_ssize_t
+    if force != 0.0:
+        for i in range(m):
+            z[b, m + i] -= shape[j, i] * force
+
+
+NOTHING = cython.declare(cython.double, 1e-20)  # of the first term: those from there on are left out
+
+
+@cython.cclass
+class Forced(Series):
+    """`refresh` makes the columns of a flow for the frequency `omega` [rad/s], for one step; see `Pool`.
+
+    Those for more are made where they are needed, by `reach`.
+    """
+
+    def __init__(self, matrices: Matrices) -> None:
+        Series.__init__(self, matrices)
+        self.whole = np.zeros(self.linear)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(-1, check=False)
+    def refresh(self, slot: cython.Py_ssize_t) -> cython.int:
+        """Make the columns of the forces for the frequency, unless they are."""
+        self.clock += 1
+        self.used[slot] = self.clock
+        if self.made_for[slot] == self.omega:
+            return 0
+        self._one_step(slot)
+        self._sized(slot)
+        self.reached[slot] = 0
+        self.reach(slot, 0)
+        self.made_for[slot] = self.omega
+        return 0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _one_step(self, slot: cython.Py_ssize_t) -> cython.void:
+        """One step from sin(h theta) = 1 or cos(h theta) = 1 alone, and its derivative by omega.
+
+        The j-th derivative of the forces by time grows as (h omega)**j; what it does is known with the flow.
+        """
+        h: cython.Py_ssize_t
+        self.forced[slot, 0, :, :] = 0.0
+        for h in range(self.waves):
+            self._sum_terms(slot, h)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _sum_terms(self, slot: cython.Py_ssize_t, h: cython.Py_ssize_t) -> cython.void:
+        """The same of one harmonic."""
+        j: cython.int
+        step: cython.double = self.harmonic[h] * self.step[slot]
+        x: cython.double = self.omega * step
+        size: cython.double = 1.0
+        power: cython.double = 1.0
+        before: cython.double = 0.0
+        for j in range(_ORDER):
+            self._add_term(slot, h, j, power, j * before * step)
+            size *= x / (j + 1)
+            if size < NOTHING * x:
+                return
+            before = power
+            power *= -x if j % 2 else x
+            if j % 2:
+                before = -before
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _add_term(
+        self,
+        slot: cython.Py_ssize_t,
+        h: cython.Py_ssize_t,
+        j: cython.int,
+        power: cython.double,
+        slope: cython.double,
+    ) -> cython.void:
+        """Add what the j-th derivative does, power times, and by omega, of which that is the slope."""
+        i: cython.Py_ssize_t
+        b: cython.Py_ssize_t = 4 * h
+        square: cython.double = self.omega * self.omega
+        rate: cython.double = 2.0 * self.omega * power
+        first: cython.double
+        other: cython.double
+        grade: cython.double
+        new: cython.double[:, ::1] = self.forced[slot, 0]
+        for i in range(self.linear):
+            first = self.pushed[slot, b, j, i] + square * self.pushed[slot, b + 2, j, i]
+            other = self.pushed[slot, b + 1, j, i] + square * self.pushed[slot, b + 3, j, i]
+            grade = slope * first + rate * self.pushed[slot, b + 2, j, i]
+            new[b + j % 2, i] += power * first
+            new[b + 2 + j % 2, i] += grade
+            grade = slope * other + rate * self.pushed[slot, b + 3, j, i]
+            if j % 2:
+                new[b, i] -= power * other
+                new[b + 2, i] -= grade
+            else:
+                new[b + 1, i] += power * other
+                new[b + 3, i] += grade
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _sized(self, slot: cython.Py_ssize_t) -> cython.void:
+        """The size of the first two terms of that step."""
+        i: cython.Py_ssize_t
+        h: cython.Py_ssize_t
+        b: cython.Py_ssize_t
+        x: cython.double
+        square: cython.double = self.omega * self.omega
+        sine: cython.double
+        cosine: cython.double
+        for h in range(self.waves):
+            b, x = 4 * h, self.harmonic[h] * self.omega * self.step[slot]
+            for i in range(self.linear):
+                sine = self.push[slot, 0, b, i] + square * self.push[slot, 0, b + 2, i]
+                cosine = self.push[slot, 0, b + 1, i] + square * self.push[slot, 0, b + 3, i]
+                self.sizes_forced[slot, 2 * h, i] = fabs(sine) + 0.5 * fabs(
+                    self.push[slot, 1, b, i] + square * self.push[slot, 1, b + 2, i] - x * cosine
+                )
+                self.sizes_forced[slot, 2 * h + 1, i] = fabs(cosine) + 0.5 * fabs(
+                    self.push[slot, 1, b + 1, i] + square * self.push[slot, 1, b + 3, i] + x * sine
+                )
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(-1, check=False)
+    def reach(self, slot: cython.Py_ssize_t, last: cython.Py_ssize_t) -> cython.int:
+        """Make the columns of the forces over 1, 2, 4 ... 2**last steps, those that are not made yet."""
+        t: cython.double
+        h: cython.Py_ssize_t
+        while self.reached[slot] <= last:
+            if self.reached[slot] > 0:
+                self._double(slot, self.reached[slot] - 1)
+            if self.squared[slot] < self.reached[slot]:
+                with cython.gil:
+                    self.next_power(slot)
+            for h in range(self.waves):
+                t = self.harmonic[h] * self.omega * self.step[slot] * (1 << self.reached[slot])
+                self.rotation[slot, self.reached[slot], 2 * h] = cos(t)
+                self.rotation[slot, self.reached[slot], 2 * h + 1] = sin(t)
+            self.reached[slot] += 1
+        return 0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _double(self, slot: cython.Py_ssize_t, j: cython.Py_ssize_t) -> cython.void:
+        """The columns over twice as many steps: C(2 t) = E C + C R, with the rotation R of the forces."""
+        n: cython.Py_ssize_t = self.linear
+        i: cython.Py_ssize_t
+        h: cython.Py_ssize_t
+        b: cython.Py_ssize_t
+        t: cython.double
+        c: cython.double
+        s: cython.double
+        old: cython.double[:, ::1] = self.forced[slot, j]
+        new: cython.double[:, ::1] = self.forced[slot, j + 1]
+        for h in range(self.waves):
+            b, t = 4 * h, self.harmonic[h] * self.step[slot] * (1 << j)
+            c, s = self.rotation[slot, j, 2 * h], self.rotation[slot, j, 2 * h + 1]
+            for i in range(n):
+                new[b, i] = c * old[b, i] - s * old[b + 1, i]
+                new[b + 1, i] = s * old[b, i] + c * old[b + 1, i]
+                new[b + 2, i] = c * old[b + 2, i] - s * old[b + 3, i] - t * new[b + 1, i]
+                new[b + 3, i] = s * old[b + 2, i] + c * old[b + 3, i] + t * new[b, i]
+        for b in range(4 * self.waves):
+            for i in range(n):
+                self.whole[i] = new[b, i]
+            self.free(slot, j, old, b)
+            for i in range(n):
+                new[b, i] = self.whole[i]
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def free(
+        self,
+        slot: cython.Py_ssize_t,
+        j: cython.Py_ssize_t,
+        y: cython.double[:, ::1],
+        k: cython.Py_ssize_t,
+    ) -> cython.void:
+        """Add to `whole` what row k of y becomes in 2**j steps without the forces."""
+        n: cython.Py_ssize_t = self.linear
+        i: cython.Py_ssize_t
+        p: cython.Py_ssize_t = 0
+        a: cython.double
+        b: cython.double
+        c: cython.double
+        d: cython.double
+        while p + 4 <= n:  # four together, to go through the sums less often
+            a, b, c, d = y[k, p], y[k, p + 1], y[k, p + 2], y[k, p + 3]
+            for i in range(n):
+                self.whole[i] = (
+                    ((self.whole[i] + self.power[slot, j, p, i] * a) + self.power[slot, j, p + 1, i] * b)
+                    + self.power[slot, j, p + 2, i] * c
+                ) + self.power[slot, j, p + 3, i] * d
+            p += 4
+        while p < n:
+            a = y[k, p]
+            for i in range(n):
+                self.whole[i] += self.power[slot, j, p, i] * a
+            p += 1
 
 
 @cython.cclass

@@ -25,7 +25,7 @@ import numpy.typing as npt
 from cython.cimports.libc.math import cos, fabs, isfinite, ldexp, sin
 
 from fcm.model.scene import FloatArray
-from fcm.time_domain.forcing import BLOCK, ORDER
+from fcm.time_domain.flow import BLOCK, ORDER
 from fcm.time_domain.stop_reason import Stopped
 
 if cython.compiled:

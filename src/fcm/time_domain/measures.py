@@ -23,7 +23,7 @@ import numpy as np
 from cython.cimports.libc.math import cos, fabs, sin
 
 from fcm.model.scene import FloatArray
-from fcm.time_domain.forcing import ORDER
+from fcm.time_domain.flow import ORDER
 from fcm.time_domain.segments import SPAN
 
 if cython.compiled:

@@ -11,18 +11,16 @@ import numpy as np
 from cython.cimports.libc.math import fabs
 
 from fcm.model.scene import FloatArray
-from fcm.time_domain.forcing import ORDER, SMALL
+from fcm.time_domain.flow import ORDER, SMALL
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
     from cython.cimports.fcm.stability.state_sequence import FREE, StateSequence
-    from cython.cimports.fcm.time_domain.flow import Flows, summed
-    from cython.cimports.fcm.time_domain.forcing import Pool
+    from cython.cimports.fcm.time_domain.flow import Flows, Pool, summed
 else:
     from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
     from fcm.stability.state_sequence import FREE, StateSequence
-    from fcm.time_domain.flow import Flows, summed
-    from fcm.time_domain.forcing import Pool
+    from fcm.time_domain.flow import Flows, Pool, summed
 
 
 TINY = cython.declare(cython.double, 1e-300)  # instead of a division by zero where nothing moves

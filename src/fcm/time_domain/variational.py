@@ -23,7 +23,7 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import cos, fabs, sin
 
-from fcm.time_domain.forcing import ORDER
+from fcm.time_domain.flow import ORDER
 
 if cython.compiled:
     from cython.cimports.fcm.time_domain.flow import Flows, needed
