@@ -115,8 +115,8 @@ class System:
     def normalised(self) -> System:
         """The same with all preloads divided by the greatest."""
         contacts = tuple(replace(one, n_0=one.n_0 / self.preload_unit) for one in self.scene.contacts)
-        work = WorkCount()  # which those that share the curve are charged with
-        work.poll = lambda: self.work.poll()  # of now, which may be another later
+        own, work = self.work, WorkCount()  # which those that share the curve are charged with
+        work.poll = lambda: own.poll()  # of now, which may be another later
         return self._with(scene=replace(self.scene, contacts=contacts), work=work)
 
     def _with(self, **other: object) -> System:
