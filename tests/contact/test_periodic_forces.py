@@ -14,7 +14,9 @@ ALLOWED = 1e-12
 MISSES = [s * 10.0**-k for k in (4, 10, 15) for s in (-1.0, 1.0)]
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize(
+    "seed", [*range(4), *(pytest.param(k, marks=pytest.mark.slow) for k in range(4, 10))]
+)
 def test_random_motions(seed):
     """Four hundred; ten thousand with FCM_TEST_SCALE=25."""
     worst = max(max(errors(case)) for case in random_cases(40, seed))

@@ -184,6 +184,7 @@ def test_a_slider_at_rest_that_two_discs_hold_in_a_kernel_that_has_not_slipped(x
     assert held.max() <= 1e-12
 
 
+@pytest.mark.slow
 @settings(max_examples=max(int(300 * SCALE), 10), deadline=None, derandomize=True)
 @given(*EXTREMES)
 def test_extremes_have_finite_derivatives(parts, mu, k_u, k_v, n_0):

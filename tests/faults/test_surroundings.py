@@ -216,6 +216,7 @@ END
 
 
 @pytest.mark.skipif(not SMALL, reason="no disk can be made here")
+@pytest.mark.slow
 def test_a_picture_on_a_full_disk_is_one_sentence(program):
     """In each format, of which PDF packs what it writes."""
     endings = ("png", "pdf", "svg", "html")

@@ -138,6 +138,7 @@ def test_a_march_comes_to_rest_in_what_is_stable_and_doubles_its_period_in_what_
     assert stable or verdict.kind is Bifurcation.PERIOD_DOUBLING
 
 
+@pytest.mark.slow
 def test_one_harmonic_too_few_does_not_call_stable_what_doubles_its_period():
     """The same structure: the march above doubles its period at 0.92, where one harmonic errs by a tenth."""
     found = fcm.respond(planar_strip(frequency=(0.9, 0.96)), harmonics=1)
