@@ -11,10 +11,10 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import fabs, isnan, sqrt
 
+from fcm.accuracy.options import CURVE_DISTANCE, CurveDistanceOptions
 from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.model.scene import FloatArray
 
-NEAR = cython.declare(cython.double, 1e-4)  # of the length of a curve: points nearer coincide
 LEAST = cython.declare(cython.double, 1e-300)  # unit of a curve that stays where it is
 INFINITY = cython.declare(cython.double, float("inf"))
 
@@ -32,10 +32,16 @@ class PartialInterpolant:
     known: cython.uchar[::1]
     number: cython.Py_ssize_t[::1]  # of the known points
     known_points: cython.Py_ssize_t
+    coincident: cython.double  # part of the length of the curve: points nearer coincide
 
     def __init__(
-        self, place: cython.double[::1], value: cython.double[:, ::1], known: cython.uchar[::1]
+        self,
+        place: cython.double[::1],
+        value: cython.double[:, ::1],
+        known: cython.uchar[::1],
+        options: CurveDistanceOptions = CURVE_DISTANCE,
     ) -> None:
+        self.coincident = options.coincident
         self.place, self.value, self.known = place, value, known
         self.number, self.known_points = np.zeros(place.shape[0], dtype=np.intp), 0
 
@@ -60,7 +66,7 @@ class PartialInterpolant:
         difference is that of their roundings, and no slope."""
         i: cython.Py_ssize_t
         before: cython.Py_ssize_t
-        near: cython.double = NEAR * (self.place[self.place.shape[0] - 1] - self.place[0])
+        near: cython.double = self.coincident * (self.place[self.place.shape[0] - 1] - self.place[0])
         self.known_points = 0
         for i in range(self.known.shape[0]):
             if not self.known[i]:
@@ -219,8 +225,6 @@ def steepness(
         steep[i] = max(rise / run, 1.0) if rise < most * run else most
 
 
-HALVINGS = cython.declare(cython.int, 40)  # of a piece, to where the parameter is a value
-PARTS = cython.declare(cython.int, 8)  # of the way from a point to the next
 NAN = cython.declare(cython.double, float("nan"))
 
 
@@ -231,11 +235,17 @@ class PartnerCurveData:
     place: cython.double[::1]
     parameter: cython.double[::1]
     rate: cython.double[::1]
+    max_halvings: cython.int
     at: cython.double  # fraction of the way from a point to the next
 
     def __init__(
-        self, place: cython.double[::1], parameter: cython.double[::1], rate: cython.double[::1]
+        self,
+        place: cython.double[::1],
+        parameter: cython.double[::1],
+        rate: cython.double[::1],
+        options: CurveDistanceOptions = CURVE_DISTANCE,
     ) -> None:
+        self.max_halvings = options.max_halvings
         self.place, self.parameter, self.rate, self.at = place, parameter, rate, 0.0
 
     def values(
@@ -363,7 +373,7 @@ class PartnerCurveData:
         if wanted == before:  # as where the curves are the same
             self.at = 0.0
             return True
-        for _ in range(HALVINGS):
+        for _ in range(self.max_halvings):
             self.at = 0.5 * (low + high)
             now: cython.double = cubic(
                 before, after, self.rate[k] * length, self.rate[k + 1] * length, self.at
@@ -459,6 +469,7 @@ def rises(
     moved: cython.double[:, ::1],
     corner: cython.uchar[::1],
     tops: cython.Py_ssize_t[::1],
+    options: CurveDistanceOptions = CURVE_DISTANCE,
 ) -> FloatArray:
     """By how much (dof,) a curve is higher between its tops and the points next to them than at its tops.
 
@@ -468,6 +479,7 @@ def rises(
     d: cython.Py_ssize_t
     k: cython.Py_ssize_t
     part: cython.int
+    parts: cython.int = options.parts
     last: cython.Py_ssize_t = place.shape[0] - 1
     highest = np.zeros(tops.shape[0])
     out: cython.double[::1] = highest
@@ -485,8 +497,8 @@ def rises(
             length: cython.double = place[k + 1] - place[k]
             begin: cython.double = growth[k, d] * length
             end: cython.double = growth[k + 1, d] * length
-            for part in range(1, PARTS):
-                x: cython.double = cython.cast(cython.double, part) / PARTS
+            for part in range(1, parts):
+                x: cython.double = cython.cast(cython.double, part) / parts
                 more: cython.double = moved[k, d] * (1.0 - x) + moved[k + 1, d] * x
                 more += cubic(amplitude[k, d], amplitude[k + 1, d], begin, end, x)
                 out[d] = max(out[d], more - now)

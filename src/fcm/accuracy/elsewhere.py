@@ -22,7 +22,8 @@ from fcm.accuracy.partner_pieces import CurvePiece
 from fcm.accuracy.partner_stretch import StretchFollower
 from fcm.continuation import Path
 from fcm.harmonic_balance.cost_model import seconds_of
-from fcm.harmonic_balance.prolongation import DampedOptions, Prolongation
+from fcm.harmonic_balance.options import DampedOptions, ProlongationOptions
+from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from fcm.accuracy.embedded_pair import Errors
 
 # of any number of contacts, as the motions lie far from those that are sought
-OF_FAR_MOTIONS = DampedOptions(min_contacts=0)
+OF_FAR_MOTIONS = ProlongationOptions(damped=DampedOptions(min_contacts=0))
 
 
 def partner_elsewhere(

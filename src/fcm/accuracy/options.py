@@ -16,6 +16,28 @@ from fcm.continuation.options import (
 
 
 @dataclass(frozen=True)
+class CurveDistanceOptions:
+    """How differences of two curves are interpolated between their points.
+
+    Attributes
+    ----------
+    coincident : float
+        Part of the length of a curve: points nearer to one another coincide.
+    max_halvings : int
+        Of a piece, to where its parameter is a value.
+    parts : int
+        Of the way from a point to the next, at which a curve may be higher than its top.
+    """
+
+    coincident: float = 1e-4
+    max_halvings: int = 40
+    parts: int = 8
+
+
+CURVE_DISTANCE = CurveDistanceOptions()
+
+
+@dataclass(frozen=True)
 class PairOptions:
     """How the partner of a curve is chosen, and how closely it is looked at.
 
@@ -110,6 +132,8 @@ class PairOptions:
         Points to either side of the highest that may be higher where they are only interpolated.
     rounding : float
         Part of the greatest of a force, slip or energy of a contact: differences of this are nothing.
+    distance : CurveDistanceOptions
+        Between points of a curve.
     """
 
     harmonics_factor: int = 4
@@ -173,6 +197,7 @@ class PairOptions:
     batch: int = 256
     peak_neighbours: int = 8
     rounding: float = 1e-9
+    distance: CurveDistanceOptions = CURVE_DISTANCE
 
 
 PAIR = PairOptions()

@@ -119,7 +119,7 @@ class PartnerCurve:
         self.change = np.zeros((count, 1 + dofs))
         self.theirs = np.full((count, len(lifted.newton.z)), np.nan)  # where it was found
         self.known = self.linear.copy()
-        self.filled = PartialInterpolant(self.place, self.change, self.known.view(np.uint8))
+        self.filled = PartialInterpolant(self.place, self.change, self.known.view(np.uint8), options.distance)
 
     def displacements(self, special: Indices) -> FloatArray:
         """Displacements (point, 1 + dof): found at special points, at every so many, next to linear
@@ -360,7 +360,7 @@ class PartnerCurve:
         found[there, 1:] = (theirs - self.contact_loads[there]) / unit[there]
         found[np.isnan(found[:, 0])] = np.nan
         every = np.empty_like(found)
-        PartialInterpolant(self.place, found, self.known.view(np.uint8)).interpolate(
+        PartialInterpolant(self.place, found, self.known.view(np.uint8), self.options.distance).interpolate(
             np.arange(len(change)), every
         )
         return ComparedQuantities(

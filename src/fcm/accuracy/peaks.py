@@ -47,7 +47,15 @@ def rise_between_points(partner: PartnerCurve, moved: FloatArray, places: Indice
     is told of what lies between a point and a corner.
     """
     corner = ((partner.path.mark & Mark.CORNER) > 0).view(np.uint8)
-    return rises(partner.place, partner.amplitude, partner.shown.growth, moved, corner, places)
+    return rises(
+        partner.place,
+        partner.amplitude,
+        partner.shown.growth,
+        moved,
+        corner,
+        places,
+        partner.options.distance,
+    )
 
 
 def _highest(partner: PartnerCurve, change: FloatArray) -> tuple[FloatArray, Indices]:

@@ -52,6 +52,7 @@ cdef class Solver:
     cdef public double[:, ::1] matrix
     cdef public double[::1] right
     cdef int[::1] swapped
+    cdef readonly int lapack_size
     cdef public double orientation
     cdef object factors
     cpdef bint factor(self) except -1

@@ -16,8 +16,9 @@ import numpy as np
 import numpy.typing as npt
 from cython.cimports.libc.math import fabs
 
-LAPACK_SIZE = cython.declare(cython.int, 400 if cython.compiled else 40)  # from here on LAPACK
-BLOCKED_ROWS = cython.declare(cython.int, 40)  # rows from which on four of them are taken together
+from fcm.continuation.options import SOLVER, SolverOptions
+
+BLOCKED_ROWS = cython.declare(cython.int, SOLVER.blocked_rows)
 
 
 @cython.cclass
@@ -27,8 +28,8 @@ class Solver:
     orientation is the sign of the determinant. Neither array may be replaced.
     """
 
-    def __init__(self, size: cython.int) -> None:
-        self.size = size
+    def __init__(self, size: cython.int, options: SolverOptions = SOLVER) -> None:
+        self.size, self.lapack_size = size, options.lapack_size
         self.matrix = np.zeros((size, size))
         self.right = np.zeros(size)
         self.swapped = np.zeros(size, dtype=np.intc)
@@ -39,7 +40,7 @@ class Solver:
     @cython.exceptval(-1, check=False)
     def factor(self) -> cython.bint:
         """Factor the matrix, in place; false if it is singular or not finite."""
-        if self.size < LAPACK_SIZE:
+        if self.size < self.lapack_size:
             self.orientation = eliminate(self.matrix, self.swapped)
             return self.orientation != 0.0
         from scipy.linalg import lapack
@@ -58,7 +59,7 @@ class Solver:
     @cython.exceptval(-1, check=False)
     def solve(self) -> cython.int:
         """Replace right by the solution."""
-        if self.size < LAPACK_SIZE:
+        if self.size < self.lapack_size:
             substitute(self.matrix, self.swapped, self.right)
             return 0
         from scipy.linalg import lapack
@@ -69,7 +70,7 @@ class Solver:
 
     def inverse(self) -> npt.NDArray[np.float64]:
         """Of the matrix that was factored; right is lost."""
-        if self.size >= LAPACK_SIZE:
+        if self.size >= self.lapack_size:
             from scipy.linalg import lapack
 
             # all columns at once, which is far faster than one after the other

@@ -25,10 +25,8 @@ from fcm.continuation.step_control import Stepper
 
 if cython.compiled:
     from cython.cimports.fcm.continuation.predictor import dot
-    from cython.cimports.fcm.continuation.problem import COSTLY_SIZE
 else:
     from fcm.continuation.predictor import dot
-    from fcm.continuation.problem import COSTLY_SIZE
 
 
 @cython.cclass
@@ -386,9 +384,8 @@ def events_within(stepper: Stepper, limit: float, values: list[float], greatest:
     here: Point = stepper.here
     there: Point = stepper.there
     events = []
-    costly: cython.bint = (
-        stepper.problem.labelled or stepper.problem.unknowns >= COSTLY_SIZE
-    )  # what lies between helps
+    many: cython.bint = stepper.problem.unknowns >= stepper.problem.costly_size
+    costly: cython.bint = stepper.problem.labelled or many  # what lies between helps
     folds: cython.bint = here.tangent[n] * there.tangent[n] < 0.0
     peaks = [
         k for k in range(stepper.problem.outputs) if has_peak(here, there, k, most[k], stepper.options.events)

@@ -39,6 +39,44 @@ class Options:
         return type(self), self._values()
 
 
+@dataclasses.dataclass(frozen=True)  # taken by a kernel when it is made
+class SolverOptions:
+    """How a dense system is solved; see `dense_solver`. They decide how fast, not what comes out.
+
+    Attributes
+    ----------
+    lapack_size : int
+        Unknowns from which on LAPACK is called.
+    blocked_rows : int
+        Rows from which on four of them are taken together.
+    """
+
+    lapack_size: int = 400 if cython.compiled else 40
+    blocked_rows: int = 40
+
+
+@dataclasses.dataclass(frozen=True)  # taken by a kernel when it is made
+class ProblemOptions:
+    """What holds for any problem that is followed; see `Problem`.
+
+    Attributes
+    ----------
+    costly_size : int
+        Unknowns from which on most of the work is to solve for them.
+    unbounded : float
+        Growth of the solution, over its size at the start, where a problem says nothing else.
+    difference_length : float
+        Length over which margins have their slopes.
+    max_angle : float
+        [rad] Margins this far from one another are not the same.
+    """
+
+    costly_size: int = 100
+    unbounded: float = 1e9
+    difference_length: float = 1e-6
+    max_angle: float = 1.0
+
+
 @cython.cclass
 @dataclass(frozen=True, eq=False, repr=False)
 class NewtonOptions(Options):
@@ -112,6 +150,8 @@ class StepOptions(Options):
         Steps of a curve.
     min_cosine : float
         Of the angle by which the curve may turn in a step: 20 degrees.
+    min_cubic_cosine : float
+        Of the angle by which it turned in a step, beyond which that is no cubic any more.
     any_turn_step : float
         A shorter step may turn by any angle below a right angle: there is a corner that nothing tells of.
     max_miss : float
@@ -141,6 +181,7 @@ class StepOptions(Options):
     min_step: cython.double = 1e-9
     max_steps: cython.int = 20_000
     min_cosine: cython.double = 0.94
+    min_cubic_cosine: cython.double = 0.1
     any_turn_step: cython.double = 1e-4
     max_miss: cython.double = 0.5
     target_turn: cython.double = 0.2
@@ -416,6 +457,8 @@ class PathOptions:
     flat: float = 0.1
 
 
+SOLVER = SolverOptions()
+PROBLEM = ProblemOptions()
 NEWTON = NewtonOptions()
 FOLLOW = FollowOptions()
 PATH = PathOptions()

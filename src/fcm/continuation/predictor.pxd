@@ -1,8 +1,8 @@
 from fcm.continuation.problem cimport Point
 
-cdef double MIN_COSINE
 
 cdef class Predictor:
+    cdef public double min_cosine
     cdef public double[::1] curvature
     cdef public double[::1] second
     cdef public double[::1] third

@@ -13,8 +13,6 @@ from cython.cimports.libc.math import sqrt
 
 from fcm.continuation.problem import Point
 
-MIN_COSINE = cython.declare(cython.double, 0.1)  # cosine of a turn, below which a step is no cubic any more
-
 
 @cython.cclass
 class Predictor:
@@ -24,7 +22,8 @@ class Predictor:
     scaled coordinates; known says whether there is one, cubic whether it is taken.
     """
 
-    def __init__(self, size: cython.Py_ssize_t) -> None:
+    def __init__(self, size: cython.Py_ssize_t, min_cosine: cython.double) -> None:
+        self.min_cosine = min_cosine  # of a turn, below which a step is no cubic any more
         self.curvature, self.second, self.third = np.zeros(size), np.zeros(size), np.zeros(size)
         self.direction = np.zeros(size)
         self.has_cubic, self.cubic = False, False
@@ -97,7 +96,7 @@ class Predictor:
         off: cython.double
         parabola: cython.double = 0.0
         cubic: cython.double = 0.0
-        if not (length > 0.0 and dot(here.tangent, point.tangent) > MIN_COSINE):
+        if not (length > 0.0 and dot(here.tangent, point.tangent) > self.min_cosine):
             self.has_cubic, self.cubic = False, False
             return
         for i in range(self.curvature.shape[0]):

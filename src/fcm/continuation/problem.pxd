@@ -1,4 +1,3 @@
-cdef int COSTLY_SIZE
 cdef int NONE
 
 cdef class Problem:
@@ -11,6 +10,8 @@ cdef class Problem:
     cdef public bint rooted
     cdef public bint costly
     cdef public double unbounded
+    cdef readonly int costly_size
+    cdef readonly double difference_length, max_angle
     cdef public double[::1] residual
     cdef public double[:, ::1] jacobian
     cdef public double[::1] scale
@@ -27,8 +28,6 @@ cdef class Problem:
     cpdef double factor(self, double[::1] row, double[::1] scale) except -2.0
     cpdef int solve(self, double[::1] right) except -1
 
-cdef double DIFFERENCE_LENGTH
-
 cdef class Point:
     cdef public double[::1] z
     cdef public double[::1] tangent
@@ -37,6 +36,7 @@ cdef class Point:
     cdef public double[::1] angle
     cdef public double[::1] slope
     cdef readonly Py_ssize_t group
+    cdef double max_angle
     cdef public double[::1] output
     cdef public double[::1] growth
     cdef public double orientation
@@ -49,7 +49,7 @@ cdef class Point:
     cdef int differentiate_margins(self, Problem problem, double[::1] scale, double[::1] beside) except -1
 
 cdef Py_ssize_t nearest(
-    int wanted, double at, int[::1] kind, double[::1] angle, Py_ssize_t first, Py_ssize_t end
+    int wanted, double at, int[::1] kind, double[::1] angle, Py_ssize_t first, Py_ssize_t end, double far
 ) noexcept
 
 cdef class PointStore:

@@ -15,16 +15,11 @@ import numpy as np
 import numpy.typing as npt
 from cython.cimports.libc.math import fabs
 
+from fcm.continuation.options import PROBLEM, ProblemOptions
 from fcm.continuation.path import FloatArray, Path, Status
 
-BOUNDLESS = cython.declare(cython.double, 1e9)  # `unbounded` where a problem says nothing else
-COSTLY_SIZE = cython.declare(cython.int, 100)  # unknowns, from which on most of the work is to solve for them
 NONE = cython.declare(cython.int, -1)  # kind of a margin that is none
-
-
 PI = cython.declare(cython.double, 3.141592653589793)
-DIFFERENCE_LENGTH = cython.declare(cython.double, 1e-6)  # length over which margins have their slopes
-MAX_ANGLE = cython.declare(cython.double, 1.0)  # [rad] margins this far from one another are not the same
 ROOM = 256  # points of a store for which there is room at first
 
 
@@ -47,12 +42,22 @@ class Problem:
     """
 
     def __init__(
-        self, unknowns: cython.int, margins: cython.int, outputs: cython.int, rank: cython.int = 0
+        self,
+        unknowns: cython.int,
+        margins: cython.int,
+        outputs: cython.int,
+        rank: cython.int = 0,
+        options: ProblemOptions = PROBLEM,
     ) -> None:
         self.unknowns, self.margins, self.outputs, self.rank = unknowns, margins, outputs, rank
-        self.labelled, self.unbounded = False, BOUNDLESS
+        self.labelled, self.unbounded = False, options.unbounded
+        self.costly_size, self.difference_length, self.max_angle = (
+            options.costly_size,
+            options.difference_length,
+            options.max_angle,
+        )
         self.rooted = False
-        self.group, self.costly = margins, unknowns >= COSTLY_SIZE
+        self.group, self.costly = margins, unknowns >= self.costly_size
         self.residual = np.zeros(unknowns)
         self.jacobian = np.zeros((unknowns, 1 if rank else unknowns + 1))
         self.scale = np.ones(unknowns + 1)
@@ -120,7 +125,7 @@ class Point:
         self.kind = np.zeros(problem.margins, dtype=np.intc)
         self.slope = np.zeros(problem.margins)  # of the margins, along a unit of length
         self.output, self.growth = np.zeros(problem.outputs), np.zeros(problem.outputs)
-        self.orientation, self.group = 0.0, problem.group
+        self.orientation, self.group, self.max_angle = 0.0, problem.group, problem.max_angle
         self.has_margin_slopes = False  # whether the slopes are those there
 
     @cython.cfunc
@@ -163,8 +168,9 @@ class Point:
             return -1
         if kind[k] == self.kind[k] and angle[k] == self.angle[k]:
             return k
-        i = nearest(self.kind[k], self.angle[k], kind, angle, first, end)
-        return i if i >= 0 and nearest(kind[i], angle[i], self.kind, self.angle, first, end) == k else -1
+        far: cython.double = self.max_angle
+        i = nearest(self.kind[k], self.angle[k], kind, angle, first, end, far)
+        return i if i >= 0 and nearest(kind[i], angle[i], self.kind, self.angle, first, end, far) == k else -1
 
     @cython.ccall
     @cython.exceptval(-1e300, check=False)
@@ -191,14 +197,15 @@ class Point:
         self.has_margin_slopes = True
         if problem.margins == 0 or problem.labelled:
             return 0
+        length: cython.double = problem.difference_length
         for i in range(probe.shape[0]):
-            probe[i] = self.z[i] + DIFFERENCE_LENGTH * scale[i] * self.tangent[i]
+            probe[i] = self.z[i] + length * scale[i] * self.tangent[i]
         problem.bound(probe)
         for k in range(problem.margins):
             self.slope[k] = 0.0
             i = self.partner(k, problem.kind, problem.angle)
             if i >= 0:
-                self.slope[k] = (problem.margin[i] - self.margin[k]) / DIFFERENCE_LENGTH
+                self.slope[k] = (problem.margin[i] - self.margin[k]) / length
         return 0
 
 
@@ -211,14 +218,15 @@ def nearest(
     angle: cython.double[::1],
     first: cython.Py_ssize_t,
     end: cython.Py_ssize_t,
+    far: cython.double,
 ) -> cython.Py_ssize_t:
     """Of those from first to before end the number of that of a kind whose angle is nearest to one given.
 
-    -1 if there is none near it.
+    -1 if there is none nearer than far [rad].
     """
     i: cython.Py_ssize_t
     best: cython.Py_ssize_t = -1
-    least: cython.double = MAX_ANGLE
+    least: cython.double = far
     for i in range(first, end):
         if kind[i] == wanted:
             off: cython.double = fabs(at - angle[i])

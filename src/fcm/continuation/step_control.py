@@ -23,11 +23,9 @@ from fcm.continuation.options import FOLLOW, FollowOptions, StepOptions
 from fcm.continuation.problem import Point, Problem
 
 if cython.compiled:
-    from cython.cimports.fcm.continuation.predictor import MIN_COSINE, Predictor, dot
-    from cython.cimports.fcm.continuation.problem import DIFFERENCE_LENGTH
+    from cython.cimports.fcm.continuation.predictor import Predictor, dot
 else:
-    from fcm.continuation.predictor import MIN_COSINE, Predictor, dot
-    from fcm.continuation.problem import DIFFERENCE_LENGTH
+    from fcm.continuation.predictor import Predictor, dot
 
 
 @cython.cclass
@@ -40,7 +38,10 @@ class Stepper:
 
     def __init__(self, problem: Problem, options: FollowOptions = FOLLOW) -> None:
         self.problem, self.options = problem, options
-        self.newton, self.predictor = Newton(problem, options.newton), Predictor(problem.unknowns + 1)
+        self.newton, self.predictor = (
+            Newton(problem, options.newton),
+            Predictor(problem.unknowns + 1, options.step.min_cubic_cosine),
+        )
         self.here, self.there, self.between = Point(problem), Point(problem), Point(problem)
         self.guess = np.zeros(problem.unknowns + 1)
         self.step, self.cosine, self.miss, self.parameter_miss = 0.0, 1.0, 0.0, 0.0
@@ -54,6 +55,7 @@ class Stepper:
         """Be ready for another curve, with options."""
         self.options, self.newton.options, self.newton.evaluations = options, options.newton, 0
         self.newton.tolerance, self.max_newton_step = options.newton.tolerance, options.labels.max_newton_step
+        self.predictor.min_cosine = options.step.min_cubic_cosine
         self.tolerance = (
             options.newton.preliminary_tolerance if options.stations_only else options.newton.tolerance
         )
@@ -271,7 +273,7 @@ class Stepper:
     @cython.exceptval(check=False)
     def clipped_cosine(self) -> cython.double:
         """Length in the plane of here that a length along the tangent there has: the cosine."""
-        return self.cosine if self.cosine > MIN_COSINE else MIN_COSINE
+        return max(self.cosine, self.predictor.min_cosine)
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -485,14 +487,15 @@ def next_extrapolated_root(stepper: Stepper) -> cython.double:
     """
     k: cython.Py_ssize_t
     first: cython.double = 0.0
+    length: cython.double = stepper.problem.difference_length
     if not stepper.here.has_margin_slopes:
         stepper.here.differentiate_margins(stepper.problem, stepper.newton.scale, stepper.guess)
     for k in range(stepper.problem.margins):
         if stepper.here.margin[k] * stepper.here.slope[k] < 0.0:
             here: cython.double = stepper.here.margin[k]
-            ahead: cython.double = here + DIFFERENCE_LENGTH * stepper.here.slope[k]
+            ahead: cython.double = here + length * stepper.here.slope[k]
             # the square of such a root falls half as fast along the tangent as it does along the curve
-            at: cython.double = 2.0 * DIFFERENCE_LENGTH * here * here / (here * here - ahead * ahead)
+            at: cython.double = 2.0 * length * here * here / (here * here - ahead * ahead)
             if here * ahead > 0.0 and (first == 0.0 or at < first):
                 first = at
     return first

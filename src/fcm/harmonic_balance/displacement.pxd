@@ -1,7 +1,5 @@
 from fcm.structure.receptance cimport Receptance
 
-cdef int MANY_DOFS
-
 cdef class Extremes:
     cdef public double[::1] harmonics
     cdef public int count
@@ -23,7 +21,8 @@ cdef class Extremes:
     cdef double[::1] s
     cdef double value
     cdef double rate
-    cdef double angle
+    cdef double angle, step_tolerance
+    cdef int max_steps, block, many_dofs
     cdef int fill(self) except -1
     cdef int many(self) except -1
     cdef void both(self, Py_ssize_t d) noexcept

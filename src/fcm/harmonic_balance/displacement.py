@@ -12,16 +12,9 @@ import numpy.typing as npt
 from cython.cimports.libc.math import cos, fabs, hypot, sin
 
 from fcm.harmonic_balance.angle_samples import waves
+from fcm.harmonic_balance.options import HARMONIC_BALANCE, ExtremeOptions
 from fcm.structure.linear import Linear
 from fcm.structure.receptance import Receptance, TravellingReceptance
-
-EXTREMUM_STEPS = cython.declare(cython.int, 4)  # Newton steps from a sample to the extreme, at most
-# [rad] the last of them, after which the angle errs by its square
-EXTREMUM_TOLERANCE = cython.declare(cython.double, 1e-6)
-BLOCK = cython.declare(cython.int, 256)  # degrees of freedom whose samples lie in the processor's cache
-MANY_DOFS = cython.declare(
-    cython.int, 50
-)  # degrees of freedom from which on sums over modes and waves are BLAS's
 
 
 @cython.cclass
@@ -33,7 +26,12 @@ class Extremes:
     (2, dof): of the greatest and the least displacement, if there are several.
     """
 
-    def __init__(self, harmonics: cython.double[::1], dofs: cython.int) -> None:
+    def __init__(
+        self,
+        harmonics: cython.double[::1],
+        dofs: cython.int,
+        options: ExtremeOptions = HARMONIC_BALANCE.extremes,
+    ) -> None:
         count: cython.int = harmonics.shape[0]
         self.harmonics, self.count, self.dofs = harmonics, count, dofs
         self.parts = np.zeros((4 * count, dofs))
@@ -44,6 +42,8 @@ class Extremes:
         self.sampling = np.concatenate((self.cosine, np.negative(self.sine)))
         self.wave, self.c, self.s = np.zeros(self.samples), np.zeros(count), np.zeros(count)
         self.value = self.rate = self.angle = 0.0
+        self.max_steps, self.step_tolerance = options.steps, options.step_tolerance
+        self.block, self.many_dofs = options.block, options.many_dofs
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -53,7 +53,7 @@ class Extremes:
         if self.count == 1:
             for d in range(self.dofs):
                 self.single(d)
-        elif self.dofs > MANY_DOFS:
+        elif self.dofs > self.many_dofs:
             self.many()
         else:
             for d in range(self.dofs):
@@ -92,8 +92,8 @@ class Extremes:
         d: cython.Py_ssize_t
         first: cython.Py_ssize_t
         amplitudes = np.asarray(self.parts)[: 2 * self.count].T
-        for first in range(0, self.dofs, BLOCK):
-            sampled: cython.double[:, ::1] = amplitudes[first : first + BLOCK] @ self.sampling
+        for first in range(0, self.dofs, self.block):
+            sampled: cython.double[:, ::1] = amplitudes[first : first + self.block] @ self.sampling
             for d in range(sampled.shape[0]):
                 self.wave[:] = sampled[d]
                 self.both(first + d)
@@ -151,7 +151,7 @@ class Extremes:
         theta: cython.double = k * step
         slope: cython.double
         curvature: cython.double
-        for _ in range(EXTREMUM_STEPS):
+        for _ in range(self.max_steps):
             self.waves_at(theta)
             slope = curvature = 0.0
             for j in range(self.count):
@@ -162,7 +162,7 @@ class Extremes:
                 theta = k * step
                 break
             theta -= slope / curvature
-            if fabs(slope) < fabs(curvature) * EXTREMUM_TOLERANCE:
+            if fabs(slope) < fabs(curvature) * self.step_tolerance:
                 break
         self.waves_at(theta)
         self.angle = theta
@@ -194,9 +194,11 @@ class Displacements(Extremes):
     of_modes (4 * harmonic, mode). mean (dof,); rest (dof,): the answer to static loads alone.
     """
 
-    def __init__(self, seen: Receptance, linear: Linear) -> None:
+    def __init__(
+        self, seen: Receptance, linear: Linear, options: ExtremeOptions = HARMONIC_BALANCE.extremes
+    ) -> None:
         count, dofs = seen.count, linear.dofs.shape[1]
-        Extremes.__init__(self, seen.harmonics, dofs)
+        Extremes.__init__(self, seen.harmonics, dofs, options)
         self.seen = seen
         self.shapes, self.static = linear.dofs, linear.static_of_dofs
         self.of_modes = np.zeros((4 * count, seen.modes))
@@ -276,7 +278,7 @@ class Displacements(Extremes):
         k: cython.Py_ssize_t
         i: cython.Py_ssize_t
         d: cython.Py_ssize_t
-        if self.dofs > MANY_DOFS:
+        if self.dofs > self.many_dofs:
             np.matmul(np.asarray(self.of_modes), np.asarray(self.shapes), out=np.asarray(self.parts))
             return 0
         for k in range(self.parts.shape[0]):
@@ -339,9 +341,13 @@ class TravellingDisplacements(Displacements):
     """As `Displacements`, each harmonic by the shapes (mode, dof) of the modes that it meets."""
 
     def __init__(
-        self, seen: TravellingReceptance, linear: Linear, shapes: list[npt.NDArray[np.complex128]]
+        self,
+        seen: TravellingReceptance,
+        linear: Linear,
+        shapes: list[npt.NDArray[np.complex128]],
+        options: ExtremeOptions = HARMONIC_BALANCE.extremes,
     ) -> None:
-        Displacements.__init__(self, seen, linear)
+        Displacements.__init__(self, seen, linear, options)
         self.waves = seen.waves
         most = max((len(one) for one in shapes), default=0)
         self.wave_re, self.wave_im = np.zeros((2, len(shapes), most, self.dofs))

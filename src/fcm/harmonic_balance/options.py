@@ -23,12 +23,21 @@ class ExtremeOptions:
     iterations, settled : int, float
         The same from where an extreme was for a motion nearby, at most; and the angle [rad] of the last, at
         which the value errs by its square.
+    step_tolerance : float
+        [rad] of the last of the `steps`, after which the angle errs by its square.
+    block : int
+        Degrees of freedom whose samples lie in the processor's cache.
+    many_dofs : int
+        Degrees of freedom from which on sums over modes and waves are BLAS's.
     """
 
     samples: int = 12
     steps: int = 4
     iterations: int = 8
     settled: float = 1e-9
+    step_tolerance: float = 1e-6
+    block: int = 256
+    many_dofs: int = 50
 
 
 @dataclass(frozen=True)
@@ -47,6 +56,10 @@ class SpectrumOptions:
         Points of a curve from one to the next whose forces are those of all, where there are many.
     least_amplitude : float
         Part of the greatest amplitude of all degrees of freedom, to which a share is referred at least.
+    min_further, max_further : int
+        Harmonics of an enriched motion beyond the highest that was balanced: as many again, within these.
+    compiled_ports : int
+        Up to which the equations of one of them are solved without leaving compiled code.
     """
 
     ahead: float = 1.5
@@ -54,6 +67,9 @@ class SpectrumOptions:
     leads: float = 0.5
     every: int = 16
     least_amplitude: float = 1e-9
+    min_further: int = 6
+    max_further: int = 15
+    compiled_ports: int = 20
 
 
 @dataclass(frozen=True)
@@ -212,12 +228,87 @@ class UnitOptions:
     contacts : int
         Of so many and more all displacements have one unit. What a single contact does then matters as far as
         it moves beside the others, and its corners turn the curve by no more than that.
+    level : float
+        A level of the forces is measured by itself, and below this by this.
     """
 
     own: float = 0.1
     greatest: float = 1e-6
     of_preload: float = 2e-12
     contacts: int = 12
+    level: float = 0.1
+
+
+@dataclass(frozen=True)
+class DampedOptions:
+    """Of the damped Newton method of many contacts; steps are relative to the motion.
+
+    Attributes
+    ----------
+    min_contacts : int
+        From so many on.
+    max_steps : int
+        After so many a guess is judged too far away.
+    min_damping : float
+        A step that is shortened to this part leads nowhere.
+    min_factor, max_factor : float
+        By this a step is shortened at most at once, and longer than the one before.
+    final_step : float
+        After one that is no longer there is none.
+    """
+
+    min_contacts: int = 12
+    max_steps: int = 16
+    min_damping: float = 1e-3
+    min_factor: float = 0.1
+    max_factor: float = 4.0
+    final_step: float = 1e-9
+
+
+@dataclass(frozen=True)
+class ProlongationOptions:
+    """How a point is moved to the balance of more harmonics; steps are relative to the solution's size.
+
+    Attributes
+    ----------
+    max_iterations : int
+        Newton steps before a guess is judged too far away.
+    final_step : float
+        A step after which there is no further one.
+    max_change : float
+        Part of the solution's size, by which a displacement may change.
+    min_cosine : float
+        Of the angle by which the curve may turn.
+    homotopy_parts : tuple of float
+        Parts of the equations' change, where at once is too much.
+    costly_size : int
+        Unknowns from which on what is not found at once is given up. Hundreds of ways by parts led nowhere.
+    chord_size : int
+        Unknowns from which on a Jacobian takes far longer than the residual: those of several contacts.
+    chord_step : float
+        A step so short that the Jacobian hardly changes along it.
+    max_chord_steps : int
+        Steps with one Jacobian then.
+    chord_contraction : float
+        Part of the step before, that each of these may be.
+    first_step_ratio : float
+        Times `max_change`, beyond which the first step of a costly problem leads nowhere.
+    damped : DampedOptions
+        Of many contacts.
+    """
+
+    max_iterations: int = 8
+    final_step: float = 1e-12
+    max_change: float = 0.5
+    min_cosine: float = 0.7
+    homotopy_parts: tuple[float, ...] = (0.1, 0.25, 0.45, 0.7, 1.0)
+    costly_size: int = 240
+    chord_size: int = 100
+    chord_step: float = 0.02
+    max_chord_steps: int = 4
+    chord_contraction: float = 0.4
+    first_step_ratio: float = 2.0
+    damped: DampedOptions = field(default_factory=DampedOptions)
 
 
 @dataclass(frozen=True)
@@ -246,3 +337,4 @@ class HarmonicBalanceOptions:
 
 
 HARMONIC_BALANCE = HarmonicBalanceOptions()  # where nothing else is said
+PROLONGATION = ProlongationOptions()

@@ -6,6 +6,7 @@ cdef class ForceLevelProblem(Problem):
     cdef public Balance balance
     cdef public double omega
     cdef bint many
+    cdef double min_level_unit
     cdef double[::1] z
     cdef void place(self, double[::1] z) noexcept
 
@@ -24,11 +25,10 @@ cdef class Prolongation:
     cdef bint costly_size
     cdef bint brief
     cdef bint damps
-    cdef int max_steps
-    cdef double min_damping
-    cdef double min_factor
-    cdef double max_factor
-    cdef double final_step
+    cdef int max_iterations, max_chord_steps, max_damped_steps
+    cdef double final_step, max_change, min_cosine, chord_step, chord_contraction, max_first_step
+    cdef double min_damping, min_factor, max_factor, damped_final_step
+    cdef tuple homotopy_parts
     cdef public double[::1] found
     cdef int[::1] place
     cdef double[::1] guess

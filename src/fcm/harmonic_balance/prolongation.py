@@ -14,8 +14,6 @@ Nonlinear Problems, 2004, section 3.3). A point that was found may be given for 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import cython
 import numpy as np
 from cython.cimports.libc.math import fabs, sqrt
@@ -23,44 +21,23 @@ from cython.cimports.libc.math import fabs, sqrt
 from fcm.continuation.corrector import Newton
 from fcm.continuation.problem import Problem
 from fcm.harmonic_balance.contact_law import Law
+from fcm.harmonic_balance.options import HARMONIC_BALANCE, PROLONGATION, ProlongationOptions, UnitOptions
 from fcm.harmonic_balance.residual import Balance
-
-LEVEL_FLOOR = cython.declare(cython.double, 0.1)  # levels are measured by themselves, and below this by this
-
-
-MAX_ITERATIONS = cython.declare(cython.int, 8)  # Newton steps before a guess is judged too far away
-FINAL_STEP = cython.declare(cython.double, 1e-12)  # a step after which there is no further one
-MAX_CHANGE = cython.declare(
-    cython.double, 0.5
-)  # a displacement of this part of the solution's size is not believed
-MIN_COSINE = cython.declare(
-    cython.double, 0.7
-)  # nor a curve that goes another way, by the cosine of the angle
-HOMOTOPY_PARTS = (0.1, 0.25, 0.45, 0.7, 1.0)  # parts of the equations' change, where at once is too much
-# unknowns from which on what is not found at once is given up: there it is dear, and hundreds of such ways by
-# parts have led nowhere
-COSTLY_SIZE = cython.declare(cython.int, 240)
-# unknowns from which on a Jacobian takes far longer than the residual: those of several contacts
-CHORD_SIZE = cython.declare(cython.int, 100)
-CHORD_STEP = cython.declare(cython.double, 0.02)  # a step so short that the Jacobian hardly changes along it
-MAX_CHORD_STEPS = cython.declare(cython.int, 4)  # steps with a Jacobian then,
-CHORD_CONTRACTION = cython.declare(cython.double, 0.4)  # each at most this part of the one before
-FIRST_STEP_RATIO = cython.declare(
-    cython.double, 2.0
-)  # times the farthest, beyond which a first step leads nowhere then
 
 
 @cython.cclass
 class ForceLevelProblem(Problem):
     """A balance at omega, followed in the level of its forces."""
 
-    def __init__(self, balance: Balance, omega: cython.double = 0.0) -> None:
+    def __init__(
+        self, balance: Balance, omega: cython.double = 0.0, units: UnitOptions = HARMONIC_BALANCE.units
+    ) -> None:
         Problem.__init__(self, balance.unknowns, balance.margins, 0, balance.rank)
         self.group, self.residual, self.jacobian = balance.group, balance.residual, balance.jacobian
         self.margin, self.kind, self.angle = balance.margin, balance.kind, balance.angle
         self.unbounded *= self.unbounded  # as much again as the level may grow
         self.balance, self.z = balance, np.zeros(balance.unknowns + 1)
-        self.many, self.rooted = self.costly, balance.rooted
+        self.many, self.rooted, self.min_level_unit = self.costly, balance.rooted, units.level
         self.begin(omega)
 
     def begin(self, omega: float, lightly: bool = False) -> None:
@@ -103,7 +80,7 @@ class ForceLevelProblem(Problem):
         self.place(z)
         self.balance.measure(self.z)
         self.scale[:] = self.balance.scale
-        self.scale[self.unknowns] = max(abs(z[self.unknowns]), LEVEL_FLOOR)
+        self.scale[self.unknowns] = max(abs(z[self.unknowns]), self.min_level_unit)
         return 0
 
     @cython.ccall
@@ -172,35 +149,6 @@ class Homotopy(Problem):
         return self.inner.solve(right)
 
 
-@dataclass(frozen=True)
-class DampedOptions:
-    """Of Newton's method of many contacts.
-
-    Attributes
-    ----------
-    min_contacts : int
-        From so many on.
-    max_steps : int
-        After so many a guess is judged too far away.
-    min_damping : float
-        A step that is shortened to this part leads nowhere.
-    min_factor, max_factor : float
-        By this a step is shortened at most at once, and longer than the one before.
-    final_step : float
-        After one that is no longer, relative to the motion, there is none.
-    """
-
-    min_contacts: int = 12
-    max_steps: int = 16
-    min_damping: float = 1e-3
-    min_factor: float = 0.1
-    max_factor: float = 4.0
-    final_step: float = 1e-9
-
-
-DAMPED = DampedOptions()  # where nothing else is said
-
-
 @cython.cclass
 class Prolongation:
     """`find_normal` a point of the balance of fewer harmonics finds one of the balance of more.
@@ -215,17 +163,13 @@ class Prolongation:
         fewer: list[int],
         more: list[int],
         enough: cython.double,
-        options: DampedOptions = DAMPED,
+        options: ProlongationOptions = PROLONGATION,
     ) -> None:
-        self.balance, self.tolerance, self.costly_size = balance, enough, balance.unknowns >= COSTLY_SIZE
-        self.many, self.brief = balance.unknowns >= CHORD_SIZE, self.costly_size
-        self.damps = balance.contacts >= options.min_contacts
-        self.max_steps, self.min_damping = options.max_steps, options.min_damping
-        self.min_factor, self.max_factor, self.final_step = (
-            options.min_factor,
-            options.max_factor,
-            options.final_step,
-        )
+        self.balance, self.tolerance = balance, enough
+        self.costly_size = balance.unknowns >= options.costly_size
+        self.many, self.brief = balance.unknowns >= options.chord_size, self.costly_size
+        self.damps = balance.contacts >= options.damped.min_contacts
+        self.take_options(options)
         self.homotopy = Homotopy(balance)
         self.newton = Newton(self.homotopy)
         self.guess, self.row = np.zeros(balance.unknowns + 1), np.zeros(balance.unknowns + 1)
@@ -236,6 +180,27 @@ class Prolongation:
         self.more = more
         self.fewer: list[int] = []
         self.set_harmonics(fewer)
+
+    def take_options(self, options: ProlongationOptions) -> None:
+        """Have the tolerances as numbers of C."""
+        self.max_iterations, self.max_chord_steps = options.max_iterations, options.max_chord_steps
+        self.final_step, self.max_change, self.min_cosine = (
+            options.final_step,
+            options.max_change,
+            options.min_cosine,
+        )
+        self.chord_step, self.chord_contraction = options.chord_step, options.chord_contraction
+        self.max_first_step, self.homotopy_parts = (
+            options.first_step_ratio * options.max_change,
+            options.homotopy_parts,
+        )
+        damped = options.damped
+        self.max_damped_steps, self.min_damping, self.damped_final_step = (
+            damped.max_steps,
+            damped.min_damping,
+            damped.final_step,
+        )
+        self.min_factor, self.max_factor = damped.min_factor, damped.max_factor
 
     def set_harmonics(self, fewer: list[int]) -> None:
         """Points are of a balance of those harmonics; the others are nothing where they are looked from."""
@@ -356,12 +321,12 @@ class Prolongation:
             for i in range(guess.shape[0]):
                 self.newton.z[i] = guess[i] + self.prediction[i]
                 leads = leads or self.prediction[i] != 0.0
-            if leads and self.damped_newton() and self.strain_from(guess) <= MAX_CHANGE:
+            if leads and self.damped_newton() and self.strain_from(guess) <= self.max_change:
                 return True
             self.newton.z[:] = guess
-            return self.damped_newton() and self.strain_from(guess) <= MAX_CHANGE
+            return self.damped_newton() and self.strain_from(guess) <= self.max_change
         self.newton.z[:] = guess
-        return self.newton_to_tolerance() and self.newton.moved <= MAX_CHANGE
+        return self.newton_to_tolerance() and self.newton.moved <= self.max_change
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -373,11 +338,11 @@ class Prolongation:
         self.newton.z[:] = guess
         self.homotopy.evaluate(guess)
         self.homotopy.initial_residual[:] = self.homotopy.residual
-        for part in HOMOTOPY_PARTS:
+        for part in self.homotopy_parts:
             self.homotopy.subtracted_part = 1.0 - part
-            if not self.newton.correct(1.0) or self.newton.moved > MAX_CHANGE:
+            if not self.newton.correct(1.0) or self.newton.moved > self.max_change:
                 return False
-        return self.distance_from(guess) <= MAX_CHANGE
+        return self.distance_from(guess) <= self.max_change
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -394,7 +359,7 @@ class Prolongation:
         if not self.damps:
             for i in range(self.guess.shape[0]):
                 along += newton.tangent[i] * newton.row[i]
-            return along >= MIN_COSINE
+            return along >= self.min_cosine
         size: cython.double = self.strain(self.guess)
         for j in range(self.place.shape[0]):
             i = self.place[j]
@@ -404,7 +369,7 @@ class Prolongation:
             along += weight * newton.tangent[i] * newton.row[i]
             way += weight * newton.tangent[i] ** 2
             row += weight * newton.row[i] ** 2
-        return along >= MIN_COSINE * sqrt(way * row)
+        return along >= self.min_cosine * sqrt(way * row)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -415,7 +380,7 @@ class Prolongation:
         first: cython.double = 0.0
         before: cython.double = 1.0
         newton: Newton = self.newton
-        for count in range(MAX_ITERATIONS):
+        for count in range(self.max_iterations):
             if not newton.factor():
                 return False
             step = newton.step()
@@ -424,14 +389,16 @@ class Prolongation:
             if not step < 1e30 or (count > 1 and step > 2.0 * before):
                 return False
             if self.brief and (
-                step > FIRST_STEP_RATIO * MAX_CHANGE if count == 0 else step > min(2.0 * before, MAX_CHANGE)
+                step > self.max_first_step if count == 0 else step > min(2.0 * before, self.max_change)
             ):
                 return False
             self.move()
             first = step if count == 0 else first
-            if step < FINAL_STEP or (count > 0 and step < self.tolerance * first):
+            if step < self.final_step or (count > 0 and step < self.tolerance * first):
                 return newton.compute_tangent()
-            if (self.many or step < CHORD_STEP) and self.chord_steps_converge(self.tolerance * first, step):
+            if (self.many or step < self.chord_step) and self.chord_steps_converge(
+                self.tolerance * first, step
+            ):
                 return newton.compute_tangent()
             before = step
         return False
@@ -447,7 +414,7 @@ class Prolongation:
         bend: cython.double
         part: cython.double = 1.0
         newton: Newton = self.newton
-        for count in range(self.max_steps):
+        for count in range(self.max_damped_steps):
             if not newton.factor():
                 return False
             step = newton.step()
@@ -461,7 +428,7 @@ class Prolongation:
                     newton.z[i] = self.begin[i] + part * newton.scale[i] * self.way[i]
                 # what is left is less than the last step by far
                 if part == 1.0 and (
-                    step < self.final_step or step < self.tolerance * self.distance_from(newton.guess)
+                    step < self.damped_final_step or step < self.tolerance * self.distance_from(newton.guess)
                 ):
                     return newton.compute_tangent()
                 newton.problem.probe(newton.z)
@@ -476,9 +443,9 @@ class Prolongation:
                         bend += (newton.delta[i] - (1.0 - part) * self.way[i]) ** 2
                     bend = 0.5 * part * part * step / sqrt(bend)  # a part that bends by half of the step
                 part = max(self.min_factor * part, min(0.5 * part, bend))
-            if part == 1.0 and then < CHORD_CONTRACTION * step:
+            if part == 1.0 and then < self.chord_contraction * step:
                 self.move()
-                if then < self.final_step or self.chord_steps_converge(
+                if then < self.damped_final_step or self.chord_steps_converge(
                     self.tolerance * self.distance_from(newton.guess), then
                 ):
                     return newton.compute_tangent()
@@ -492,10 +459,10 @@ class Prolongation:
         count: cython.int
         step: cython.double
         newton: Newton = self.newton
-        for count in range(MAX_CHORD_STEPS):  # noqa: B007
+        for count in range(self.max_chord_steps):  # noqa: B007
             newton.problem.probe(newton.z)
             step = newton.step()
-            if not step < CHORD_CONTRACTION * before:
+            if not step < self.chord_contraction * before:
                 return False
             self.move()
             if step < enough:

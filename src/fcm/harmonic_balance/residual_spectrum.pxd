@@ -19,6 +19,7 @@ cdef class EnrichedMotion:
     cdef public Receptance seen
     cdef public list laws
     cdef readonly int contacts, width, wide, directions
+    cdef bint few
     cdef readonly double[::1] x
     cdef readonly double shift
     cdef int[::1] place

@@ -29,6 +29,7 @@ import numpy.typing as npt
 from cython.cimports.libc.math import fabs, floor, isfinite
 
 from fcm.harmonic_balance.contact_law import Law
+from fcm.harmonic_balance.options import HARMONIC_BALANCE, SpectrumOptions
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.scene.options import LIMITS
@@ -38,10 +39,6 @@ if cython.compiled:
     from cython.cimports.fcm.continuation.dense_solver import eliminate, substitute
 else:
     from fcm.continuation.dense_solver import eliminate, substitute
-
-
-FEWEST, MOST = 6, 15  # harmonics beyond the highest that was balanced
-PORTS = 20  # up to which their equations are solved without leaving compiled code
 
 
 def highest_harmonic(system: System) -> int:
@@ -225,10 +222,13 @@ class FurtherHarmonics:
         return 0
 
 
-def enriched_harmonics(harmonics: list[int]) -> list[int]:
+def enriched_harmonics(
+    harmonics: list[int], options: SpectrumOptions = HARMONIC_BALANCE.spectrum
+) -> list[int]:
     """The harmonics of the finer motion: all, and as many again beyond the highest."""
     highest = max(harmonics)
-    return list(range(1, highest + min(max(highest, FEWEST), MOST) + 1))
+    further = min(max(highest, options.min_further), options.max_further)
+    return list(range(1, highest + further + 1))
 
 
 @cython.cclass
@@ -242,7 +242,14 @@ class EnrichedMotion:
     laws (contact,) have the balance's motion, and forces of the finer harmonics.
     """
 
-    def __init__(self, seen: Receptance, laws: list[Law], harmonics: list[int]) -> None:
+    def __init__(
+        self,
+        seen: Receptance,
+        laws: list[Law],
+        harmonics: list[int],
+        options: SpectrumOptions = HARMONIC_BALANCE.spectrum,
+    ) -> None:
+        self.few = seen.ports <= options.compiled_ports
         finer = [int(h) for h in seen.harmonics]
         self.seen, self.laws, self.contacts = seen, laws, len(laws)
         self.directions = seen.ports // self.contacts if laws else 0
@@ -252,7 +259,7 @@ class EnrichedMotion:
         where = [harmonics.index(h) if h in harmonics else -1 for h in finer]
         self.place, self.shift = np.array(where, dtype=np.intc), 0.0
         self.resistance = np.zeros((self.contacts, self.directions, self.directions))
-        size = 2 * seen.ports if seen.ports <= PORTS else 0
+        size = 2 * seen.ports if self.few else 0
         self.matrix, self.right = np.zeros((size, size)), np.zeros(size)
         self.swapped = np.zeros(size, dtype=np.intc)
 
@@ -276,7 +283,7 @@ class EnrichedMotion:
                     self.resistance[c, i, k] = law.resistance[i, k]
         self.unknowns(z)
         for h in range(self.place.shape[0]):
-            if self.place[h] < 0 and self.seen.ports <= PORTS:
+            if self.place[h] < 0 and self.few:
                 self.displace(h)
             elif self.place[h] < 0:
                 self.displace_many(h)

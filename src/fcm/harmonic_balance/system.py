@@ -25,7 +25,7 @@ from fcm.harmonic_balance.modal_condensation import (
     condensed_size,
     modal_compliance,
 )
-from fcm.harmonic_balance.options import HARMONIC_BALANCE, HarmonicBalanceOptions
+from fcm.harmonic_balance.options import HARMONIC_BALANCE, ExtremeOptions, HarmonicBalanceOptions
 from fcm.harmonic_balance.prolongation import ForceLevelProblem
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.sampled import SampledLaw
@@ -210,7 +210,7 @@ class System:
         linear = self.linear
         rank = condensed_size(self, linear.ports.shape[1], len(self.harmonics))
         seen = linear.receptance(np.array(self.harmonics, dtype=np.float64), not rank)
-        shown = _displacements(linear, seen)
+        shown = _displacements(linear, seen, self.options.extremes)
         balance = Balance(
             seen, self.layout, self.laws(), shown, linear.counted, high - low, rank, self.options.units
         )
@@ -341,8 +341,9 @@ def _workspace_of(system: System) -> _Workspace:
     return _Workspace(system) if found.exclusive else found
 
 
-def _displacements(linear: Linear, seen: Receptance) -> Displacements:
+def _displacements(linear: Linear, seen: Receptance, options: ExtremeOptions) -> Displacements:
     """What is reported of the structure that a receptance is of."""
     if not (isinstance(linear, RingLinear) and isinstance(seen, TravellingReceptance)):
-        return Displacements(seen, linear)
-    return TravellingDisplacements(seen, linear, [linear.wave(int(h)).dofs for h in seen.harmonics])
+        return Displacements(seen, linear, options)
+    shapes = [linear.wave(int(h)).dofs for h in seen.harmonics]
+    return TravellingDisplacements(seen, linear, shapes, options)

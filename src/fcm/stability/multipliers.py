@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic_balance.residual_spectrum import PORTS, EnrichedMotion, enriched_harmonics
+from fcm.harmonic_balance.residual_spectrum import EnrichedMotion, enriched_harmonics
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.disturbance import Propagator, Stiffness
@@ -75,12 +75,13 @@ class Multipliers:
         law = [[c.mu, c.k_u, c.k_v, c.n_0] for c in system.scene.contacts]
         self.contact = contact = np.array(law, dtype=np.float64).reshape(self.contacts, 4)  # all look at it
         harmonics = [int(h) for h in system.harmonics]
-        finer = enriched_harmonics(harmonics)
+        spectrum = system.options.spectrum
+        finer = enriched_harmonics(harmonics, spectrum)
         far = quasi_static_modes(linear.natural, highest, harmonics, system.scene.planar, self.options)
         self.has_rigid_body_modes = int(np.count_nonzero(linear.adrift))
-        summed = linear.ports.shape[1] <= PORTS
+        summed = linear.ports.shape[1] <= spectrum.compiled_ports
         seen = linear.receptance(np.array(finer, dtype=np.float64), summed)
-        self.finer = EnrichedMotion(seen, system.exact_laws(tuple(finer)), harmonics)
+        self.finer = EnrichedMotion(seen, system.exact_laws(tuple(finer)), harmonics, spectrum)
         self.far = far
         self.states: tuple[BalancedSequence, BalancedSequence] | tuple[PlanarSequence, PlanarSequence]
         if system.scene.planar:

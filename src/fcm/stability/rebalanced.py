@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from fcm.continuation.corrector import Newton, correct_with_kept_jacobian
-from fcm.harmonic_balance.prolongation import DAMPED, Homotopy, Prolongation
+from fcm.harmonic_balance.options import PROLONGATION
+from fcm.harmonic_balance.prolongation import Homotopy, Prolongation
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.options import STABILITY, StabilityOptions
@@ -22,7 +23,7 @@ class Rebalancing:
         self.system = system.with_harmonics(self.more)
         self.balance = self.system.new_balance()
         self.damped = None
-        if self.balance.contacts >= DAMPED.min_contacts:
+        if self.balance.contacts >= PROLONGATION.damped.min_contacts:
             self.damped = Prolongation(self.balance, list(self.harmonics), list(more), self.options.tolerance)
         self.homotopy = Homotopy(self.balance)
         self.homotopy.subtracted_part = 1.0

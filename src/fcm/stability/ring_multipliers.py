@@ -79,13 +79,14 @@ class RingMultipliers(Multipliers):
         of_one = np.array([[c.mu, c.k_u, c.k_v, c.n_0] for c in system.scene.contacts]).reshape(-1, 4)
         contact = np.tile(of_one, (n, 1))
         harmonics = [int(h) for h in system.harmonics]
-        finer = enriched_harmonics(harmonics)
+        spectrum = system.options.spectrum
+        finer = enriched_harmonics(harmonics, spectrum)
         self.unknown = bool(stability_unknown(system, highest, self.options))
         around = modes_around(linear, ring)
         far = quasi_static_modes(around.natural, highest, harmonics, system.scene.planar, self.options)
         self.has_rigid_body_modes = int(np.count_nonzero(linear.adrift))
         seen = linear.receptance(np.array(finer, dtype=np.float64))
-        self.finer = EnrichedMotion(seen, system.exact_laws(tuple(finer)), harmonics)
+        self.finer = EnrichedMotion(seen, system.exact_laws(tuple(finer)), harmonics, spectrum)
         self.ring, self.planar = ring, system.scene.planar
         if self.planar:  # of the whole period
             structure = around.ports, around.natural, around.damping, far

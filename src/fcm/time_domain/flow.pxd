@@ -16,7 +16,9 @@ cdef class Pool:
     cdef readonly double[::1] made_for
     cdef dict _pool
     cdef Py_ssize_t min_count
-    cdef double max_bytes
+    cdef double max_bytes, max_steps, rounding, depth, grazing
+    cdef readonly int dense_size, taylor_size
+    cdef int few_rows, max_passes, max_blocks
     cdef readonly Py_ssize_t[::1] used
     cdef Py_ssize_t find(self, signed char[:, ::1] states, Py_ssize_t k) noexcept nogil
 

@@ -40,7 +40,6 @@ POWERS = 8  # of exp(A h): 1, 2, 4 ... 128 steps
 BLOCK = 8  # steps that are looked at together: a power of two
 WATCHED = 3  # g, g' h and g'''' h**4 of each exit
 SEPARATED, STICKING, POSITIVE_SLIP, NEGATIVE_SLIP = 0, 1, 2, 3  # states of a contact
-SMALL = 256  # components up to which the Taylor coefficients of exp(A h x) are kept
 FITS = 1.0 + 1e-12  # radians of the forces that a step lasts at most: one, and rounding
 _ORDER = cython.declare(cython.int, ORDER)
 _FITS = cython.declare(cython.double, FITS)
@@ -61,7 +60,7 @@ KINDS = dict.fromkeys(("states", "halved", "goal"), np.int8) | dict.fromkeys(
 )
 
 
-def _shapes(n: int, contacts: int, waves: int) -> dict[str, tuple[int, ...]]:
+def _shapes(n: int, contacts: int, waves: int, taylor_size: int) -> dict[str, tuple[int, ...]]:
     """What the pool keeps of one flow whose state has n components, and forces at so many harmonics."""
     e = max(2 * contacts, 1)  # exits: of a contact two at most
     wide = (BLOCK + 1) * WATCHED * e
@@ -69,7 +68,7 @@ def _shapes(n: int, contacts: int, waves: int) -> dict[str, tuple[int, ...]]:
         "states": (contacts,), "step": (), "halved": (), "exits": (), "owner": (e,), "goal": (e,),
         "first": (e,), "made_for": (), "used": (), "squared": (), "spelled": (), "row": (e, n),
         "power": (POWERS, n, n), "forced": (POWERS, 4 * waves, n), "rotation": (POWERS, 2 * waves),
-        "reached": (), "watched": (), "terms": (ORDER + 1 if n <= SMALL else 0, n * n), "sizes": (n, n),
+        "reached": (), "watched": (), "terms": (ORDER + 1 if n <= taylor_size else 0, n * n), "sizes": (n, n),
         "sizes_forced": (2 * waves, n), "table": (n, wide), "table_forced": (2 * waves, wide),
         "push": (2, 4 * waves, n), "pushed": (4 * waves, ORDER, n), "kick": (e, 4 * waves, ORDER),
         "spread": (e,), "series": (n, e * (ORDER + 1)), "series_forced": (2 * waves, e * (ORDER + 1)),
@@ -84,7 +83,7 @@ class Pool:
     and the Taylor coefficients, are made where they are needed.
     """
 
-    def __init__(self, matrices: Matrices) -> None:
+    def __init__(self, matrices: Matrices, options: FlowOptions = TIME.flows) -> None:
         modal, ports, law, springs, harmonics = matrices
         self.stiffness, self.damping, self.hold, self.constant, self.square = (
             np.ascontiguousarray(x, dtype=np.float64) for x in modal
@@ -104,7 +103,7 @@ class Pool:
         self.size = self.linear + 2 * self.waves
         self.omega = 0.0
         self.count, self.clock = 0, 0
-        self.limit(TIME.flows)
+        self.take_options(options)
         self._pool: dict[str, Any] = {}
         self._make_room(4)
 
@@ -159,9 +158,13 @@ class Pool:
         np.matmul(power[j], power[j], out=power[j + 1])
         self._pool["squared"][slot] = j + 1
 
-    def limit(self, options: FlowOptions) -> None:
-        """Keep so many flows from now on."""
+    def take_options(self, options: FlowOptions) -> None:
+        """Have them as numbers of C."""
         self.min_count, self.max_bytes = options.min_count, options.max_bytes
+        self.dense_size, self.taylor_size = options.dense_size, options.taylor_size
+        self.few_rows, of = options.few_rows, options.transitions
+        self.rounding, self.depth, self.grazing = of.rounding, of.depth, of.grazing
+        self.max_passes, self.max_steps, self.max_blocks = of.max_passes, of.max_steps, of.max_blocks
 
     def _place(self) -> int:
         """A place for one more."""
@@ -178,7 +181,7 @@ class Pool:
     def _make_room(self, capacity: int) -> None:
         """Arrays for so many flows, with those that are there; typed views of them for the kernels."""
         old, made = self._pool, {}
-        for name, shape in _shapes(self.linear, self.contacts, self.waves).items():
+        for name, shape in _shapes(self.linear, self.contacts, self.waves, self.taylor_size).items():
             made[name] = np.zeros((capacity, *shape), KINDS.get(name, np.float64))
             if self.count:
                 made[name][: self.count] = old[name][: self.count]
@@ -222,8 +225,8 @@ class Pool:
 class Series(Pool):
     """Flows as power series. What is done for a whole series is done in one call: y' = A y is little work."""
 
-    def __init__(self, matrices: Matrices) -> None:
-        Pool.__init__(self, matrices)
+    def __init__(self, matrices: Matrices, options: FlowOptions = TIME.flows) -> None:
+        Pool.__init__(self, matrices, options)
         self._own = np.zeros((ORDER + 1, self.size))
 
     @cython.cfunc
@@ -438,8 +441,8 @@ class Forced(Series):
     Those for more are made where they are needed, by `reach`.
     """
 
-    def __init__(self, matrices: Matrices) -> None:
-        Series.__init__(self, matrices)
+    def __init__(self, matrices: Matrices, options: FlowOptions = TIME.flows) -> None:
+        Series.__init__(self, matrices, options)
         self.whole = np.zeros(self.linear)
 
     @cython.cfunc
@@ -639,8 +642,8 @@ class Exits(Forced):
     What these need for a new frequency is made where it is needed, by `make_columns` and `expand`.
     """
 
-    def __init__(self, matrices: Matrices) -> None:
-        Forced.__init__(self, matrices)
+    def __init__(self, matrices: Matrices, options: FlowOptions = TIME.flows) -> None:
+        Forced.__init__(self, matrices, options)
         self._rotated = np.zeros((self.waves, ORDER))
 
     @cython.cfunc

@@ -48,8 +48,6 @@ NOTHING = cython.declare(
 _DONE = cython.declare(cython.int, Stopped.DONE)  # as the loops know it, which have numbers alone
 _MISSING = cython.declare(cython.int, Stopped.MISSING)
 _UNDECIDED = cython.declare(cython.int, Stopped.UNDECIDED)
-ROUNDING = cython.declare(cython.double, 3e-14)  # of a state after a step, relative to its terms
-MOST_PASSES = cython.declare(cython.int, 100)  # until a combination of states agrees with itself
 _LEADING = cython.declare(cython.int, 8)  # derivatives of an exit that may tell which combination follows
 _SEPARATED = cython.declare(cython.int, 0)
 _STICKING = cython.declare(cython.int, 1)
@@ -277,7 +275,6 @@ def _root(
     return x
 
 
-DEPTH = cython.declare(cython.double, 1e-13)  # an exit that is passed by less, relative to its size, is not
 UNSEEN = cython.declare(cython.double, 1e300)  # bound of what no step has been looked at for
 _ORDER = cython.declare(cython.int, 19)
 _FIRST = cython.declare(cython.int, 2)  # a segment's first look is at 2**2 steps, for many are short
@@ -394,8 +391,8 @@ class EventDetector:
                     size += fabs(self.flows.series_forced[self.slot, b, w] * self._begun[0, n + b])
                 for i in range(n):
                     size += fabs(self.flows.series[self.slot, i, w] * self._begun[0, i])
-                self._floors[e] = max(self._floors[e], DEPTH * size)
-        return max(self._floors[e], DEPTH * self._largest[e])
+                self._floors[e] = max(self._floors[e], self.flows.depth * size)
+        return max(self._floors[e], self.flows.depth * self._largest[e])
 
     @cython.cfunc
     @cython.nogil
@@ -460,7 +457,7 @@ class Successor:
         i: cython.Py_ssize_t
         self.flows.bound(self.ahead.slot, y, 0, self._noise)
         for i in range(self.flows.size):
-            self._noise[i] *= ROUNDING
+            self._noise[i] *= self.flows.rounding
 
     @cython.cfunc
     @cython.nogil
@@ -469,7 +466,7 @@ class Successor:
         """Find the combination of states that lasts from y on; DONE when it is found."""
         i: cython.Py_ssize_t
         slot: cython.Py_ssize_t
-        while self._passes < MOST_PASSES:
+        while self._passes < self.flows.max_passes:
             slot = self.flows.find(self.states, 0)
             if slot < 0:
                 return _MISSING
@@ -573,8 +570,6 @@ class Successor:
 _FULL = cython.declare(cython.int, Stopped.FULL)
 _PAUSED = cython.declare(cython.int, Stopped.PAUSED)
 _LONG = cython.declare(cython.int, Stopped.LONG)
-MOST_STEPS = cython.declare(cython.double, 2e8)  # in one segment
-PATIENCE = cython.declare(cython.int, 50_000)  # blocks until signals are looked at
 _NEGATIVE_SLIP = cython.declare(cython.int, 3)
 
 
@@ -678,12 +673,12 @@ class March:
                 if self.segments.count == self.segments.start.shape[0] or self.segments.count > self.limit:
                     return _FULL
                 self._open_segment()
-                if self._ahead.left > MOST_STEPS:
+                if self._ahead.left > self.flows.max_steps:
                     return _LONG
             while not ended:
                 ended = self._ahead.block()
                 blocks += 1
-                if blocks > PATIENCE and not ended:
+                if blocks > self.flows.max_blocks and not ended:
                     return _PAUSED
             self._close_segment()
             if self._ahead.exit < 0:

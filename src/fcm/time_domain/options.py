@@ -47,14 +47,39 @@ class HistoryOptions:
 
 
 @dataclass(frozen=True)
-class FlowOptions:
-    """The flows of a scene that are kept, each of one sequence of contact states.
+class TransitionOptions:
+    """How the transitions of contacts are found in a motion.
 
-    min_count: that are kept at least. max_bytes: memory of those that are kept otherwise.
+    rounding: of a state after a step, relative to its terms. depth: an exit that is passed by less, relative
+    to its size, is not. grazing: rate of an exit where it is passed, relative to its terms; with less the
+    instant does not move. max_passes: until a combination of states agrees with itself. max_steps: in one
+    segment. max_blocks: of steps until signals are looked at.
+    """
+
+    rounding: float = 3e-14
+    depth: float = 1e-13
+    grazing: float = 1e-12
+    max_passes: int = 100
+    max_steps: float = 2e8
+    max_blocks: int = 50_000
+
+
+@dataclass(frozen=True)
+class FlowOptions:
+    """The flows of a scene, each of one combination of contact states.
+
+    min_count: that are kept at least. max_bytes: memory of those that are kept otherwise. dense_size:
+    components of the state from which on matrices are multiplied by BLAS. taylor_size: components up to which
+    Taylor coefficients are kept. few_rows: derivatives that are sooner moved one by one. transitions: how
+    they are found.
     """
 
     min_count: int = 8
     max_bytes: float = 2.0**30
+    dense_size: int = 32
+    taylor_size: int = 256
+    few_rows: int = 4
+    transitions: TransitionOptions = TransitionOptions()
 
 
 @dataclass(frozen=True)

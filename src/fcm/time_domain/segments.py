@@ -11,7 +11,7 @@ import numpy as np
 from cython.cimports.libc.math import fabs
 
 from fcm.model.scene import FloatArray
-from fcm.time_domain.flow import ORDER, SMALL
+from fcm.time_domain.flow import ORDER
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
@@ -26,7 +26,6 @@ else:
 TINY = cython.declare(cython.double, 1e-300)  # instead of a division by zero where nothing moves
 
 
-DENSE = 32  # components from which many steps are sooner made at once, by BLAS
 DOUBLINGS = 7  # of the steps that are made at once
 SPAN = 2**DOUBLINGS
 
@@ -173,7 +172,7 @@ class Walk:
 
     def __init__(self, flows: Flows) -> None:
         self.flows, self.segments, self.at = flows, Segments(flows.size, flows.contacts, 0), -1
-        self.span = SPAN if DENSE <= flows.linear <= SMALL else 0
+        self.span = SPAN if flows.dense_size <= flows.linear <= flows.taylor_size else 0
         self.ahead = np.zeros((self.span + 1, flows.size))
 
     def begins(self, segments: Segments) -> None:

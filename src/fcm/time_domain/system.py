@@ -82,8 +82,7 @@ class System:
         self.sticking[:, self.q], self.sticking[:, self.f] = self.k_u[:, None] * self.tangential, -np.eye(c)
         self.rough = [has_friction(contact) for contact in scene.contacts]
         self.limit_rows = self._limit_rows()
-        self.flows = Flows(matrices_of(self))
-        self.flows.limit(kept)
+        self.flows = Flows(matrices_of(self), kept)
         self._march, self._derivative = March(self.flows), Derivative(self.flows)
         self._along, self.integrals = Directional(self.flows), Integrals(self.flows)
         none = np.zeros(m)

@@ -32,8 +32,6 @@ else:
     from fcm.time_domain.flow import Flows, needed
     from fcm.time_domain.segments import Segments
 
-FEW = cython.declare(cython.int, 4)  # rows that are sooner moved one by one
-DENSE = cython.declare(cython.int, 32)  # components from which matrices are multiplied by BLAS
 _POWERS = cython.declare(cython.int, 8)  # of two, of the steps by which a flow moves at once
 
 
@@ -132,7 +130,7 @@ class Along:
         n: cython.Py_ssize_t = self.flows.linear
         k: cython.Py_ssize_t
         done: cython.Py_ssize_t = 0
-        if n >= DENSE:
+        if n >= self.flows.dense_size:
             with cython.gil:
                 columns, room = np.asarray(self.columns)[:rows, :n], np.asarray(self._room)[:rows]
                 np.matmul(columns, matrix, out=room)
@@ -195,7 +193,7 @@ class Along:
         b: cython.double
         c: cython.double
         d: cython.double
-        if self.flows.terms.shape[1] == 0 or self.unknowns < FEW:
+        if self.flows.terms.shape[1] == 0 or self.unknowns < self.flows.few_rows:
             self.flows.part(slot, x, self.columns, 0, self.unknowns)
             return 0
         if not self.flows.spelled[slot]:
@@ -266,7 +264,6 @@ class Along:
 
 
 # an exit passed this slowly, relative to its terms, is touched
-GRAZING = cython.declare(cython.double, 1e-12)
 _SEPARATED = cython.declare(cython.int, 0)
 _POSITIVE_SLIP = cython.declare(cython.int, 2)
 _NEGATIVE_SLIP = cython.declare(cython.int, 3)
@@ -434,7 +431,7 @@ class Derivative(Along):
             self._rates[1, p] -= self._rates[0, p]
         for k in range(u + 1):
             moved = 0.0
-            if fabs(speed) > GRAZING * size:
+            if fabs(speed) > self.flows.grazing * size:
                 for p in range(n):
                     moved += self.flows.row[old, e, p] * self.columns[k, p]
                 moved /= speed
