@@ -9,8 +9,9 @@ from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.shooting import periodic
 from fcm.stability.bifurcations import stability
-from fcm.stability.confirmation import confirmed_stable
+from fcm.stability.confirmation import _ConfirmedPoints, confirmed_stable
 from fcm.stability.floquet import multipliers_of
+from fcm.stability.options import STABILITY
 from fcm.stability.rebalanced import Rebalancing
 
 from ..harmonic_balance.strips import elastic_strip, strip
@@ -78,6 +79,22 @@ def test_points_between_two_that_are_confirmed_are_confirmed():
     assert not found[~doubted].any()
     assert found[some].tolist() == [of.confirms(z, 1.0) for z in path.z[some]]
     assert 0.2 < found[doubted].mean() < 0.9
+
+
+def test_a_motion_that_is_far_is_found_from_beside_the_next_points():
+    """As at each point by itself, down to 11.64 rad/s, where the upper branch of more harmonics ends."""
+    system = System(elastic_strip((11.3, 20.0)), (1,))
+    path = traced(system).branches.paths[-1]
+    inside = np.flatnonzero((path.parameter > 11.35) & (path.parameter < 13.0))
+    way = inside if path.parameter[inside[0]] > path.parameter[inside[-1]] else inside[::-1]
+    found, looks = np.zeros(len(path.z), dtype=bool), _ConfirmedPoints(system, path.z, STABILITY)
+    looks.along(int(way[0]), int(way[-1]), found)
+    assert not found[np.setdiff1d(np.arange(len(found)), inside)].any()
+    reached = path.parameter[way[1:]][found[way[1:]]].min()
+    assert 11.64 < reached < 11.75
+    assert found[way[1:]].tolist() == (path.parameter[way[1:]] >= reached).tolist()
+    alone = _ConfirmedPoints(system, path.z, STABILITY)
+    assert found[way[1:]].tolist() == [alone.confirms(int(i)) for i in way[1:]]
 
 
 def test_close_to_the_last_solution_the_same_is_found_sooner():

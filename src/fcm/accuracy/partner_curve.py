@@ -377,10 +377,29 @@ class PartnerCurve:
         shift = shifted(
             self.place, path.z, path.direction, compared.value, compared.growth, compared.unit, change
         )
-        shift[np.isnan(change).any(axis=1)] = np.nan
+        missing = np.isnan(change).any(axis=1)
+        shift[missing] = np.nan
+        if not missing.any():
+            self._where_both_pass_once(compared, shift)
         for one in followed:
             self._by_pieces(one, compared, shift)
         return shift
+
+    def _where_both_pass_once(self, compared: ComparedQuantities, shift: FloatArray) -> None:
+        """Fill those that are missing as the partner turns back, where both pass the frequency once all the
+        same: there is no other motion of the branch that it could be."""
+        rows, whole = np.flatnonzero(np.isnan(shift).any(axis=1)), self._displaced(compared, slice(None))
+        own = self.path.parameter
+        if whole is None:
+            return
+        for first in range(0, len(rows), PAIR.batch):
+            some = rows[first : first + PAIR.batch]
+            omega, now = own[some], compared.value[some]
+            once = (_passes(own, omega).sum(axis=1) == 1) & (_passes(whole.frequency, omega).sum(axis=1) == 1)
+            by = np.ascontiguousarray(now[:, : self.amplitude.shape[1]])
+            which = np.where(once, 0, -2).astype(np.intc)
+            theirs = whole.values_at(omega, np.zeros(len(some)), by, which)
+            shift[some] = np.where(once[:, None], (theirs - now) / compared.unit[some], np.nan)
 
     def _by_pieces(self, one: FollowedStretch, compared: ComparedQuantities, shift: FloatArray) -> None:
         """Fill those along a stretch, and next to it where the way to the same frequency leads into

@@ -151,11 +151,12 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
     folds = (points.mark & Mark.FOLD) > 0
     far = unreliable_points(points.z[:, -1], believed, stable, folds, system.option(VALIDITY))
     doubted = far & (stable == 1.0)
-    for k in np.unique(points.path[doubted]).tolist() if not quick else ():
-        rows_of = points.path == k
-        doubted[rows_of] &= ~confirmed_stable(
-            system, points.z[rows_of], doubted[rows_of], system.option(STABILITY)
-        )
+    beside = (doubted | np.isnan(stable)) & np.isfinite(np.concatenate(believed))
+    for k in np.unique(points.path[doubted | beside]).tolist() if not quick else ():
+        of = points.path == k
+        sure = confirmed_stable(system, points.z[of], doubted[of], beside[of], system.option(STABILITY))
+        stable[of] = np.where(sure, 1.0, stable[of])
+        doubted[of] &= ~sure
     stable[doubted] = np.nan
     peak = np.full_like(found.peak, np.nan) if response.exceeded else found.peak
     error = np.maximum(np.concatenate([one.amplitude for one in found.errors]), rounding)

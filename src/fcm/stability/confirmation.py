@@ -4,11 +4,15 @@ A solution is called stable by the multipliers of a motion that errs by what its
 the pair of the curve does not tell how much that is, or it is much, the motion with further harmonics is
 balanced itself, at the same frequency. If that is near, stable, and hardly another by the harmonics beyond
 those, the solution is what it is taken for.
+
+Where the error is told and great, the motion with further harmonics is far, and no Newton method leads there
+from the solution. But the curve of these motions does, from beside the solutions next to it.
 """
 
 from __future__ import annotations
 
 import itertools
+import math
 
 import numpy as np
 import numpy.typing as npt
@@ -25,7 +29,11 @@ Mask = npt.NDArray[np.bool_]
 
 
 def confirmed_stable(
-    system: System, z: FloatArray, doubted: Mask, options: StabilityOptions = STABILITY
+    system: System,
+    z: FloatArray,
+    doubted: Mask,
+    far: Mask | None = None,
+    options: StabilityOptions = STABILITY,
 ) -> Mask:
     """Which of the doubted points (point,) have a stable motion with further harmonics near them.
 
@@ -36,13 +44,17 @@ def confirmed_stable(
         Points of a curve of its balance, in order, found stable.
     doubted : (point,) bool
         Those that are to be confirmed.
+    far : (point,) bool, optional
+        Those, doubted or not, at whose frequency the same branch has a motion with more harmonics: where none
+        is found from the solution, it is sought along the branch from the points beside them.
     options : StabilityOptions, optional
         Of a row of them some are looked at, `ConfirmationOptions.point_interval` apart, and between two of
         these the middle, until all three agree and their growths lie on a line: then so does what is between
         them. None is where a contact has a law of its own.
     """
     found = np.zeros(len(z), dtype=np.bool_)
-    if doubted.any() and not system.own_laws:
+    far = np.zeros_like(doubted) if far is None else far
+    if (doubted | far).any() and not system.own_laws:
         looks = _ConfirmedPoints(system, z, options)
         for first, end in runs(doubted):
             parts = -(-(end - 1 - first) // options.confirmation.point_interval) or 1
@@ -50,6 +62,11 @@ def confirmed_stable(
             found[nodes[0]] = looks.confirms(nodes[0])
             for a, b in itertools.pairwise(nodes):
                 looks.between(a, b, found)
+        for first, end in runs(far & ~found):
+            if looks.is_far(first):
+                looks.along(first - 1, end - 1, found)
+            if looks.is_far(end - 1):
+                looks.along(end, first, found)
     return found
 
 
@@ -66,6 +83,10 @@ class _ConfirmedPoints:
     def confirms(self, i: int) -> bool:
         """Whether the motion with further harmonics is found, and stable."""
         return self.at(i).stable == 1.0
+
+    def is_far(self, i: int) -> bool:
+        """Whether no motion with further harmonics that tells is found from a point."""
+        return math.isnan(self.at(i).growth)
 
     def at(self, i: int) -> Verdict:
         """Of the motion with further harmonics."""
@@ -85,3 +106,49 @@ class _ConfirmedPoints:
         else:
             self.between(a, middle, found)
             self.between(middle, b, found)
+
+    def along(self, near: int, last: int, found: Mask) -> None:
+        """Fill found up to the last point, as far as a motion leads that confirms the one near, or the next
+        that one does away from there.
+
+        The frequency changes one way from there to the last point. The way to the next is shortened until the
+        motion is found, and lengthened then.
+        """
+        options, way = self.options.confirmation, 1 if last >= near else -1
+        at = next((i for i in self._away(near, -way) if self._confirms_anew(i)), None)
+        if at is None:
+            return
+        last, motion = self._before_turn(at, last), self.multipliers.beside
+        step = options.point_interval
+        while motion is not None and (last - at) * way > 0:
+            self.work.poll()
+            ahead = at + way * min(step, abs(last - at))
+            if self.multipliers.continued(self.z[ahead], motion, options.max_addition).stable == 1.0:
+                found[min(at + way, ahead) : max(at + way, ahead) + 1] = True
+                at, motion, step = ahead, self.multipliers.beside, 2 * step
+            elif abs(ahead - at) == 1:
+                return
+            else:
+                step = max(abs(ahead - at) // 2, 1)
+
+    def _away(self, near: int, way: int) -> list[int]:
+        """Points from one on, each farther than the one before, up to where the frequency turns back."""
+        if not 0 <= near < len(self.z):
+            return []
+        steps = (0, *(2**k for k in range(self.options.confirmation.point_interval.bit_length())))
+        most = abs(self._before_turn(near, 0 if way < 0 else len(self.z) - 1) - near)
+        return [near + way * step for step in steps if step <= most]
+
+    def _before_turn(self, at: int, last: int) -> int:
+        """The last point, or the one before that at which the frequency turns back on the way to it."""
+        way = 1 if last >= at else -1
+        change = np.sign(np.diff(self.z[at : last + way if last + way >= 0 else None : way, -1]))
+        turns = np.flatnonzero(change != change[0]) if change.size else change
+        return at + way * int(turns[0]) if turns.size else last
+
+    def _confirms_anew(self, i: int) -> bool:
+        """As `confirms`, with the motion held that does."""
+        if i in self.known and not self.confirms(i):
+            return False
+        self.known.pop(i, None)
+        return self.confirms(i) and self.multipliers.beside is not None

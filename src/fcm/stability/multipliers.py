@@ -93,6 +93,7 @@ class Multipliers:
             self.states = BalancedSequence(contact, finer), BalancedSequence(contact, harmonics)
         self.fine, self.plain = self._followed()
         self.further: tuple[Rebalancing, Multipliers] | None = None
+        self.beside: FloatArray | None = None  # the motion with further harmonics that was found last
         self._seen: FloatArray | None = None  # the solution whose finer motion was looked at last
 
     def take(self, system: System) -> None:
@@ -291,6 +292,12 @@ class Multipliers:
     def refined(self, z: FloatArray, persistent: bool) -> Verdict | None:
         """Of the solution with the harmonics of the finer motion balanced; None where there is none near."""
         self._look_again(z)
+        refined, judge = self._further()
+        self.beside = there = refined.rebalance(z, self.finer.x, persistent)
+        return None if there is None else judge.verdict(there)._replace(rebalanced=True)
+
+    def _further(self) -> tuple[Rebalancing, Multipliers]:
+        """What balances the harmonics of the finer motion, and the multipliers of that."""
         if self.further is None:
             refined = Rebalancing(
                 self.system, enriched_harmonics([int(h) for h in self.system.harmonics]), self.options
@@ -300,8 +307,7 @@ class Multipliers:
         if refined.fewer is not self.system:
             refined.take(self.system)
             judge.take(refined.system)
-        there = refined.rebalance(z, self.finer.x, persistent)
-        return None if there is None else judge.verdict(there)._replace(rebalanced=True)
+        return refined, judge
 
     def confirms(self, z: FloatArray, stable: float) -> bool:
         """Whether a solution is as stable as told (1 or 0) with the further harmonics balanced, too."""
@@ -317,11 +323,19 @@ class Multipliers:
         beyond them add more than the most to it, as `EnrichedMotion.shift` says it."""
         self.finer.at(z)
         self._seen = None  # whose states are not known
+        self.beside = None
         if self.finer.shift == 0.0:  # it has none
             return self.verdict(z)
         found = self.refined(z, persistent=True)
-        if found is None:
-            return UNKNOWN
+        return UNKNOWN if found is None else self._if_enough(found, most)
+
+    def continued(self, z: FloatArray, motion: FloatArray, most: float) -> Verdict:
+        """The same of the motion to which one with the further harmonics leads, from another frequency."""
+        refined, judge = self._further()
+        self.beside = there = refined.continue_to(z, motion)
+        return UNKNOWN if there is None else self._if_enough(judge.verdict(there), most)
+
+    def _if_enough(self, found: Verdict, most: float) -> Verdict:
         assert self.further is not None
         return found if self.further[1].finer.shift <= most else UNKNOWN
 

@@ -65,6 +65,20 @@ class Rebalancing:
             return np.array(newton.z)
         return np.array(newton.z) if by_parts and self._by_homotopy(here, lack) else None
 
+    def continue_to(self, z: FloatArray, motion: FloatArray) -> FloatArray | None:
+        """The same from a motion of more harmonics that was found at another frequency near."""
+        here = self.system.extended(z, self.harmonics)
+        self.balance.measure(here)
+        self.balance.probe(here)
+        newton, lack = self.newton, np.array(self.balance.residual)
+        newton.scale[:] = self.balance.scale
+        guess = np.append(motion[:-1], z[-1])
+        if self.damped is not None:
+            found = self.damped.rebalance(guess, np.where(self.balanced, lack, 0.0))
+            return np.array(self.damped.newton.z) if found else None
+        newton.z[:] = guess
+        return np.array(newton.z) if self._converges(lack, 1.0) else None
+
     def _of_many(self, here: FloatArray, lack: FloatArray) -> FloatArray | None:
         """The solution of many contacts: beside the last one, by damped steps, or by whole ones."""
         newton, assumed = self.newton, np.array(self.newton.z)
