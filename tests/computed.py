@@ -2,12 +2,12 @@
 
 from functools import partial
 
-from fcm.run import Here, Report
+from fcm.run import Report, SerialPlace
 
 
 def by(change):
     """A place (`fcm.run.Factory`) where change(compute, batch, report) computes a batch."""
-    return lambda compute, _count: Here(partial(change, compute))
+    return lambda compute, _count: SerialPlace(partial(change, compute))
 
 
 def nowhere(*_):
@@ -22,7 +22,7 @@ class Interrupted:
         self.after, self.begun = after, 0
 
     def __call__(self, compute, _count):
-        return Here(partial(self._computed, compute))
+        return SerialPlace(partial(self._computed, compute))
 
     def _computed(self, compute, batch, report):
         def show(fraction, text):

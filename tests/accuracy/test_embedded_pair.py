@@ -9,9 +9,9 @@ import pytest
 from fcm.accuracy.budget import Budget, share_of
 from fcm.accuracy.embedded_pair import errors_along
 from fcm.accuracy.options import PAIR, VALIDITY
-from fcm.accuracy.outline import unchecked_response
 from fcm.accuracy.refinement import with_errors, with_estimated_errors
 from fcm.accuracy.stability_validity import on_other_branch
+from fcm.accuracy.unchecked_response import unchecked_response
 from fcm.continuation import Mark, Status
 from fcm.harmonic_balance.system import System
 from fcm.harmonic_balance.work_budget import WorkCount

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fcm.accuracy.curve_distance import PartialInterpolant, places, steepness
+from fcm.accuracy.curve_distance import PartialInterpolant, arc_lengths, steepness
 
 ALL = np.arange(9)
 
@@ -84,7 +84,7 @@ def test_a_circle_is_as_long_as_its_angle():
     z = np.column_stack((3.0 * np.sin(angle), 0.5 * np.cos(angle)))
     direction = np.column_stack((3.0 * np.cos(angle), -0.5 * np.sin(angle)))
     out = np.zeros(200)
-    places(z, direction, 0.5, out)
+    arc_lengths(z, direction, 0.5, out)
     assert np.abs(out - angle).max() < 1e-3
 
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from fcm.accuracy.options import RefinementOptions
-from fcm.accuracy.outline import near, unchecked_response, with_more
 from fcm.accuracy.refinement import enlarged, refined_response, with_errors, with_estimated_errors
+from fcm.accuracy.unchecked_response import prolongated_solutions, unchecked_response, with_more
 from fcm.branches import force_level, shared_levels
 from fcm.continuation.all_branches import contains
 from fcm.harmonic_balance.cost_model import seconds_of
@@ -136,7 +136,7 @@ def test_levels_are_followed_with_the_last_harmonics_and_lead_to_no_branch_that_
 def test_a_branch_that_fewer_harmonics_do_not_lead_to_is_found_by_the_level_at_last():
     first, more = unchecked_response(System(scene("isola"))), (1, 2, 3)
     known = unchecked_response(first.system.with_harmonics(more))
-    led = first.prolongated(more, near(first, more), None)
+    led = first.prolongated(more, prolongated_solutions(first, more), None)
     found = led.with_levels()
     assert len(led.shown) == 1 and len(found.shown) == len(known.shown) == 2
     assert sorted(one.amplitude.max() for one in found.shown) == pytest.approx(
@@ -146,7 +146,7 @@ def test_a_branch_that_fewer_harmonics_do_not_lead_to_is_found_by_the_level_at_l
 
 def test_where_the_levels_take_too_long_the_response_is_that_of_fewer_harmonics_and_says_so():
     first, more = unchecked_response(System(scene("yang1998", 5))), (1, 2, 3)
-    then = first.prolongated(more, near(first, more), None)
+    then = first.prolongated(more, prolongated_solutions(first, more), None)
     work = then.system.work
     found = then.with_levels(1.001 * work.seconds)
     assert found.further == more and found.begun and found.system.harmonics == (1,)
@@ -205,7 +205,7 @@ def test_an_evaluation_takes_what_was_measured(contacts, modes, taken):
 def test_a_round_that_takes_longer_than_was_foreseen_is_given_up():
     """And that of fewer harmonics before it stays, with its error."""
     first, more = unchecked_response(System(scene("yang1998", 5))), (1, 2, 3)
-    first.prolongated(more, near(first, more), None)
+    first.prolongated(more, prolongated_solutions(first, more), None)
     system = System(first.system.scene, options=limited(0.99 * first.system.work.seconds))
     foreseen = replace(unchecked_response(system), seconds=0.0)
     assert with_more(foreseen, more, told=True) == (None, more, True)

@@ -42,7 +42,7 @@ OFF = {
     ],
     "narrow resonances": [(branch_trace, "narrow_resonances", lambda system: [])],
     "peaks between points": [(curve_trace, "with_tops", lambda peaks, found: peaks)],
-    "stages that ask for more harmonics": [(refined, "retraced", lambda *args: None)],
+    "stages that ask for more harmonics": [(refined, "retrace", lambda *args: None)],
     "low harmonics": [(refinement, "with_low_harmonics", lambda system, found: system.harmonics)],
 }
 

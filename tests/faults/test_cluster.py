@@ -13,7 +13,7 @@ import xarray
 
 import fcm
 from fcm.response.options import ResponseOptions, SweepOptions
-from fcm.run import Gone, Lost, cluster, place_of, sweep
+from fcm.run import Lost, PlaceClosed, cluster, place_of, sweep
 from fcm.run.options import RunOptions
 
 from .conftest import FEW, SWEEP, session, variables
@@ -247,7 +247,7 @@ def test_an_executor_that_breaks_leaves_what_is_finished(swept, alone):
         part = fcm.respond(swept, executor=Breaks(1), options=fours)
     assert part.complete.values.tolist() == [1] * 4 + [0] * 8
     np.testing.assert_array_equal(part.peak_amplitude[:4], alone.peak_amplitude[:4])
-    with pytest.raises(Gone, match="nothing any more"):
+    with pytest.raises(PlaceClosed, match="nothing any more"):
         fcm.respond(swept, executor=Breaks(0), options=fours)
 
 
@@ -264,7 +264,7 @@ def test_an_executor_with_another_fcm_is_refused():
     with ThreadPoolExecutor(1) as executor:
         place = place_of(executor)(abs, 1)
         place.asked_by = "0.0.9", place.asked_by[1]
-        with pytest.raises(Gone, match=r"refused: it has fcm .*, and this is fcm 0\.0\.9"):
+        with pytest.raises(PlaceClosed, match=r"refused: it has fcm .*, and this is fcm 0\.0\.9"):
             sweep(abs, [[1]], lambda *_: place)
 
 

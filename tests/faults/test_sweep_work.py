@@ -16,7 +16,7 @@ import pytest
 
 import fcm
 from fcm.response import groups, trace
-from fcm.run import Checkpoint, CheckpointError, Elsewhere, Lost, fingerprint, place_for, sweep
+from fcm.run import Checkpoint, CheckpointError, ExecutorPlace, Lost, fingerprint, place_for, sweep
 from fcm.run.fingerprint import installed
 from fcm.run.fingerprint import program as of_program
 from fcm.run.options import RunOptions
@@ -512,7 +512,7 @@ def test_every_place_gives_the_same_and_loses_what_fails_alone(tmp_path, monkeyp
             "here": place_for(1),
             "processes": place_for(2),
             "threads": place_for(2, threads=True),
-            "elsewhere": lambda compute, _: Elsewhere(compute, executor),
+            "elsewhere": lambda compute, _: ExecutorPlace(compute, executor),
         }[place]
         results = sweep(square, [[1, 2], [3], [4, -5, 6]], at).results
     assert [results[0], results[1], results[2][::2]] == [[1, 4], [9], [16, 36]]

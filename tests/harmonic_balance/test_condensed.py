@@ -276,7 +276,7 @@ def test_rounding_between_points_that_are_looked_at_is_the_greater_of_theirs():
     path = follow(balance, np.append(np.zeros(balance.unknowns), 0.9), (0.9, 1.5))
     roundings = []
     for points in (10**6, 3):
-        options = HarmonicBalanceOptions(digits=DigitOptions(stiff=0.0, points=points))
+        options = HarmonicBalanceOptions(digits=DigitOptions(stiff_ratio=0.0, max_points=points))
         looking = replace(system, options=options)
         roundings.append(with_precise_fundamental(looking, recorded(looking, [path]))[1])
     every, some = roundings

@@ -11,7 +11,7 @@ from fcm.harmonic_balance.system import System
 from fcm.scene import scene_from_dict
 
 OWN = HarmonicBalanceOptions(
-    units=UnitOptions(contacts=1000)
+    units=UnitOptions(min_contacts=1000)
 )  # each displacement, or contact, has its own unit
 
 

@@ -96,7 +96,13 @@ def curve_with(stable, tail=()):
     told = np.concatenate((np.array(stable, dtype=float), more[:, 2]))
     states = kept.regime[: frequency.size]  # of no matter
     return replace(
-        kept, frequency=frequency, amplitude=amplitude, stable=told, regime=states, peaks=peaks, gist=None
+        kept,
+        frequency=frequency,
+        amplitude=amplitude,
+        stable=told,
+        regime=states,
+        peaks=peaks,
+        condensed=None,
     )
 
 

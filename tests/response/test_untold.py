@@ -119,7 +119,7 @@ def test_of_peaks_alone_a_loss_of_stability_is_where_the_whole_curve_has_it(scen
 def test_what_is_kept_of_an_interrupted_run_is_read_again(scene, curve):
     """Of a curve without its points, and of exact peaks alone: what sweeps meet is kept with them."""
     (alone,) = trace_exact(package.load_scene(scene), only="peaks").curves
-    for one, said in ((without_points(curve), lambda c: c.gist.swept), (alone, lambda c: c.swept())):
+    for one, said in ((without_points(curve), lambda c: c.condensed.swept), (alone, lambda c: c.swept())):
         (kept,) = unpacked(pickle.dumps([one]), KINDS)
         met, found = (
             ([w.start for w in of.untold], [jump.frequency for jump in of.jumps])

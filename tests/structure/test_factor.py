@@ -24,13 +24,13 @@ from .solids import bricks
 
 PACKAGES = [
     FactorOptions("SuperLU"),
-    FactorOptions("SuperLU", long=0, poll=0.001),
-    FactorOptions("SuperLU", dissected=0),
+    FactorOptions("SuperLU", polled_entries=0, poll_interval=0.001),
+    FactorOptions("SuperLU", dissection_size=0),
     FactorOptions("fronts"),
-    FactorOptions("fronts", fronts=FrontOptions(zeros=0.0, zeros_of_few=0.0)),
-    FactorOptions("fronts", fronts=FrontOptions(zeros=1.0)),
+    FactorOptions("fronts", fronts=FrontOptions(max_zeros=0.0, max_zeros_of_few=0.0)),
+    FactorOptions("fronts", fronts=FrontOptions(max_zeros=1.0)),
     pytest.param(
-        FactorOptions("CHOLMOD", small=0),
+        FactorOptions("CHOLMOD", superlu_size=0),
         marks=pytest.mark.skipif(not has_cholmod(), reason="needs scikit-sparse"),
     ),
 ]
@@ -176,7 +176,9 @@ def test_an_interruption_leaves_a_long_factorisation_behind(monkeypatch, by_sign
     before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job has it ignored
     try:
         with pytest.raises(KeyboardInterrupt):
-            solver(bricks(2, 2, 2)[0], options=FactorOptions("SuperLU", long=0, poll=0.001))
+            solver(
+                bricks(2, 2, 2)[0], options=FactorOptions("SuperLU", polled_entries=0, poll_interval=0.001)
+            )
     finally:
         signal.signal(signal.SIGINT, before)
         never.set()

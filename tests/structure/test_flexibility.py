@@ -88,7 +88,7 @@ def test_no_mode_of_several_equal_frequencies_is_passed_by():
 @pytest.mark.parametrize("blocks", [1, 2])
 def test_the_bound_holds_and_is_no_exaggeration(kept, blocks):
     """Of receptances at two points and along a combination, up to just below the first mode left out."""
-    options = FlexibilityOptions(enough=0.0, most_blocks=blocks)
+    options = FlexibilityOptions(tolerance=0.0, max_blocks=blocks)
     K, M, names = beams.beam(60)
     loads = np.zeros((len(names), 3))
     for column, weights in enumerate([{"60w": 1.0}, {"31w": 1.0}, {"60r": 0.3, "45w": -0.7}]):

@@ -121,7 +121,7 @@ def test_a_contact_that_chatters():
 
 
 def test_chattering_without_end_is_refused():
-    few = TimeOptions(simulation=SimulationOptions(transitions=20))
+    few = TimeOptions(simulation=SimulationOptions(max_transitions=20))
     with pytest.raises(SimulationError, match="chatter"):
         simulate(yang(k_u=1e6), 1.3, 2, options=few)
 

@@ -117,7 +117,9 @@ def test_the_lower_state_at_n_0_5_ends_between_1235_and_1240():
 def test_plans_of_any_length_are_bounded():
     for cycles, columns in [(10, 2), (30_000, 2), (100_000, 2), (1_000_000, 2), (1000, 300), (7, 10**6)]:
         plan = Plan([Phase(1.0, cycles)], columns)
-        assert plan.instants * columns <= TIME.history.displacements + 2 * TIME.history.fewest * columns
+        assert (
+            plan.instants * columns <= TIME.history.max_displacements + 2 * TIME.history.min_samples * columns
+        )
         assert plan.time.size == plan.cycles.size == plan.instants
         assert (np.diff(plan.time) > 0.0).all() and plan.cycles[-1] == cycles
     assert Plan([Phase(1.0, 10)], 2).samples == 64
@@ -127,7 +129,7 @@ def test_plans_of_any_length_are_bounded():
 
 def test_a_decimated_history_is_part_of_the_whole():
     scene = scheduled(yang(), Phase(1.3, 5.0))
-    thin = Plan(scene.schedule, TIME.history.displacements // 16)
+    thin = Plan(scene.schedule, TIME.history.max_displacements // 16)
     assert (thin.samples, thin.every) == (8, 3)
     whole, part = record(scene), record(scene, thin)
     assert part.displacement == pytest.approx(whole.displacement[[*range(0, 64, 8), *range(192, 321, 8)]])
@@ -178,7 +180,7 @@ def test_interrupted_before_anything_is_finished(monkeypatch):
 
 
 def test_contacts_that_chatter_without_end_leave_it_incomplete():
-    few = replace(TIME, simulation=SimulationOptions(transitions=20))
+    few = replace(TIME, simulation=SimulationOptions(max_transitions=20))
     kept = record(scheduled(yang(k_u=1e6), Phase(1.3, 3.0)), options=few)
     assert "the contacts chatter" in kept.reason and kept.cycles == 1.0
 

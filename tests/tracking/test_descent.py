@@ -9,7 +9,7 @@ from fcm.cli.track import as_table
 from fcm.results.tracked import Optimal
 from fcm.tracking.minimax import PeakEnvelope, downhill
 from fcm.tracking.options import DESCENT, SEARCH, TRACKING
-from fcm.tracking.peak_envelope import PieceHeight, least
+from fcm.tracking.peak_envelope import PieceHeight, envelope_minimum
 from fcm.tracking.trials import by_trials
 
 EDGE = 0.37  # of the first number: below it another, higher peak is there, which no way leads to
@@ -83,7 +83,7 @@ class Straight:
 def test_the_least_beside_a_gap_between_pieces():
     """In the gap nothing is known: its heights were infinite, and numpy warned of their differences."""
     way = SimpleNamespace(span=(0.0, 1.0), options=TRACKING)
-    found = least(way, [Straight(0.0, 0.25, -1.0), Straight(0.5, 1.0, 1.0)])
+    found = envelope_minimum(way, [Straight(0.0, 0.25, -1.0), Straight(0.5, 1.0, 1.0)])
     assert found.s == pytest.approx(0.25, abs=1e-9) and found.value == pytest.approx(1.75, abs=1e-9)
 
 

@@ -180,7 +180,7 @@ class PartialInterpolant:
         return most
 
 
-def places(
+def arc_lengths(
     z: cython.double[:, ::1], direction: cython.double[:, ::1], range_of: cython.double, out: FloatArray
 ) -> None:
     """Lengths (point,) along a curve z (point, unknown + 1), in the unit of its directions; the parameter,

@@ -19,9 +19,9 @@ import numpy.typing as npt
 from fcm.accuracy.budget import Budget
 from fcm.accuracy.contact_load_errors import contact_load_errors, relative
 from fcm.accuracy.crossings import with_crossings
-from fcm.accuracy.elsewhere import affordable_partner, partner_elsewhere
 from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.partner import partner_of
+from fcm.accuracy.partner_branches import affordable_partner, further_partner_pieces
 from fcm.accuracy.partner_curve import FollowedStretch, Indices, PartnerCurve
 from fcm.accuracy.partner_pieces import CurvePiece, distinct, lengths, nearest, piece_of
 from fcm.accuracy.peaks import heights, rise_between_points
@@ -179,7 +179,7 @@ def with_nearest(
     at least the distance of the greatest. The paths before the first have theirs already.
     """
     every = list(errors)
-    for k, further in enumerate(partner_elsewhere(system, paths, shown, errors, first, options)):
+    for k, further in enumerate(further_partner_pieces(system, paths, shown, errors, first, options)):
         every[k] = replace(every[k], pieces=(*every[k].pieces, *further)) if further else every[k]
     pieces = [piece for one in every for piece in one.pieces]
     for k in range(first, len(every)):

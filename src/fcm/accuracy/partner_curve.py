@@ -11,7 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.budget import Budget
-from fcm.accuracy.curve_distance import PartialInterpolant, PointwiseDisplacement, places, shifted, steepness
+from fcm.accuracy.curve_distance import (
+    PartialInterpolant,
+    PointwiseDisplacement,
+    arc_lengths,
+    shifted,
+    steepness,
+)
 from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.partner import give_back, partner_of, prolongation_to
 from fcm.accuracy.partner_pieces import CurvePiece, distinct, piece_of, piece_through, rates
@@ -114,7 +120,7 @@ class PartnerCurve:
         self.failed, self.before = budget.seconds / self.each, lifted.newton.evaluations
         count, dofs = self.amplitude.shape
         self.place, self.weight = np.zeros((2, count))
-        places(path.z, path.direction, np.ptp(path.parameter) or 1.0, self.place)
+        arc_lengths(path.z, path.direction, np.ptp(path.parameter) or 1.0, self.place)
         steepness(np.ascontiguousarray(path.parameter), self.amplitude, options.max_steepness, self.weight)
         self.change = np.zeros((count, 1 + dofs))
         self.theirs = np.full((count, len(lifted.newton.z)), np.nan)  # where it was found

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from fcm.accuracy.curve_distance import PartnerCurveData, places
+from fcm.accuracy.curve_distance import PartnerCurveData, arc_lengths
 from fcm.continuation import Path
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities
 from fcm.model.scene import FloatArray
@@ -122,7 +122,7 @@ def _nearest(
 def lengths(path: Path) -> FloatArray:
     """Along a path (point,)."""
     length = np.zeros(len(path.z))
-    places(path.z, path.direction, np.ptp(path.parameter) or 1.0, length)
+    arc_lengths(path.z, path.direction, np.ptp(path.parameter) or 1.0, length)
     return length
 
 

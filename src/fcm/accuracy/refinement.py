@@ -11,8 +11,13 @@ import numpy as np
 from fcm.accuracy.budget import Budget, share_of
 from fcm.accuracy.embedded_pair import Errors, errors_along, with_nearest
 from fcm.accuracy.options import OF_GIVEN, PAIR, REFINEMENT, PairOptions, RefinementOptions
-from fcm.accuracy.outline import UncheckedResponse, near, unchecked_response, with_more
 from fcm.accuracy.required_harmonics import needed, required_harmonics
+from fcm.accuracy.unchecked_response import (
+    UncheckedResponse,
+    prolongated_solutions,
+    unchecked_response,
+    with_more,
+)
 from fcm.branches.force_level import few_harmonics, with_low_harmonics
 from fcm.continuation.follow import Progress
 from fcm.harmonic_balance.system import System
@@ -105,12 +110,12 @@ def refined_response(
     return replace(sure, further=further, begun=begun)
 
 
-def retraced(found: RefinedResponse, harmonics: tuple[int, ...], accuracy: float) -> RefinedResponse | None:
+def retrace(found: RefinedResponse, harmonics: tuple[int, ...], accuracy: float) -> RefinedResponse | None:
     """The response traced again with more harmonics; None where no solution is found, or that takes longer
     than is worth it."""
     if found.seconds_with(harmonics) > found.system.options.work.max_seconds_repeated:
         return None
-    nearby = near(found, harmonics)
+    nearby = prolongated_solutions(found, harmonics)
     then = unchecked_response(found.system.with_harmonics(harmonics), None, found.traced.found, nearby)
     return with_errors(then, accuracy) if then.shown else None
 
@@ -145,7 +150,9 @@ def _after(
     """The response of a system, after that with fewer harmonics."""
     if before is None:
         return unchecked_response(system, progress)
-    return unchecked_response(system, progress, before.traced.found, near(before, system.harmonics))
+    return unchecked_response(
+        system, progress, before.traced.found, prolongated_solutions(before, system.harmonics)
+    )
 
 
 def with_errors(

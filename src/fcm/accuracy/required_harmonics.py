@@ -16,8 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.options import PAIR, REFINEMENT, PairOptions, RefinementOptions
-from fcm.accuracy.outline import UncheckedResponse
 from fcm.accuracy.partner import give_back, partner_of, prolongation_to
+from fcm.accuracy.unchecked_response import UncheckedResponse
 from fcm.continuation import Mark, Path
 from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics

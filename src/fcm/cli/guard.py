@@ -30,7 +30,7 @@ _EXIT_CODES = (
     ("fcm.export.rows", "ExportError", WRONG_INPUT),
     ("fcm.run", "CheckpointError", WRONG_INPUT),
     ("fcm.run.cluster", "ClusterError", WRONG_INPUT),
-    ("fcm.run", "Gone", NOT_COMPLETED),
+    ("fcm.run", "PlaceClosed", NOT_COMPLETED),
 )
 _NO_MEMORY = "error: not enough memory to complete the calculation"
 _NO_ROOM = ("failed to map", "cannot allocate memory", "failed to create thread")  # says who loads a library

@@ -96,11 +96,11 @@ def _coordinates(frequency: FloatArray, amplitude: FloatArray, size: FloatArray)
 
 def _fine(points: FloatArray, smooth: bool, options: ChainOptions) -> FloatArray:
     length = np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1))
-    kept = points[np.concatenate(([True], length > options.same))]
+    kept = points[np.concatenate(([True], length > options.distinct_length))]
     if kept.shape[0] < 2:
         return kept
     arc = np.concatenate(([0.0], np.cumsum(np.sqrt((np.diff(kept, axis=0) ** 2).sum(axis=1)))))
-    fine = min(max(options.points // kept.shape[0], options.coarsest), options.finest)
+    fine = min(max(options.chain_points // kept.shape[0], options.min_fineness), options.max_fineness)
     share = np.arange(fine) / fine
     at = np.append((arc[:-1, None] + share * np.diff(arc)[:, None]).ravel(), arc[-1])
     if smooth and kept.shape[0] > 2:

@@ -11,18 +11,18 @@ class ChainOptions:
 
     Attributes
     ----------
-    points : int
+    chain_points : int
         Of the fine chain, about.
-    finest, coarsest : int
+    max_fineness, min_fineness : int
         Points on a piece between two neighbours, at most and at least.
-    same : float
+    distinct_length : float
         Distance below which two neighbours are one point.
     """
 
-    points: int = 4000
-    finest: int = 16
-    coarsest: int = 3
-    same: float = 1e-13
+    chain_points: int = 4000
+    max_fineness: int = 16
+    min_fineness: int = 3
+    distinct_length: float = 1e-13
 
 
 @dataclass(frozen=True)

@@ -113,14 +113,17 @@ def contains(path: Path, z: FloatArray, problem: Problem, options: PathOptions =
     problem.measure(z)
     scale = np.array(problem.scale)
     points = (path.z - z) / scale
-    if float((points * points).sum(axis=1).min()) < options.same**2:
+    if float((points * points).sum(axis=1).min()) < options.solution_tolerance**2:
         return True
     newton = Newton(problem)
     for i, part in _nearest_chords(points, options):
         row = points[i + 1] - points[i]
         newton.scale[:], newton.row[:] = scale, row / np.linalg.norm(row)
         newton.z[:] = path.z[i] + part * (path.z[i + 1] - path.z[i])
-        if newton.correct(1.0) and np.linalg.norm((np.asarray(newton.z) - z) / scale) < options.same:
+        if (
+            newton.correct(1.0)
+            and np.linalg.norm((np.asarray(newton.z) - z) / scale) < options.solution_tolerance
+        ):
             return True
     return False
 
@@ -131,11 +134,12 @@ def _nearest_chords(points: FloatArray, options: PathOptions) -> list[tuple[int,
     square = np.maximum((chord * chord).sum(axis=1), np.finfo(float).tiny)  # of two points that are one
     part = np.clip(-(points[:-1] * chord).sum(axis=1) / square, 0.0, 1.0)
     off = np.linalg.norm(points[:-1] + part[:, None] * chord, axis=1)
-    near = np.argsort(off)[: options.chords].tolist()
+    near = np.argsort(off)[: options.nearest_chords].tolist()
     return [
         (i, float(part[i]))
         for i in near
-        if options.same < np.sqrt(square[i]) and off[i] < options.max_distance_ratio * np.sqrt(square[i])
+        if options.solution_tolerance < np.sqrt(square[i])
+        and off[i] < options.max_distance_ratio * np.sqrt(square[i])
     ]
 
 

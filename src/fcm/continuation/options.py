@@ -441,20 +441,20 @@ class PathOptions:
 
     Attributes
     ----------
-    same : float
+    solution_tolerance : float
         In the problem's scale: solutions closer than this are one.
     max_distance_ratio : float
         Part of a chord: what is further from it is not on its part of a path.
-    chords : int
+    nearest_chords : int
         Nearest ones that are looked at.
-    flat : float
+    min_cosine : float
         Cosine of a turn, below which a length across the chord is no measure of the way.
     """
 
-    same: float = 1e-5
+    solution_tolerance: float = 1e-5
     max_distance_ratio: float = 0.5
-    chords: int = 4
-    flat: float = 0.1
+    nearest_chords: int = 4
+    min_cosine: float = 0.1
 
 
 SOLVER = SolverOptions()

@@ -43,11 +43,11 @@ def advice(
     before = _errors(known)
     best: dict[int, Advice] = {}
     model = responses[0]
-    dofs = list(dict.fromkeys([*(one.dof for one in responses), *scene.modal.dofs]))[: ADVICE.dofs]
+    dofs = list(dict.fromkeys([*(one.dof for one in responses), *scene.modal.dofs]))[: ADVICE.max_dofs]
     levels = [float(one.level.min()) for one in responses] + [float(one.level.max()) for one in responses]
     tried = sorted(
-        {min(levels) * f for f in ADVICE.factors if f < 1.0}
-        | {max(levels) * f for f in ADVICE.factors if f > 1.0}
+        {min(levels) * f for f in ADVICE.level_factors if f < 1.0}
+        | {max(levels) * f for f in ADVICE.level_factors if f > 1.0}
     )
     tried += sorted(set(levels)) if len(dofs) > 1 else []
     for dof in dofs:
@@ -60,7 +60,7 @@ def advice(
                 continue
             after = _errors(known + _information(found.rates * rates))
             for k in doubtful:
-                if after[k] < min(ADVICE.better * before[k], options.untold) and (
+                if after[k] < min(ADVICE.max_ratio * before[k], options.max_standard_error) and (
                     k not in best or after[k] < best[k].error
                 ):
                     best[k] = Advice(parameters.keys[k], dof, level, float(after[k]))
@@ -82,6 +82,6 @@ def _errors(information: FloatArray) -> FloatArray:
     if seen.any():
         scaled = information[np.ix_(seen, seen)] / np.outer(size[seen], size[seen])
         values, vectors = np.linalg.eigh(scaled)
-        values = np.maximum(values, ADVICE.least)
+        values = np.maximum(values, ADVICE.min_eigenvalue)
         errors[seen] = np.sqrt(((vectors**2) / values).sum(axis=1)) / size[seen]
     return errors

@@ -71,10 +71,14 @@ class _Followed:
     def __init__(self, system: System, data: Measured) -> None:
         self.dof = list(system.scene.modal.dofs).index(data.dof) if data.dof else None
         self.system = system
-        low, high, beyond = float(data.amplitude.min()), float(data.amplitude.max()), BACKBONE.beyond_modal
+        low, high, beyond = (
+            float(data.amplitude.min()),
+            float(data.amplitude.max()),
+            BACKBONE.modal_amplitude_factor,
+        )
         if self.dof is not None:  # what is modal for a displacement, its shape at other amplitudes decides
             low, high = self._modal_span(low, high, data.mode)
-            beyond = BACKBONE.beyond
+            beyond = BACKBONE.amplitude_factor
         self.mode: Mode = nonlinear_mode(
             system, data.mode, (low / beyond, high * beyond), system.scene.max_step
         )
@@ -114,9 +118,9 @@ class _Followed:
         z = self._solved(points[i] + part * (points[i + 1] - points[i]))
         if z is None:
             return points[i], False
-        for _ in range(BACKBONE.steps if self.dof is not None else 0):
+        for _ in range(BACKBONE.max_steps if self.dof is not None else 0):
             off = target - np.log(self._size(z))
-            if abs(off) < BACKBONE.close:
+            if abs(off) < BACKBONE.step_tolerance:
                 break
             there = self._solved(np.append(z[:-1], z[-1] + off))
             if there is None:
@@ -131,7 +135,7 @@ class _Followed:
         newton.scale[:], newton.z[:], newton.row[:] = self.problem.scale, guess, np.eye(guess.size)[-1]
         return np.array(newton.z) if newton.correct(1.0) else None
 
-    def rates(self, z: FloatArray, moved: Sequence[Moved]) -> FloatArray:
+    def rates(self, z: FloatArray, moved: Sequence[ResidualDerivative]) -> FloatArray:
         """Of frequency and damping by numbers, the measured amplitude held, (2, number)."""
         self.problem.evaluate(z)
         J = np.array(self.problem.jacobian)
@@ -154,7 +158,7 @@ class _Followed:
 
 
 @dataclass(frozen=True)
-class Moved:
+class ResidualDerivative:
     """A mode with other values of a number: weights of a derivative, with the problems."""
 
     terms: list[tuple[float, AutonomousProblem]]
@@ -168,7 +172,9 @@ class Moved:
         return total
 
 
-def _moved(scene: Scene, number: Number, harmonics: tuple[int, ...], problem: AutonomousProblem) -> Moved:
+def _moved(
+    scene: Scene, number: Number, harmonics: tuple[int, ...], problem: AutonomousProblem
+) -> ResidualDerivative:
     """With the values of a number on both sides; the structure's modes are the same in their order."""
     value = number.value(scene)
     step = BACKBONE.difference * (abs(value) or 1.0)
@@ -177,4 +183,4 @@ def _moved(scene: Scene, number: Number, harmonics: tuple[int, ...], problem: Au
         for sign in (1.0, -1.0):
             system = System(number.put(scene, value + sign * k * step), harmonics)
             terms.append((sign * weight / step, AutonomousProblem(system, problem.guess, problem.options)))
-    return Moved(terms)
+    return ResidualDerivative(terms)

@@ -48,11 +48,13 @@ def estimated(parameters: Parameters, values: FloatArray, rows: Rows, options: F
     J = rows.rates * rates
     count = J.shape[-1]
     effect = np.abs(J).max(axis=(0, 1), initial=0.0)
-    told = np.flatnonzero(effect > options.effect)
+    told = np.flatnonzero(effect > options.min_effect)
     covariance = np.full((count, count), np.nan)
     freedom = max(rows.independent - told.size, 1)
     if told.size:
-        covariance[np.ix_(told, told)] = _covariance(rows.residual, J[:, :, told], freedom, options.rank)
+        covariance[np.ix_(told, told)] = _covariance(
+            rows.residual, J[:, :, told], freedom, options.rank_tolerance
+        )
     spread = np.sqrt(np.where(np.isnan(np.diag(covariance)), np.inf, np.diag(covariance)))
     with np.errstate(invalid="ignore", divide="ignore"):
         correlation = covariance / np.outer(spread, spread)
@@ -70,7 +72,7 @@ def estimated(parameters: Parameters, values: FloatArray, rows: Rows, options: F
     alike = tuple(
         (int(told[i]), int(told[j]), power)
         for i, j, power in pairs
-        if max(relative[told[i]], relative[told[j]]) > options.apart
+        if max(relative[told[i]], relative[told[j]]) > options.sure_standard_error
     )
     return Estimate(
         values=values,
@@ -78,7 +80,7 @@ def estimated(parameters: Parameters, values: FloatArray, rows: Rows, options: F
         interval=ends,
         correlation=correlation,
         without_effect=without,
-        untold=((relative > options.untold) & (without == 0.0)).astype(float),
+        untold=((relative > options.max_standard_error) & (without == 0.0)).astype(float),
         at_bound=(close[0] | close[1]).astype(float),
         alike=alike,
     )
@@ -109,5 +111,7 @@ def _alike(J: FloatArray, options: FitOptions) -> list[tuple[int, int, float]]:
     """
     size = np.sqrt((J**2).sum(axis=0))
     cosine = J.T @ J / np.outer(size, size)
-    pairs = [(i, j) for i in range(len(size)) for j in range(i) if abs(cosine[i, j]) > options.alike]
+    pairs = [
+        (i, j) for i in range(len(size)) for j in range(i) if abs(cosine[i, j]) > options.max_correlation
+    ]
     return [(j, i, float(np.sign(cosine[i, j]) * size[i] / size[j])) for i, j in pairs]

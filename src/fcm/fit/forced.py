@@ -54,7 +54,8 @@ def errors_of(data: Measured, blurred: bool, options: FitOptions) -> Errors:
     if blurred:
         width = max(float(np.ptp(data.frequency)), 1e-3 * float(data.frequency.max()))
         return Errors(
-            np.full(data.points, options.blurred * width), np.full(data.points, options.blurred * top)
+            np.full(data.points, options.search_error * width),
+            np.full(data.points, options.search_error * top),
         )
     of_frequency = options.frequency_error if data.frequency_error is None else data.frequency_error
     if data.estimated is not None:
@@ -178,7 +179,7 @@ def _by_level(level: FloatArray, options: FitOptions) -> list[tuple[float, npt.N
     """
     apart = np.unique(level)
     steps = np.log(apart[-1] / apart[0]) / np.log(options.level_step)
-    most = min(options.levels, 1 + int(np.ceil(steps)))
+    most = min(options.max_levels, 1 + int(np.ceil(steps)))
     if apart.size > most:
         apart = np.geomspace(apart[0], apart[-1], most)
     nearest = np.abs(np.log(level[:, None] / apart)).argmin(axis=1)
@@ -250,16 +251,16 @@ class Nearest:
         z = self._corrected(end, row) if z is None else z
         if z is None:
             raise NoMotionError
-        for _ in range(self.options.steps):
+        for _ in range(self.options.max_steps):
             value, along = self.at(z)
             tangent, scale = np.array(self.newton.tangent), np.array(self.newton.scale)
             square = float(along @ along)
             if not square > 0.0:
                 break
             step = float((self.y - value) @ along) / square
-            if abs(step) * np.sqrt(square) < self.options.close:
+            if abs(step) * np.sqrt(square) < self.options.step_tolerance:
                 break
-            step = float(np.clip(step, -self.options.longest, self.options.longest))
+            step = float(np.clip(step, -self.options.max_step, self.options.max_step))
             further = self._nearer(z, step, tangent, scale, float(((value - self.y) ** 2).sum()))
             if further is None:
                 break
@@ -270,7 +271,7 @@ class Nearest:
         self, z: FloatArray, step: float, tangent: FloatArray, scale: FloatArray, before: float
     ) -> FloatArray | None:
         """A point along the curve that is nearer; a step that leads further away is halved."""
-        for _ in range(self.options.halvings):
+        for _ in range(self.options.max_halvings):
             there = self._corrected(z + step * scale * tangent, tangent)
             if there is not None and ((self.at(there)[0] - self.y) ** 2).sum() < before:
                 return there

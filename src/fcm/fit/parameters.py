@@ -98,10 +98,10 @@ def parameters_of(
 def _wide(start: float, number: Number, options: FitOptions) -> tuple[float, float]:
     """How far a number may go that has no bounds."""
     if start > 0.0:
-        return start / options.span, start * options.span
+        return start / options.unbounded_factor, start * options.unbounded_factor
     if start == 0.0:
         raise FitError(f"fit: bounds: give [from, to] for {number.key}, which is 0 in the scene")
-    return start * options.span, -start * options.span
+    return start * options.unbounded_factor, -start * options.unbounded_factor
 
 
 def with_numbers(scene: Scene, numbers: Sequence[Number], values: FloatArray) -> Scene:

@@ -27,14 +27,14 @@ Tell = Callable[[float, str], None]
 
 
 @dataclass(frozen=True)
-class Reached:
+class SearchResult:
     """Unknowns that a search has come to, and their cost; None where there is no response at its start."""
 
     x: FloatArray | None
     cost: float
 
 
-class Kept(Protocol):
+class SavedSearches(Protocol):
     """Searches of an earlier run by their number: the finished ones, and how far others were; and of this."""
 
     finished: dict[int, list[Any]]
@@ -90,7 +90,7 @@ class Problem:
     blurred: bool
     options: FitOptions = FIT
     known: tuple[bytes, list[Rows] | None] = field(default=(b"", None))
-    best: Reached | None = None
+    best: SearchResult | None = None
 
     def parts(self, x: FloatArray) -> list[Rows] | None:
         """Rows of each data set; None where the model has no response."""
@@ -118,7 +118,7 @@ class Problem:
         parts = self.parts(x)
         if parts is None:
             size = sum(data.points * data.components for data in self.data)
-            return np.full(size, self.options.lost)
+            return np.full(size, self.options.lost_residual)
         return np.concatenate([part.residual.ravel() for part in parts])
 
     def jacobian(self, x: FloatArray) -> FloatArray:
@@ -127,18 +127,18 @@ class Problem:
         return np.concatenate([(part.rates * rates).reshape(-1, len(rates)) for part in parts])
 
     def least(
-        self, x: FloatArray, evaluations: int, tell: Callable[[Reached], None] | None = None
-    ) -> Reached:
+        self, x: FloatArray, evaluations: int, tell: Callable[[SearchResult], None] | None = None
+    ) -> SearchResult:
         """The least cost next to a start; told of each evaluation. None where there is no response."""
         low, high = (self.parameters.unknowns(end) for end in (self.parameters.low, self.parameters.high))
         x = np.clip(x, low, high)
         inside = np.clip(x, low + 1e-9 * np.abs(low), high - 1e-9 * np.abs(high))
         if self.parts(inside) is None:
-            return Reached(None, np.inf)
+            return SearchResult(None, np.inf)
 
         def residual(x: FloatArray) -> FloatArray:
             found = self.residual(x)
-            here = Reached(x.copy(), 0.5 * float(found @ found))
+            here = SearchResult(x.copy(), 0.5 * float(found @ found))
             self.note(here)
             if tell is not None:
                 tell(here)
@@ -147,9 +147,9 @@ class Problem:
         found = least_squares(
             residual, inside, self.jacobian, bounds=(low, high), x_scale="jac", max_nfev=evaluations
         )
-        return Reached(found.x, float(found.cost))
+        return SearchResult(found.x, float(found.cost))
 
-    def note(self, found: Reached) -> None:
+    def note(self, found: SearchResult) -> None:
         """Unknowns that were evaluated, now or in an earlier run."""
         if found.x is not None and (self.best is None or found.cost < self.best.cost):
             self.best = found
@@ -158,24 +158,24 @@ class Problem:
 class Searches:
     """The searches of a fit in their order, told and kept."""
 
-    def __init__(self, kept: Kept | None = None, tell: Tell | None = None) -> None:
+    def __init__(self, kept: SavedSearches | None = None, tell: Tell | None = None) -> None:
         self.kept, self.tell, self.number = kept, tell, 0
 
     def least(
         self, problem: Problem, x: FloatArray, evaluations: int, share: tuple[float, float], what: str
-    ) -> Reached:
+    ) -> SearchResult:
         """What a search from these unknowns comes to, or has come to already; share: of the bar."""
         number, evaluated, least = self.number, 0, np.inf
         self.number += 1
         if self.kept is not None and number in self.kept.finished:
-            known: Reached = self.kept.finished[number][0]
+            known: SearchResult = self.kept.finished[number][0]
             problem.note(known)
             return known
         if self.kept is not None and (saved := self.kept.states.get(number)):
             x = min(saved, key=lambda one: one.cost).x
         self._say(share[0], what)
 
-        def tell(here: Reached) -> None:
+        def tell(here: SearchResult) -> None:
             nonlocal evaluated, least
             evaluated += 1
             done = min(evaluated / evaluations, 1.0)
@@ -218,7 +218,7 @@ def solved(
     rough = Problem(parameters, few, harmonics, True, options)
     fine = Problem(parameters, data, harmonics, False, options)
     searches, starts = searches or Searches(), list[Start]()
-    best: Reached | None = None
+    best: SearchResult | None = None
     try:
         if begin is None:
             _tried(parameters, rough, starts, options, searches)
@@ -227,16 +227,16 @@ def solved(
             finalists = [Start(begin, begin, np.inf, np.ones(len(begin), dtype=bool))]
             starts.extend(finalists)
         for k, one in enumerate(finalists):
-            begun = options.seeking
+            begun = options.search_share
             share = tuple(begun + (1.0 - begun) * (k + i) / (len(finalists) + 1) for i in (0, 1))
             what = f"all points, from the best starts ({k + 1} of {len(finalists)})"
             found = searches.least(
-                fine, parameters.unknowns(one.end), options.finishing, (share[0], share[1]), what
+                fine, parameters.unknowns(one.end), options.finalist_evaluations, (share[0], share[1]), what
             )
             if found.x is None:
                 continue
             one.end, one.cost, one.finished = parameters.values(found.x), found.cost, True
-            if best is None or found.cost < best.cost * (1.0 - options.equal):
+            if best is None or found.cost < best.cost * (1.0 - options.cost_tolerance):
                 best = found
     except KeyboardInterrupt:
         return _so_far(fine, rough, starts)
@@ -265,14 +265,16 @@ def _weighed(
     """The fit made again with the errors that its residuals tell, where none are stated."""
     again = fine
     try:
-        for _ in range(options.reweighted):
+        for _ in range(options.reweightings):
             parts = fine.parts(x)
             assert parts is not None
             data = reweighted(fine.data, parts, options)
             if all(one.estimated is None for one in data):
                 break
             again = replace(fine, data=data, known=(b"", None), best=None)
-            found = searches.least(again, x, options.finishing, (0.97, 1.0), "errors of the points estimated")
+            found = searches.least(
+                again, x, options.finalist_evaluations, (0.97, 1.0), "errors of the points estimated"
+            )
             if found.x is None:
                 break
             fine, x = again, found.x
@@ -288,23 +290,28 @@ def _tried(
 ) -> None:
     """Starts, until some have led to the same numbers, and these are the best."""
     for k, x in enumerate(parameters.starts(options.starts)):
-        share = options.seeking * k / options.starts, options.seeking * (k + 1) / options.starts
+        share = options.search_share * k / options.starts, options.search_share * (k + 1) / options.starts
         what = f"start {k + 1} of at most {options.starts}"
-        found = searches.least(rough, x, options.starting, share, what)
+        found = searches.least(rough, x, options.start_evaluations, share, what)
         if found.x is None:
             continue
-        effect = np.abs(rough.jacobian(found.x)).max(axis=0, initial=0.0) > options.effect
+        effect = np.abs(rough.jacobian(found.x)).max(axis=0, initial=0.0) > options.min_effect
         starts.append(Start(parameters.values(x), parameters.values(found.x), found.cost, effect))
         least = _by_cost(starts, options)[0]
-        same = [np.isclose(one.end, least.end, rtol=options.same, atol=0.0) | ~least.effect for one in starts]
-        if sum(bool(one.all()) for one in same) >= options.agreeing:
+        same = [
+            np.isclose(one.end, least.end, rtol=options.number_tolerance, atol=0.0) | ~least.effect
+            for one in starts
+        ]
+        if sum(bool(one.all()) for one in same) >= options.agreeing_starts:
             return
 
 
 def _by_cost(starts: Sequence[Start], options: FitOptions) -> list[Start]:
     """Those of the least cost first; of equal ones the earlier, which are nearer to the scene."""
     least = min(one.cost for one in starts)
-    return sorted(starts, key=lambda one: one.cost if one.cost > least * (1.0 + options.equal) else least)
+    return sorted(
+        starts, key=lambda one: one.cost if one.cost > least * (1.0 + options.cost_tolerance) else least
+    )
 
 
 def _with_rows(problem: Problem, x: FloatArray, starts: list[Start], interrupted: bool) -> Solved:

@@ -37,7 +37,7 @@ def reweighted(data: Sequence[Measured], parts: Sequence[Rows], options: FitOpti
         amplitude = np.concatenate([data[i].amplitude for i in numbers])
         square = np.concatenate([_squares(data[i], parts[i], options) for i in numbers])
         sigma = np.split(
-            _errors(amplitude, square, options.least_error), np.cumsum([data[i].points for i in numbers])[:-1]
+            _errors(amplitude, square, options.min_error), np.cumsum([data[i].points for i in numbers])[:-1]
         )
         for i, own in zip(numbers, sigma, strict=True):
             found[i] = replace(data[i], estimated=(own / np.sqrt(data[i].weight))[:, None])
@@ -51,7 +51,7 @@ def _of_backbone(data: Measured, rows: Rows, options: FitOptions) -> Measured:
     assert data.damping is not None
     distance = rows.residual[:, :2] * backbone_errors(data, options)
     size = np.sqrt((data.weight[:, None] * distance**2).mean(axis=0))
-    size = np.maximum(size, options.least_error * np.array([data.frequency.max(), data.damping.max()]))
+    size = np.maximum(size, options.min_error * np.array([data.frequency.max(), data.damping.max()]))
     return replace(data, estimated=size / np.sqrt(data.weight[:, None]))
 
 

@@ -117,7 +117,7 @@ def _extremes(
     """Angles (2,) of the maximum and minimum of Re sum X_h exp(i h theta) next to two angles, else NaN."""
     theta: FloatArray = near
     h = np.asarray(harmonics, dtype=np.float64)
-    for _ in range(options.iterations):
+    for _ in range(options.max_iterations):
         turned = np.exp(1j * np.outer(theta, h)) * X
         slope, bend = -(turned.imag @ h), -(turned.real @ (h * h))
         if not (bend[0] < 0.0 < bend[1]):
@@ -126,6 +126,6 @@ def _extremes(
         theta = theta - step
         if np.abs(theta - near).max() * h[-1] > np.pi:  # more than half the shortest wave
             break
-        if np.abs(step).max() < options.settled:
+        if np.abs(step).max() < options.angle_tolerance:
             return np.asarray(theta, dtype=np.float64)
     return np.full(2, np.nan)

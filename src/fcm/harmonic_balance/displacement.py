@@ -42,7 +42,7 @@ class Extremes:
         self.sampling = np.concatenate((self.cosine, np.negative(self.sine)))
         self.wave, self.c, self.s = np.zeros(self.samples), np.zeros(count), np.zeros(count)
         self.value = self.rate = self.angle = 0.0
-        self.max_steps, self.step_tolerance = options.steps, options.step_tolerance
+        self.max_steps, self.step_tolerance = options.max_steps, options.step_tolerance
         self.block, self.many_dofs = options.block, options.many_dofs
 
     @cython.cfunc

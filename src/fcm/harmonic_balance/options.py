@@ -18,13 +18,13 @@ class ExtremeOptions:
     ----------
     samples : int
         Angles for each period of the highest harmonic, among which extremes are sought.
-    steps : int
+    max_steps : int
         Of Newton's method from a sample to the extreme.
-    iterations, settled : int, float
+    max_iterations, angle_tolerance : int, float
         The same from where an extreme was for a motion nearby, at most; and the angle [rad] of the last, at
         which the value errs by its square.
     step_tolerance : float
-        [rad] of the last of the `steps`, after which the angle errs by its square.
+        [rad] of the last of the `max_steps`, after which the angle errs by its square.
     block : int
         Degrees of freedom whose samples lie in the processor's cache.
     many_dofs : int
@@ -32,9 +32,9 @@ class ExtremeOptions:
     """
 
     samples: int = 12
-    steps: int = 4
-    iterations: int = 8
-    settled: float = 1e-9
+    max_steps: int = 4
+    max_iterations: int = 8
+    angle_tolerance: float = 1e-9
     step_tolerance: float = 1e-6
     block: int = 256
     many_dofs: int = 50
@@ -46,13 +46,13 @@ class SpectrumOptions:
 
     Attributes
     ----------
-    ahead : float
+    highest_factor : float
         Times the highest of a balance that is looked at in any case: to have all is not to be exact.
-    few : int
+    few_products : int
         Modes times ports, up to which a sum over them is faster without BLAS.
-    leads : float
+    leading_share : float
         Part of the greatest share, from which on one that meets a mode leads.
-    every : int
+    point_interval : int
         Points of a curve from one to the next whose forces are those of all, where there are many.
     least_amplitude : float
         Part of the greatest amplitude of all degrees of freedom, to which a share is referred at least.
@@ -62,10 +62,10 @@ class SpectrumOptions:
         Up to which the equations of one of them are solved without leaving compiled code.
     """
 
-    ahead: float = 1.5
-    few: int = 1000
-    leads: float = 0.5
-    every: int = 16
+    highest_factor: float = 1.5
+    few_products: int = 1000
+    leading_share: float = 0.5
+    point_interval: int = 16
     least_amplitude: float = 1e-9
     min_further: int = 6
     max_further: int = 15
@@ -78,32 +78,32 @@ class DigitOptions:
 
     Attributes
     ----------
-    stiff : float
+    stiff_ratio : float
         k |G| of a contact from which digits are counted.
     last_digit : float
         Relative rounding of a number: that of float64.
-    together : float
+    summed_roundings : float
         Roundings that come together in a sum.
-    points : int
+    max_points : int
         Of a curve of many contacts that are looked at.
     min_unknowns : int
         From which on contacts are many, of which no inverse is made.
-    signs : int
+    max_signs : int
         Of errors that are looked at together then.
-    mean_squares : float
+    deviation_factor : float
         Times the root of their mean square, that an error is then taken to be at most.
-    dependent : float
+    max_condition : float
         Condition number of G from which its inverse is no good.
     """
 
-    stiff: float = 1e4
+    stiff_ratio: float = 1e4
     last_digit: float = 2.2e-16
-    together: float = 4.0
-    points: int = 16
+    summed_roundings: float = 4.0
+    max_points: int = 16
     min_unknowns: int = 200
-    signs: int = 8
-    mean_squares: float = 3.0
-    dependent: float = 1e10
+    max_signs: int = 8
+    deviation_factor: float = 3.0
+    max_condition: float = 1e10
 
 
 @dataclass(frozen=True)
@@ -112,18 +112,18 @@ class StiffContactOptions:
 
     Attributes
     ----------
-    most : float
+    max_stiffness : float
         From here on curves were seen to stop.
-    enough : float
+    rigid_stiffness : float
         Here a contact is nearly rigid: the root of its inverse is a thousandth.
-    most_in_time, enough_in_time : float
+    max_stiffness_in_time, rigid_stiffness_in_time : float
         Both of the motion in time, of which a curve then takes long, and seconds.
     """
 
-    most: float = 1e7
-    enough: float = 1e6
-    most_in_time: float = 1e6
-    enough_in_time: float = 1e5
+    max_stiffness: float = 1e7
+    rigid_stiffness: float = 1e6
+    max_stiffness_in_time: float = 1e6
+    rigid_stiffness_in_time: float = 1e5
 
 
 @dataclass(frozen=True)
@@ -132,16 +132,16 @@ class StaticLoadOptions:
 
     Attributes
     ----------
-    first : float
+    initial_share : float
         Share to begin with.
-    unit : float
+    min_share_unit : float
         Shares are measured by themselves, and below this by this.
     max_step : float
         Along the curve of the share.
     """
 
-    first: float = 1e-3
-    unit: float = 0.1
+    initial_share: float = 1e-3
+    min_share_unit: float = 0.1
     max_step: float = 0.2
 
 
@@ -151,14 +151,14 @@ class RigidMotionOptions:
 
     Attributes
     ----------
-    balanced : float
+    friction_tolerance : float
         Mean friction on a mode, relative to the amplitude of the contact forces on it: less is none.
-    carrying : float
+    load_tolerance : float
         Mean normal force of a contact, relative to what it would be if the contact were glued: less is none.
     """
 
-    balanced: float = 1e-9
-    carrying: float = 1e-8
+    friction_tolerance: float = 1e-9
+    load_tolerance: float = 1e-8
 
 
 @dataclass(frozen=True)
@@ -202,14 +202,14 @@ class WorkspaceOptions:
 
     Attributes
     ----------
-    small : int
+    max_size : int
         Contacts times harmonics, up to which they are.
-    most : int
+    max_count : int
         Workspaces of a thread.
     """
 
-    small: int = 20
-    most: int = 4
+    max_size: int = 20
+    max_count: int = 4
 
 
 @dataclass(frozen=True)
@@ -218,25 +218,25 @@ class UnitOptions:
 
     Attributes
     ----------
-    own : float
+    own_fraction : float
         Part of its greatest value so far that the unit of a displacement is at least,
-    greatest : float
+    greatest_fraction : float
         and of the greatest of all.
-    of_preload : float
+    preload_fraction : float
         Part of n_0 / k_v, that of a normal displacement is at least: some ten thousand times what rounding of
         the preload makes of it.
-    contacts : int
+    min_contacts : int
         Of so many and more all displacements have one unit. What a single contact does then matters as far as
         it moves beside the others, and its corners turn the curve by no more than that.
-    level : float
+    min_level_unit : float
         A level of the forces is measured by itself, and below this by this.
     """
 
-    own: float = 0.1
-    greatest: float = 1e-6
-    of_preload: float = 2e-12
-    contacts: int = 12
-    level: float = 0.1
+    own_fraction: float = 0.1
+    greatest_fraction: float = 1e-6
+    preload_fraction: float = 2e-12
+    min_contacts: int = 12
+    min_level_unit: float = 0.1
 
 
 @dataclass(frozen=True)

@@ -37,7 +37,7 @@ class ForceLevelProblem(Problem):
         self.margin, self.kind, self.angle = balance.margin, balance.kind, balance.angle
         self.unbounded *= self.unbounded  # as much again as the level may grow
         self.balance, self.z = balance, np.zeros(balance.unknowns + 1)
-        self.many, self.rooted, self.min_level_unit = self.costly, balance.rooted, units.level
+        self.many, self.rooted, self.min_level_unit = self.costly, balance.rooted, units.min_level_unit
         self.begin(omega)
 
     def begin(self, omega: float, lightly: bool = False) -> None:

@@ -188,8 +188,12 @@ class Balance(Problem):
         self.condensed: CondensedSystem | None = None  # of the rank, see `condense`
         self.answer: ModalCompliance | None = None  # then
         self.largest, self.size = np.zeros(layout.ports), np.zeros(layout.ports)
-        self.own, self.greatest, self.of_preload = units.own, units.greatest, units.of_preload
-        self.alike = len(laws) >= units.contacts
+        self.own_fraction, self.greatest_fraction, self.preload_fraction = (
+            units.own_fraction,
+            units.greatest_fraction,
+            units.preload_fraction,
+        )
+        self.alike = len(laws) >= units.min_contacts
 
     def condense(self, condensed: CondensedSystem) -> None:
         """Solve the systems of Newton's method, of which there is a rank, by this."""

@@ -43,7 +43,7 @@ else:
 
 def highest_harmonic(system: System) -> int:
     """Harmonic up to which the forces of a system's motions are looked at."""
-    return max(LIMITS.harmonics, int(system.options.spectrum.ahead * max(system.harmonics)))
+    return max(LIMITS.harmonics, int(system.options.spectrum.highest_factor * max(system.harmonics)))
 
 
 @lru_cache(maxsize=256)
@@ -60,7 +60,7 @@ class FurtherHarmonics:
         linear, self.highest = system.linear, highest_harmonic(system)
         self.contacts, self.width = len(system.scene.contacts), system.layout.width
         self.directions = system.layout.directions
-        few = system.scene.ring is None and linear.ports.size <= system.options.spectrum.few
+        few = system.scene.ring is None and linear.ports.size <= system.options.spectrum.few_products
         own = linear.natural, linear.damping, linear.ports, linear.dofs
         self.modes = ForcedModes(*own) if few else None
         self.natural = np.array(linear.natural)
@@ -68,7 +68,7 @@ class FurtherHarmonics:
             left_out(self.highest, system.harmonics),
             system.options.spectrum.least_amplitude,
         )
-        self.leading = system.options.spectrum.leads
+        self.leading = system.options.spectrum.leading_share
         self.force = np.zeros((self.highest, system.layout.ports, 2))
         self.share, self.size = np.zeros(self.highest), np.zeros(linear.dofs.shape[1])
         self.reset(system)
@@ -127,7 +127,7 @@ class FurtherHarmonics:
         The forces, which change slowly, are those of every so many points, and a harmonic that meets a mode
         is compared with the greatest share there.
         """
-        omega, linear, count = z[:, -1], self.system.linear, self.system.options.spectrum.every
+        omega, linear, count = z[:, -1], self.system.linear, self.system.options.spectrum.point_interval
         every = np.arange(min(count // 2, len(z) - 1), len(z), count)
         most, force = np.zeros(len(every)), np.empty((len(every), *np.asarray(self.force).shape))
         for k, i in enumerate(every.tolist()):

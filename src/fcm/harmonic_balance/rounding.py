@@ -52,7 +52,7 @@ def with_precise_fundamental(system: System, points: PointRecord) -> tuple[Point
     """
     options, rounding = system.options.digits, np.zeros_like(points.amplitude)
     springs = system.springs(stuck=True)
-    stiff = np.flatnonzero(_stiffness(system, points.z[:, -1], springs) > options.stiff)
+    stiff = np.flatnonzero(_stiffness(system, points.z[:, -1], springs) > options.stiff_ratio)
     if not stiff.size:
         return points, rounding
     balance = system.new_balance()
@@ -63,8 +63,8 @@ def with_precise_fundamental(system: System, points: PointRecord) -> tuple[Point
     shown, forces = balance.shown, _Forces(system)
     apart = np.asarray(shown.without_modes) != 0
     looked = stiff
-    if balance.rank and stiff.size > options.points:
-        looked = stiff[np.linspace(0, stiff.size - 1, options.points).round().astype(np.intp)]
+    if balance.rank and stiff.size > options.max_points:
+        looked = stiff[np.linspace(0, stiff.size - 1, options.max_points).round().astype(np.intp)]
     for i in looked:
         found = _point(balance, made.z[i].copy(), points.tangent[i], springs, forces, options)
         made.z[i] = found.z
@@ -93,7 +93,10 @@ def _stiffness(system: System, omega: FloatArray, springs: FloatArray) -> FloatA
         return np.array([_stiffest(balance, w, springs) for w in omega])
     # a mode is nowhere softer than at its resonance: most structures need not be looked at point by point
     least = np.minimum(np.sqrt(2.0) * linear.damping, 1.0) * linear.natural**2
-    if least.all() and (springs * ((1.0 / least) @ linear.ports**2)).max() < system.options.digits.stiff:
+    if (
+        least.all()
+        and (springs * ((1.0 / least) @ linear.ports**2)).max() < system.options.digits.stiff_ratio
+    ):
         return np.zeros(omega.size)
     force = np.ones((omega.size, 1, linear.natural.size), dtype=np.complex128)
     compliance = amplitudes(linear.natural, linear.damping, omega, np.ones(1), force)[:, 0]
@@ -164,7 +167,12 @@ def _point(
     G, held = _receptance(balance), _port_stiffness(balance, springs)
     seen, linear, at, omega = balance.seen, forces.linear, _fundamental_positions(balance), float(z[-1])
     other = len(linear.driven) > 1  # whose answer is no fundamental
-    if held is None or other or isinstance(linear, RingLinear) or not np.linalg.cond(G) < options.dependent:
+    if (
+        held is None
+        or other
+        or isinstance(linear, RingLinear)
+        or not np.linalg.cond(G) < options.max_condition
+    ):
         return _as_balanced(balance, linear, G, springs, tangent, options)
     compliance = np.asarray(seen.c_re)[seen.first] + 1j * np.asarray(seen.c_im)[seen.first]
     H, others = np.linalg.inv(G), forces.on_modes(omega)
@@ -176,7 +184,9 @@ def _point(
     size = np.abs(H) @ np.abs(x) + np.abs(computed).max(initial=0.0)
     last_digit = options.last_digit
     wrong = last_digit * np.linalg.cond(G) * size
-    ports = np.abs(np.linalg.inv(H + np.diag(held))) @ wrong + options.together * last_digit * np.abs(x)
+    ports = np.abs(np.linalg.inv(H + np.diag(held))) @ wrong + options.summed_roundings * last_digit * np.abs(
+        x
+    )
     on_modes = np.abs(linear.ports) @ wrong + last_digit * np.abs(others)
     return PreciseFundamental(
         z, (compliance * left) @ linear.dofs, ports, (np.abs(compliance) * on_modes) @ np.abs(linear.dofs)
@@ -198,7 +208,7 @@ def _as_balanced(
     terms = np.zeros(n)
     terms[at] = np.abs(G) @ on_ports + np.hypot(seen.X_re[0], seen.X_im[0]) + size
     terms[at + 1] = terms[at]
-    rounding = options.together * options.last_digit
+    rounding = options.summed_roundings * options.last_digit
     off = _moved_across_curve(balance, x, tangent, rounding * terms, options)
     ports = np.hypot(off[at], off[at + 1])
     modes: Receptance = seen
@@ -228,10 +238,10 @@ def _moved_across_curve(
     matrix = None if condensed else np.vstack((jacobian_of(balance) * scale, row))
     try:
         if condensed or wrong.size >= options.min_unknowns:
-            signs = np.random.default_rng(0).choice((-1.0, 1.0), (options.signs, wrong.size))
+            signs = np.random.default_rng(0).choice((-1.0, 1.0), (options.max_signs, wrong.size))
             ways = _ways(balance, matrix, row, scale, signs * wrong)
             typical: FloatArray = scale[:-1] * np.sqrt(np.square(ways[:, :-1]).mean(axis=0))
-            return options.mean_squares * typical
+            return options.deviation_factor * typical
         assert matrix is not None
         inverse = np.linalg.inv(matrix)[:-1, :-1]
     except np.linalg.LinAlgError:

@@ -38,7 +38,9 @@ class StaticLoadProblem(Problem):
     Shares are measured by themselves, and below a unit by that.
     """
 
-    def __init__(self, balance: Balance, omega: float, unit: float = HARMONIC_BALANCE.rest.unit) -> None:
+    def __init__(
+        self, balance: Balance, omega: float, unit: float = HARMONIC_BALANCE.rest.min_share_unit
+    ) -> None:
         Problem.__init__(self, balance.unknowns, balance.margins, 0, balance.rank)
         self.rooted, self.unit = balance.rooted, unit
         self.balance, self.at_omega = balance, np.full(balance.unknowns + 1, omega)
@@ -100,14 +102,14 @@ def at_rest(system: System) -> FloatArray:
     options = system.options.rest
     single = System(system.scene, options=system.options)
     omega = max(float(linear.natural.max(initial=0.0)), 1.0)  # any: nothing moves
-    for guess in _linear(single, options.first):
-        problem = StaticLoadProblem(single.new_balance(), omega, options.unit)
-        start, span = np.append(guess, options.first), (options.first, 1.0)
+    for guess in _linear(single, options.initial_share):
+        problem = StaticLoadProblem(single.new_balance(), omega, options.min_share_unit)
+        start, span = np.append(guess, options.initial_share), (options.initial_share, 1.0)
         path = follow(problem, start, span, options=FollowOptions(options.max_step))
         if path.status is Status.COMPLETE and path.z.shape[0] and path.parameter[-1] == 1.0:
             return path.z[-1][single.layout.mean_at]  # type: ignore[no-any-return]
     for guess in _linear(single, 1.0):
-        newton = Newton(StaticLoadProblem(single.new_balance(), omega, options.unit))
+        newton = Newton(StaticLoadProblem(single.new_balance(), omega, options.min_share_unit))
         z = np.append(guess, 1.0)
         newton.problem.measure(z)
         newton.scale[:], newton.z[:] = newton.problem.scale, z
@@ -120,7 +122,7 @@ def at_rest(system: System) -> FloatArray:
 def loads_move_rigid_body(linear: Linear) -> bool:
     """Whether static loads push along a rigid-body mode that nothing holds."""
     size = np.abs(linear.load)
-    return bool((size[linear.adrift] > RIGID_BODY.held * size.max(initial=0.0)).any())
+    return bool((size[linear.adrift] > RIGID_BODY.min_normal_motion * size.max(initial=0.0)).any())
 
 
 def _linear(system: System, share: float) -> Iterator[FloatArray]:

@@ -28,9 +28,9 @@ def too_stiff(system: System, moves: bool = False) -> str:
     worst = int((springs * receptance).argmax())
     ratio = springs[worst] * receptance[worst]
     options = system.options.stiff
-    most, enough = options.most, options.enough
+    most, enough = options.max_stiffness, options.rigid_stiffness
     if moves:
-        most, enough = options.most_in_time, options.enough_in_time
+        most, enough = options.max_stiffness_in_time, options.rigid_stiffness_in_time
     if not ratio > most:
         return ""
     at, along = divmod(worst, system.layout.directions)

@@ -329,14 +329,14 @@ _WORKSPACES = _WorkspaceCache()
 def _workspace_of(system: System) -> _Workspace:
     """For a system: if it is small, that of one before it, as in a sweep."""
     scene, kept = system.scene, _WORKSPACES.by_key
-    large = len(scene.contacts) * len(system.harmonics) > system.options.workspace.small
+    large = len(scene.contacts) * len(system.harmonics) > system.options.workspace.max_size
     if scene.ring is not None or scene.loads or system.own_laws or large:
         return _Workspace(system)
     approximate = system.table is not None, system.corrected
     key = (*system.linear.numbers, scene.frequency_range, system.harmonics, system.options, *approximate)
     found = kept.pop(key, None) or _Workspace(system)
     kept[key] = found
-    if len(kept) > system.options.workspace.most:
+    if len(kept) > system.options.workspace.max_count:
         kept.popitem(last=False)
     return _Workspace(system) if found.exclusive else found
 

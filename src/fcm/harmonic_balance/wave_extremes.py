@@ -36,7 +36,7 @@ def greatest(
     neighbour = np.maximum(np.roll(x, 1, axis=0), np.roll(x, -1, axis=0))
     k, p, d = np.nonzero((x >= neighbour) & (x + between >= x.max(axis=0)))
     found: FloatArray = x.max(axis=0)
-    np.maximum.at(found, (p, d), _extreme(X[p, :, d], h, step * k, step, options.steps))
+    np.maximum.at(found, (p, d), _extreme(X[p, :, d], h, step * k, step, options.max_steps))
     return found
 
 

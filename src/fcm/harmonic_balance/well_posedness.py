@@ -42,7 +42,7 @@ def _pushed(system: System, force: FloatArray) -> BoolArray:
         mean += force[:, :, along] @ ports.T
         size += np.hypot(force[:, :, at], force[:, :, at + 1]) @ np.abs(ports).T
     pushed: BoolArray = np.any(
-        system.linear.adrift & (np.abs(mean) > system.options.rigid.balanced * size), axis=1
+        system.linear.adrift & (np.abs(mean) > system.options.rigid.friction_tolerance * size), axis=1
     )
     return pushed
 
@@ -58,8 +58,8 @@ def _floating(system: System, x: FloatArray, force: FloatArray) -> BoolArray:
     first = layout.directions + layout.stride * j + 2 * mean
     glued = np.abs(n_0) + k_v * (np.hypot(x[:, :, first], x[:, :, first + 1]) + np.abs(x[:, :, mean]))
     normal = force[:, :, mean] + linear.counted * x[:, :, mean] + np.maximum(n_0, 0.0)
-    carrying = normal > system.options.rigid.carrying * glued
+    carrying = normal > system.options.rigid.load_tolerance * glued
     size = np.linalg.svd(ports[None] * carrying[:, None, :], compute_uv=False)
     largest = size.max(axis=1, initial=0.0, keepdims=True)
-    floating: BoolArray = (size > RIGID_BODY.held * largest).sum(axis=1) < held.sum()
+    floating: BoolArray = (size > RIGID_BODY.min_normal_motion * largest).sum(axis=1) < held.sum()
     return floating

@@ -18,17 +18,17 @@ class PairingOptions:
 
     Attributes
     ----------
-    line
+    line_tolerance
         Extent across a line, relative to that along it, below which points lie on it and have no plane.
-    nothing
+    normal_tolerance
         Component of a unit normal that is rounding.
-    side
+    side_tolerance
         Distance along the normal, relative to the extent of the points, from which a side is told.
     """
 
-    line: float = 1e-6
-    nothing: float = 1e-9
-    side: float = 1e-9
+    line_tolerance: float = 1e-6
+    normal_tolerance: float = 1e-9
+    side_tolerance: float = 1e-9
 
 
 PAIRING = PairingOptions()
@@ -126,9 +126,9 @@ def fitted_plane(points: FloatArray, options: PairingOptions = PAIRING) -> Plane
         raise MeshError(f"a plane is fitted to three points at least, and there are {len(points)}")
     centre = points.mean(axis=0)
     _, sizes, axes = np.linalg.svd(points - centre, full_matrices=False)
-    if sizes[1] <= options.line * sizes[0]:
+    if sizes[1] <= options.line_tolerance * sizes[0]:
         raise MeshError("the points lie on a line, which is in no one plane")
-    normal = np.where(np.abs(axes[2]) < options.nothing, 0.0, axes[2])
+    normal = np.where(np.abs(axes[2]) < options.normal_tolerance, 0.0, axes[2])
     first, second = across(normal, options)
     off, size = float(np.abs((points - centre) @ normal).max()), float(np.ptp(points, axis=0).max())
     return Plane(normal, first, second, centre, off, size)
@@ -147,7 +147,7 @@ def across(normal: FloatArray, options: PairingOptions = PAIRING) -> tuple[Float
     first = along[int(np.linalg.norm(along, axis=1).round(9).argmax())]
     first = first / np.linalg.norm(first)
     second = np.cross(unit, first)
-    first, second = (np.where(np.abs(x) < options.nothing, 0.0, x) for x in (first, second))
+    first, second = (np.where(np.abs(x) < options.normal_tolerance, 0.0, x) for x in (first, second))
     return first, second
 
 
@@ -198,7 +198,7 @@ def turned(
 
 def _with_side(plane: Plane, told: float, what: str, way: str, options: PairingOptions) -> Plane:
     """The plane whose normal points where something is told to lie along it; MeshError if nothing is."""
-    if abs(told) <= options.side * plane.size:
+    if abs(told) <= options.side_tolerance * plane.size:
         raise MeshError(
             f"which side is which is not told by {what}; give the normal, as "
             f"{{ x = {plane.normal[0]:.6g}, y = {plane.normal[1]:.6g}, z = {plane.normal[2]:.6g} }} "

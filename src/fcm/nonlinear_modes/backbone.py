@@ -134,15 +134,15 @@ def linear_modes(system: System, number: int, options: NonlinearModeOptions = NO
     linear, contacts = system.linear, system.scene.contacts
     touching = any(contact.n_0 == 0.0 for contact in contacts)
     d = system.layout.directions
-    halves = options.linear.halves[: None if touching else 1]
+    halves = options.linear.contact_shares[: None if touching else 1]
     shares = [np.repeat([_closed(c.n_0, half) for c in contacts], d) for half in halves]
     squares, _ = _squares(system, shares[0])
-    elastic = np.flatnonzero(squares > options.linear.rigid * squares.max(initial=0.0))
+    elastic = np.flatnonzero(squares > options.linear.rigid_tolerance * squares.max(initial=0.0))
     if not 1 <= number <= elastic.size:
         raise ModeError(f"there is no mode {number}; the structure has the modes 1 to {elastic.size}")
     i = elastic[number - 1]
     low, high = (np.sqrt(max(_squares(system, share)[0][i], 0.0)) for share in (False, True))
-    near = options.linear.near
+    near = options.linear.frequency_ratio
     kept = np.flatnonzero((linear.natural >= low / near) & (linear.natural <= near * high))
     guesses = []
     for share in shares:

@@ -104,7 +104,7 @@ class AutonomousProblem(Problem):
 
     def modal_amplitude(self, z: FloatArray) -> float:
         """a; where a step leads astray, what can still be calculated with."""
-        return exp(min(max(z[self.n], -self.units.far), self.units.far))
+        return exp(min(max(z[self.n], -self.units.max_log_amplitude), self.units.max_log_amplitude))
 
     def evaluate(self, z: Any) -> int:
         z = np.asarray(z)
@@ -193,7 +193,10 @@ class AutonomousProblem(Problem):
         z, scale = np.asarray(z), self.views["scale"]
         size = np.sqrt(z[self.mean_rows] ** 2 + (z[self.rows] ** 2 + z[self.rows + 1] ** 2).sum(axis=0))
         self.largest = np.maximum(self.largest, size)
-        floor = np.maximum(self.units.own * self.largest, self.units.greatest * self.largest.max(initial=0.0))
+        floor = np.maximum(
+            self.units.own_fraction * self.largest,
+            self.units.greatest_fraction * self.largest.max(initial=0.0),
+        )
         unit = np.maximum(size, floor)
         unit = np.where(unit > 0.0, unit, 1.0) * np.sqrt(max(self.ports, 1)) * self.unit_factor
         scale[:] = self.unit_factor
@@ -222,7 +225,7 @@ class AutonomousProblem(Problem):
     def report(self, z: Any, direction: Any) -> int:
         """Damping and frequency."""
         omega = self.guess.omega
-        self.output[0], self.growth[0] = self.units.little + abs(z[self.n - 1]), direction[self.n - 1]
+        self.output[0], self.growth[0] = self.units.damping_offset + abs(z[self.n - 1]), direction[self.n - 1]
         self.output[1], self.growth[1] = z[self.n - 2] / omega, direction[self.n - 2] / omega
         return 0
 

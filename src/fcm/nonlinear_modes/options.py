@@ -15,17 +15,17 @@ class LinearModeOptions:
 
     Attributes
     ----------
-    rigid : float
+    rigid_tolerance : float
         Part of the greatest square of a frequency: rigid-body modes are below.
-    halves : tuple of float
+    contact_shares : tuple of float
         Shares of its springs that a contact which just touches may have in the mean: one guess for each.
-    near : float
+    frequency_ratio : float
         Ratio of frequencies: modes this near to what the motion may come to are unknowns.
     """
 
-    rigid: float = 1e-12
-    halves: tuple[float, ...] = (0.5, 0.0, 1.0)
-    near: float = 1.25
+    rigid_tolerance: float = 1e-12
+    contact_shares: tuple[float, ...] = (0.5, 0.0, 1.0)
+    frequency_ratio: float = 1.25
 
 
 @dataclass(frozen=True)
@@ -34,22 +34,22 @@ class ModeUnitOptions:
 
     Attributes
     ----------
-    own, greatest : float
+    own_fraction, greatest_fraction : float
         Parts of its own greatest size so far, and of the greatest of all, that the unit of a displacement is
         at least.
     damping : float
         Unit of the damping ratio.
-    little : float
+    damping_offset : float
         Added to the damping ratio where its change is judged: that of nearly nothing is rounding.
-    far : float
+    max_log_amplitude : float
         ln a, beyond which nothing is calculated.
     """
 
-    own: float = 0.1
-    greatest: float = 1e-3
+    own_fraction: float = 0.1
+    greatest_fraction: float = 1e-3
     damping: float = 0.1
-    little: float = 0.05
-    far: float = 300.0
+    damping_offset: float = 0.05
+    max_log_amplitude: float = 300.0
 
 
 @dataclass(frozen=True)
@@ -77,24 +77,24 @@ class RestartOptions:
 
     Attributes
     ----------
-    most : int
+    max_restarts : int
         Restarts of a mode.
-    calls, moved : int, float
+    max_reports, min_progress : int, float
         Reports of progress, of 16 steps each, within which ln a has to move by that part of its span.
-    short : float
+    end_fraction : float
         Part of the way to where steps lead nowhere, by which the part before ends short of that.
-    further : tuple of float
+    restart_lengths : tuple of float
         Of the unit of ln a, by which the mode is taken up further on: the first that leads to a solution,
-    near : float
+    max_distance_ratio : float
         which is no further away than so many times as much: another is none of this mode.
     """
 
-    most: int = 12
-    calls: int = 12
-    moved: float = 1e-9
-    short: float = 1e-6
-    further: tuple[float, ...] = (1e-6, 1e-5, 1e-4, 1e-3, 3e-3)
-    near: float = 30.0
+    max_restarts: int = 12
+    max_reports: int = 12
+    min_progress: float = 1e-9
+    end_fraction: float = 1e-6
+    restart_lengths: tuple[float, ...] = (1e-6, 1e-5, 1e-4, 1e-3, 3e-3)
+    max_distance_ratio: float = 30.0
 
 
 @dataclass(frozen=True)

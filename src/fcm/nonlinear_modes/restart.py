@@ -29,7 +29,7 @@ def follow_past_corners(
 ) -> Path:
     """The curve through start, upwards from the lower end of the span, as of `follow`."""
     whole, low = None, span[0]
-    for _ in range(restart.most):
+    for _ in range(restart.max_restarts):
         path, ended = _first_piece(new_problem, start, (low, span[1]), options, restart)
         if not path.z.shape[0]:
             return path if whole is None else whole
@@ -58,16 +58,16 @@ def _first_piece(
 
     def watch(share: float) -> None:
         nonlocal last, same
-        same = same + 1 if abs(share - last) < restart.moved else 0
+        same = same + 1 if abs(share - last) < restart.min_progress else 0
         last = share
-        if same > restart.calls:
+        if same > restart.max_reports:
             raise _StuckError
 
     try:
         path = follow(new_problem(), start, span, options=options, progress=watch)
         return path, path.status is not Status.STALLED
     except _StuckError:
-        reach = span[0] + last * (span[1] - span[0]) * (1.0 - restart.short)
+        reach = span[0] + last * (span[1] - span[0]) * (1.0 - restart.end_fraction)
         if not reach > span[0]:
             return follow(new_problem(), start, span, options=options), True
         path = follow(new_problem(), start, (span[0], reach), options=options)
@@ -81,10 +81,10 @@ def _restart_point(
     newton = Newton(problem, options.newton)
     newton.row[-1] = 1.0
     problem.measure(np.ascontiguousarray(z))
-    for step in restart.further:
+    for step in restart.restart_lengths:
         guess = np.array(z)
         guess[-1] += step * problem.scale[z.size - 1]
         newton.scale[:], newton.z[:] = problem.scale, guess
-        if newton.correct(step) and newton.moved < restart.near * step:
+        if newton.correct(step) and newton.moved < restart.max_distance_ratio * step:
             return np.array(newton.z)
     return None

@@ -108,7 +108,7 @@ def _panel(summary: Any, reference: str, quantity: str) -> Panel:
 def _number(value: Any) -> float:
     """A time, an error or a step."""
     number = float(value)
-    if not 0.0 <= number <= READ.largest:
+    if not 0.0 <= number <= READ.max_bytes:
         raise ValueError(f"it holds {number:g} in the place of a time, an error or a step")
     return number
 

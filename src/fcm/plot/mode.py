@@ -86,7 +86,9 @@ def draw_modes(drawn: DrawnModes) -> Figure:
 def _mark_greatest(axes: Axes, mode: DrawnMode, colour: str, unit: str) -> None:
     """A ring where the mode is damped most, with the values beside it where there is one mode."""
     top = int(mode.damping.argmax())
-    if mode.damping[top] <= READ.higher * max(mode.damping[0], mode.damping[-1]):  # at an end, or by rounding
+    if mode.damping[top] <= READ.higher_fraction * max(
+        mode.damping[0], mode.damping[-1]
+    ):  # at an end, or by rounding
         return
     x, y = float(mode.amplitude[top]), float(_PERCENT * mode.damping[top])
     axes.plot([x], [y], "o", markersize=6, markerfacecolor="none", color=colour, markeredgewidth=1.0)

@@ -13,8 +13,8 @@ class ReadOptions:
     contacts_named: int = 10  # contacts that a message lists
     same_level: float = 1e-9  # relative: levels that are one
     # times the damping at both ends: where the greatest is between them, it is more
-    higher: float = 1.0 + 1e-6
-    largest: float = 1e100  # no result is as large, in whatever units: such a number was not written as one
+    higher_fraction: float = 1.0 + 1e-6
+    max_bytes: float = 1e100  # no result is as large, in whatever units: such a number was not written as one
     # [s] of processor time for a file; a damaged one may lead the library round in a circle
     seconds: float = 20.0
     seconds_of_megabyte: float = 1.0  # [s] more for each megabyte of the file

@@ -22,7 +22,7 @@ from fcm.plot.options import READ
 from fcm.plot.reader_process import apart
 from fcm.plot.style import LAYOUT
 from fcm.units import CF_UNIT
-from fcm.untold import untold
+from fcm.unknown_stability import unknown_stability
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -210,7 +210,7 @@ def _curve(
     """Take the padding away; points of NaN between branches stay, so that no line joins them."""
     known = np.flatnonzero(np.isfinite(frequency))
     there = slice(0, known[-1] + 1 if known.size else 0)
-    unknown = None if stable is None else np.isfinite(frequency[there]) & untold(stable[there])
+    unknown = None if stable is None else np.isfinite(frequency[there]) & unknown_stability(stable[there])
     return DrawnCurve(
         parameters,
         frequency[there],
@@ -249,6 +249,6 @@ def floats(variable: Any) -> FloatArray:
     """A variable of the file, with NaN where it has no value."""
     found: FloatArray = np.ma.filled(np.ma.asarray(variable[:], dtype=float), np.nan)
     largest = float(np.max(np.abs(found), initial=0.0, where=~np.isnan(found)))
-    if largest > READ.largest:
+    if largest > READ.max_bytes:
         raise ValueError(f"{getattr(variable, 'name', 'a variable')} holds {largest:.3g}")
     return found

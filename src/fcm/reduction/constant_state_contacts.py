@@ -41,9 +41,9 @@ def expected_constant(scene: Scene, poll: Callable[[], None] | None = None) -> t
     z, harmonics = _balanced(scene, poll)
     if not z.size:
         return ()
-    theta = 2.0 * np.pi * np.arange(REDUCTION.angles) / REDUCTION.angles
+    theta = 2.0 * np.pi * np.arange(REDUCTION.cycle_angles) / REDUCTION.cycle_angles
     x = z[:, :-1].reshape(z.shape[0], len(scene.contacts), -1)
-    motion = np.repeat(x[:, :, :2, None], REDUCTION.angles, axis=-1)
+    motion = np.repeat(x[:, :, :2, None], REDUCTION.cycle_angles, axis=-1)
     for i, h in enumerate(harmonics):
         wave = x[:, :, 2 + 4 * i : 6 + 4 * i, None]
         motion += wave[:, :, ::2] * np.cos(h * theta) - wave[:, :, 1::2] * np.sin(h * theta)
@@ -71,21 +71,23 @@ def _balanced(scene: Scene, poll: Callable[[], None] | None) -> tuple[FloatArray
 def _keeps(place: int, contact: Contact, rest: float, u: FloatArray, v: FloatArray) -> Held | None:
     """The contact as it is held, if it keeps its state in motions u and v (point, angle)."""
     load = contact.n_0 + contact.k_v * v
-    if load.max() < REDUCTION.room * min(contact.n_0, 0.0):
+    if load.max() < REDUCTION.load_margin * min(contact.n_0, 0.0):
         return Held(place, contact, True)
     least = load.min(axis=1)
-    if not (least > REDUCTION.room * load.max(axis=1)).all():
+    if not (least > REDUCTION.load_margin * load.max(axis=1)).all():
         return None
     limit = contact.mu * load
     force = np.abs(contact.k_u * (u - rest)) if has_friction(contact) else np.zeros_like(u)
-    return Held(place, contact, False, rest) if (force <= (1.0 - REDUCTION.room) * limit).all() else None
+    return (
+        Held(place, contact, False, rest) if (force <= (1.0 - REDUCTION.load_margin) * limit).all() else None
+    )
 
 
 def _too_stiff(scene: Scene, contact: Contact) -> bool:
     modal = scene.modal
     pairs = ((contact.k_u, contact.tangential), (contact.k_v, contact.normal))
     added = max(k * float(((modal.shapes @ way) ** 2 / modal.mass).sum()) for k, way in pairs)
-    return added > REDUCTION.stiff * float(modal.frequency.max()) ** 2
+    return added > REDUCTION.stiffness_ratio * float(modal.frequency.max()) ** 2
 
 
 class NotKeptError(Exception):

@@ -24,7 +24,7 @@ def telling_frequencies(scene: Scene, springs: FloatArray) -> FloatArray:
     low, high = scene.frequency_range
     natural = resonances(scene, springs) * (1.0 + REDUCTION.resonance_offset)
     at = np.concatenate([natural / harmonic for harmonic in driven_harmonics(scene)])
-    return np.concatenate((np.linspace(low, high, REDUCTION.spread), at[(at > low) & (at < high)]))
+    return np.concatenate((np.linspace(low, high, REDUCTION.frequencies), at[(at > low) & (at < high)]))
 
 
 def resonances(scene: Scene, springs: FloatArray) -> FloatArray:

@@ -15,14 +15,14 @@ from fcm.time_domain.errors import SimulationError
 
 def effect(response: Response, lighter: Lighter) -> float:
     """Greatest change of an amplitude, relative to the greatest of the point; inf where it cannot be told."""
-    numbers = np.unique(np.linspace(0, len(response.curves) - 1, REDUCTION.curves).astype(int))
+    numbers = np.unique(np.linspace(0, len(response.curves) - 1, REDUCTION.max_curves).astype(int))
     each = (_of_curve(response.curves[k], lighter.exact[k]) for k in numbers)
     return max(each, default=0.0)
 
 
 def expected_effect(lighter: Lighter) -> float:
     """The same at the motions that the balance leads to, before any curve is followed."""
-    numbers = np.unique(np.linspace(0, len(lighter.full) - 1, REDUCTION.curves).astype(int))
+    numbers = np.unique(np.linspace(0, len(lighter.full) - 1, REDUCTION.max_curves).astype(int))
     return max((_of_starts(lighter.curves[k], lighter.exact[k]) for k in numbers), default=0.0)
 
 
@@ -41,9 +41,9 @@ def _of_curve(curve: Curve, scene: Scene) -> float:
     if there.size == 0:
         return 0.0
     peaks = np.unique(there[curve.amplitude[there].argmax(axis=0)])
-    spread = there[np.linspace(0, there.size - 1, REDUCTION.points).astype(int)]
+    spread = there[np.linspace(0, there.size - 1, REDUCTION.max_points).astype(int)]
     points = dict.fromkeys([*peaks.tolist(), *spread.tolist()])
-    return max(_of_point(curve, scene, k) for k in list(points)[: REDUCTION.points])
+    return max(_of_point(curve, scene, k) for k in list(points)[: REDUCTION.max_points])
 
 
 def _of_point(curve: Curve, scene: Scene, k: int) -> float:

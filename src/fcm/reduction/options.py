@@ -9,25 +9,29 @@ from dataclasses import dataclass
 class ReductionOptions:
     """Which modes are replaced by static ones, and how that is checked."""
 
-    room: float = 0.3  # of its limit, or of its gap, that a contact is foreseen to keep
-    angles: int = 64  # of a cycle at which that is looked at
+    load_margin: float = 0.3  # of its limit, or of its gap, that a contact is foreseen to keep
+    cycle_angles: int = 64  # of a cycle at which that is looked at
     # times the highest mode: a stiffer spring would lose digits that the contact's force keeps
-    stiff: float = 100.0
-    spread: int = 24  # frequencies of the range at which linear responses are looked at, besides resonances
+    stiffness_ratio: float = 100.0
+    frequencies: int = (
+        24  # frequencies of the range at which linear responses are looked at, besides resonances
+    )
     resonance_offset: float = 1e-7  # relative distance from a resonance, where nothing is infinite
-    curves: int = 8  # of a sweep, of which points are looked at
-    points: int = 4  # of a curve, those of its peaks first
+    max_curves: int = 8  # of a sweep, of which points are looked at
+    max_points: int = 4  # of a curve, those of its peaks first
     tolerance: float = 1e-5  # of the response, for modes that are replaced
     rounding: float = 1e-14  # relative: a sum of products this small is zero
-    checked: int = 200  # points at which the response is compared with that of all modes
-    checked_of_curve: int = 8  # points of one curve, besides its peaks
-    names: int = 6  # of contacts in one sentence
-    pays: float = 0.6  # of the modes may remain; otherwise nothing is gained
-    fewest: int = 30  # modes of a structure for which it is worth trying
-    independent: float = 1e-10  # relative size below which a static response is a combination of the others
-    first: int = 8  # combinations of many directions that are tried first
-    more: float = 1.5  # times as many after those that are too few
-    margin: float = 0.5  # of the tolerance, for the estimate that decides
+    max_checked: int = 200  # points at which the response is compared with that of all modes
+    max_checked_of_curve: int = 8  # points of one curve, besides its peaks
+    max_names: int = 6  # of contacts in one sentence
+    min_saving: float = 0.6  # of the modes may remain; otherwise nothing is gained
+    min_modes: int = 30  # modes of a structure for which it is worth trying
+    rank_tolerance: float = (
+        1e-10  # relative size below which a static response is a combination of the others
+    )
+    first_modes: int = 8  # combinations of many directions that are tried first
+    added_modes: float = 1.5  # times as many after those that are too few
+    frequency_margin: float = 0.5  # of the tolerance, for the estimate that decides
 
 
 REDUCTION = ReductionOptions()

@@ -31,9 +31,9 @@ def restored(response: Response, lighter: Lighter) -> Response:
 
 def checked(response: Response, lighter: Lighter) -> float:
     """Shift of the response, relative, when points of the curves are corrected with all modes."""
-    per_curve = max(min(REDUCTION.checked_of_curve, REDUCTION.checked // len(response.curves)), 1)
+    per_curve = max(min(REDUCTION.max_checked_of_curve, REDUCTION.max_checked // len(response.curves)), 1)
     shifts = []
-    for number in _spread(len(response.curves), REDUCTION.checked):
+    for number in _spread(len(response.curves), REDUCTION.max_checked):
         curve, scene = response.curves[number], lighter.exact[number]
         at = _sample(curve, per_curve)
         if at.size and scene.contacts:

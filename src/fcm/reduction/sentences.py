@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 def named(contacts: Sequence[Contact], numbers: Sequence[int]) -> str:
     """Contacts by their names, or by their numbers, the first few of them."""
     names = [contacts[i].name or str(i) for i in numbers]
-    more = f" and {len(names) - REDUCTION.names} more" if len(names) > REDUCTION.names else ""
-    return f"contact{'' if len(names) == 1 else 's'} {', '.join(names[: REDUCTION.names])}{more}"
+    more = f" and {len(names) - REDUCTION.max_names} more" if len(names) > REDUCTION.max_names else ""
+    return f"contact{'' if len(names) == 1 else 's'} {', '.join(names[: REDUCTION.max_names])}{more}"
 
 
 def has_friction(contact: Contact) -> bool:

@@ -36,9 +36,9 @@ def with_static_modes(scene: Scene, tolerance: float, highest: int = 1) -> tuple
     The error is estimated on the structure with springs for contacts, see `_linear_error`.
     """
     modal = scene.modal
-    if modal.frequency.size < REDUCTION.fewest or tolerance <= 0.0 or not scene.contacts:
+    if modal.frequency.size < REDUCTION.min_modes or tolerance <= 0.0 or not scene.contacts:
         return None
-    most = REDUCTION.pays * modal.frequency.size
+    most = REDUCTION.min_saving * modal.frequency.size
     for factor in ABOVE:
         limit = factor * highest * scene.frequency_range[1]
         high = modal.frequency > limit
@@ -49,7 +49,7 @@ def with_static_modes(scene: Scene, tolerance: float, highest: int = 1) -> tuple
             fewer = condensed(modal, directions, high)
             if fewer.frequency.size > most:
                 break
-            if _linear_error(scene, replace(scene, modal=fewer)) < REDUCTION.margin * tolerance:
+            if _linear_error(scene, replace(scene, modal=fewer)) < REDUCTION.frequency_margin * tolerance:
                 return fewer, limit
         if len(choices) > 1:  # what is missing are combinations, at any limit
             return None
@@ -64,7 +64,7 @@ def condensed(modal: Modal, directions: FloatArray, high: BoolArray) -> Modal:
     static = (shapes @ directions) / w[:, None]
     static = np.concatenate((_unit(static), _unit(_unit(static) / w[:, None] ** 2)), axis=1)
     left, singular, _ = np.linalg.svd(static, full_matrices=False)
-    basis = left[:, singular > REDUCTION.independent * singular.max(initial=0.0)] / w[:, None]
+    basis = left[:, singular > REDUCTION.rank_tolerance * singular.max(initial=0.0)] / w[:, None]
     # in this basis the stiffness is 1: the eigenvalues of the mass are 1 / frequency^2
     value, vector = np.linalg.eigh(basis.T @ basis)
     frequency = 1.0 / np.sqrt(value)
@@ -92,17 +92,17 @@ def _choices(scene: Scene, high: BoolArray) -> Iterator[FloatArray]:
     those of the forces and more and more of the combinations along which these modes yield most."""
     contacts, pushes = (np.array(d).T for d in (scene.directions_of_contacts(), scene.pushes()))
     every = contacts.shape[1] + pushes.shape[1]
-    if 2 * every <= REDUCTION.pays * scene.modal.frequency.size - int((~high).sum()):
+    if 2 * every <= REDUCTION.min_saving * scene.modal.frequency.size - int((~high).sum()):
         yield np.concatenate((contacts, pushes), axis=1)
         return
     weighted = contacts * np.sqrt(all_springs(scene))
     modal = scene.modal
     yields = (modal.shapes[high] @ weighted) / (np.sqrt(modal.mass) * modal.frequency)[high, None]
     order = np.linalg.eigh(yields.T @ yields)[1][:, ::-1]
-    number = REDUCTION.first
+    number = REDUCTION.first_modes
     while number < contacts.shape[1]:
         yield np.concatenate((pushes, weighted @ order[:, :number]), axis=1)
-        number = int(REDUCTION.more * number)
+        number = int(REDUCTION.added_modes * number)
 
 
 def _linear_error(full: Scene, fewer: Scene) -> float:

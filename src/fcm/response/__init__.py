@@ -74,7 +74,7 @@ def respond(
         If the method is unknown, or does not fit the other arguments.
     TypeError
         If the scene is none, but the name of one, say.
-    fcm.run.Gone
+    fcm.run.PlaceClosed
         If the executor takes nothing any more, and nothing is finished. Later what is finished is returned,
         with a warning; the other curves are not complete.
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from fcm.accuracy.outline import UncheckedResponse
 from fcm.accuracy.refinement import RefinedResponse
+from fcm.accuracy.unchecked_response import UncheckedResponse
 from fcm.results.result import INTERRUPTED
 from fcm.scene.errors import counted
 

@@ -16,7 +16,7 @@ from fcm.fit.estimate import Estimate, estimated
 from fcm.fit.forced import errors_of
 from fcm.fit.options import FIT
 from fcm.fit.parameters import FitError, Parameters, parameters_of
-from fcm.fit.solve import Reached, Searches, Solved, solved
+from fcm.fit.solve import Searches, SearchResult, Solved, solved
 from fcm.model.scene import FloatArray, Measured, Scene
 from fcm.nonlinear_modes.backbone import ModeError
 from fcm.response.curve_sweep import checkpoint_of
@@ -161,7 +161,7 @@ def _kept(
     """What is finished of this fit; it is known by all that decides its numbers."""
     count = len(scene.fit.vary) if scene.fit is not None else 0
     mark = fingerprint("fit", FIT, harmonics, near, replace(scene, name="", title=""))
-    found = checkpoint.results(mark, (Reached,), lambda _, results: _fits(count, results))
+    found = checkpoint.results(mark, (SearchResult,), lambda _, results: _fits(count, results))
     for number, states in list(found.states.items()):
         found.states[number] = [one for one in states if _fits(count, [one]) and one.x is not None]
     return found
@@ -169,7 +169,7 @@ def _kept(
 
 def _fits(count: int, results: Any) -> bool:
     """Whether what was read from a file can be what a search of so many numbers came to."""
-    if not (isinstance(results, list) and len(results) == 1 and isinstance(results[0], Reached)):
+    if not (isinstance(results, list) and len(results) == 1 and isinstance(results[0], SearchResult)):
         return False
     x, cost = results[0].x, results[0].cost
     if x is None:
@@ -182,8 +182,8 @@ def _at_levels(parameters: Parameters, found: Solved, data: Sequence[Measured]) 
     """The scene with the numbers found, a curve for each level that was measured."""
     scene = parameters.at(found.values)
     every = np.unique(np.concatenate([one.level for one in data]))
-    if every.size > FIT.levels:
-        every = np.geomspace(every[0], every[-1], FIT.levels)
+    if every.size > FIT.max_levels:
+        every = np.geomspace(every[0], every[-1], FIT.max_levels)
     number = number_of(scene, LEVEL)
     assert number is not None
     curves = tuple(
@@ -205,7 +205,7 @@ def _fitted(
         error=told.error,
         interval=told.interval,
         confidence=FIT.confidence,
-        poor=FIT.poor,
+        poor=FIT.poor_misfit,
         correlation=told.correlation,
         without_effect=told.without_effect,
         untold=told.untold,

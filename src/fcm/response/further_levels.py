@@ -13,8 +13,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from fcm.accuracy.outline import UncheckedResponse
 from fcm.accuracy.refinement import RefinedResponse, with_errors
+from fcm.accuracy.unchecked_response import UncheckedResponse
 from fcm.branches.force_level import LevelSolutions, resonances, solutions
 from fcm.branches.options import LEVEL_CURVE, LEVELS, LevelOptions
 from fcm.branches.prolongation import at_its_frequency

@@ -15,9 +15,9 @@ from fcm.model.scene import Scene
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.results.cause import Cause
-from fcm.results.condensed_curves import Gist, without_points
+from fcm.results.condensed_curves import CondensedCurve, without_points
 from fcm.results.contact_maxima import Greatest
-from fcm.results.jumps import Jump, Swept, Untold
+from fcm.results.jumps import Jump, Swept, UnknownStability
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance
 from fcm.results.orbits import Orbits, Stuck
 from fcm.results.peak import Peak
@@ -28,12 +28,12 @@ Group = Sequence[Scene]
 KINDS = (
     Cause,
     Curve,
-    Gist,
+    CondensedCurve,
     Orbits,
     Stuck,
     Swept,
     Jump,
-    Untold,
+    UnknownStability,
     Peak,
     Greatest,
     NonlinearMode,

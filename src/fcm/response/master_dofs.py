@@ -12,8 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from fcm.accuracy.outline import UncheckedResponse
 from fcm.accuracy.refinement import RefinedResponse, with_errors
+from fcm.accuracy.unchecked_response import UncheckedResponse
 from fcm.harmonic_balance.reported_quantities import reported_quantities
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.options import OPTIMUM

@@ -18,7 +18,7 @@ from fcm.response.options import OPTIMUM, ResponseOptions
 from fcm.response.request import ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.sweep import trace
-from fcm.results.condensed_curves import gist_of, without_points
+from fcm.results.condensed_curves import condense, without_points
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import INTERRUPTED, Curve, Response
 from fcm.results.tracked import Optimal, Tracking
@@ -207,7 +207,7 @@ def _missed_peaks(tracking: Tracking, response: Response) -> list[str]:
     """What is wrong where a response has a higher peak than the ones that were followed."""
     said = []
     for found, curve in zip(tracking.optima, response.curves, strict=True):
-        ends = (curve.gist or gist_of(curve)).ends
+        ends = (curve.condensed or condense(curve)).ends
         for name in found.minimised:
             what, _, dof = name.partition(".")
             peak = curve.peaks[dof]

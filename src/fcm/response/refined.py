@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.options import VALIDITY
-from fcm.accuracy.refinement import Keep, RefinedResponse, enlarged, retraced
+from fcm.accuracy.refinement import Keep, RefinedResponse, enlarged, retrace
 from fcm.accuracy.stability_limits import StabilityLimit, distances_from, stability_limits
 from fcm.accuracy.stability_validity import on_other_branch, without_neighbour
 from fcm.branches.branch_points import all_up_to
@@ -77,7 +77,7 @@ def refined(found: RefinedResponse, accuracy: float | None, scene: Scene, keep: 
             now, more = stage(now, before, accuracy, scene)
             if accuracy is not None and left and more != now.found.system.harmonics:
                 keep(now.found, now.found.max_error, more)
-                again = retraced(now.found, more, accuracy)
+                again = retrace(now.found, more, accuracy)
                 if again is not None:
                     break
         if again is None:

@@ -229,7 +229,7 @@ def _begins_at(leg: BranchLeg, problem: OrbitProblem, start: FloatArray, forward
         first, rise = leg.checkpoint.start, float(leg.checkpoint.heading[-1])
     problem.measure(first)
     off = np.linalg.norm((first - start) / np.asarray(problem.scale))
-    return bool(off < PATH.same) and (rise > 0.0) == forward
+    return bool(off < PATH.solution_tolerance) and (rise > 0.0) == forward
 
 
 def _key(leg: BranchLeg) -> tuple[int, tuple[int, ...], int]:

@@ -8,9 +8,9 @@ from fcm.model.scene import Scene
 from fcm.response.groups import anonymous
 from fcm.run import Checkpoint, Progress, fingerprint
 from fcm.time_domain import Energy, Histories, State, histories
-from fcm.time_domain.schedule_record import Passed, PhaseResult, Record
+from fcm.time_domain.schedule_record import CompletedPhase, PhaseResult, Record
 
-_KINDS = (Record, PhaseResult, Passed, State, Energy)  # what is kept consists of these
+_KINDS = (Record, PhaseResult, CompletedPhase, State, Energy)  # what is kept consists of these
 
 
 def simulated(scene: Scene, progress: Progress | None = None, keep: Checkpoint | None = None) -> Histories:
@@ -44,4 +44,4 @@ def _fit(curves: tuple[Scene, ...], number: int, found: Any) -> bool:
 
 def _begun(found: list[Any], phases: int) -> bool:
     """Whether what was read from a file can be the first phases of a curve."""
-    return len(found) < phases and all(isinstance(one, Passed) for one in found)
+    return len(found) < phases and all(isinstance(one, CompletedPhase) for one in found)

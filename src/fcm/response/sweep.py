@@ -95,7 +95,7 @@ def trace(
         If a contact's own law gives no forces.
     CheckpointError
         If another run is at work on that file.
-    Gone
+    PlaceClosed
         If that place takes nothing any more, and nothing is finished; else what is finished is returned.
     """
     if method not in METHODS:
@@ -180,7 +180,7 @@ class _Sweep:
         """Trace all groups that are not finished already."""
         every = tuple(replace(scene, draft=None) for scene in lighter.curves)
         batches = in_batches(every, self.wanted.options.sweep.batch)
-        samples = REDUCTION.checked_of_curve if lighter.above is not None else 0
+        samples = REDUCTION.max_checked_of_curve if lighter.above is not None else 0
         work = Work(replace(self.wanted, table=self._table(lighter)), self.peaks_only, samples)
         curves = self.curves.curves(work, batches, self.mark, progress)
         response = Response.of(self.scene, curves, self.method)

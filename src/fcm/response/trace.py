@@ -11,9 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.options import PAIR, VALIDITY
-from fcm.accuracy.outline import ResponseInterrupted
 from fcm.accuracy.refinement import RefinedResponse, refined_response, with_errors, with_given_harmonics
 from fcm.accuracy.stability_validity import unreliable_points
+from fcm.accuracy.unchecked_response import ResponseInterrupted
 from fcm.branches.options import FOLDS
 from fcm.contact.contact_law import ContactLawError
 from fcm.continuation import Mark

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.at_rest import RestOptions, at_rest
-from fcm.results.condensed_curves import Gist
+from fcm.results.condensed_curves import CondensedCurve
 from fcm.results.jumps import Swept
 from fcm.results.nonlinear_mode import NonlinearMode
 from fcm.results.peak import Peak
@@ -43,8 +43,8 @@ def without_rounding(curve: Curve, options: RestOptions | None = None) -> Curve:
         changed["orbits"] = replace(orbits, **arrays)
     if curve.mode is not None:
         changed["mode"] = _mode(curve.mode, {dof for dof, one in zip(curve.peaks, rest, strict=True) if one})
-    if curve.gist is not None:
-        changed["gist"] = _gist(curve.gist, rest)
+    if curve.condensed is not None:
+        changed["condensed"] = _condensed(curve.condensed, rest)
     return replace(curve, **changed)
 
 
@@ -58,8 +58,8 @@ def _at_rest(curve: Curve, options: RestOptions) -> BoolArray:
     return rest
 
 
-def _gist(gist: Gist, rest: BoolArray) -> Gist:
-    return replace(gist, swept=_swept(gist.swept, rest))
+def _condensed(condensed: CondensedCurve, rest: BoolArray) -> CondensedCurve:
+    return replace(condensed, swept=_swept(condensed.swept, rest))
 
 
 def _mode(mode: NonlinearMode, rest: Collection[str]) -> NonlinearMode:

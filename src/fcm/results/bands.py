@@ -46,7 +46,7 @@ def bands_of(
     column: int,
     span: tuple[float, float],
     wide: bool = False,
-    count: int = RESULTS.draws.places,
+    count: int = RESULTS.draws.band_frequencies,
 ) -> list[Band]:
     """A band for each combination of the swept values that are not drawn.
 

@@ -19,7 +19,7 @@ NO_ENDS = (np.nan, np.nan)
 
 
 @dataclass(frozen=True)
-class Gist:
+class CondensedCurve:
     """Numbers of a curve for which all its points are needed."""
 
     points: int
@@ -33,15 +33,15 @@ class Gist:
     stable_peaks: FloatArray
     linear: str  # how the response is that of a linear structure; empty if it is not
 
-    def at(self, shown: npt.NDArray[np.bool_]) -> Gist:
+    def at(self, shown: npt.NDArray[np.bool_]) -> CondensedCurve:
         """At some of the degrees of freedom."""
         return replace(self, swept=self.swept.at(shown), stable_peaks=self.stable_peaks[shown])
 
 
-def gist_of(curve: Curve) -> Gist:
-    """The gist of a curve that has all its points."""
+def condense(curve: Curve) -> CondensedCurve:
+    """The condensed numbers of a curve that has all its points."""
     known = curve.frequency[np.isfinite(curve.frequency)]
-    return Gist(
+    return CondensedCurve(
         points=known.size,
         ends=_ends(curve, known),
         stable=_stable(curve),
@@ -55,13 +55,13 @@ def gist_of(curve: Curve) -> Gist:
 
 
 def without_points(curve: Curve, most: int = 0) -> Curve:
-    """A curve with its gist and so many of its points at most: where displacements are greatest."""
+    """A curve with what is condensed of it, and so many of its points: where displacements are greatest."""
     at = np.flatnonzero(np.isfinite(curve.frequency))
     if at.size:
         at = np.unique(at[curve.amplitude[at].argmax(axis=0)])[:most]
     values = {field.name: getattr(curve, field.name) for field in fields(curve)}
     kept: dict[str, Any] = {name: x[at] for name, x in values.items() if isinstance(x, np.ndarray)}
-    return replace(curve, **kept, gist=gist_of(curve))
+    return replace(curve, **kept, condensed=condense(curve))
 
 
 def worst(errors: FloatArray) -> float | None:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fcm.results.condensed_curves import Gist, gist_of
+from fcm.results.condensed_curves import CondensedCurve, condense
 from fcm.results.contact_maxima import Greatest
 from fcm.results.field import Field
 from fcm.results.meanings import CYCLE
@@ -16,29 +16,32 @@ from fcm.results.scatter import PERCENTS, SWEEPS, Scatter
 from fcm.units import CF_UNIT, in_unit
 
 
-def gist_fields(response: Response) -> dict[str, Field]:
+def condensed_fields(response: Response) -> dict[str, Field]:
     """What is known of all points of each curve, where they are not written."""
-    gists = [curve.gist or gist_of(curve) for curve in response.curves]
+    condensed_curves = [curve.condensed or condense(curve) for curve in response.curves]
     of_all = {
-        "greatest_table_error": ("largest table_error of the curve", [one.table_error for one in gists]),
+        "greatest_table_error": (
+            "largest table_error of the curve",
+            [one.table_error for one in condensed_curves],
+        ),
         "greatest_truncation_error": (
             "largest truncation_error of the curve",
-            [one.truncation_error for one in gists],
+            [one.truncation_error for one in condensed_curves],
         ),
-        "points": ("points that were computed", [one.points for one in gists]),
+        "points": ("points that were computed", [one.points for one in condensed_curves]),
     }
     out = {
         name: Field(("curve",), np.array(values, dtype=np.float64), {"long_name": meaning, "units": "1"})
         for name, (meaning, values) in of_all.items()
     }
-    out |= _doubts(response, gists)
+    out |= _doubts(response, condensed_curves)
     if not response.complete:
         reasons = np.array([curve.reason for curve in response.curves])
         out["reason"] = Field(("curve",), reasons, {"long_name": "why the curve is not complete"})
     return out
 
 
-def _doubts(response: Response, gists: Sequence[Gist]) -> dict[str, Field]:
+def _doubts(response: Response, condensed_curves: Sequence[CondensedCurve]) -> dict[str, Field]:
     """What may be missing in curves, or lacking, which the summary of a file with all points says."""
     curves, unit, out = response.curves, response.frequency_unit, dict[str, Field]()
     in_file = {"units": CF_UNIT[unit]}
@@ -58,12 +61,12 @@ def _doubts(response: Response, gists: Sequence[Gist]) -> dict[str, Field]:
         meaning = "frequencies at which symmetry is lost by harmonics that are not balanced"
         lost = by_fold(curves, lambda curve: in_unit(np.array(curve.symmetry_lost), unit))
         out["symmetry_lost_at"] = Field(("curve", "symmetry_lost"), lost, {"long_name": meaning} | in_file)
-    if any(gist.unstable for gist in gists):
+    if any(condensed.unstable for condensed in condensed_curves):
         meaning = "from and to which frequency no stable motion was found"
-        most = max(len(gist.unstable) for gist in gists)
-        ends = np.full((len(gists), most, 2), np.nan)
-        for row, gist in zip(ends, gists, strict=True):
-            row[: len(gist.unstable)] = np.array(sorted(gist.unstable)).reshape(-1, 2)
+        most = max(len(condensed.unstable) for condensed in condensed_curves)
+        ends = np.full((len(condensed_curves), most, 2), np.nan)
+        for row, condensed in zip(ends, condensed_curves, strict=True):
+            row[: len(condensed.unstable)] = np.array(sorted(condensed.unstable)).reshape(-1, 2)
         of = ("curve", "stretch", "end")
         out["no_stable_motion"] = Field(of, in_unit(ends, unit), {"long_name": meaning} | in_file)
     if any(curve.short_of for curve in curves):

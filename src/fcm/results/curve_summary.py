@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fcm.results.condensed_curves import Gist, gist_of, worst
+from fcm.results.condensed_curves import CondensedCurve, condense, worst
 from fcm.results.contact_maxima import Greatest
-from fcm.results.jumps import Jump, Untold
+from fcm.results.jumps import Jump, UnknownStability
 from fcm.results.meanings import CYCLE
 from fcm.results.orbits import Orbits, Stuck
 from fcm.results.peak import Peak
@@ -23,9 +23,13 @@ if TYPE_CHECKING:
 
 def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict[str, Any]:
     """The curve as `fcm respond --json` prints it, frequencies in unit; what it does not have is left out."""
-    gist = curve.gist or gist_of(curve)
-    swept, dofs = gist.swept, tuple(curve.peaks)
-    out: dict[str, Any] = {"parameters": curve.parameters, "points": gist.points, "complete": curve.complete}
+    condensed = curve.condensed or condense(curve)
+    swept, dofs = condensed.swept, tuple(curve.peaks)
+    out: dict[str, Any] = {
+        "parameters": curve.parameters,
+        "points": condensed.points,
+        "complete": curve.complete,
+    }
     if not curve.complete:
         out["reason"], out["cause"] = curve.reason, curve.cause.name.lower()
     if curve.harmonics:
@@ -38,22 +42,22 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
         out["folds_unsure_at"] = in_unit(curve.folds_unsure, unit).tolist()
     if curve.symmetry_lost:
         out["symmetry_lost_at"] = in_unit(curve.symmetry_lost, unit).tolist()
-    if gist.unstable:
-        out["no_stable_motion"] = in_unit(sorted(gist.unstable), unit).tolist()
-    missing = [] if curve.levels is None else without_frequencies(gist.unstable, curve.levels)
+    if condensed.unstable:
+        out["no_stable_motion"] = in_unit(sorted(condensed.unstable), unit).tolist()
+    missing = [] if curve.levels is None else without_frequencies(condensed.unstable, curve.levels)
     if missing:
         out["no_stable_motion_not_looked_at"] = in_unit(sorted(missing), unit).tolist()
     if curve.folds_between is not None:
         out["levels_looked_at"] = list(curve.folds_between)
     if curve.mirrored:
         out["mirrored_branches"] = curve.mirrored
-    if gist.linear:
-        out[gist.linear] = True
+    if condensed.linear:
+        out[condensed.linear] = True
     if curve.undetermined:
         out["may_not_be_unique"] = curve.undetermined
     out["peak"] = {
-        dof: _peak(curve, peak, gist, unit) | _stable_peak(peak, stays, unit)
-        for (dof, peak), stays in zip(curve.peaks.items(), gist.stable_peaks.tolist(), strict=True)
+        dof: _peak(curve, peak, condensed, unit) | _stable_peak(peak, stays, unit)
+        for (dof, peak), stays in zip(curve.peaks.items(), condensed.stable_peaks.tolist(), strict=True)
     }
     if curve.greatest is not None and contacts:
         out["contacts"] = _contacts(curve.greatest, contacts, unit)
@@ -69,7 +73,7 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
     out["jumps"] = [_jump(jump, dofs, unit) for jump in swept.jumps]
     if swept.untold:
         out["stability_untold"] = [_untold(one, dofs, unit) for one in swept.untold]
-    out |= {name: getattr(gist, name) for name in ("stable", "table_error", "truncation_error")}
+    out |= {name: getattr(condensed, name) for name in ("stable", "table_error", "truncation_error")}
     if curve.orbits is not None:
         out |= _of_orbits(curve, curve.orbits, unit)
     if curve.mode is not None:
@@ -86,7 +90,7 @@ def _jump(jump: Jump, dofs: tuple[str, ...], unit: str) -> dict[str, Any]:
     }
 
 
-def _untold(one: Untold, dofs: tuple[str, ...], unit: str) -> dict[str, Any]:
+def _untold(one: UnknownStability, dofs: tuple[str, ...], unit: str) -> dict[str, Any]:
     return {
         "sweep": one.sweep,
         "from": float(in_unit(one.start, unit)),
@@ -95,10 +99,10 @@ def _untold(one: Untold, dofs: tuple[str, ...], unit: str) -> dict[str, Any]:
     }
 
 
-def _peak(curve: Curve, peak: Peak, gist: Gist, unit: str) -> dict[str, Any]:
+def _peak(curve: Curve, peak: Peak, condensed: CondensedCurve, unit: str) -> dict[str, Any]:
     """A peak, and whether it is where the range ends, so that it is none of the curve's own."""
     moves = peak.amplitude > 0.0
-    at_edge = moves and curve.complete and curve.level is None and peak.frequency in gist.ends
+    at_edge = moves and curve.complete and curve.level is None and peak.frequency in condensed.ends
     return {
         "amplitude": peak.amplitude,
         "frequency": float(in_unit(peak.frequency, unit)),

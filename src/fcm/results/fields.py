@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
 from fcm.results.blades import blade_fields
-from fcm.results.curve_fields import curve_fields, gist_fields, scatter_fields, sensitivity_fields
+from fcm.results.curve_fields import condensed_fields, curve_fields, scatter_fields, sensitivity_fields
 from fcm.results.field import Field
 from fcm.results.in_plane import plane_fields
 from fcm.results.meanings import (
@@ -75,7 +75,7 @@ def fields_of(response: Response) -> dict[str, Field]:
     if response.curves or (
         response.histories is None and response.tracking is None and response.fitted is None
     ):
-        out |= gist_fields(response) if response.peaks_only else _point_fields(response)
+        out |= condensed_fields(response) if response.peaks_only else _point_fields(response)
         out |= curve_fields(response)
         if any(c.sensitivity is not None for c in response.curves):
             out |= sensitivity_fields(response)

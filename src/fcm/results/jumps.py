@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from fcm.model.scene import FloatArray
 from fcm.results.options import RESULTS, JumpOptions
-from fcm.untold import untold
+from fcm.unknown_stability import unknown_stability
 
 BoolArray = npt.NDArray[np.bool_]
 UNKNOWN = 0.5  # between unstable, 0, and stable, 1
@@ -26,7 +26,7 @@ class Jump:
 
 
 @dataclass(frozen=True)
-class Untold:
+class UnknownStability:
     """A way of a slow sweep on which it is not known whether the motion is stable: it may jump already."""
 
     sweep: str  # 'up' or 'down'
@@ -40,12 +40,12 @@ class Swept:
     """What a slow upward, then a slow downward sweep meets."""
 
     jumps: list[Jump]
-    untold: list[Untold]
+    untold: list[UnknownStability]
 
     def without_flips(self, options: JumpOptions = RESULTS.jumps) -> Swept:
         """Without those at which the period doubles: the motion goes on with hardly another amplitude."""
         change = [
-            np.abs(one.after - one.before) > options.flip * np.maximum(one.before, one.after)
+            np.abs(one.after - one.before) > options.flip_tolerance * np.maximum(one.before, one.after)
             for one in self.jumps
         ]
         kept = [
@@ -84,7 +84,7 @@ def swept(
     frequency, amplitude, stable = _once(frequency, amplitude, stable, options)
     found = Swept([], [])
     for sweep in ("up", "down"):
-        _sweep(frequency, amplitude, stable, sweep, found, options.same)
+        _sweep(frequency, amplitude, stable, sweep, found, options.amplitude_tolerance)
     return found
 
 
@@ -95,8 +95,8 @@ def _once(
 
     Where stability changes there, one is stable and the other not: a way along the stable side leads to it.
     """
-    again = np.abs(np.diff(frequency)) <= options.frequency * frequency[1:]
-    again &= np.isclose(amplitude[1:], amplitude[:-1], rtol=options.same, atol=0.0).all(axis=1)
+    again = np.abs(np.diff(frequency)) <= options.frequency_tolerance * frequency[1:]
+    again &= np.isclose(amplitude[1:], amplitude[:-1], rtol=options.amplitude_tolerance, atol=0.0).all(axis=1)
     if not again.any():
         return frequency, amplitude, stable
     kept = np.concatenate(([0], np.flatnonzero(~again) + 1))
@@ -121,7 +121,7 @@ def _sweep(
     lowest = np.where(usable, np.minimum(sign * frequency[:-1], sign * frequency[1:]), np.inf)
     begin = int(lowest.argmin())
     at = begin if rises[begin] > 0.0 else begin + 1
-    unknown = untold(stable)
+    unknown = unknown_stability(stable)
     unsure = bool(unknown.any())
     visited: set[int] = set()
     start, told = (float(frequency[at]), amplitude[at]), not unknown[at]
@@ -182,7 +182,7 @@ def _note_untold(
         k = walked[max(first - 2, 0)]
         begin, before = start if first < 2 else (float(frequency[k]), amplitude[k])
         if begin != frequency[last]:
-            found.untold.append(Untold(sweep, begin, float(frequency[last]), before))
+            found.untold.append(UnknownStability(sweep, begin, float(frequency[last]), before))
 
 
 def _others(onwards: FloatArray, usable: BoolArray, at: int) -> npt.NDArray[np.intp]:

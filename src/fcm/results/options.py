@@ -11,18 +11,18 @@ class JumpOptions:
 
     Attributes
     ----------
-    same : float
+    amplitude_tolerance : float
         Relative difference of amplitudes at one frequency that are one point.
-    frequency : float
+    frequency_tolerance : float
         Relative difference of frequencies that are one.
-    flip : float
+    flip_tolerance : float
         Relative change of an amplitude, from the last point before the period doubles to the first after it:
         less is no jump.
     """
 
-    same: float = 1e-6
-    frequency: float = 1e-13
-    flip: float = 0.01
+    amplitude_tolerance: float = 1e-6
+    frequency_tolerance: float = 1e-13
+    flip_tolerance: float = 0.01
 
 
 @dataclass(frozen=True)
@@ -31,15 +31,15 @@ class DrawOptions:
 
     Attributes
     ----------
-    places : int
+    band_frequencies : int
         Frequencies at which the percentiles of a band are taken.
-    near : float
+    frequency_tolerance : float
         Relative: to this the frequency of a jump is known that may be so much earlier. It is the default
         accuracy.
     """
 
-    places: int = 600
-    near: float = 1e-2
+    band_frequencies: int = 600
+    frequency_tolerance: float = 1e-2
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ class Peak(NamedTuple):
 
 
 def stability_at_top(
-    amplitude: FloatArray, stable: FloatArray, same: float = RESULTS.jumps.same
+    amplitude: FloatArray, stable: FloatArray, same: float = RESULTS.jumps.amplitude_tolerance
 ) -> FloatArray:
     """Whether the motion is stable at the greatest amplitude of each degree of freedom, (dof,).
 

@@ -15,7 +15,7 @@ from fcm.model.in_time import InTime, in_time
 from fcm.model.ring import of_sector
 from fcm.model.scene import Scene
 from fcm.results.cause import Cause
-from fcm.results.condensed_curves import Gist
+from fcm.results.condensed_curves import CondensedCurve
 from fcm.results.contact_maxima import Greatest
 from fcm.results.curve_summary import curve_summary
 from fcm.results.directions import directions_of, positions_of
@@ -83,7 +83,9 @@ class Curve:
     undetermined: int = (
         0  # points at which a contact never slips and another may feel it, if that is not told
     )
-    gist: Gist | None = None  # in the place of most points, where only peaks and folds were asked for
+    condensed: CondensedCurve | None = (
+        None  # in the place of most points, where only peaks and folds were asked for
+    )
     mode: NonlinearMode | None = None
     digits: bool = False  # whether displacements far below the greatest have digits, as contacts are stiff
     sensitivity: Sensitivities | None = None  # of the peaks
@@ -97,7 +99,7 @@ class Curve:
     @property
     def points(self) -> int:
         """Number of points that were computed, be they kept or not."""
-        return int(np.isfinite(self.frequency).sum()) if self.gist is None else self.gist.points
+        return int(np.isfinite(self.frequency).sum()) if self.condensed is None else self.condensed.points
 
     @property
     def branch(self) -> npt.NDArray[np.intp]:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.model.scene import FloatArray
-from fcm.results.condensed_curves import gist_of
+from fcm.results.condensed_curves import condense
 from fcm.results.options import RESULTS
 from fcm.results.peak import Peak
 from fcm.results.result import Curve, Response
@@ -80,13 +80,13 @@ def _stays(peak: Peak) -> float:
     return 1.0 if peak.amplitude == 0.0 else peak.stable
 
 
-def _first(curve: Curve, sweep: str, near: float = RESULTS.draws.near) -> float:
+def _first(curve: Curve, sweep: str, near: float = RESULTS.draws.frequency_tolerance) -> float:
     """Frequency of the first jump in a direction; NONE if there is none, NaN where it may be an earlier one.
 
     That no motion is stable where the sweep begins is no jump.
     """
-    gist, ahead = curve.gist or gist_of(curve), 1.0 if sweep == "up" else -1.0
-    met, begin = gist.swept, gist.ends[0 if sweep == "up" else 1]
+    condensed, ahead = curve.condensed or condense(curve), 1.0 if sweep == "up" else -1.0
+    met, begin = condensed.swept, condensed.ends[0 if sweep == "up" else 1]
     jumps = [ahead * one.frequency for one in met.jumps if one.sweep == sweep and one.frequency != begin]
     untold = [ahead * one.start for one in met.untold if one.sweep == sweep]
     first = min(jumps, default=NONE)

@@ -10,30 +10,31 @@ from fcm.on_demand import on_demand
 from fcm.run.checkpoint import Checkpoint, Results
 from fcm.run.fingerprint import fingerprint
 from fcm.run.lock import CheckpointError
-from fcm.run.places import Factory, Gone, Here, Place, Threads
+from fcm.run.places import Factory, Gone, Place, PlaceClosed, SerialPlace, Threads
 from fcm.run.sweep import Outcome, place_for, place_of, sweep
 from fcm.run.work import Compute, Interrupted, Lost, Progress, Report
 
 if TYPE_CHECKING:
-    from fcm.run.elsewhere import Elsewhere
+    from fcm.run.executor_place import ExecutorPlace
     from fcm.run.processes import Processes
 
 __all__ = [
     "Checkpoint",
     "CheckpointError",
     "Compute",
-    "Elsewhere",
+    "ExecutorPlace",
     "Factory",
     "Gone",
-    "Here",
     "Interrupted",
     "Lost",
     "Outcome",
     "Place",
+    "PlaceClosed",
     "Processes",
     "Progress",
     "Report",
     "Results",
+    "SerialPlace",
     "Threads",
     "fingerprint",
     "place_for",
@@ -41,6 +42,6 @@ __all__ = [
     "sweep",
 ]
 
-_HOME = {"Elsewhere": "elsewhere", "Processes": "processes"}  # places that few runs need
+_HOME = {"ExecutorPlace": "executor_place", "Processes": "processes"}  # places that few runs need
 
 __getattr__ = on_demand(__name__, _HOME)

@@ -18,9 +18,9 @@ from typing import Any
 
 from fcm.run.address import LATE, answering
 from fcm.run.address import within as _within
-from fcm.run.elsewhere import Elsewhere, Refused, identity, other_fcm, there
+from fcm.run.executor_place import ExecutorPlace, Refused, identity, other_fcm, there
 from fcm.run.options import RUN, RunOptions
-from fcm.run.places import Again, Factory, Gone
+from fcm.run.places import Factory, NotComputed, PlaceClosed
 from fcm.run.work import Attempt, Compute
 from fcm.signals import undisturbed
 
@@ -124,7 +124,7 @@ class Workers:
         return self.options.batches_ahead * sum(self.threads[address] for address in self.good)
 
     def poll(self) -> None:
-        """See who is there, and ask those who are new; `Gone` if there has been nobody for long."""
+        """See who is there, and ask those who are new; `PlaceClosed` if there has been nobody for long."""
         if (now := time.monotonic()) - self._looked < self.options.worker_interval:
             return
         self._looked = now
@@ -135,7 +135,7 @@ class Workers:
         if self.good:
             self._last = now
         elif now - self._last > self.options.without_workers:
-            raise Gone(
+            raise PlaceClosed(
                 f"the scheduler at {self.address} has had no worker with this fcm "
                 f"for {self.options.without_workers:.0f} s"
             )
@@ -163,7 +163,7 @@ class Workers:
                 warnings.warn(f"worker {address} is refused: {why}", stacklevel=2)
 
 
-class Cluster(Elsewhere):
+class Cluster(ExecutorPlace):
     """The workers of a scheduler that have this fcm."""
 
     def __init__(self, compute: Compute, workers: Workers) -> None:
@@ -174,7 +174,7 @@ class Cluster(Elsewhere):
                 work = workers.client.submit(pickle.loads, pickle.dumps(compute, protocol=5), pure=False)
             super().__init__(work, workers.client.get_executor(pure=False))
         except Exception as error:
-            raise Gone(workers.lost) from error
+            raise PlaceClosed(workers.lost) from error
         self.poll()
 
     def poll(self) -> None:
@@ -186,9 +186,9 @@ class Cluster(Elsewhere):
             if isinstance(future.exception(), Refused):  # by one that has just come, or was there to take it
                 del self._sizes[future]
                 self.workers.look_again()
-                raise Again
+                raise NotComputed
         except CancelledError:
-            raise Gone(self.workers.lost) from None
+            raise PlaceClosed(self.workers.lost) from None
         return super().result(future)
 
     def _given(self, compute: Any, task: bytes) -> Future[Attempt]:

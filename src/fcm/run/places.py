@@ -10,16 +10,19 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from fcm.run.work import Attempt, Batch, Compute, Report, attempt
 
 
-class Died(Exception):  # noqa: N818
+class WorkerDied(Exception):  # noqa: N818
     """The process that computed a batch has ended before its time."""
 
 
-class Again(Exception):  # noqa: N818
+class NotComputed(Exception):  # noqa: N818
     """A batch has not been computed, and is to be given to the place once more."""
 
 
-class Gone(Exception):  # noqa: N818
+class PlaceClosed(Exception):  # noqa: N818
     """The place takes no batch any more; the message says why."""
+
+
+Gone = PlaceClosed  # its name until version 0.2
 
 
 class Place(ABC):
@@ -32,11 +35,11 @@ class Place(ABC):
         """Begin to compute a batch; the report is called now and then, from whatever thread."""
 
     def result(self, future: Future[Attempt]) -> Attempt:
-        """What came of a batch whose future is done; or `Died`, `Again` or `Gone`."""
+        """What came of a batch whose future is done; or `WorkerDied`, `NotComputed` or `PlaceClosed`."""
         return future.result()
 
     def poll(self) -> None:  # noqa: B027
-        """See now and then how it is; or `Gone`."""
+        """See now and then how it is; or `PlaceClosed`."""
 
     def stop(self) -> None:  # noqa: B027
         """Ask everybody to stop; their futures then have the part that is finished."""
@@ -46,7 +49,7 @@ class Place(ABC):
         self.stop()
 
 
-class Here(Place):
+class SerialPlace(Place):
     """This process, one batch after the other."""
 
     def __init__(self, compute: Compute) -> None:

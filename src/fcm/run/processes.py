@@ -18,7 +18,7 @@ from typing import BinaryIO, cast
 
 from fcm import signals
 from fcm.run.frames import BATCH, PROGRESS, SHARE, STATE, STOP, WORK, receive, send
-from fcm.run.places import Died, Place
+from fcm.run.places import Place, WorkerDied
 from fcm.run.work import Attempt, Batch, Compute, Report
 from fcm.threads import one_each
 
@@ -64,7 +64,7 @@ class Processes(Place):
         if done is None:
             worker.end()
             worker.release()
-            raise Died
+            raise WorkerDied
         with self._lock:
             self._idle.append(worker)
         return done
@@ -72,7 +72,7 @@ class Processes(Place):
     def _taken(self) -> _Worker:
         with self._lock:
             if self._closed:
-                raise Died
+                raise WorkerDied
             worker = self._idle.pop() if self._idle else _Worker(self._work)
             self._busy.add(worker)
         return worker

@@ -12,7 +12,7 @@ from typing import Any
 
 from fcm.run.checkpoint import Results
 from fcm.run.options import RUN
-from fcm.run.places import Again, Died, Factory, Gone, Here, Place, Threads
+from fcm.run.places import Factory, NotComputed, Place, PlaceClosed, SerialPlace, Threads, WorkerDied
 from fcm.run.progress import Bar
 from fcm.run.work import Attempt, Batch, Compute, Lost, Progress, Report
 from fcm.threads import one_here
@@ -37,7 +37,7 @@ class Outcome:
 def place_for(jobs: int, *, threads: bool = False) -> Factory:
     """Where to compute on so many cores of this machine."""
     if jobs == 1:
-        return lambda compute, _count: Here(compute)
+        return lambda compute, _count: SerialPlace(compute)
     from fcm.run.processes import Processes
 
     kind = Threads if threads else Processes
@@ -46,9 +46,9 @@ def place_for(jobs: int, *, threads: bool = False) -> Factory:
 
 def place_of(executor: Executor) -> Factory:
     """An executor of the caller's, who ends it."""
-    from fcm.run.elsewhere import Elsewhere
+    from fcm.run.executor_place import ExecutorPlace
 
-    return lambda compute, _count: Elsewhere(compute, executor)
+    return lambda compute, _count: ExecutorPlace(compute, executor)
 
 
 def sweep(
@@ -78,7 +78,7 @@ def sweep(
     ------
     KeyboardInterrupt
         If it is interrupted before anything is finished; later, what is finished is returned.
-    Gone
+    PlaceClosed
         If the place takes nothing any more before anything is finished; later, as an interruption.
     """
     with one_here():
@@ -109,7 +109,7 @@ class _Sweep:
                 self.outcome.results[number] = [Lost(DIED) for _ in self.batches[number]]
         outcome = self.outcome
         if outcome.interrupted and not outcome.results and not any(outcome.parts.values()):
-            raise Gone(outcome.lost) if outcome.lost else KeyboardInterrupt
+            raise PlaceClosed(outcome.lost) if outcome.lost else KeyboardInterrupt
         return outcome
 
     def _at_once(self, left: Sequence[int]) -> list[int]:
@@ -131,7 +131,7 @@ class _Sweep:
             if isinstance(stop, _Stopped):
                 self.outcome.parts[stop.number] = stop.results
             self._hand_over(place)
-        except Gone as gone:
+        except PlaceClosed as gone:
             self.outcome.interrupted, self.outcome.lost = True, str(gone)
             self._hand_over(place)
         finally:
@@ -147,7 +147,7 @@ class _Sweep:
                 number = self.waiting.pop(future)
                 try:
                     found = _result(place, future)
-                except Again:
+                except NotComputed:
                     todo.appendleft(number)
                 else:
                     yield number, found
@@ -155,7 +155,7 @@ class _Sweep:
             self.bar.draw()
 
     def _submit(self, place: Place, number: int) -> None:
-        at_once = isinstance(place, Here)
+        at_once = isinstance(place, SerialPlace)
         saved, save = self.kept.states.get(number, ()), self._saver(number, at_once)
         future = place.submit(self.batches[number], Report(self.bar.of(number, at_once), saved, save))
         self.waiting[future] = number
@@ -195,7 +195,7 @@ class _Sweep:
         self._keep_states()
         for future in done:
             number, found = self.waiting[future], None
-            with suppress(Again, Gone):
+            with suppress(NotComputed, PlaceClosed):
                 found = _result(place, future)
             if found is not None and not found.interrupted:
                 self._finish(number, found.results)
@@ -215,5 +215,5 @@ def _result(place: Place, future: Future[Attempt]) -> Attempt | None:
     """What came of a batch; None if its process has died."""
     try:
         return place.result(future)
-    except (Died, CancelledError):
+    except (WorkerDied, CancelledError):
         return None

@@ -266,7 +266,7 @@ def _energy_of_modes(top: Section, found: Part, modal: Part, shapes: Any) -> tup
         return None, []
     strain, likeness = strains(modal["frequency"], shapes, modal["diameter"])
     least = int(likeness.argmin())
-    if likeness[least] < OPTIONS.alike:
+    if likeness[least] < OPTIONS.min_likeness:
         other = f"has another shape than the first of its family (likeness {likeness[least]:.2g})"
         what = f"mode {least + 1} {other}"
         found["section"].wrong("stiffness", f"missing: {what}; give the blade's stiffness")

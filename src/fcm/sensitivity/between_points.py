@@ -25,21 +25,21 @@ class InterpolationOptions:
     ----------
     degree : int
         Of the polynomials.
-    close : float
+    tolerance : float
         Part of an amplitude: where the last coefficients of its polynomial are more, the way is halved.
-    halvings : int
+    max_halvings : int
         Of the way, one within the other, at most.
     samples : int
         Places at which the greatest value of a polynomial is looked for.
-    steps : int
+    max_steps : int
         Steps of Newton's method from there to where its slope is 0.
     """
 
     degree: int = 8
-    close: float = 1e-9
-    halvings: int = 3
+    tolerance: float = 1e-9
+    max_halvings: int = 3
     samples: int = 129
-    steps: int = 3
+    max_steps: int = 3
 
 
 INTERPOLATION = InterpolationOptions()
@@ -79,7 +79,7 @@ class _Way:
 
     def raise_to(self, height: FloatArray, omega: FloatArray) -> None:
         """Put what is higher on the way, and where, in the place of heights (dof,) and frequencies."""
-        self._part(0.0, 1.0, np.arange(len(self.dofs)), height, omega, self.options.halvings)
+        self._part(0.0, 1.0, np.arange(len(self.dofs)), height, omega, self.options.max_halvings)
 
     def _part(
         self, low: float, high: float, which: Indices, height: FloatArray, omega: FloatArray, halvings: int
@@ -96,7 +96,7 @@ class _Way:
             chebyshev.chebfit(x, amplitude, degree),
             chebyshev.chebfit(x, z[:, -1], degree),
         )
-        rough = np.abs(of_amplitude[-2:]).max(axis=0) > self.options.close * amplitude.max(axis=0)
+        rough = np.abs(of_amplitude[-2:]).max(axis=0) > self.options.tolerance * amplitude.max(axis=0)
         if halvings and rough.any():
             middle = 0.5 * (low + high)
             self._part(low, middle, which[rough], height, omega, halvings - 1)
@@ -118,7 +118,7 @@ def _highest(polynomial: FloatArray, options: InterpolationOptions) -> float:
     places = np.linspace(-1.0, 1.0, options.samples)
     at = float(places[chebyshev.chebval(places, polynomial).argmax()])
     slope, bend = chebyshev.chebder(polynomial), chebyshev.chebder(polynomial, 2)
-    for _ in range(options.steps):
+    for _ in range(options.max_steps):
         down = float(chebyshev.chebval(at, bend))
         if down < 0.0:
             at = min(max(at - float(chebyshev.chebval(at, slope)) / down, -1.0), 1.0)

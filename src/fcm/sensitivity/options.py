@@ -13,11 +13,11 @@ class SensitivityOptions:
     ----------
     step : float
         Of a difference: part of a number, and length along the curve.
-    side : float
+    side_distance : float
         Length to both sides of a peak, where its slope has the one sign and the other.
-    flat : float
+    flat_slope : float
         Slope over size at that length, below which a peak is smooth.
-    iterations : int
+    max_iterations : int
         Of Newton's method from where a peak is said to be to where it is, at most.
     tolerance : float
         Length of the last of them.
@@ -30,9 +30,9 @@ class SensitivityOptions:
     """
 
     step: float = 1e-4
-    side: float = 1e-6
-    flat: float = 1e-5
-    iterations: int = 8
+    side_distance: float = 1e-6
+    flat_slope: float = 1e-5
+    max_iterations: int = 8
     tolerance: float = 1e-10
     corner: float = 1e-2
     corner_tolerance: float = 1e-14

@@ -31,7 +31,7 @@ class Kind(Enum):
 
 
 @dataclass(frozen=True)
-class Moved:
+class ParameterStencil:
     """The balance with other values of a number: weights of a derivative, with the balances."""
 
     terms: list[tuple[float, Newton]]
@@ -39,7 +39,7 @@ class Moved:
 
 def moved_by(
     scene: Scene, number: Number, harmonics: tuple[int, ...], options: SensitivityOptions = SENSITIVITY
-) -> Moved:
+) -> ParameterStencil:
     each = number.each(scene)
     size = max(abs(value) for _, value, _ in each)
     step = options.step * (size or 1.0)
@@ -52,7 +52,7 @@ def moved_by(
         values = {one.addresses[0]: value + k * step * share for one, value, share in each}
         moved = replace(draft.curve(scene, {}, values), draft=None)
         found.append((weight / step, Newton(System(moved, harmonics).new_balance())))
-    return Moved(found)
+    return ParameterStencil(found)
 
 
 class Peak:
@@ -101,11 +101,14 @@ class Peak:
 
     def _kind(self) -> Kind:
         """Find the peak next to where it is said to be, and what it is."""
-        before, after = self._at_length(-self.options.side), self._at_length(self.options.side)
+        before, after = (
+            self._at_length(-self.options.side_distance),
+            self._at_length(self.options.side_distance),
+        )
         size = self._height(self.newton, self.z)
         if before is None or after is None:
             return Kind.UNKNOWN
-        if abs(before[0]) < self.options.flat * size and abs(after[0]) < self.options.flat * size:
+        if abs(before[0]) < self.options.flat_slope * size and abs(after[0]) < self.options.flat_slope * size:
             return Kind.SMOOTH if self._climb() else Kind.UNKNOWN
         changed = np.flatnonzero(before[1] * after[1] < 0.0)
         if changed.size != 1:
@@ -123,7 +126,7 @@ class Peak:
 
     def _climb(self) -> bool:
         """Newton's method along the curve to where the slope is 0."""
-        for _ in range(self.options.iterations):
+        for _ in range(self.options.max_iterations):
             self.curvature = bend = self.bend()
             point = self.solved(self.newton, self.z)
             if point is None or not bend < 0.0:
@@ -150,7 +153,7 @@ class Peak:
             total += np.nan if point is None else weight / self.options.step * self.slope(self.newton, point)
         return total
 
-    def derivatives(self, rates: Rates, moved: Moved) -> tuple[float, float]:
+    def derivatives(self, rates: Rates, moved: ParameterStencil) -> tuple[float, float]:
         """Of the height and the frequency of the peak by a number."""
         if self.kind is Kind.UNKNOWN:
             return np.nan, np.nan
@@ -181,7 +184,7 @@ class Peak:
         balance.report(self.z, np.ascontiguousarray(direction))
         return float(growth_of(balance, X)[self.dof] + balance.growth[self.dof])
 
-    def _slope_by_number(self, moved: Moved) -> float:
+    def _slope_by_number(self, moved: ParameterStencil) -> float:
         """c_p: derivative of the slope by the number, in the plane across the curve."""
         total = 0.0
         for weight, newton in moved.terms:
@@ -189,7 +192,7 @@ class Peak:
             total += np.nan if point is None else weight * self.slope(newton, point)
         return total
 
-    def _of_corner(self, moved: Moved) -> tuple[float, float]:
+    def _of_corner(self, moved: ParameterStencil) -> tuple[float, float]:
         """Derivatives of the height and the frequency of a corner by the number."""
         total = np.zeros(2)
         for weight, newton in moved.terms:

@@ -21,7 +21,7 @@ from fcm.shooting.problem import OrbitProblem
 from fcm.time_domain.state import State
 
 if TYPE_CHECKING:
-    from fcm.accuracy.outline import UncheckedResponse
+    from fcm.accuracy.unchecked_response import UncheckedResponse
     from fcm.harmonic_balance.system import System
 
 Place = tuple[float, State]  # frequency [rad/s], and a guess there
@@ -40,13 +40,15 @@ def passes(path: Path, z: FloatArray, problem: OrbitProblem) -> bool:
     guesses = before[across] + share * (after[across] - before[across])
     width = np.linalg.norm((after[across] - before[across]) / scale, axis=1)
     off = np.linalg.norm((guesses - z) / scale, axis=1)
-    return any(_leads_to(newton, guess, z, scale) for guess in guesses[off <= width + PATH.same])
+    return any(
+        _leads_to(newton, guess, z, scale) for guess in guesses[off <= width + PATH.solution_tolerance]
+    )
 
 
 def _leads_to(newton: Newton, guess: FloatArray, z: FloatArray, scale: FloatArray) -> bool:
     """Whether Newton's method leads from a guess to the motion z, at its frequency."""
     there = correct_at_frequency(newton, np.append(guess[:-1], z[-1]))
-    return there and bool(np.linalg.norm((np.asarray(newton.z) - z) / scale) < PATH.same)
+    return there and bool(np.linalg.norm((np.asarray(newton.z) - z) / scale) < PATH.solution_tolerance)
 
 
 def is_stable(found: UncheckedResponse, z: FloatArray) -> bool:
@@ -131,8 +133,8 @@ def converged_balance(
 def every_balance(whole: Scene, poll: Poll, options: ShootingOptions = SHOOTING) -> UncheckedResponse:
     """The response of the balance with as many harmonics as it takes, and every branch; of many contacts
     with one harmonic."""
-    from fcm.accuracy.outline import UncheckedResponse, unchecked_response
     from fcm.accuracy.refinement import refined_response
+    from fcm.accuracy.unchecked_response import UncheckedResponse, unchecked_response
     from fcm.branches.search import with_branching, with_isolas
     from fcm.harmonic_balance.reported_quantities import reported_quantities
 
@@ -187,7 +189,7 @@ def _single_harmonic(whole: Scene, poll: Poll, options: ShootingOptions) -> Syst
 
 def _branches_with_few_harmonics(one: System, options: ShootingOptions = SHOOTING) -> UncheckedResponse:
     """The branches of a few harmonics, or of one where there are many contacts."""
-    from fcm.accuracy.outline import unchecked_response
+    from fcm.accuracy.unchecked_response import unchecked_response
 
     return unchecked_response(
         one

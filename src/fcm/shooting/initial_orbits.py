@@ -27,7 +27,7 @@ from fcm.time_domain.state import State
 from fcm.time_domain.system import System
 
 if TYPE_CHECKING:
-    from fcm.accuracy.outline import UncheckedResponse
+    from fcm.accuracy.unchecked_response import UncheckedResponse
 
 
 class InitialOrbits(NamedTuple):

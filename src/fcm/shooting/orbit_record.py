@@ -16,7 +16,7 @@ from fcm.shooting.problem import OrbitProblem
 from fcm.shooting.residual import Shot
 from fcm.shooting.stability_changes import crossing
 from fcm.shooting.stability_windows import with_windows
-from fcm.shooting.steady_state import SteadyMotion, several
+from fcm.shooting.steady_state import SteadyMotion, multi_period_motion
 from fcm.time_domain.contact_loads import contact_loads
 from fcm.time_domain.cycle_measures import Measure, measure
 from fcm.time_domain.errors import SimulationError
@@ -69,7 +69,7 @@ def _record_of(shot: Shot, z: FloatArray, options: ShootingOptions = SHOOTING) -
         float(z[-1]), shot.state, shot.cycle.states, measure(shot.cycle, found.displaced),
         contact_loads([shot.cycle], found), multipliers, shot.residual,
         within_unit_circle(multipliers, options),
-        z, np.zeros(z.size), held=_held_distances(shot), steady=several(shot),
+        z, np.zeros(z.size), held=_held_distances(shot), steady=multi_period_motion(shot),
     )  # fmt: skip
 
 

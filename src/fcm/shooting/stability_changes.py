@@ -17,7 +17,7 @@ from fcm.model.scene import FloatArray
 from fcm.shooting.problem import OrbitProblem
 
 
-class Place(NamedTuple):
+class CrossingPoint(NamedTuple):
     """A place between two points of a path."""
 
     part: float  # of the way: 0 and 1 are the points
@@ -27,7 +27,7 @@ class Place(NamedTuple):
     there: bool  # stability ends there, as far as can be told
 
 
-def crossing(problem: OrbitProblem, path: Path, first: int) -> Place | None:
+def crossing(problem: OrbitProblem, path: Path, first: int) -> CrossingPoint | None:
     """The last place of the stable side between a point of a path and the next; None if it is not found.
 
     By secants, and in the middle where one does not come nearer. What jumps is located as closely as a
@@ -51,11 +51,11 @@ def crossing(problem: OrbitProblem, path: Path, first: int) -> Place | None:
     return stable if 0.0 < stable.part < 1.0 else None
 
 
-def _place(problem: OrbitProblem, part: float, z: FloatArray, direction: FloatArray) -> Place:
+def _place(problem: OrbitProblem, part: float, z: FloatArray, direction: FloatArray) -> CrossingPoint:
     """Its excess is counted from half of what is sure below the limit, so that what is there is stable."""
     shot = problem.shot(z)
     others = np.zeros(0) if shot is None else np.abs(shot.other_multipliers)
     excess = problem.options.floquet.verdict.growth_tolerance
     room = 0.5 * problem.options.stability.certain_fraction * excess
     beyond = float(np.log(others.max(initial=1e-300)) - np.log1p(excess) + room)
-    return Place(part, beyond, z, direction, abs(beyond) <= room)
+    return CrossingPoint(part, beyond, z, direction, abs(beyond) <= room)

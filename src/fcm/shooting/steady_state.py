@@ -114,7 +114,7 @@ def _repeating(
     return _of_shot(shot) if within_unit_circle(shot.multipliers, options) else None
 
 
-def several(shot: Shot) -> SteadyMotion | None:
+def multi_period_motion(shot: Shot) -> SteadyMotion | None:
     """How a motion of several periods, stable or not, ranges over them; None of one."""
     return _of_shot(shot) if shot.periods > 1 else None
 
@@ -125,7 +125,7 @@ def _of_shot(shot: Shot) -> SteadyMotion:
     amplitude = np.array([part.amplitude for part in parts])
     return SteadyMotion(
         shot.periods, shot.state, shot.cycle.states, measure(shot.cycle), amplitude.min(axis=0),
-        amplitude.max(axis=0), shares([shot.cycle]), shot.multipliers, shot.residual,
+        amplitude.max(axis=0), state_fractions([shot.cycle]), shot.multipliers, shot.residual,
         contact_loads([shot.cycle]),
     )  # fmt: skip
 
@@ -187,7 +187,7 @@ def _ranging(cycles: Sequence[Cycle], options: ShootingOptions = SHOOTING) -> St
     state = State(y[system.q].copy(), y[system.p].copy(), y[system.f].copy(), start.angle)
     return SteadyMotion(
         0, state, cycles[-1].states, combined_measure(measures), amplitude.min(axis=0), amplitude.max(axis=0),
-        shares(cycles), none, np.nan, contact_loads(cycles),
+        state_fractions(cycles), none, np.nan, contact_loads(cycles),
     )  # fmt: skip
 
 
@@ -206,7 +206,7 @@ def combined_measure(measures: Sequence[Measure]) -> Measure:
     return Measure(0.5 * (greatest - least), np.abs(wave), np.angle(wave), mean, greatest, least)
 
 
-def shares(cycles: Sequence[Cycle]) -> FloatArray:
+def state_fractions(cycles: Sequence[Cycle]) -> FloatArray:
     """Parts of the time that each contact sticks, slips and is open: (contact, 3)."""
     total = np.zeros((len(cycles[0].system.contacts), 4))
     for cycle in cycles:

@@ -37,7 +37,7 @@ def drag(C: Matrix, rigid: FloatArray) -> float:
     size = np.abs(rigid)
     terms = np.einsum("ij,ij->j", size, abs(C) @ size)
     own = np.abs(np.einsum("ij,ij->j", rigid.conj(), C @ rigid))
-    return float(own[own > DAMPING.cancelled * terms].max(initial=0.0))
+    return float(own[own > DAMPING.cancellation_tolerance * terms].max(initial=0.0))
 
 
 def check_dissipates(coefficients: FloatArray) -> None:
@@ -90,7 +90,7 @@ def coupling_effect(
     found = [change(omega) for omega in places.tolist()]
     at = int(np.argmax(found))
     before, after = places[max(at - 1, 0)], places[min(at + 1, places.size - 1)]
-    return max(found[at], *map(change, np.linspace(before, after, DAMPING.finer).tolist()))
+    return max(found[at], *map(change, np.linspace(before, after, DAMPING.refined_places).tolist()))
 
 
 def _response(dynamic: FloatArray, pushes: FloatArray, seen: FloatArray) -> FloatArray | None:
@@ -107,10 +107,12 @@ def _places(matrix: FloatArray, damper: FloatArray, low: float, high: float) -> 
     value, turn = np.linalg.eigh(matrix)
     natural = np.sqrt(np.maximum(value, 0.0))
     width = 0.5 * np.einsum("ij,ij->j", turn.conj(), damper @ turn).real
-    inside = np.flatnonzero((natural > low) & (natural < high))[: DAMPING.most_resonances]
+    inside = np.flatnonzero((natural > low) & (natural < high))[: DAMPING.max_resonances]
     own, half_width = natural[inside], width[inside]
     ends = np.unique(np.clip([low, high, *own, *(own - half_width), *(own + half_width)], low, high))
     gaps = ends.size - 1
-    each = int(np.clip(DAMPING.work / (max(gaps, 1) * len(matrix) ** 3), 1, DAMPING.between))
+    each = int(
+        np.clip(DAMPING.max_multiplications / (max(gaps, 1) * len(matrix) ** 3), 1, DAMPING.places_between)
+    )
     places: FloatArray = np.interp(np.arange(gaps * each + 1) / each, np.arange(ends.size), ends)
     return places

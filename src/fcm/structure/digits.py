@@ -37,8 +37,8 @@ def digits_of(K: Matrix) -> int | None:
     if _single(entries):
         return SINGLE if _most_need(entries, SINGLE) else None
     for digits in range(
-        RIGID_BODY.fewest_digits if entries.size >= RIGID_BODY.many_entries else RIGID_BODY.typed_digits,
-        RIGID_BODY.most_digits + 1,
+        RIGID_BODY.min_digits if entries.size >= RIGID_BODY.min_distinct_entries else RIGID_BODY.typed_digits,
+        RIGID_BODY.max_digits + 1,
     ):
         if (_rounded(entries, digits) == entries).all():
             return digits if _most_need(entries, digits - 1) else None
@@ -47,9 +47,9 @@ def digits_of(K: Matrix) -> int | None:
 
 def _some(K: Matrix) -> FloatArray:
     """Sizes of entries that are not 0, each once."""
-    entries: FloatArray = np.unique(np.abs(K.data[:: max(1, K.nnz // (10 * RIGID_BODY.sample))]))
+    entries: FloatArray = np.unique(np.abs(K.data[:: max(1, K.nnz // (10 * RIGID_BODY.sampled_entries))]))
     entries = entries[entries > 0.0]
-    return entries[:: max(1, entries.size // RIGID_BODY.sample)]
+    return entries[:: max(1, entries.size // RIGID_BODY.sampled_entries)]
 
 
 def _single(values: FloatArray) -> bool:

@@ -36,17 +36,19 @@ Matrix = Any  # scipy sparse array or matrix
 class EigenOptions:
     """Tolerances of the modes."""
 
-    dense: int = 600  # rows up to which all modes are computed at once
+    dense_size: int = 600  # rows up to which all modes are computed at once
     shift: float = 1e-9  # of the largest ratio of stiffness to mass on the diagonals
-    least_shift: float = 1e-11  # the same, where a frequency of interest says what a small shift is
-    most_shift: float = 1e-4  # the same, where rounding has made rigid-body modes more negative than that
-    shift_of_top: float = 1e-3  # of the square of that frequency
+    min_shift: float = 1e-11  # the same, where a frequency of interest says what a small shift is
+    max_shift: float = 1e-4  # the same, where rounding has made rigid-body modes more negative than that
+    frequency_shift: float = 1e-3  # of the square of that frequency
     last_digits: float = 10.0  # units of the last digit of entries that a shift is at least, if they have few
-    no_mass: float = 1e-13  # relative: such an eigenvalue of the inverse problem is a row without mass
-    negative: float = 1e-9  # of a mass whose diagonal is 1: an eigenvalue less negative is rounding
-    poll: float = 1e-3  # relative: how closely it is looked for a mode that was passed by
-    same: float = 1e-6  # relative: so near to the highest, a mode that is left is not below it
-    most_corrections: int = 12  # of static displacements; a shift that needs more is replaced
+    massless_tolerance: float = (
+        1e-13  # relative: such an eigenvalue of the inverse problem is a row without mass
+    )
+    mass_tolerance: float = 1e-9  # of a mass whose diagonal is 1: an eigenvalue less negative is rounding
+    missed_tolerance: float = 1e-3  # relative: how closely it is looked for a mode that was passed by
+    frequency_tolerance: float = 1e-6  # relative: so near to the highest, a mode that is left is not below it
+    max_corrections: int = 12  # of static displacements; a shift that needs more is replaced
 
 
 OPTIONS = EigenOptions()
@@ -117,7 +119,7 @@ def system_of(K: Matrix, M: Matrix, top: float = 0.0) -> System:
         try:
             solve = solver(K - shift * M)
         except NotPositiveError:  # what a reduction has left of rigid-body modes may be more negative
-            if shift <= (shift := -OPTIONS.most_shift * ratio):
+            if shift <= (shift := -OPTIONS.max_shift * ratio):
                 raise
             solve = solver(K - shift * M)
     except NotPositiveError as error:
@@ -133,9 +135,9 @@ def _size_of_shift(K: Matrix, ratio: float, top: float) -> float:
     """More than rounding of the entries may take away, and little beside what is of interest."""
     digits = digits_of(K)
     rounding = 0.0 if digits is None else OPTIONS.last_digits * 10.0**-digits
-    if not top or K.shape[0] <= OPTIONS.dense:
+    if not top or K.shape[0] <= OPTIONS.dense_size:
         return max(OPTIONS.shift, rounding) * ratio
-    return max(max(OPTIONS.least_shift, rounding) * ratio, min(OPTIONS.shift_of_top * top**2, ratio))
+    return max(max(OPTIONS.min_shift, rounding) * ratio, min(OPTIONS.frequency_shift * top**2, ratio))
 
 
 def _faults_of_mass(M: Matrix) -> list[str]:
@@ -148,9 +150,9 @@ def _faults_of_mass(M: Matrix) -> list[str]:
     unit = scipy.sparse.diags_array(1.0 / np.sqrt(np.where(heavy > 0.0, heavy, heavy.max())))
     scaled = scipy.sparse.csc_array(unit @ M @ unit)
     digits = digits_of(M)
-    least = max(OPTIONS.negative, 0.0 if digits is None else OPTIONS.last_digits * 10.0**-digits)
+    least = max(OPTIONS.mass_tolerance, 0.0 if digits is None else OPTIONS.last_digits * 10.0**-digits)
     rows = heavy.size
-    if rows <= OPTIONS.dense:
+    if rows <= OPTIONS.dense_size:
         count = int((np.linalg.eigvalsh(scaled.toarray()) < -least).sum())
         return [_said("mass", count)] if count else []
     try:
@@ -189,7 +191,7 @@ def shifted(system: System, shift: float) -> System:
 def modes_of(system: System, count: int) -> Modes:
     """The lowest modes of a structure; fewer where fewer rows have a mass."""
     rows = system.rows
-    if rows <= OPTIONS.dense or count > rows // 3:
+    if rows <= OPTIONS.dense_size or count > rows // 3:
         shapes = _all(system)
     else:
         shapes = _complete(system, _lanczos(system, count), count)
@@ -233,9 +235,9 @@ def _complete(system: System, shapes: FloatArray, count: int) -> FloatArray:
     while True:
         shapes = _apart(system, shapes)  # of mass 1, and orthogonal where frequencies are close
         highest = np.sort(elastic_energy(system.K, shapes))[count - 1]
-        further = of_shapes(system, _lanczos(system, 1, shapes, OPTIONS.poll))
+        further = of_shapes(system, _lanczos(system, 1, shapes, OPTIONS.missed_tolerance))
         # it is told higher than it is, never lower
-        if further.stiffness[0] >= highest - OPTIONS.same * abs(highest):
+        if further.stiffness[0] >= highest - OPTIONS.frequency_tolerance * abs(highest):
             return shapes
         shapes = np.concatenate((shapes, _lanczos(system, 1, shapes)), axis=1)
 
@@ -245,7 +247,7 @@ def _all(system: System) -> FloatArray:
     mass = system.M.toarray()
     shifted = system.K.toarray() - system.shift * mass
     value, shapes = scipy.linalg.eigh(mass, shifted)
-    found: FloatArray = shapes[:, value > OPTIONS.no_mass * value.max()]
+    found: FloatArray = shapes[:, value > OPTIONS.massless_tolerance * value.max()]
     return found
 
 

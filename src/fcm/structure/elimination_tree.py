@@ -26,9 +26,9 @@ Matrix = Any  # scipy sparse array or matrix
 class FrontOptions:
     """Which fronts are taken together: fewer and larger ones, which hold some zeros."""
 
-    zeros: float = 0.1  # share of a front's entries that may be zeros
-    few: int = 48  # columns of a front up to which more may be
-    zeros_of_few: float = 0.4  # then
+    max_zeros: float = 0.1  # share of a front's entries that may be zeros
+    few_columns: int = 48  # columns of a front up to which more may be
+    max_zeros_of_few: float = 0.4  # then
 
 
 @dataclass(frozen=True)
@@ -188,7 +188,7 @@ def _taken_together(
             wide, tall = first[column] - first[before], int(weight[rows].sum()) + first[last] - first[column]
             more = int(zeros + within + wide * (tall - weight[there].sum()))
             columns = first[last] - first[before]
-            share = options.zeros_of_few if columns <= options.few else options.zeros
+            share = options.max_zeros_of_few if columns <= options.few_columns else options.max_zeros
             if more > share * columns * (tall + wide - 0.5 * columns):
                 break
             column, zeros = before, more

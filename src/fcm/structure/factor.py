@@ -31,11 +31,13 @@ class FactorOptions:
     """How matrices are factorised."""
 
     package: str = ""  # "CHOLMOD", "fronts" or "SuperLU"; by the number of rows where it is empty
-    small: int = 600  # rows up to which SuperLU is taken: there the orderings of CHOLMOD gain nothing
-    dissected: int = 5000  # rows from which on nested dissection pays
-    light: int = 5_000_000  # entries of a factor up to which SuperLU and its copy take little memory
-    long: int = 200_000  # entries of a matrix from which on SuperLU has a thread that may be left behind
-    poll: float = 0.1  # [s] between looks at whether it is done, or the run interrupted
+    superlu_size: int = 600  # rows up to which SuperLU is taken: there the orderings of CHOLMOD gain nothing
+    dissection_size: int = 5000  # rows from which on nested dissection pays
+    light_entries: int = 5_000_000  # entries of a factor up to which SuperLU and its copy take little memory
+    polled_entries: int = (
+        200_000  # entries of a matrix from which on SuperLU has a thread that may be left behind
+    )
+    poll_interval: float = 0.1  # [s] between looks at whether it is done, or the run interrupted
     fronts: FrontOptions = field(default_factory=FrontOptions)
 
 
@@ -80,14 +82,16 @@ def solver(matrix: Matrix, definite: bool = True, options: FactorOptions | None 
     options = options or FactorOptions()
     matrix = scipy.sparse.csc_array(matrix)
     rows = matrix.shape[0]
-    if options.package == "CHOLMOD" or (not options.package and rows > options.small and has_cholmod()):
+    if options.package == "CHOLMOD" or (
+        not options.package and rows > options.superlu_size and has_cholmod()
+    ):
         solve = _cholmod(matrix)
         if solve is not None:
             return solve
-    if rows < options.dissected and options.package != "fronts":
+    if rows < options.dissection_size and options.package != "fronts":
         return _superlu(matrix, definite, options)
     tree = tree_of(matrix, options.fronts)
-    if options.package == "fronts" or (not options.package and tree.entries > options.light):
+    if options.package == "fronts" or (not options.package and tree.entries > options.light_entries):
         return _fronts(matrix, definite, tree)
     order = tree.order
     solve, back = _superlu(matrix[order][:, order], definite, options, "NATURAL"), np.argsort(order)
@@ -127,7 +131,7 @@ def _superlu(
     symmetric = {"SymmetricMode": True}
     work = partial(splu, matrix, permc_spec=ordering, diag_pivot_thresh=0.0, options=symmetric)
     try:
-        factor = work() if matrix.nnz < options.long else _left_behind(work, options.poll)
+        factor = work() if matrix.nnz < options.polled_entries else _left_behind(work, options.poll_interval)
     except RuntimeError:
         raise NotPositiveError(0) from None
     except MemoryError:

@@ -70,26 +70,28 @@ def flexibility(truncation: Truncation, loads: FloatArray) -> Flexibility:
     rest = _residual_receptance(system, kept, loads)
     static = _static(system, kept, loads, rest, omega)
     highest = max(omega**2, float(kept.stiffness.max(initial=0.0)))
-    far = options.massless**2 * (highest or 1.0)
+    far = options.massless_ratio**2 * (highest or 1.0)
     least = np.maximum(
-        options.independent * _static(system, kept, loads, rest, np.inf),
-        options.independent**2 * static,
+        options.min_energy * _static(system, kept, loads, rest, np.inf),
+        options.min_energy**2 * static,
     )
     newest = _of_energy_1(
-        system, _orthogonal(system, kept, system.static(outer, beyond, options.near_static)), least
+        system, _orthogonal(system, kept, system.static(outer, beyond, options.static_tolerance)), least
     )
-    for blocks in range(1, options.most_blocks + 1):
+    for blocks in range(1, options.max_blocks + 1):
         basis = np.concatenate((basis, newest), axis=1)
-        modes = _galerkin(system, basis, far, options.independent)
+        modes = _galerkin(system, basis, far, options.min_energy)
         damping = omega * float(_damping_error(modes, outer, beyond, blocks > 1, static).max())
         bound = _receptance_error(truncation, modes, loads, static)
         if modes.stiffness.max(initial=0.0) > 0.9 * far:
             bound += omega**2 / far
         found = Flexibility(modes, bound, damping)
-        if found.bound <= options.enough or modes.count < basis.shape[1]:
+        if found.bound <= options.tolerance or modes.count < basis.shape[1]:
             break
-        further = _orthogonal(system, kept, system.static(system.M @ newest, beyond, options.near_static))
-        newest = _of_energy_1(system, further, (options.independent / highest) ** 2 if highest else 0.0)
+        further = _orthogonal(
+            system, kept, system.static(system.M @ newest, beyond, options.static_tolerance)
+        )
+        newest = _of_energy_1(system, further, (options.min_energy / highest) ** 2 if highest else 0.0)
     return found
 
 
@@ -98,9 +100,9 @@ def _with_shift_for_static(truncation: Truncation) -> Truncation:
 
     Of a small structure a shift costs nothing, and corrections the digits that are lost in K u.
     """
-    system, beyond, near = truncation.system, truncation.beyond, truncation.options.near_static
+    system, beyond, near = truncation.system, truncation.beyond, truncation.options.static_tolerance
     number = system.corrections(beyond, near)
-    again = number > (0 if system.rows <= OPTIONS.dense else OPTIONS.most_corrections)
+    again = number > (0 if system.rows <= OPTIONS.dense_size else OPTIONS.max_corrections)
     return replace(truncation, system=shifted(system, -near * beyond)) if again else truncation
 
 
@@ -134,7 +136,7 @@ def error_at_other_rows(
         return np.inf, np.inf
     truncation = _with_shift_for_static(truncation)
     system, kept = truncation.system, truncation.kept
-    own, share, together = 0.0, 0.0, truncation.options.together
+    own, share, together = 0.0, 0.0, truncation.options.batch_size
     for first in range(0, len(others), together):
         some = unit_columns(system.rows, others[first : first + together])
         rest = _residual_receptance(system, kept, some)

@@ -119,7 +119,7 @@ def attached_to(ports: FloatArray, dofs: FloatArray) -> tuple[FloatArray, npt.ND
     return _attached(ports.tobytes(), ports.shape, dofs.tobytes(), dofs.shape)
 
 
-@lru_cache(REDUCTION.remembered)
+@lru_cache(REDUCTION.max_cached)
 def _attached(
     of_ports: bytes, ports_shape: tuple[int, ...], of_dofs: bytes, dofs_shape: tuple[int, ...]
 ) -> tuple[FloatArray, npt.NDArray[np.intc]]:
@@ -129,11 +129,11 @@ def _attached(
     shares: FloatArray = np.zeros((ports.shape[1], dofs.shape[1]))
     if ports.size:
         shares = np.asarray(np.linalg.lstsq(ports, dofs, rcond=1e-10)[0], dtype=np.float64)
-    shares[np.abs(shares) < REDUCTION.same_shape * np.abs(shares).max(axis=0, initial=1e-300)] = 0.0
+    shares[np.abs(shares) < REDUCTION.shape_tolerance * np.abs(shares).max(axis=0, initial=1e-300)] = 0.0
     size = np.abs(dofs).max(axis=0, initial=0.0)
     off = np.abs(ports @ shares - dofs).max(axis=0, initial=0.0)
-    large = np.abs(ports).max(axis=0, initial=0.0) @ np.abs(shares) > REDUCTION.most_combined * size
-    apart = (off > REDUCTION.same_shape * size) | large | (size == 0.0)
+    large = np.abs(ports).max(axis=0, initial=0.0) @ np.abs(shares) > REDUCTION.max_combination * size
+    apart = (off > REDUCTION.shape_tolerance * size) | large | (size == 0.0)
     return np.ascontiguousarray(shares), apart.astype(np.intc)
 
 
@@ -142,7 +142,7 @@ def with_springs(natural: FloatArray, ports: FloatArray | ComplexArray, springs:
     return _with_springs(natural.tobytes(), ports.tobytes(), ports.dtype.str, springs.tobytes())
 
 
-@lru_cache(REDUCTION.remembered)
+@lru_cache(REDUCTION.max_cached)
 def _with_springs(of_modes: bytes, of_ports: bytes, kind: str, of_springs: bytes) -> FloatArray:
     """The same of their numbers."""
     natural, springs = np.frombuffer(of_modes), np.frombuffer(of_springs)
@@ -166,7 +166,7 @@ def dynamic_stiffness(
     """w_n^2 - w^2 + 2i zeta w_n w of each mode (point, harmonic, mode), nowhere zero, with w = h omega."""
     w = (omega[:, None] * harmonics)[..., None]
     dynamic = (natural - w) * (natural + w) + 2j * damping * natural * w
-    found: ComplexArray = np.where(dynamic == 0.0, DAMPING.least * w * w, dynamic)
+    found: ComplexArray = np.where(dynamic == 0.0, DAMPING.min_ratio * w * w, dynamic)
     return found
 
 

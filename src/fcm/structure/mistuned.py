@@ -31,8 +31,10 @@ ComplexArray = npt.NDArray[np.complex128]
 class MistunedOptions:
     """Tolerances of what is computed of a mistuned ring."""
 
-    rigid: float = 1e-9  # of the lowest w^2 of the tuned ring that is not 0: a w^2 below it is 0
-    alike: float = 0.5  # least likeness of the shapes of one family, where their strains are taken as alike
+    rigid_tolerance: float = 1e-9  # of the lowest w^2 of the tuned ring that is not 0: a w^2 below it is 0
+    min_likeness: float = (
+        0.5  # least likeness of the shapes of one family, where their strains are taken as alike
+    )
 
 
 OPTIONS = MistunedOptions()
@@ -153,7 +155,7 @@ def modes_of_mistuned(
         raise StructureError(f"the modes of the mistuned ring could not be found (LAPACK says {info})")
     values = values * (work[0] / work[1])
     found = values[::-1] ** 2 - shift
-    found[np.abs(found) < options.rigid * shift] = 0.0
+    found[np.abs(found) < options.rigid_tolerance * shift] = 0.0
     if (found < 0.0).any() or (not rigid.any() and not found.all()):
         raise StructureError(_SOFT)
     return found, np.ascontiguousarray(vectors[:, ::-1])

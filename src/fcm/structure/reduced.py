@@ -89,7 +89,7 @@ def reduced(
     more = flexibility(truncation, loads)
     both = _together(kept, more.modes)
     bound, other_rows = more.bound + of_receptances(K, M, both, loads, top), (0.0, 0.0)
-    if len(others) * system.rows > REDUCTION.most_told:
+    if len(others) * system.rows > REDUCTION.max_products:
         other_rows = np.inf, np.inf
     elif others:
         own, damped = error_at_other_rows(truncation, more, loads, others)
@@ -115,7 +115,11 @@ def _elastic_apart(system: System, found: Modes, rigid: int) -> tuple[System, Mo
     if not 0 < rigid < found.count:
         return system, found
     first, own = float(found.stiffness[rigid]), found.shapes[:, :rigid]
-    if first > REDUCTION.most_lost * -system.shift or system.rows <= OPTIONS.dense or first < -system.shift:
+    if (
+        first > REDUCTION.max_shift_ratio * -system.shift
+        or system.rows <= OPTIONS.dense_size
+        or first < -system.shift
+    ):
         system = shifted(system, -first)
         found = modes_of(system, found.count)
     rest = found.shapes[:, rigid:]
@@ -135,24 +139,26 @@ def _stiffest(modes: Modes, others: Sequence[int]) -> FloatArray:
     elastic = modes.stiffness > 0.0
     seen = np.abs(modes.shapes[list(others)][:, elastic].T) ** 2
     order = np.argsort((seen / modes.stiffness[elastic, None]).sum(axis=0))
-    return unit_columns(len(modes.shapes), [others[i] for i in order[: REDUCTION.stiffest].tolist()])
+    return unit_columns(
+        len(modes.shapes), [others[i] for i in order[: REDUCTION.max_stiff_displacements].tolist()]
+    )
 
 
 def _within(modes: Modes, top: float, rows: int) -> int:
     """How many modes are kept where no number is asked for."""
-    if rows <= REDUCTION.whole:
+    if rows <= REDUCTION.full_size:
         return modes.count
-    return max(REDUCTION.fewest, int((modes.stiffness < (REDUCTION.above * top) ** 2).sum()))
+    return max(REDUCTION.min_modes, int((modes.stiffness < (REDUCTION.frequency_factor * top) ** 2).sum()))
 
 
 def _enough(modes: Callable[[int], Modes], rows: int, top: float, count: int | None) -> Modes:
     """The modes that are kept and one more, if there is one."""
     if count is not None:
         return modes(min(count + 1, rows))
-    number = min(rows, REDUCTION.whole)
+    number = min(rows, REDUCTION.full_size)
     while True:
         found = modes(number)
-        enough = found.stiffness[-1] > (REDUCTION.above * top) ** 2 and found.count > _within(
+        enough = found.stiffness[-1] > (REDUCTION.frequency_factor * top) ** 2 and found.count > _within(
             found, top, rows
         )
         if enough or found.count < number or number == rows:

@@ -28,7 +28,7 @@ def settled(scene: Scene) -> tuple[Modal, BoolArray]:
         return modal, adrift
     unit = modal.shapes[rigid] / np.sqrt(modal.mass[rigid])[:, None]  # of modal mass 1
     turn, size, _ = np.linalg.svd(_normal_motion(scene, unit))
-    held = int(np.count_nonzero(size > RIGID_BODY.held * size.max(initial=0.0)))
+    held = int(np.count_nonzero(size > RIGID_BODY.min_normal_motion * size.max(initial=0.0)))
     shapes, mass = modal.shapes.copy(), modal.mass.copy()
     shapes[rigid], mass[rigid] = turn.T @ unit, 1.0
     adrift[rigid[held:]] = True

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 MOST = 6  # rigid-body modes of one body
 
 
-def rigid_by_gap(frequency: FloatArray, below: float = RIGID_BODY.far_below, most: int = MOST) -> int:
+def rigid_by_gap(frequency: FloatArray, below: float = RIGID_BODY.rigid_ratio, most: int = MOST) -> int:
     """How many of the lowest modes are rigid-body modes, of those with a frequency above 0: at most `most`.
 
     Their own frequencies are rounding, and may be as far from each other.
@@ -61,15 +61,15 @@ def rigid_by_energy(K: Matrix, M: Matrix, modes: Modes) -> int:
     for count in range(size.size, 0, -1):
         left, highest = share[:count].max(), size[:count].max()
         if count == size.size:
-            if left <= RIGID_BODY.cancelled:
+            if left <= RIGID_BODY.cancellation_tolerance:
                 return count
             continue  # nothing tells how soft they are
         gap = float(np.sqrt(highest)) / max(float(frequency[count]), 1e-300)
         if (
-            (left <= RIGID_BODY.cancelled and gap <= RIGID_BODY.far)
-            or (highest <= unknown and gap <= RIGID_BODY.far)
-            or ((size <= low)[:count].all() and gap <= RIGID_BODY.little)
-            or (count <= many and left <= RIGID_BODY.nearly[0] and gap <= _nearest(left))
+            (left <= RIGID_BODY.cancellation_tolerance and gap <= RIGID_BODY.max_cancelled_ratio)
+            or (highest <= unknown and gap <= RIGID_BODY.max_cancelled_ratio)
+            or ((size <= low)[:count].all() and gap <= RIGID_BODY.max_soft_ratio)
+            or (count <= many and left <= RIGID_BODY.nearly_rigid[0] and gap <= _nearest(left))
         ):
             return max(count, uncertain)
     return uncertain
@@ -79,9 +79,13 @@ def may_be_rigid(K: Matrix, M: Matrix, modes: Modes) -> int:
     """How many of the lowest modes may be rigid-body modes: before a gap, with little elastic energy."""
     size = np.abs(modes.stiffness)
     share = _share(K, modes)
-    little = (share <= RIGID_BODY.nearly[0]) | (size <= np.maximum(_unknown(modes), _low(K, M, share)))
+    little = (share <= RIGID_BODY.nearly_rigid[0]) | (size <= np.maximum(_unknown(modes), _low(K, M, share)))
     frequency = np.sqrt(size)
-    gap = np.append(frequency[:-1] <= RIGID_BODY.below * frequency[1:], True) if frequency.size else little
+    gap = (
+        np.append(frequency[:-1] <= RIGID_BODY.max_frequency_ratio * frequency[1:], True)
+        if frequency.size
+        else little
+    )
     count = little.size if little.all() else int(little.argmin())
     found = np.flatnonzero(gap[:count])
     return int(found[-1]) + 1 if found.size else 0
@@ -90,8 +94,9 @@ def may_be_rigid(K: Matrix, M: Matrix, modes: Modes) -> int:
 def _nearest(left: float) -> float:
     """How near the next frequency may be where so much is left of the terms, up to the first of `nearly`."""
     return min(
-        RIGID_BODY.nearest,
-        RIGID_BODY.nearly[1] * float((RIGID_BODY.nearly[0] / max(left, 1e-300)) ** RIGID_BODY.steep),
+        RIGID_BODY.min_ratio,
+        RIGID_BODY.nearly_rigid[1]
+        * float((RIGID_BODY.nearly_rigid[0] / max(left, 1e-300)) ** RIGID_BODY.ratio_exponent),
     )
 
 
@@ -105,23 +110,30 @@ def _share(K: Matrix, modes: Modes) -> FloatArray:
 
 def _unknown(modes: Modes) -> float:
     """The stiffness up to which negative ones say that nothing is known; 0 where there are none."""
-    return RIGID_BODY.as_negative * max(0.0, -float(modes.stiffness.min(initial=0.0)))
+    return RIGID_BODY.negative_factor * max(0.0, -float(modes.stiffness.min(initial=0.0)))
 
 
 def _low(K: Matrix, M: Matrix, share: FloatArray) -> FloatArray:
     """Stiffness of each mode that is rounding beside the stiffest row of the matrices."""
     stiff, heavy = K.diagonal().real, M.diagonal().real
     largest = float((np.abs(stiff[heavy > 0.0]) / heavy[heavy > 0.0]).max())
-    low: FloatArray = np.where(share < RIGID_BODY.alone, RIGID_BODY.low, RIGID_BODY.lower) * largest
+    low: FloatArray = (
+        np.where(
+            share < RIGID_BODY.uncoupled_share, RIGID_BODY.soft_stiffness, RIGID_BODY.uncoupled_stiffness
+        )
+        * largest
+    )
     return low
 
 
 def _uncertain(K: Matrix, modes: Modes, frequency: FloatArray, most: int) -> int:
     """How many of the lowest modes may have no stiffness, by the digits of K, far below the next that has."""
-    may = modes.stiffness <= RIGID_BODY.deviations * energy_uncertain(K, modes.shapes)
+    may = modes.stiffness <= RIGID_BODY.standard_deviations * energy_uncertain(K, modes.shapes)
     count = may.size if may.all() else int(may.argmin())
     apart = (
-        0 < count < may.size and count <= most and frequency[count - 1] <= RIGID_BODY.below * frequency[count]
+        0 < count < may.size
+        and count <= most
+        and frequency[count - 1] <= RIGID_BODY.max_frequency_ratio * frequency[count]
     )
     return count if apart else 0
 
@@ -133,6 +145,6 @@ def unclear_below(K: Matrix, modes: Modes, rigid: int) -> float:
     """
     if not 0 < rigid < modes.count:
         return 0.0
-    uncertain = RIGID_BODY.deviations * energy_uncertain(K, modes.shapes[:, :rigid]).max()
+    uncertain = RIGID_BODY.standard_deviations * energy_uncertain(K, modes.shapes[:, :rigid]).max()
     part = float(np.sqrt(uncertain / modes.stiffness[rigid]))
-    return part if part > RIGID_BODY.worth_saying else 0.0
+    return part if part > RIGID_BODY.doubtful_ratio else 0.0

@@ -44,16 +44,16 @@ def of_receptances(K: Matrix, M: Matrix, modes: Modes, loads: FloatArray, omega:
         return 0.0
     some = Modes(modes.stiffness[elastic], modes.shapes[:, elastic])
     static, off = _energy_and_error(K, M, some, loads, 0.0)
-    if static.size > REDUCTION.most_loads:
+    if static.size > REDUCTION.max_loads:
         share = np.divide(off, static, out=np.zeros_like(off), where=static > 0.0)
         off_most, least = (
-            np.argsort(one, kind="stable")[: REDUCTION.most_loads // 2] for one in (-share, static)
+            np.argsort(one, kind="stable")[: REDUCTION.max_loads // 2] for one in (-share, static)
         )
         worst = np.union1d(off_most, least)
         static, off, loads = static[worst], off[worst], loads[:, worst]
     off = off + _energy_and_error(K, M, modes, loads, float(some.stiffness[0]))[1]
     between = [_energy_and_error(K, M, modes, loads, -(w**2))[1] for w in _between(some, omega)]
-    off = REDUCTION.spare * np.max([off, *between], axis=0)
+    off = REDUCTION.safety * np.max([off, *between], axis=0)
     if omega:
         static = static + (np.abs(modes.shapes[:, ~elastic].conj().T @ loads) ** 2).sum(axis=0) / omega**2
     return float(np.divide(off, static, out=np.zeros_like(off), where=static > 0.0).max())
@@ -66,8 +66,8 @@ def _between(modes: Modes, omega: float) -> FloatArray:
     ends = np.append(np.sqrt(modes.stiffness[modes.stiffness < omega**2]), omega)
     places = np.append(0.5 * (ends[1:] + ends[:-1]), omega)
     off = np.abs(1.0 - modes.stiffness / places[:, None] ** 2).min(axis=1)
-    found: FloatArray = places[off > REDUCTION.apart]
-    return found[:: max(1, found.size // REDUCTION.most_between)]
+    found: FloatArray = places[off > REDUCTION.min_resonance_distance]
+    return found[:: max(1, found.size // REDUCTION.max_places)]
 
 
 def _energy_and_error(

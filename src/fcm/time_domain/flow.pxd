@@ -1,4 +1,4 @@
-cdef class Pool:
+cdef class FlowArrays:
     cdef readonly Py_ssize_t modes, contacts, springs, linear, size, waves, count, clock
     cdef readonly double omega, highest
     cdef readonly double[::1] harmonic, stiffness, damping, mu, k_u, k_v, n_0
@@ -22,12 +22,12 @@ cdef class Pool:
     cdef readonly Py_ssize_t[::1] used
     cdef Py_ssize_t find(self, signed char[:, ::1] states, Py_ssize_t k) noexcept nogil
 
-cdef class Series(Pool):
+cdef class FlowSeries(FlowArrays):
     cdef double[:, ::1] _own
     cdef void derive(self, Py_ssize_t slot, double[:, ::1] y, Py_ssize_t a, double[:, ::1] z, Py_ssize_t b) noexcept nogil
     cdef void extend(self, Py_ssize_t slot, double[:, ::1] z, Py_ssize_t last, double step, double[:, ::1] y, bint graded) noexcept nogil
 
-cdef class Forced(Series):
+cdef class ForcedFlows(FlowSeries):
     cdef double[::1] whole
     cdef int refresh(self, Py_ssize_t slot) except -1 nogil
     cdef int reach(self, Py_ssize_t slot, Py_ssize_t last) except -1 nogil
@@ -38,7 +38,7 @@ cdef class Forced(Series):
     cdef void _double(self, Py_ssize_t slot, Py_ssize_t j) noexcept nogil
     cdef void free(self, Py_ssize_t slot, Py_ssize_t j, double[:, ::1] y, Py_ssize_t k) noexcept nogil
 
-cdef class Exits(Forced):
+cdef class ExitFunctions(ForcedFlows):
     cdef double[:, ::1] _rotated
     cdef void _angles(self, Py_ssize_t slot) noexcept nogil
     cdef void _of_exit(self, Py_ssize_t slot, Py_ssize_t e, int a) noexcept nogil
@@ -52,7 +52,7 @@ cdef double root(double[::1] powers, int order, double low, double high) noexcep
 cdef int needed(double x) noexcept nogil
 cdef void summed(double[:, ::1] terms, double x, double[:, ::1] y, Py_ssize_t k) noexcept nogil
 
-cdef class Flows(Exits):
+cdef class Flows(ExitFunctions):
     cdef int advance(self, Py_ssize_t slot, Py_ssize_t j, double[:, ::1] y, Py_ssize_t k) except -1 nogil
     cdef int carry(self, Py_ssize_t slot, double position, double[:, ::1] y, Py_ssize_t k) except -1 nogil
     cdef void bound(self, Py_ssize_t slot, double[:, ::1] y, Py_ssize_t k, double[::1] out) noexcept nogil

@@ -14,13 +14,14 @@ the structure.
 Over a step h = 1 / rate the series of exp(A h) is complete to rounding after `ORDER` terms, whatever A is:
 defective, singular, resonant without damping. Whole steps are powers of exp(A h). The functions that end a
 combination are known on `BLOCK` steps at once from a table of their rows times those powers. The frequency
-enters only the columns of the forces: everything else of a flow is made once for a scene (`Pool`). A column
-is what sin(h theta) or cos(h theta) = 1 alone at the start has done after a step, or after 2**j, and its
-derivative by the frequency; there are four for each harmonic h (`Forced`). Within a step the motion of each
-combination is a power series by the position, which is counted in steps (`Series`).
+enters only the columns of the forces: everything else of a flow is made once for a scene (`FlowArrays`). A
+column is what sin(h theta) or cos(h theta) = 1 alone at the start has done after a step, or after 2**j, and
+its derivative by the frequency; there are four for each harmonic h (`ForcedFlows`). Within a step the motion
+of each combination is a power series by the position, which is counted in steps (`FlowSeries`).
 
-The exits of a combination are functions of the state vector that end it where they become negative (`Exits`).
-Like the motion itself they are known by columns: on the steps of a block, and as power series in one step.
+The exits of a combination are functions of the state vector that end it where they become negative
+(`ExitFunctions`). Like the motion itself they are known by columns: on the steps of a block, and as power
+series in one step.
 """
 
 from __future__ import annotations
@@ -76,7 +77,7 @@ def _shapes(n: int, contacts: int, waves: int, taylor_size: int) -> dict[str, tu
 
 
 @cython.cclass
-class Pool:
+class FlowArrays:
     """The flows of a scene; where there is no room for more, the one that was used longest ago goes.
 
     Of many flows only short pieces are followed, and never their derivatives: the powers of more than a step,
@@ -222,11 +223,11 @@ class Pool:
 
 
 @cython.cclass
-class Series(Pool):
+class FlowSeries(FlowArrays):
     """Flows as power series. What is done for a whole series is done in one call: y' = A y is little work."""
 
     def __init__(self, matrices: Matrices, options: FlowOptions = TIME.flows) -> None:
-        Pool.__init__(self, matrices, options)
+        FlowArrays.__init__(self, matrices, options)
         self._own = np.zeros((ORDER + 1, self.size))
 
     @cython.cfunc
@@ -284,7 +285,7 @@ class Series(Pool):
 @cython.nogil
 @cython.exceptval(check=False)
 def structure(
-    series: Series, z: cython.double[:, ::1], a: cython.Py_ssize_t, factor: cython.double
+    series: FlowSeries, z: cython.double[:, ::1], a: cython.Py_ssize_t, factor: cython.double
 ) -> cython.void:
     """Row a + 1 of z becomes the factor times what modes and forces make of row a."""
     m: cython.Py_ssize_t = series.modes
@@ -316,7 +317,7 @@ def structure(
 @cython.nogil
 @cython.exceptval(check=False)
 def spring(
-    series: Series,
+    series: FlowSeries,
     j: cython.Py_ssize_t,
     z: cython.double[:, ::1],
     a: cython.Py_ssize_t,
@@ -338,7 +339,7 @@ def spring(
 @cython.nogil
 @cython.exceptval(check=False)
 def contact(
-    series: Series,
+    series: FlowSeries,
     j: cython.Py_ssize_t,
     state: cython.int,
     z: cython.double[:, ::1],
@@ -370,7 +371,7 @@ def contact(
 @cython.nogil
 @cython.exceptval(check=False)
 def grade(
-    series: Series,
+    series: FlowSeries,
     z: cython.double[:, ::1],
     a: cython.Py_ssize_t,
     y: cython.double[:, ::1],
@@ -435,14 +436,14 @@ NOTHING = cython.declare(cython.double, 1e-20)  # of the first term: those from 
 
 
 @cython.cclass
-class Forced(Series):
-    """`refresh` makes the columns of a flow for the frequency `omega` [rad/s], for one step; see `Pool`.
+class ForcedFlows(FlowSeries):
+    """`refresh` makes the columns of a flow for `omega` [rad/s] and one step; as `FlowArrays`.
 
     Those for more are made where they are needed, by `reach`.
     """
 
     def __init__(self, matrices: Matrices, options: FlowOptions = TIME.flows) -> None:
-        Series.__init__(self, matrices, options)
+        FlowSeries.__init__(self, matrices, options)
         self.whole = np.zeros(self.linear)
 
     @cython.cfunc
@@ -636,14 +637,14 @@ class Forced(Series):
 
 
 @cython.cclass
-class Exits(Forced):
-    """`watch` tells the exits on the steps of a block, `leave` their series in a step; see `Pool`.
+class ExitFunctions(ForcedFlows):
+    """`watch` tells the exits on the steps of a block, `leave` their series in a step; see `FlowArrays`.
 
     What these need for a new frequency is made where it is needed, by `make_columns` and `expand`.
     """
 
     def __init__(self, matrices: Matrices, options: FlowOptions = TIME.flows) -> None:
-        Forced.__init__(self, matrices, options)
+        ForcedFlows.__init__(self, matrices, options)
         self._rotated = np.zeros((self.waves, ORDER))
 
     @cython.cfunc
@@ -656,7 +657,7 @@ class Exits(Forced):
         b: cython.int
         w: cython.Py_ssize_t
         made: cython.bint = self.made_for[slot] == self.omega
-        Forced.refresh(self, slot)
+        ForcedFlows.refresh(self, slot)
         if made:
             return 0
         self._angles(slot)
@@ -928,8 +929,8 @@ _POWERS = cython.declare(cython.int, 8)  # of two, of the steps by which a flow 
 
 
 @cython.cclass
-class Flows(Exits):
-    """The flows of a scene, and their forced columns at the frequency `omega` [rad/s]; see `Pool`."""
+class Flows(ExitFunctions):
+    """The flows of a scene, and their forced columns at the frequency `omega` [rad/s]; see `FlowArrays`."""
 
     @cython.cfunc
     @cython.nogil

@@ -14,7 +14,7 @@ from fcm.model.scene import Scene
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.options import TIME, TimeOptions
 from fcm.time_domain.schedule_plan import Plan
-from fcm.time_domain.schedule_record import Passed, Record, record, unfinished
+from fcm.time_domain.schedule_record import CompletedPhase, Record, record, unfinished
 from fcm.time_domain.simulation import Progress
 
 
@@ -33,11 +33,11 @@ class Histories:
         return all(one.complete for one in self.records)
 
 
-class Kept(Protocol):
+class SavedRecords(Protocol):
     """What is kept of a run, by the number of the curve (`fcm.run.Results`)."""
 
     finished: dict[int, list[Any]]  # one `Record`
-    states: dict[int, list[Any]]  # `Passed`, of the first phases
+    states: dict[int, list[Any]]  # `CompletedPhase`, of the first phases
 
     def add(self, number: int, results: list[Any], /) -> None:
         """A curve is finished."""
@@ -47,7 +47,10 @@ class Kept(Protocol):
 
 
 def histories(
-    scene: Scene, progress: Progress | None = None, kept: Kept | None = None, options: TimeOptions = TIME
+    scene: Scene,
+    progress: Progress | None = None,
+    kept: SavedRecords | None = None,
+    options: TimeOptions = TIME,
 ) -> Histories:
     """Simulate the schedule of a scene, for each combination of its swept values.
 
@@ -104,7 +107,7 @@ def _record(
     curve: Scene,
     plan: Plan,
     progress: Progress | None,
-    kept: Kept | None,
+    kept: SavedRecords | None,
     options: TimeOptions = TIME,
 ) -> Record:
     """The record of a curve, from what is kept of it on."""
@@ -113,7 +116,7 @@ def _record(
     if number in kept.finished:
         whole: Record = kept.finished[number][0]
         return whole
-    passed: Sequence[Passed] = kept.states.get(number, ())
+    passed: Sequence[CompletedPhase] = kept.states.get(number, ())
     made = record(curve, plan, progress, passed, lambda one: kept.save(number, one), options)
     if not made.interrupted:
         kept.add(number, [made])

@@ -170,8 +170,8 @@ def _shortened(states: str, options: TimeOptions = TIME) -> str:
     """
     return (
         states
-        if len(states) <= options.history.letters
-        else f"{states[: options.history.letters]}... ({len(states)})"
+        if len(states) <= options.history.max_letters
+        else f"{states[: options.history.max_letters]}... ({len(states)})"
     )
 
 

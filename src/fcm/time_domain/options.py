@@ -9,41 +9,41 @@ from dataclasses import dataclass
 class SimulationOptions:
     """The exact motion.
 
-    transitions: of contacts in one cycle, at most; with more they chatter.
+    max_transitions: of contacts in one cycle, at most; with more they chatter.
     """
 
-    transitions: int = 200_000
+    max_transitions: int = 200_000
 
 
 @dataclass(frozen=True)
 class SettlingOptions:
     """Whether a transient has settled.
 
-    cycles: whose amplitudes are compared with those of as many before. rounding: relative change that is
-    none. least: part of the greatest amplitude; smaller ones are not judged. settled: relative change of the
-    amplitudes that is still to come, up to which the motion is periodic.
+    cycles: whose amplitudes are compared with those of as many before. min_change: relative change that is
+    none. min_amplitude: part of the greatest amplitude; smaller ones are not judged. tolerance: relative
+    change of the amplitudes that is still to come, up to which the motion is periodic.
     """
 
     cycles: int = 10
-    rounding: float = 1e-9
-    least: float = 1e-6
-    settled: float = 1e-3
+    min_change: float = 1e-9
+    min_amplitude: float = 1e-6
+    tolerance: float = 1e-3
 
 
 @dataclass(frozen=True)
 class HistoryOptions:
     """What is kept of a schedule.
 
-    samples, fewest: of a cycle, at most and at least. displacements: that are sampled, of all curves; 32 MB
-    before compression. transitions: kept with their times; all are counted. letters: of a sequence of states
-    in a summary.
+    max_samples, min_samples: of a cycle, at most and at least. max_displacements: that are sampled, of all
+    curves; 32 MB before compression. max_transitions: kept with their times; all are counted. max_letters: of
+    a sequence of states in a summary.
     """
 
-    samples: int = 64
-    fewest: int = 8
-    displacements: int = 4_000_000
-    transitions: int = 1_000_000
-    letters: int = 40
+    max_samples: int = 64
+    min_samples: int = 8
+    max_displacements: int = 4_000_000
+    max_transitions: int = 1_000_000
+    max_letters: int = 40
 
 
 @dataclass(frozen=True)

@@ -94,7 +94,10 @@ def _before(values: FloatArray | IntArray) -> FloatArray:
 
 def _density(cycles: int, columns: int, options: TimeOptions = TIME) -> tuple[int, int]:
     """Samples in a cycle, and of so many cycles one is sampled."""
-    samples = options.history.samples
-    while samples > options.history.fewest and cycles * samples * columns > options.history.displacements:
+    samples = options.history.max_samples
+    while (
+        samples > options.history.min_samples
+        and cycles * samples * columns > options.history.max_displacements
+    ):
         samples //= 2
-    return samples, max(int(np.ceil(cycles * samples * columns / options.history.displacements)), 1)
+    return samples, max(int(np.ceil(cycles * samples * columns / options.history.max_displacements)), 1)

@@ -46,7 +46,7 @@ class PhaseResult:
     @property
     def settled(self) -> bool:
         """Whether the motion is shown to have become periodic."""
-        return self.unsettled <= TIME.settling.settled
+        return self.unsettled <= TIME.settling.tolerance
 
 
 @dataclass
@@ -86,7 +86,7 @@ class Record:
 
 
 @dataclass(frozen=True)
-class Passed:
+class CompletedPhase:
     """What is reported of a whole phase, and the state at its end: the schedule can go on from there."""
 
     measures: FloatArray  # (4, cycle, dof) amplitude, mean, greatest and least displacement
@@ -104,8 +104,8 @@ def record(
     scene: Scene,
     plan: Plan | None = None,
     progress: Progress | None = None,
-    passed: Sequence[Passed] = (),
-    save: Callable[[Passed], None] | None = None,
+    passed: Sequence[CompletedPhase] = (),
+    save: Callable[[CompletedPhase], None] | None = None,
     options: TimeOptions = TIME,
 ) -> Record:
     """Simulate the schedule of a scene, and keep what is reported of it.
@@ -185,7 +185,7 @@ class _Transitions:
                 if before == letter:
                     continue
                 found += 1
-                if len(self.times) < self.options.history.transitions:
+                if len(self.times) < self.options.history.max_transitions:
                     self.times.append(start + begun)
                     self.contacts.append(j)
                     self.states.append(LETTERS.index(letter))
@@ -219,20 +219,20 @@ class _Recorder:
         self.measures[:, self.done] = found.amplitude, found.mean, found.greatest, found.least
         self.end, self.done = end, self.done + 1
 
-    def passed(self) -> Passed:
+    def passed(self) -> CompletedPhase:
         """The last phase, which is whole, and not the last of the schedule."""
         tally, found = self.tallies[-1], self.transitions
         cycles, instants = slice(tally.first, self.done), self._instants(tally.first, self.done)
         times, contacts, states = (
             values[tally.kept :] for values in (found.times, found.contacts, found.states)
         )
-        return Passed(
+        return CompletedPhase(
             self.measures[:, cycles].copy(), self.displacement[instants].copy(), self.state[instants].copy(),
             (np.array(times), np.array(contacts, dtype=np.int16), np.array(states, dtype=np.int8)),
             found.letters, tally.transitions, tally.states or (), tally.energy, self.end,
         )  # fmt: skip
 
-    def take(self, passed: Passed) -> None:
+    def take(self, passed: CompletedPhase) -> None:
         """A phase that was simulated before."""
         found, first = self.transitions, self.done
         tally = _Tally(first, len(found.times), passed.energy, passed.count, passed.states)

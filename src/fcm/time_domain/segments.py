@@ -16,11 +16,11 @@ from fcm.time_domain.flow import ORDER
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
     from cython.cimports.fcm.stability.state_sequence import FREE, StateSequence
-    from cython.cimports.fcm.time_domain.flow import Flows, Pool, summed
+    from cython.cimports.fcm.time_domain.flow import FlowArrays, Flows, summed
 else:
     from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
     from fcm.stability.state_sequence import FREE, StateSequence
-    from fcm.time_domain.flow import Flows, Pool, summed
+    from fcm.time_domain.flow import FlowArrays, Flows, summed
 
 
 TINY = cython.declare(cython.double, 1e-300)  # instead of a division by zero where nothing moves
@@ -75,7 +75,7 @@ class Segments:
     def scale(
         self,
         per_unit: cython.double[::1],
-        flows: Pool,
+        flows: FlowArrays,
     ) -> FloatArray:
         """The size of the displacements, velocities and friction forces: (2 modes + contacts,).
 

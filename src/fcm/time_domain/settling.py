@@ -36,10 +36,10 @@ def unsettled(amplitude: FloatArray, options: TimeOptions = TIME) -> float:
     if amplitude.shape[0] < 2 * options.settling.cycles + 1:
         return float("nan")
     size = np.abs(amplitude[-1])
-    size = np.maximum(size, options.settling.least * size.max(initial=0.0))
+    size = np.maximum(size, options.settling.min_amplitude * size.max(initial=0.0))
     size = np.where(size > 0.0, size, 1.0)
     later = np.ptp(amplitude[-options.settling.cycles - 1 :], axis=0) / size
     earlier = np.ptp(amplitude[-2 * options.settling.cycles - 1 : -options.settling.cycles], axis=0) / size
     decays = earlier > later
     left = np.where(decays, later**2 / np.where(decays, earlier - later, 1.0), np.inf)
-    return float(np.where(later <= options.settling.rounding, later, left).max(initial=0.0))
+    return float(np.where(later <= options.settling.min_change, later, left).max(initial=0.0))

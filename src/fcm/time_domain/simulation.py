@@ -128,7 +128,7 @@ def march(
 ) -> tuple[Segments, FloatArray, Codes]:
     """The segments of the motion over a duration [s], the state vector and the states at its end."""
     march = system.march()
-    march.begins(y, states, duration, options.simulation.transitions)
+    march.begins(y, states, duration, options.simulation.max_transitions)
     segments = _marched(system, march, options)
     return segments, np.array(march.y)[0], np.array(march.states)[0]
 
@@ -138,7 +138,7 @@ def march_from(
 ) -> tuple[Segments, FloatArray]:
     """The segments from x = (q, q', f) at the forces' angle 0 on, and the state vector at their end."""
     march = entered(system, x)
-    march.lasts(duration, options.simulation.transitions)
+    march.lasts(duration, options.simulation.max_transitions)
     segments = _marched(system, march, options)
     return segments, np.array(march.y)[0]
 
@@ -152,9 +152,9 @@ def _marched(system: System, march: March, options: TimeOptions = TIME) -> Segme
     while (stopped := march.go()) != Stopped.DONE:
         if stopped == Stopped.MISSING:
             system.make(np.asarray(march.states)[0])
-        elif stopped == Stopped.FULL and len(march.segments) > options.simulation.transitions:
+        elif stopped == Stopped.FULL and len(march.segments) > options.simulation.max_transitions:
             raise CycleError(
-                f"more than {options.simulation.transitions} transitions in one cycle at {_at(system)}: "
+                f"more than {options.simulation.max_transitions} transitions in one cycle at {_at(system)}: "
                 "the contacts chatter; give the modes more damping, or the contacts less stiffness"
             )
         elif stopped == Stopped.UNDECIDED:

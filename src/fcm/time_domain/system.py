@@ -28,7 +28,7 @@ LETTERS = "SEPN"  # of the codes SEPARATED, STICKING, POSITIVE_SLIP, NEGATIVE_SL
 OWN = ("scene", "omega")  # what systems of a scene do not have in common, or must not keep
 
 
-class Parts(NamedTuple):
+class ReportedRows(NamedTuple):
     """Rows of what is reported of a motion."""
 
     displaced: slice  # of each degree of freedom
@@ -154,7 +154,7 @@ class System:
         """Normal loads n_0 + k_v v of the contacts, negative while they are open: (contact,)."""
         return self.preload + y[self.n]
 
-    def _scans(self) -> tuple[Scan, Scan, Scan, Parts]:
+    def _scans(self) -> tuple[Scan, Scan, Scan, ReportedRows]:
         """Of the displacements alone, of the limits of slip, and of all that is reported with its parts."""
         displacements = np.zeros((self.scene.modal.shapes.shape[1], self.linear))
         displacements[:, self.q] = self.scene.modal.shapes.T
@@ -162,7 +162,7 @@ class System:
         rows = displacements, self.limit_rows, np.concatenate(parts)
         first, second, third = (Scan(self.flows, Rows(each)) for each in rows)
         ends = np.cumsum([0, *(len(part) for part in parts)]).tolist()
-        return first, second, third, Parts(*(slice(a, b) for a, b in pairwise(ends)))
+        return first, second, third, ReportedRows(*(slice(a, b) for a, b in pairwise(ends)))
 
     def _force_rows(self) -> FloatArray:
         """Rows of k_v v, then of f, of each contact, for y without the forces' angle."""

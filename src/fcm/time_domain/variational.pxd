@@ -50,7 +50,7 @@ cdef extern from *:
     Py_ssize_t fours_times "fcm_fours_times"(
         double *, Py_ssize_t, Py_ssize_t, const double *, Py_ssize_t, double *) noexcept nogil
 
-cdef class Along:
+cdef class VariationalFlow:
     cdef readonly Flows flows
     cdef readonly Py_ssize_t unknowns
     cdef readonly double[:, ::1] columns
@@ -65,7 +65,7 @@ cdef class Along:
     cdef int _fraction(self, Py_ssize_t slot, double x, Py_ssize_t orders) except -1 nogil
     cdef int _part(self, Py_ssize_t slot, double x) except -1 nogil
 
-cdef class Derivative(Along):
+cdef class Derivative(VariationalFlow):
     cdef readonly Py_ssize_t at
     cdef readonly double position
     cdef readonly double[::1] rate

@@ -1,17 +1,17 @@
 """The derivative of the motion by its start, and by the frequency or the level of the forces.
 
-Along a flow it is moved as by `Along`. Across a transition whose instant moves with the start or with the
-frequency it is the saltation matrix
+Along a flow it is moved as by `VariationalFlow`. Across a transition whose instant moves with the start or
+with the frequency it is the saltation matrix
 
     S = R + (F+ - R F-) g / (g F-),    F = A y at the transition,
 
 with g the row that vanishes there and R the derivative of what the transition does to the state.
 
-Along one flow the derivative by the start is the exponential of the flow's matrix (`Along`). The frequency
-acts on the forces alone, which may also grow with it: at a fixed time the derivatives of sin(h omega t) and
-cos(h omega t) are h t cos(h omega t) and -h t sin(h omega t), and that of the columns of the forces is known
-with the flow. Of the motion itself only the angle of the forces is needed. The level of the forces, a factor
-of sin and cos, acts as a start does at which they alone differ.
+Along one flow the derivative by the start is the exponential of the flow's matrix (`VariationalFlow`). The
+frequency acts on the forces alone, which may also grow with it: at a fixed time the derivatives of sin(h
+omega t) and cos(h omega t) are h t cos(h omega t) and -h t sin(h omega t), and that of the columns of the
+forces is known with the flow. Of the motion itself only the angle of the forces is needed. The level of the
+forces, a factor of sin and cos, acts as a start does at which they alone differ.
 
 Along one direction the derivative is known at many instants (`Directional`). Instants within one step share
 its series, as those of the extremes of many displacements do.
@@ -36,7 +36,7 @@ _POWERS = cython.declare(cython.int, 8)  # of two, of the steps by which a flow 
 
 
 @cython.cclass
-class Along:
+class VariationalFlow:
     """`follow` moves the rows of `columns` (unknowns + 2, size) along a flow.
 
     Row k < unknowns is a derivative of the state vector by its start; the row after them that by the
@@ -270,7 +270,7 @@ _NEGATIVE_SLIP = cython.declare(cython.int, 3)
 
 
 @cython.cclass
-class Derivative(Along):
+class Derivative(VariationalFlow):
     """Of a motion by x = (q, q', f) at its start, and by the frequency or by the level of the forces.
 
     Row k < unknowns of `columns` is the derivative of the state vector by the component k of x; the row after
@@ -279,7 +279,7 @@ class Derivative(Along):
     """
 
     def __init__(self, flows: Flows, unknowns: int = 0) -> None:
-        Along.__init__(self, flows, unknowns or 2 * flows.modes + flows.contacts)
+        VariationalFlow.__init__(self, flows, unknowns or 2 * flows.modes + flows.contacts)
         self.at, self.position = 0, 0.0
         self.rate, self._rates = np.zeros(flows.size), np.zeros((2, flows.size))
 

@@ -31,9 +31,9 @@ from fcm.tracking.peak_envelope import (
     MonotonePiece,
     PieceHeight,
     Target,
-    gaps,
-    least,
+    envelope_minimum,
     pieces_of,
+    uncovered_values,
 )
 from fcm.tracking.starts import for_scene, special_points
 from fcm.tracking.tracked_point import TrackedPoint, TrackingRun
@@ -115,7 +115,7 @@ class LowestPeakSearch:
     def best(self) -> EnvelopeMinimum | None:
         """Of what was followed, and of what is met where nothing was."""
         while True:
-            best = least(self.way, self.pieces())
+            best = envelope_minimum(self.way, self.pieces())
             new = [s for s in (*self._unknown(best), *self._lower(best)) if s not in self.visited]
             if not new or len(self.visited_values) >= self.options.max_visits:
                 return best
@@ -124,7 +124,9 @@ class LowestPeakSearch:
 
     def _unknown(self, best: EnvelopeMinimum | None) -> list[float]:
         """Values about which nothing is followed, but for those where all is far above the least."""
-        return [s for s in gaps(self.way, self.pieces()) if best is None or self._is_near(s, best)]
+        return [
+            s for s in uncovered_values(self.way, self.pieces()) if best is None or self._is_near(s, best)
+        ]
 
     def _is_near(self, s: float, best: EnvelopeMinimum) -> bool:
         if (

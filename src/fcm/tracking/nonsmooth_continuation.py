@@ -2,7 +2,7 @@
 
 Each piece is followed by `fcm.continuation.follow`. It ends where its equations do not hold any more: at a
 value of the number where they have a kink, at a corner of the response, where another extreme of the cycle
-becomes the greatest. `JointCrossing` finds the way on from there, as `corner` and `circle` say.
+becomes the greatest. `CornerCrossing` finds the way on from there, as `corner` and `circle` say.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ import numpy as np
 
 from fcm.continuation import End, Events, FollowOptions, Mark, Path, Status, follow
 from fcm.model.scene import FloatArray
+from fcm.tracking.corner_crossing import CornerCrossing
 from fcm.tracking.extended_system import Condition
-from fcm.tracking.joints import JointCrossing
 from fcm.tracking.peak_check import is_top, overtaken
 from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingRun
 
@@ -40,7 +40,7 @@ class _End:
     then: Callable[[], bool | Ending]
 
 
-class Pieces(JointCrossing):
+class Pieces(CornerCrossing):
     """The smooth pieces of one curve, one after the other."""
 
     def land(self, z: FloatArray) -> TrackedPoint | None:

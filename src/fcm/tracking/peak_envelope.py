@@ -130,7 +130,7 @@ def _monotone(track: SpecialPointCurve) -> list[list[int]]:
     return [part for part in parts if len(part) > 1]
 
 
-def least(way: TrackingRun, pieces: Sequence[MonotonePiece]) -> EnvelopeMinimum | None:
+def envelope_minimum(way: TrackingRun, pieces: Sequence[MonotonePiece]) -> EnvelopeMinimum | None:
     """The optimum; None where there is no piece."""
     if not pieces:
         return None
@@ -211,7 +211,7 @@ def _end_of_flat(flat: Callable[[float], bool], s: float, further: FloatArray, f
     return s
 
 
-def gaps(way: TrackingRun, pieces: Sequence[MonotonePiece]) -> list[float]:
+def uncovered_values(way: TrackingRun, pieces: Sequence[MonotonePiece]) -> list[float]:
     """Values of s about which no piece says anything: the ends of the span, or the middle of a gap."""
     low, high = way.span
     least, found, last = way.options.envelope.min_gap * (high - low), [], low

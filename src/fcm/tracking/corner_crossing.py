@@ -16,7 +16,7 @@ from fcm.tracking.onset_functions import values
 from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingRun, kinks
 
 
-class JointCrossing:
+class CornerCrossing:
     """z, t: the point that the curve has come to, and the direction there in the problem's scale, a unit
     vector; points: all points until now; first: the first step of the next piece."""
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 OF_FAR_MOTIONS = ProlongationOptions(damped=DampedOptions(min_contacts=0))
 
 
-def partner_elsewhere(
+def further_partner_pieces(
     system: System,
     paths: Sequence[Path],
     shown: Sequence[ReportedQuantities],
@@ -52,7 +52,7 @@ def partner_elsewhere(
     """
     found: list[list[CurvePiece]] = [[] for _ in paths]
     known = [piece for one in errors for piece in one.pieces]
-    untold = [_Untold(*one, system.harmonics) for one in zip(paths, shown, errors, strict=True)]
+    untold = [_UnknownError(*one, system.harmonics) for one in zip(paths, shown, errors, strict=True)]
     for piece in known:
         _told_by(piece, untold)
     part = share_of([path.evaluations for path in paths], first)
@@ -101,7 +101,7 @@ def affordable_partner(
     return more
 
 
-class _Untold:
+class _UnknownError:
     """The points of a path whose errors are not told, and whether they were tried, with the sizes of their
     motions."""
 
@@ -123,7 +123,7 @@ class _Untold:
         return int(np.where(self.tried, np.inf, self.size).argmin())
 
 
-def _told_by(piece: CurvePiece, untold: Sequence[_Untold]) -> None:
+def _told_by(piece: CurvePiece, untold: Sequence[_UnknownError]) -> None:
     for one in untold:
         one.size[piece.passes(one.path.parameter)] = np.inf
 

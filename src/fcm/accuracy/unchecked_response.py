@@ -158,7 +158,7 @@ def with_more(
         return None, () if more == wanted else wanted, False
     if work.seconds + found.seconds_with(more) > most:
         return None, more, False
-    stable = near(found, more)
+    stable = prolongated_solutions(found, more)
     try:
         with work.limited_to(most):
             then = found.prolongated(more, stable, progress)
@@ -168,7 +168,7 @@ def with_more(
     return (then if then.shown else None), (), False
 
 
-def near(before: UncheckedResponse, harmonics: tuple[int, ...]) -> list[FloatArray]:
+def prolongated_solutions(before: UncheckedResponse, harmonics: tuple[int, ...]) -> list[FloatArray]:
     """Solutions with more harmonics near the branches of a response."""
     system = before.system
     return list(prolongated(system.with_harmonics(harmonics), system.harmonics, before.traced.branches.paths))

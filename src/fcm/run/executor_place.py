@@ -13,7 +13,7 @@ from typing import Any
 import fcm
 from fcm.run.fingerprint import program
 from fcm.run.options import RUN
-from fcm.run.places import Gone, Place
+from fcm.run.places import Place, PlaceClosed
 from fcm.run.work import Attempt, Batch, Compute, Lost, Report, attempt
 from fcm.threads import one_thread
 
@@ -47,7 +47,7 @@ def other_fcm(own: tuple[str, bytes], asked_by: tuple[str, bytes]) -> str:
     return f"its fcm {own[0]} has other sources, another Python, numpy or scipy than this one"
 
 
-class Elsewhere(Place):
+class ExecutorPlace(Place):
     """An executor of `concurrent.futures`; its owner ends it. Work that has begun cannot be stopped there."""
 
     def __init__(self, compute: Compute, executor: Executor) -> None:
@@ -60,7 +60,7 @@ class Elsewhere(Place):
         try:
             future = self._given(self.compute, task)
         except Exception as error:  # it is broken, or was shut down
-            raise Gone(_broken(error)) from error
+            raise PlaceClosed(_broken(error)) from error
         self._sizes[future] = len(batch)
         return future
 
@@ -69,9 +69,9 @@ class Elsewhere(Place):
         try:
             return future.result()
         except (BrokenExecutor, CancelledError) as error:
-            raise Gone(_broken(error)) from error
+            raise PlaceClosed(_broken(error)) from error
         except Refused as refusal:
-            raise Gone(f"a worker of the executor was refused: {refusal}") from None
+            raise PlaceClosed(f"a worker of the executor was refused: {refusal}") from None
         except Exception as error:  # what is computed there never raises: it did not get there, or back
             return Attempt([Lost(self._not_back(error))] * size)
 
