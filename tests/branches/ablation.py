@@ -13,7 +13,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from fcm.accuracy import outline, refinement
+from fcm.accuracy import refinement, unchecked_response
 from fcm.branches import trace as branch_trace
 from fcm.response import refined
 from fcm.response.request import Request
@@ -33,7 +33,7 @@ OFF = {
         (refined, "symmetry_lost", lambda system, found: ()),
     ],
     "prolongation": [
-        (outline, "near", lambda before, harmonics: []),
+        (unchecked_response, "prolongated_solutions", lambda before, harmonics: []),
         (refinement, "near", lambda before, harmonics: []),
     ],
     "levels below peaks": [(refined, "with_levels_below_peaks", lambda found, accuracy: found)],

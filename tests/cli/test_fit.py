@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 import xarray
 
-from fcm.fit.solve import Reached
+from fcm.fit.solve import SearchResult
 from fcm.response import trace
-from fcm.response.fit import _fits
+from fcm.response.fit import is_search_result
 from fcm.response.options import FITTED_RESPONSE
 from fcm.scene.load import load_scene
 
@@ -169,7 +169,13 @@ def test_what_is_kept_of_other_data_is_not_gone_on_with(measured, tmp_path):
 
 def test_work_that_no_search_can_have_left_is_passed_over(measured, tmp_path):
     """As of unfinished work that something else has written."""
-    good = Reached(np.array([0.5, 0.02]), 1.0)
-    assert _fits(2, [good]) and _fits(2, [Reached(None, np.inf)])
-    wrong = [Reached(np.array([0.5]), 1.0), Reached(np.array([0.5, np.nan]), 1.0), Reached("x", 1.0)]
-    assert not any(_fits(2, [one]) for one in [*wrong, good.x, None]) and not _fits(2, good)
+    good = SearchResult(np.array([0.5, 0.02]), 1.0)
+    assert is_search_result(2, [good]) and is_search_result(2, [SearchResult(None, np.inf)])
+    wrong = [
+        SearchResult(np.array([0.5]), 1.0),
+        SearchResult(np.array([0.5, np.nan]), 1.0),
+        SearchResult("x", 1.0),
+    ]
+    assert not any(is_search_result(2, [one]) for one in [*wrong, good.x, None]) and not is_search_result(
+        2, good
+    )

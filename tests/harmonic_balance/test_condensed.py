@@ -14,7 +14,7 @@ from fcm.harmonic_balance.dense_jacobian import jacobian_of
 from fcm.harmonic_balance.modal_condensation import CondensationOptions
 from fcm.harmonic_balance.options import HARMONIC_BALANCE, DigitOptions, HarmonicBalanceOptions
 from fcm.harmonic_balance.response_quantities import recorded
-from fcm.harmonic_balance.rounding import _moved_across_curve, with_precise_fundamental
+from fcm.harmonic_balance.rounding import moved_across_curve, with_precise_fundamental
 from fcm.harmonic_balance.system import System
 from fcm.scene import scene_from_dict
 
@@ -258,7 +258,7 @@ def test_rounding_of_many_contacts_is_that_of_random_errors(condensation):
     balance.evaluate(path.z[i])
     errors = np.random.default_rng(4).uniform(0.5, 1.0, balance.unknowns)
     many = replace(HARMONIC_BALANCE.digits, min_unknowns=balance.unknowns)
-    found = _moved_across_curve(balance, path.z[i], path.direction[i], errors, many)
+    found = moved_across_curve(balance, path.z[i], path.direction[i], errors, many)
     scale = np.array(balance.scale)
     row = path.direction[i] / scale
     matrix = np.vstack((jacobian_of(balance) * scale, row / np.linalg.norm(row)))

@@ -7,11 +7,12 @@ import pytest
 
 from fcm.branches.force_level import (
     LEVEL_REACH,
+    LevelRange,
     LevelReachOptions,
-    _turned,
     level_curve,
     level_frequencies,
     solutions,
+    turned_back,
 )
 from fcm.branches.linear_limits import highest_linear_limit, lowest_linear_limit
 from fcm.branches.options import LEVEL_CURVE
@@ -34,9 +35,11 @@ def test_a_hasty_curve_of_many_contacts_comes_to_the_same_with_less():
         if linear >= top:
             continue
         one = level_curve(
-            system, omega, (0.0, top), LEVEL_CURVE.max_step_stations, (1.0,), linear, hasty=True, lightly=True
+            system,
+            omega,
+            LevelRange((0.0, top), LEVEL_CURVE.max_step_stations, (1.0,), linear, True, True),
         )
-        other = level_curve(system, omega, (0.0, top), LEVEL_CURVE.max_step, (1.0,), linear)
+        other = level_curve(system, omega, LevelRange((0.0, top), LEVEL_CURVE.max_step, (1.0,), linear))
         there, true = (path.z[path.parameter == 1.0, :-1] for path in (one, other))
         assert there == pytest.approx(true, abs=1e-9 * np.abs(other.z[:, :-1]).max())
         hasty, careful = hasty + one.evaluations, careful + other.evaluations
@@ -85,7 +88,7 @@ def test_a_curve_that_turned_far_below_the_level_of_the_scene_is_followed_no_fur
 
     def turned(*levels):
         z = np.array(levels)[:, None]
-        return _turned(
+        return turned_back(
             Path(z, z, np.zeros(len(z), dtype=np.intp), np.ones(len(z)), Status.COMPLETE, 0), options
         )
 

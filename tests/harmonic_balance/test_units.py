@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fcm.branches.force_level import level_curve
+from fcm.branches.force_level import LevelRange, level_curve
 from fcm.harmonic_balance.options import HarmonicBalanceOptions, UnitOptions
 from fcm.harmonic_balance.system import System
 from fcm.scene import scene_from_dict
@@ -46,7 +46,7 @@ def plane(contacts):
 
 
 def raised(system, omega=1.3):
-    return level_curve(system, omega, (0.0, 3.0), 1.0, (1.0,), 0.0, True, True)
+    return level_curve(system, omega, LevelRange((0.0, 3.0), 1.0, (1.0,), 0.0, True, True))
 
 
 def test_level_curves_step_over_corners_of_single_contacts():

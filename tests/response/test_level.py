@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fcm.branches.force_level import level_curve, resonances, solutions
+from fcm.branches.force_level import LevelRange, level_curve, resonances, solutions
 from fcm.branches.linear_limits import highest_linear_limit, lowest_linear_limit
 from fcm.branches.shared_levels import clear, shared_curve
 from fcm.continuation import Status
@@ -72,9 +72,11 @@ def test_where_the_level_is_not_followed_to_its_end_branches_are_not_said_to_be_
     for frequency in (*scene.frequency_range, *resonances(system)):
         end = highest_linear_limit(system, frequency)
         linear = min(0.9 * lowest_linear_limit(system, frequency), 1.0)  # from where the response begins, too
-        exactly = level_curve(system, frequency, (0.0, end), linear=linear)
+        exactly = level_curve(system, frequency, LevelRange((0.0, end), linear=linear))
         over_slight_corners = level_curve(
-            system, frequency, (0.0, end), linear=linear, hasty=True, lightly=True
+            system,
+            frequency,
+            LevelRange((0.0, end), linear=linear, stations_only=True, over_corners=True),
         )
         paths = exactly, over_slight_corners
         reached = any(path.parameter[-1] == pytest.approx(end) for path in paths)
@@ -92,7 +94,9 @@ def test_a_curve_of_levels_is_followed_where_next_to_no_force_is_left():
     assert raised.complete and len(raised.level_folds) == 2 and min(raised.level_folds) < level
     system = System(scene, up_to(5))
     path = level_curve(
-        system, 1.5, (0.0, 2.0), stations=(level,), linear=0.9 * lowest_linear_limit(system, 1.5)
+        system,
+        1.5,
+        LevelRange((0.0, 2.0), stations=(level,), linear=0.9 * lowest_linear_limit(system, 1.5)),
     )
     passings = path.z[path.parameter == level]
     passings[:, -1] = 1.5
@@ -110,7 +114,7 @@ def test_a_curve_of_levels_is_followed_where_next_to_no_force_is_left():
 def test_what_is_not_followed_of_a_level_has_no_solution(scene, frequency):
     """Beside the curve of as many harmonics, followed up to where nothing changes any more."""
     system = System(scene, up_to(7))
-    whole = level_curve(system, frequency, (0.0, highest_linear_limit(system, frequency)))
+    whole = level_curve(system, frequency, LevelRange((0.0, highest_linear_limit(system, frequency))))
     passings = whole.z[whole.parameter == 1.0, :-1]
     found = solutions(system, frequency)
     assert found.complete and len(found.solutions) == len(passings)
@@ -123,7 +127,7 @@ def test_a_passing_that_long_steps_lead_across_is_found():
     scene = replace(scene, forces=tuple(replace(one, amplitude=5.0 * one.amplitude) for one in scene.forces))
     system = System(scene)
     for frequency in (*resonances(system), 1.1800850503105396):
-        path = level_curve(system, frequency, (0.0, highest_linear_limit(system, frequency)))
+        path = level_curve(system, frequency, LevelRange((0.0, highest_linear_limit(system, frequency))))
         passings = path.z[path.parameter == 1.0, :-1]
         found = solutions(system, frequency)
         assert path.status is Status.COMPLETE and found.complete
@@ -152,7 +156,7 @@ def test_curves_of_other_preloads_share_a_curve_of_levels(scene, frequency, prel
     for n_0, one in found[0].items():
         assert one.complete and np.array_equal(one.solutions, found[1][n_0].solutions)
         own = System(replace(preloaded(scene, n_0), parameters={}), up_to(count))
-        path = level_curve(own, frequency, (0.0, highest_linear_limit(own, frequency)))
+        path = level_curve(own, frequency, LevelRange((0.0, highest_linear_limit(own, frequency))))
         passings = path.z[path.parameter == 1.0, :-1]
         assert np.array(one.solutions)[:, :-1] == pytest.approx(passings, rel=1e-6, abs=1e-7)
         numbers.add(len(passings))
@@ -165,7 +169,7 @@ def test_one_curve_of_levels_is_followed_for_a_sweep_of_preloads():
 
     def counted(system, omega):
         followed.append(system)
-        return level_curve(system, omega, (0.0, highest_linear_limit(system, omega)))
+        return level_curve(system, omega, LevelRange((0.0, highest_linear_limit(system, omega))))
 
     clear()
     systems = [System(preloaded(isola(), n_0)) for n_0 in (-15.0, -15.5, -60.0)]
@@ -183,7 +187,7 @@ def test_a_curve_of_levels_in_common_is_interrupted_as_that_of_a_system_of_its_o
         raise KeyboardInterrupt
 
     def followed(system, omega):
-        return level_curve(system, omega, (0.0, highest_linear_limit(system, omega)))
+        return level_curve(system, omega, LevelRange((0.0, highest_linear_limit(system, omega))))
 
     system = System(preloaded(isola(), -15.0))
     system.normalised.work.poll()

@@ -11,7 +11,7 @@ import pytest
 import scipy.sparse
 from scipy.io import mmwrite, savemat
 
-from fcm.scene import SceneError, reader_process, scene_from_dict
+from fcm.scene import SceneError, scene_from_dict
 
 from ..program import AS_A_MODULE, python
 
@@ -144,7 +144,8 @@ def test_every_byte_of_a_matrix_market_file(tmp_path):
 def test_a_signal_becomes_a_sentence(tmp_path, monkeypatch):
     """Were a file to end the reader all the same, the program would say so."""
     savemat(tmp_path / "m.mat", MODES)
-    monkeypatch.setattr(reader_process, "_CODE", "import os; os.kill(os.getpid(), 11)")
+    (tmp_path / "sitecustomize.py").write_text("import os; os.kill(os.getpid(), 11)")
+    monkeypatch.syspath_prepend(tmp_path)  # where the reader's own process looks, too
     data = {"modal": {"file": "m.mat"}, "force": [], "response": {"frequency": [0.5, 1.5]}}
     with pytest.raises(SceneError, match=r"m.mat.* cannot be read: it is damaged: what it says of itself"):
         scene_from_dict(data, "test.toml", tmp_path)

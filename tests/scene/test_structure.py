@@ -9,7 +9,7 @@ import pytest
 import scipy.io
 import scipy.sparse
 
-from fcm.scene import SceneError, reader_process, scene_from_dict
+from fcm.scene import SceneError, scene_from_dict
 
 # three masses on springs: ground - 1 - 2 - 3
 K = np.array([[3.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 1.0]])
@@ -151,8 +151,11 @@ def test_op4(tmp_path):
 
 def test_op4_without_its_package(tmp_path, monkeypatch):
     (tmp_path / "K.op4").write_text("")
-    hidden = "import sys; sys.modules['pyyeti'] = None; " + reader_process._CODE
-    monkeypatch.setattr(reader_process, "_CODE", hidden)
+    package = tmp_path / "packages" / "pyyeti"
+    package.mkdir(parents=True)
+    missing = "raise ModuleNotFoundError(\"No module named 'pyyeti'\", name='pyyeti')"
+    (package / "__init__.py").write_text(missing)
+    monkeypatch.syspath_prepend(package.parent)  # where the reader's own process looks, too
     assert 'K.op4" cannot be read: it needs the package pyyeti: pip install ' in refused(
         tmp_path, stiffness="K.op4"
     )
@@ -170,8 +173,7 @@ def test_op4_with_its_package_broken(tmp_path, monkeypatch, content, why):
     package = tmp_path / "packages" / "pyyeti"
     package.mkdir(parents=True)
     (package / "__init__.py").write_text(content)
-    before = f"import sys; sys.path.insert(0, {str(package.parent)!r}); "
-    monkeypatch.setattr(reader_process, "_CODE", before + reader_process._CODE)
+    monkeypatch.syspath_prepend(package.parent)
     said = refused(tmp_path, stiffness="K.op4")
     assert f"which is installed and cannot be imported ({why})" in said
     assert "pip install" not in said

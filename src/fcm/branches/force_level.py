@@ -145,7 +145,7 @@ def _found(system: System, omega: float, linear: float, top: float) -> LevelSolu
     path, near = None, options.max_level_without_fold
     if len(system.scene.contacts) >= options.min_contacts and linear < near < top:
         path = _coarse_curve(system, omega, linear, near, (1.0,))
-        again = path.status is not Status.COMPLETE or _turned(path, options)
+        again = path.status is not Status.COMPLETE or turned_back(path, options)
         path = None if again and path.status is not Status.EVENT else path
     path = path or _coarse_curve(system, omega, linear, top, (1.0,))
     found = path.z[path.parameter == 1.0]
@@ -155,7 +155,7 @@ def _found(system: System, omega: float, linear: float, top: float) -> LevelSolu
     return LevelSolutions(omega, system.harmonics, tuple(found), complete, reach, turns)
 
 
-def _turned(path: Path, options: LevelReachOptions) -> bool:
+def turned_back(path: Path, options: LevelReachOptions) -> bool:
     """Whether a curve turns back by more than a beginning slip does, no further below 1 than it was followed
     above."""
     levels = path.parameter[path.parameter > 1.0 / options.max_level_without_fold]
@@ -199,12 +199,12 @@ def _coarse_curve(
     """The curve of the level, by long steps if those come to its end, and to its stations; shorter ones may
     where they do not."""
     options = system.option(LEVEL_CURVE)
-    for step, lightly in ((options.max_step_stations, True), (options.max_step, False)):
-        path = level_curve(system, omega, (0.0, top), step, stations, linear, True, lightly)
+    for step, over_corners in ((options.max_step_stations, True), (options.max_step, False)):
+        path = level_curve(system, omega, LevelRange((0.0, top), step, stations, linear, True, over_corners))
         if path.status in (Status.COMPLETE, Status.EVENT) and not _skips_station(path, stations):
             return path
     for step in (options.max_step, options.stalled_fraction * options.max_step):
-        path = level_curve(system, omega, (0.0, top), step, stations, linear)
+        path = level_curve(system, omega, LevelRange((0.0, top), step, stations, linear))
         if path.status not in (Status.STALLED, Status.AROUND):
             break
     return replace(path, status=Status.STALLED) if _skips_station(path, stations) else path
@@ -236,28 +236,49 @@ def _level_reach(system: System, status: Status, levels: FloatArray) -> float:
     return options.reach_factor * max(most, options.clear_level)  # however far apart the points are
 
 
-def level_curve(
-    system: System,
-    omega: float,
-    span: tuple[float, float],
-    step: float = LEVEL_CURVE.max_step,
-    stations: tuple[float, ...] = (1.0,),
-    linear: float = 0.0,
-    hasty: bool = False,
-    lightly: bool = False,
-) -> Path:
-    """Response at omega against the level of the forces, from rest, or from a level up to which it is
-    linear; hasty if only its stations matter, as of `follow`, lightly if slight corners are stepped over."""
+@dataclass(frozen=True)
+class LevelRange:
+    """Levels over which a response is followed, and how.
+
+    Attributes
+    ----------
+    span : (float, float)
+        Lowest and highest level.
+    step : float
+        Longest step, as of `FollowOptions`.
+    stations : tuple of float
+        Levels that are landed on.
+    linear : float
+        Level up to which the response is known to be linear.
+    stations_only : bool
+        Whether nothing but the stations matters, as of `FollowOptions`.
+    over_corners : bool
+        Whether slight corners are stepped over.
+    """
+
+    span: tuple[float, float]
+    step: float = LEVEL_CURVE.max_step
+    stations: tuple[float, ...] = (1.0,)
+    linear: float = 0.0
+    stations_only: bool = False
+    over_corners: bool = False
+
+
+def level_curve(system: System, omega: float, levels: LevelRange) -> Path:
+    """Response at omega against the level of the forces, from rest, or from where it ceases to be linear."""
     # a stiffened resonance may take much less than leads to it
-    options = system.option(LEVEL_CURVE)
-    path, low = None, max(span[0], options.linear_levels[-1])
+    options, (first, last) = system.option(LEVEL_CURVE), levels.span
+    path, low = None, max(first, options.linear_levels[-1])
+    whole = replace(levels, span=(low, last))
+    shorter = options.reversed_fraction * levels.step
+    carefully = replace(whole, step=shorter, stations_only=False, over_corners=False)
     for weak in options.linear_levels:
-        level = max(span[0], weak, linear)
+        level = max(first, weak, levels.linear)
         for x in linear_responses(system, omega, level):
-            start, whole = np.append(x, level), (low, span[1])
-            path = _follow_level(system, start, omega, whole, step, stations, hasty, lightly)
+            start = np.append(x, level)
+            path = _follow_level(system, start, omega, whole)
             if _comes_back(path, low):
-                path = _follow_level(system, start, omega, whole, options.reversed_fraction * step, stations)
+                path = _follow_level(system, start, omega, carefully)
                 path = replace(path, status=Status.STALLED) if _comes_back(path, low) else path
             if path.z.shape[0]:
                 return path
@@ -265,20 +286,12 @@ def level_curve(
     return path
 
 
-def _follow_level(
-    system: System,
-    start: FloatArray,
-    omega: float,
-    span: tuple[float, float],
-    step: float,
-    stations: tuple[float, ...],
-    hasty: bool = False,
-    lightly: bool = False,
-) -> Path:
+def _follow_level(system: System, start: FloatArray, omega: float, levels: LevelRange) -> Path:
     level, stepper = system.level_problem
-    level.begin(omega, lightly)
-    wanted, options = Events(stations), FollowOptions(step, hasty, step=system.option(LEVEL_CURVE).step)
-    if lightly and len(system.scene.contacts) >= system.option(LEVEL_REACH).min_contacts:
+    level.begin(omega, levels.over_corners)
+    wanted = Events(levels.stations)
+    options = FollowOptions(levels.step, levels.stations_only, step=system.option(LEVEL_CURVE).step)
+    if levels.over_corners and len(system.scene.contacts) >= system.option(LEVEL_REACH).min_contacts:
         reach = system.option(LEVEL_REACH)
         steps = replace(
             options.step,
@@ -290,10 +303,10 @@ def _follow_level(
         newton = replace(options.newton, preliminary_tolerance=reach.tolerance)
         events = replace(options.events, tolerance=reach.corner_tolerance)
         options = replace(options, step=steps, newton=newton, events=events)
-        if 1.0 in stations:
+        if 1.0 in levels.stations:
             enough = _WayBeyond(stepper.newton, seconds_of(system, 1, len(system.harmonics)), reach)
             wanted = replace(wanted, ends=(End(enough),))
-    along = partial(follow, level, start, span, wanted, options, stepper=stepper)
+    along = partial(follow, level, start, levels.span, wanted, options, stepper=stepper)
     return charged_to_work(system, stepper, None, lambda report: along(progress=report))
 
 

@@ -188,7 +188,7 @@ class Balance(Problem):
         self.condensed: CondensedSystem | None = None  # of the rank, see `condense`
         self.answer: ModalCompliance | None = None  # then
         self.largest, self.size = np.zeros(layout.ports), np.zeros(layout.ports)
-        self.own_fraction, self.greatest_fraction, self.preload_fraction = (
+        self.own, self.greatest, self.of_preload = (
             units.own_fraction,
             units.greatest_fraction,
             units.preload_fraction,

@@ -209,7 +209,7 @@ def _as_balanced(
     terms[at] = np.abs(G) @ on_ports + np.hypot(seen.X_re[0], seen.X_im[0]) + size
     terms[at + 1] = terms[at]
     rounding = options.summed_roundings * options.last_digit
-    off = _moved_across_curve(balance, x, tangent, rounding * terms, options)
+    off = moved_across_curve(balance, x, tangent, rounding * terms, options)
     ports = np.hypot(off[at], off[at + 1])
     modes: Receptance = seen
     met: Linear | Wave = linear
@@ -222,7 +222,7 @@ def _as_balanced(
     return PreciseFundamental(x.copy(), None, ports, (compliance * on_modes) @ np.abs(met.dofs))
 
 
-def _moved_across_curve(
+def moved_across_curve(
     balance: Balance, z: FloatArray, tangent: FloatArray, wrong: FloatArray, options: DigitOptions
 ) -> FloatArray:
     """By how much errors of the equations (unknown,) move a point across the curve.

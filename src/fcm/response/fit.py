@@ -161,13 +161,13 @@ def _kept(
     """What is finished of this fit; it is known by all that decides its numbers."""
     count = len(scene.fit.vary) if scene.fit is not None else 0
     mark = fingerprint("fit", FIT, harmonics, near, replace(scene, name="", title=""))
-    found = checkpoint.results(mark, (SearchResult,), lambda _, results: _fits(count, results))
+    found = checkpoint.results(mark, (SearchResult,), lambda _, results: is_search_result(count, results))
     for number, states in list(found.states.items()):
-        found.states[number] = [one for one in states if _fits(count, [one]) and one.x is not None]
+        found.states[number] = [one for one in states if is_search_result(count, [one]) and one.x is not None]
     return found
 
 
-def _fits(count: int, results: Any) -> bool:
+def is_search_result(count: int, results: Any) -> bool:
     """Whether what was read from a file can be what a search of so many numbers came to."""
     if not (isinstance(results, list) and len(results) == 1 and isinstance(results[0], SearchResult)):
         return False

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from fcm.accuracy.level_errors import errors_at_levels, evenness, stable_at_levels
 from fcm.accuracy.options import REFINEMENT, VALIDITY
-from fcm.branches.force_level import level_curve
+from fcm.branches.force_level import LevelRange, level_curve
 from fcm.branches.linear_limits import highest_linear_limit
 from fcm.continuation import Mark, Status
 from fcm.continuation.path import Path
@@ -172,7 +172,7 @@ def _followed(system: System, omega: float, span: tuple[float, float]) -> Curve:
         return _without(system.scene, omega, str(error))
     # what folds back into the span from beyond it is part of the curve
     reach = (span[0], max(span[1], highest_linear_limit(system, omega)))
-    path = level_curve(system, omega, reach, system.scene.max_step, (1.0, span[1]))
+    path = level_curve(system, omega, LevelRange(reach, system.scene.max_step, (1.0, span[1])))
     inside = np.flatnonzero((path.parameter >= span[0]) & (path.parameter <= span[1]))
     curve = _without(system.scene, omega, "no response was found at the least level")
     if inside.size:
