@@ -5,6 +5,7 @@ import pytest
 from scipy.optimize import brentq
 
 from fcm.continuation import End, Events, FollowOptions, Mark, Problem, Status, all_branches, follow
+from fcm.continuation.all_branches import Following
 from fcm.continuation.corrector import Newton
 from fcm.continuation.options import NewtonOptions
 from fcm.continuation.path import PathInterrupted
@@ -454,7 +455,7 @@ def test_all_branches_once_each():
         return loop * line, 2.0 * (x - 3.0) * line + loop, 2.0 * (p - 2.0) * line
 
     solutions = [start(8.0, -1.0), start(8.0, 5.0), start(1.0, 2.0), start(5.0, 2.0), start(8.0, 2.0)]
-    found = all_branches(lambda: Planar(f), solutions, (-1.0, 5.0), FollowOptions(0.05))
+    found = all_branches(lambda: Planar(f), solutions, (-1.0, 5.0), Following(FollowOptions(0.05)))
     assert [path.status for path in found.paths] == [Status.COMPLETE, Status.CLOSED]
     assert found.status is Status.COMPLETE and found.lost == ()
     line, loop = found.paths
@@ -463,7 +464,7 @@ def test_all_branches_once_each():
 
 
 def test_a_start_inside_the_range_is_followed_both_ways():
-    found = all_branches(cubic, [start(0.0, 2.0)], (1.0, 3.0), FollowOptions(0.1))
+    found = all_branches(cubic, [start(0.0, 2.0)], (1.0, 3.0), Following(FollowOptions(0.1)))
     (path,) = found.paths
     assert found.status is Status.COMPLETE
     assert (path.parameter[0], path.parameter[-1]) == (1.0, 3.0)

@@ -5,6 +5,7 @@ import pytest
 
 from fcm import load_scene
 from fcm.continuation import FollowOptions, Mark, Status, all_branches
+from fcm.continuation.all_branches import Following
 
 from ..time_domain.cases import yang
 from .scenes import Curves, gap5, up_to
@@ -38,7 +39,9 @@ def test_a_solution_next_to_a_fold_lies_on_the_branch_that_passes_it(step):
     away = np.repeat(finest.folds, 2) - [z[-1] for z in beside]
     assert np.all((np.abs(away) > 0.0) & (np.abs(away) < 1e-5))
     starts = [fine.z[0], *beside]
-    found = all_branches(finest.system.new_balance, starts, scene.frequency_range, FollowOptions(step))
+    found = all_branches(
+        finest.system.new_balance, starts, scene.frequency_range, Following(FollowOptions(step))
+    )
     assert found.status is Status.COMPLETE and len(found.paths) == 1
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from fcm.branches.force_level import LevelSolutions, level_frequencies, solutions_at, solutions_in_turn
 from fcm.branches.narrow_resonances import narrow_resonances
 from fcm.continuation import Branches, Events, FollowOptions, Path, all_branches, follow
-from fcm.continuation.all_branches import Follow
+from fcm.continuation.all_branches import Follow, Following
 from fcm.continuation.follow import Progress
 from fcm.continuation.path import PathInterrupted
 from fcm.continuation.problem import Problem
@@ -105,9 +105,9 @@ def _branches_through(
     """The branches through solutions, of which those outside the range do not count."""
     low, high = system.scene.frequency_range
     inside = (z for z in starts if low <= z[-1] <= high)
-    options, along = FollowOptions(system.scene.max_step), _follow_shared(system)
+    following = Following(FollowOptions(system.scene.max_step), progress, _follow_shared(system))
     places = [omega for omega in stations if low <= omega <= high]
-    found = all_branches(system.reset_balance, inside, (low, high), options, progress, along, stations=places)
+    found = all_branches(system.reset_balance, inside, (low, high), following, stations=places)
     return _without_unsteady(system, found)
 
 
@@ -117,8 +117,8 @@ def with_further(
     """With what was found at further frequencies, and the branches through further solutions, after those
     that were traced before."""
     span, known = system.scene.frequency_range, before.branches
-    step, along = system.scene.max_step, _follow_shared(system)
-    branches = all_branches(system.reset_balance, starts, span, FollowOptions(step), None, along, known.paths)
+    following = Following(FollowOptions(system.scene.max_step), follow=_follow_shared(system))
+    branches = all_branches(system.reset_balance, starts, span, following, known.paths)
     further = (path for path in branches.paths[len(known.paths) :] if not _is_unsteady(system, path))
     branches = Branches((*known.paths, *further), (*known.lost, *branches.lost))
     return replace(before, branches=branches, found=(*before.found, *found))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -15,6 +16,25 @@ from fcm.continuation.path import FloatArray, Path, PathInterrupted, Status
 from fcm.continuation.problem import Problem
 
 Follow = Callable[..., Path]  # as `follow`
+
+
+@dataclass(frozen=True)
+class Following:
+    """How each path is followed.
+
+    Attributes
+    ----------
+    options : FollowOptions
+        As of `follow`.
+    progress : callable, optional
+        As of `follow`.
+    follow : callable
+        Follows a path, as `follow` does.
+    """
+
+    options: FollowOptions = FOLLOW
+    progress: Progress | None = None
+    follow: Follow = follow
 
 
 @dataclass(frozen=True)
@@ -40,13 +60,14 @@ class BranchesInterrupted(KeyboardInterrupt):
         self.branches = branches
 
 
+FOLLOWING = Following()
+
+
 def all_branches(
     new_problem: Callable[[], Problem],
     solutions: Iterable[FloatArray],
     span: tuple[float, float],
-    options: FollowOptions = FOLLOW,
-    progress: Progress | None = None,
-    along: Follow = follow,
+    following: Following = FOLLOWING,
     known: Sequence[Path] = (),
     stations: Sequence[float] | None = None,
 ) -> Branches:
@@ -59,8 +80,8 @@ def all_branches(
     solutions : iterable of (n + 1,)
         In the order in which they are to be followed; those at an end of the span lead inwards, those inside
         it both ways.
-    along : callable
-        Follows a path, as `follow` does.
+    following : Following
+        How each is followed.
     known : sequence of Path
         Branches that were followed before, which are the first of those returned.
     stations : sequence of float, optional
@@ -82,7 +103,7 @@ def all_branches(
             problem = new_problem() if paths else None
             if problem is not None and any(contains(path, z, problem) for path in paths):
                 continue
-            path = branch_through(new_problem, z, span, events, options, progress, along)
+            path = branch_through(new_problem, z, span, events, following)
             if not path.z.shape[0]:
                 lost.append(z)
             elif problem is None or not _known(path, paths, problem):
@@ -148,19 +169,19 @@ def branch_through(
     z: FloatArray,
     span: tuple[float, float],
     events: Events,
-    options: FollowOptions,
-    progress: Progress | None,
-    along: Follow,
+    following: Following,
 ) -> Path:
     """The whole branch through a solution, from its lower end where it has one; see `follow`."""
+    along = partial(following.follow, progress=following.progress)
+    options = following.options
     if z[-1] == span[0] or z[-1] == span[1]:
-        path = along(new_problem(), z, span, events, options, forward=z[-1] == span[0], progress=progress)
+        path = along(new_problem(), z, span, events, options, forward=z[-1] == span[0])
         return path.backwards() if path.status is Status.COMPLETE and z[-1] == span[1] else path
-    path = along(new_problem(), z, span, events, options, forward=True, progress=progress)
+    path = along(new_problem(), z, span, events, options, forward=True)
     if path.status is Status.CLOSED or path.z.shape[0] == 0:
         return path
     try:
-        other = along(new_problem(), z, span, events, options, forward=False, progress=progress)
+        other = along(new_problem(), z, span, events, options, forward=False)
     except PathInterrupted as stopped:
         raise PathInterrupted(path.backwards().then(stopped.path)) from None
     if other.z.shape[0] == 0:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fcm.continuation import Checkpoint, Events, FollowOptions, Path, Status, all_branches, follow
-from fcm.continuation.all_branches import Follow
+from fcm.continuation.all_branches import Follow, Following
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.fixed_frequency import correct_at_frequency
@@ -121,9 +121,8 @@ def _followed(
     if rest is None:
         return False
     there = [np.append(z[:-1], 1.0) for z in known]
-    curves = all_branches(
-        lambda: problem, there, span, FollowOptions(options.level.max_step), None, along, rest
-    )
+    following = Following(FollowOptions(options.level.max_step), follow=along)
+    curves = all_branches(lambda: problem, there, span, following, rest)
     turns = [turn for path in curves.paths for turn in level_folds(path, omega)]
     found.extend(_beyond_level_folds(problem.scene, turns, poll, options))
     return curves.status is Status.COMPLETE

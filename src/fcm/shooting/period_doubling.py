@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from fcm.continuation import Events, FollowOptions, Mark, Path
-from fcm.continuation.all_branches import Follow, branch_through, contains
+from fcm.continuation.all_branches import Follow, Following, branch_through, contains
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
 from fcm.shooting.fixed_frequency import correct_at_frequency
@@ -62,13 +62,14 @@ def doubled_paths(
     """The curves that begin at the flips of branches, and how many flips none was found from."""
     starts, lost = doubled_starts(problem, branches, poll)
     span, options = problem.scene.frequency_range, FollowOptions(problem.scene.max_step)
+    following = Following(options, follow=along)
     wanted = Events(sorted({float(z[-1]) for z in starts}))
     paths = list[Path]()
     for z in starts:
         if not any(
             contains(path, one, problem) for path in paths for one in (z, problem.half_period_later(z))
         ):
-            path = branch_through(lambda: problem, z, span, wanted, options, progress=None, along=along)
+            path = branch_through(lambda: problem, z, span, wanted, following)
             if path.z.shape[0]:
                 paths.append(path)
             else:

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from fcm.continuation import FollowOptions, Mark, Path, Status, all_branches, follow
-from fcm.continuation.all_branches import Branches, Follow
+from fcm.continuation.all_branches import Branches, Follow, Following
 from fcm.model.scene import FloatArray, Scene
 from fcm.scene.modal import UNITS
 from fcm.shooting.force_level import LevelMotions, level_motions
@@ -117,8 +117,7 @@ def explore(
         all_branches,
         lambda: problem,
         span=scene.frequency_range,
-        options=FollowOptions(scene.max_step),
-        along=along,
+        following=Following(FollowOptions(scene.max_step), follow=along),
     )
     paths, lost = branches(found).paths, list[float]()
     bounded = BranchBudget(poll, most, problem.options)
