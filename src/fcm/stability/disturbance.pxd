@@ -30,6 +30,8 @@ cdef void add_complex_product(double[::1] re, double[::1] im, double[::1] by_re,
 cdef class Disturbances:
     cdef readonly Stiffness stiffness
     cdef readonly int modes, contacts, size, memories
+    cdef int few, blas_products
+    cdef double step_radians, series_tolerance, max_steps, squared_radians
     cdef double[:, ::1] X, term, work, A, E, F
     cdef int[::1] state
     cdef readonly object propagator

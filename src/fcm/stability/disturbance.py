@@ -27,14 +27,12 @@ import numpy.typing as npt
 from cython.cimports.libc.math import ceil, cos, expm1, fabs, sin, sqrt
 
 from fcm.model.scene import FloatArray
+from fcm.stability.options import STABILITY, PropagationOptions
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
 else:
     from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
-
-STATES = 256  # of the contacts that are remembered, or fewer:
-NUMBERS = 4_000_000  # as many as these are in their matrices
 
 
 @cython.cclass
@@ -52,6 +50,7 @@ class Stiffness:
         damping: npt.NDArray[np.float64],
         flexibility: npt.NDArray[np.float64] | None,
         contact: npt.NDArray[np.float64],
+        options: PropagationOptions = STABILITY.propagation,
     ) -> None:
         modes, ports = shapes.shape
         contacts = ports // 2
@@ -63,7 +62,7 @@ class Stiffness:
         self.S, self.B = np.zeros((ports, ports)), np.zeros((ports, contacts))
         self.seen, self.W = self.shapes, np.zeros((ports, contacts))
         self.known: dict[bytes, tuple[FloatArray, ...]] = {}
-        self.most = min(STATES, NUMBERS // max(ports * (2 * ports + modes), 1))
+        self.most = min(options.max_states, options.max_numbers // max(ports * (2 * ports + modes), 1))
         self.K, self.image = np.zeros((modes, modes)), np.zeros((modes, contacts))
         self.work, self.damping = np.zeros((modes, ports)), np.zeros(modes)
         self.omega, self.rate, self.made = 1.0, 1.0, False
@@ -213,9 +212,6 @@ class Stiffness:
         return 0
 
 
-MOST = cython.declare(cython.int, 256)  # states that are remembered
-WORST = 1e6  # condition of the eigenvectors, beyond which they are not used
-
 ComplexArray = npt.NDArray[np.complex128]
 
 
@@ -281,7 +277,8 @@ class EigenExpansion:
 class Propagator:
     """States by their keys, each seen once before it is decomposed."""
 
-    def __init__(self) -> None:
+    def __init__(self, options: PropagationOptions = STABILITY.propagation) -> None:
+        self.options = options
         self.known: dict[bytes, EigenExpansion | None] = {}
         self.counts: set[bytes] = set()
 
@@ -308,7 +305,7 @@ class Propagator:
     ) -> EigenExpansion | None:
         if key in self.known:
             return self.known[key]
-        if key not in self.counts or len(self.known) >= MOST:
+        if key not in self.counts or len(self.known) >= self.options.max_states:
             self.counts.add(key)
             return None
         K, D, B = system()
@@ -316,16 +313,18 @@ class Propagator:
         A = np.zeros((2 * m, 2 * m))
         A[:m, m:] = np.eye(m)
         A[m:, :m], A[m:, m:] = -omega * omega * K, -np.diag(omega * D)
-        self.known[key] = _decomposed(A, np.vstack((np.zeros_like(B), omega * omega * B)))
+        self.known[key] = _decomposed(
+            A, np.vstack((np.zeros_like(B), omega * omega * B)), self.options.max_condition
+        )
         return self.known[key]
 
 
-def _decomposed(A: FloatArray, B: FloatArray) -> EigenExpansion | None:
+def _decomposed(A: FloatArray, B: FloatArray, max_condition: float) -> EigenExpansion | None:
     """None where the eigenvectors are nearly dependent."""
     try:
         values, vectors = np.linalg.eig(A)
         unit = np.repeat([1.0, np.abs(values).max()], len(A) // 2)[:, None]  # of places and velocities
-        if not np.linalg.cond(vectors / unit) < WORST:
+        if not np.linalg.cond(vectors / unit) < max_condition:
             return None
         inverse = np.linalg.inv(vectors / unit) / unit.T
     except np.linalg.LinAlgError:
@@ -362,14 +361,7 @@ def add_complex_product(
         im[k] += times * other + times_im * one
 
 
-REACH = cython.declare(cython.double, 6.0)  # of a step, in radians of the fastest motion
-SMALL = cython.declare(cython.double, 1e-13)  # bound of the last term of the series, relative to the first
-LARGE = cython.declare(cython.int, 3000)  # products from which on BLAS is faster
-MANY = cython.declare(cython.double, 3.0)  # steps that take longer than to square the exponential
-FEW = cython.declare(cython.int, 12)  # disturbances up to which the exponential itself is made, by squaring
-# the angle, in radians of the fastest motion, from which it is squared
-SHORT = cython.declare(cython.double, 0.25)
-ORDER = cython.declare(cython.int, 10)  # of its series there: 0.25^11 / 11! is below rounding
+ORDER = cython.declare(cython.int, 10)  # of the series of the exponential: 0.25^11 / 11! is below rounding
 
 
 @cython.cclass
@@ -388,7 +380,10 @@ class Disturbances:
         self.term = np.zeros((2 * modes, self.size))
         self.work = np.zeros((modes, self.size))
         self.A, self.E, self.F = np.zeros((3, 2 * modes, self.size))
-        self.memories, self.propagator = 0, propagator
+        self.memories, self.propagator, options = 0, propagator, propagator.options
+        self.step_radians, self.series_tolerance = options.step_radians, options.series_tolerance
+        self.max_steps, self.squared_radians = options.max_steps, options.squared_radians
+        self.few, self.blas_products = options.few_disturbances, options.blas_products
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -402,7 +397,7 @@ class Disturbances:
     def propagate(self, length: cython.double) -> cython.int:
         """X by the exponential, by the state's eigenvalues, or by a series in steps in which its terms do not
         grow large; of those there are too many where a mode is far stiffer than the others."""
-        if self.size <= FEW:
+        if self.size <= self.few:
             return self.propagate_by_squaring(length)
         s: Stiffness = self.stiffness
         columns: cython.Py_ssize_t = 2 * self.modes + self.memories
@@ -410,9 +405,9 @@ class Disturbances:
         if self.propagator.through(self.key, length, s.omega, s.system, X):
             return 0
         s.make()
-        if s.rate * length > MANY * REACH:
+        if s.rate * length > self.max_steps * self.step_radians:
             return self.propagate_by_squaring(length)
-        steps: cython.int = cython.cast(cython.int, ceil(s.rate * length / REACH))
+        steps: cython.int = cython.cast(cython.int, ceil(s.rate * length / self.step_radians))
         i: cython.int
         steps = max(steps, 1)
         for i in range(steps):  # noqa: B007
@@ -430,7 +425,7 @@ class Disturbances:
         order: cython.int
         squarings: cython.int = 0
         self.stiffness.make()
-        while self.stiffness.rate * length > SHORT:
+        while self.stiffness.rate * length > self.squared_radians:
             length *= 0.5
             squarings += 1
         self.fill_system(length)
@@ -488,7 +483,7 @@ class Disturbances:
         self, left: cython.double[:, ::1], right: cython.double[:, ::1], factor: cython.double
     ) -> cython.int:
         """F = factor left right, of the rows of (q, q')."""
-        if self.modes * self.modes * self.size > LARGE:
+        if self.modes * self.modes * self.size > self.blas_products:
             n: cython.Py_ssize_t = 2 * self.modes
             np.matmul(np.asarray(left)[:, :n], np.asarray(right)[:n], out=np.asarray(self.F))
             np.multiply(self.F, factor, out=np.asarray(self.F))
@@ -519,7 +514,7 @@ class Disturbances:
         size: cython.double = 1.0
         share: cython.double
         self.term[:, :] = self.X[: 2 * m, :]
-        while size > SMALL or order < 2:
+        while size > self.series_tolerance or order < 2:
             order += 1
             share = h / order
             size *= self.stiffness.rate * share
@@ -540,7 +535,7 @@ class Disturbances:
         """work = K q + D q' of the term (q, q')."""
         m: cython.Py_ssize_t = self.modes
         K: cython.double[:, ::1] = self.stiffness.K
-        big: cython.bint = m * m * columns > LARGE
+        big: cython.bint = m * m * columns > self.blas_products
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         k: cython.Py_ssize_t

@@ -95,7 +95,7 @@ cdef void add_products(
 cdef class ManyMonodromy:
     cdef public StateSequence sequence
     cdef readonly int modes, follows, contacts, columns, first
-    cdef double rate, omega
+    cdef double rate, omega, step_radians, series_tolerance
     cdef object slow, fast, natural, ratio, far
     cdef public list remembering
     cdef double[:, ::1] contact, by_slow, by_fast, K, lower, upper, left, right, changed

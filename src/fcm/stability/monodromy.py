@@ -47,6 +47,7 @@ import numpy.typing as npt
 from cython.cimports.libc.math import ceil, fabs, sqrt
 
 from fcm.stability.disturbance import Propagator
+from fcm.stability.options import STABILITY, PropagationOptions
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
@@ -61,8 +62,6 @@ else:
     from fcm.stability.state_sequence import StateSequence
 
 
-REACH = cython.declare(cython.double, 3.0)  # of a step, in radians of the fastest motion
-SMALL = cython.declare(cython.double, 1e-13)  # bound of the last term of the series, relative to the first
 LANES = 8  # columns beside one another in the widest registers; arrays have a multiple of them
 
 
@@ -310,7 +309,9 @@ class ManyMonodromy:
         far: npt.NDArray[np.bool_],
         contact: npt.NDArray[np.float64],
         sequence: StateSequence,
+        options: PropagationOptions = STABILITY.propagation,
     ) -> None:
+        self.step_radians, self.series_tolerance = options.step_radians_of_many, options.series_tolerance
         self.slow, self.fast = shapes[~far], shapes[far]
         modes, follow, contacts = len(self.slow), len(self.fast), contact.shape[0]
         self.modes, self.follows, self.contacts = modes, follow, contacts
@@ -544,7 +545,7 @@ class ManyMonodromy:
     def propagate(self, length: cython.double) -> cython.void:
         """The disturbances after an angle, by a series in steps in which its terms do not grow large."""
         i: cython.int
-        steps: cython.int = cython.cast(cython.int, ceil(self.rate * length / REACH))
+        steps: cython.int = cython.cast(cython.int, ceil(self.rate * length / self.step_radians))
         steps = max(steps, 1)
         for i in range(steps):  # noqa: B007
             self.apply(length / steps)
@@ -563,7 +564,7 @@ class ManyMonodromy:
         for i in range(self.modes):
             for k in range(self.q.shape[1]):
                 self.tq[i, k], self.tv[i, k] = self.q[i, k], self.v[i, k]
-        while size > SMALL or order < 2:
+        while size > self.series_tolerance or order < 2:
             order += 1
             share = h / order
             size *= self.rate * share

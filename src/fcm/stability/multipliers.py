@@ -389,8 +389,10 @@ def _few_contacts(
     """Each state of the contacts put together anew."""
     linear = system.linear
     soft = (linear.ports[far].T * linear.natural[far] ** -2.0) @ linear.ports[far] if far.any() else None
-    stiffness = Stiffness(linear.ports[~far], linear.natural[~far], linear.damping[~far], soft, contact)
-    carried = system.cache.setdefault((Propagator, stiffness.modes), Propagator())
+    stiffness = Stiffness(
+        linear.ports[~far], linear.natural[~far], linear.damping[~far], soft, contact, options.propagation
+    )
+    carried = system.cache.setdefault((Propagator, stiffness.modes), Propagator(options.propagation))
     assert isinstance(carried, Propagator)
     return [VariationalProblem(one, Monodromy(stiffness, one, carried)) for one in states]
 
@@ -405,7 +407,9 @@ def _many_contacts(
     """Each change of one contact's state as that, without far modes that hardly yield beside the contacts."""
     linear, kept = system.linear, ~far | (system.modal_compliance > options.structure.min_displacement)
     shown = linear.ports[kept], linear.natural[kept], linear.damping[kept], far[kept]
-    return [VariationalProblem(one, ManyMonodromy(*shown, contact, one)) for one in states]
+    return [
+        VariationalProblem(one, ManyMonodromy(*shown, contact, one, options.propagation)) for one in states
+    ]
 
 
 def quasi_static_modes(

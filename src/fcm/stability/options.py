@@ -272,6 +272,42 @@ class PlanarStabilityOptions:
 
 
 @dataclass(frozen=True)
+class PropagationOptions:
+    """How disturbances of contacts on a line are carried through a state of the contacts.
+
+    Attributes
+    ----------
+    max_states, max_numbers : int
+        States of the contacts that are remembered, and the numbers that their matrices may have.
+    max_condition : float
+        Of the eigenvectors of a state; worse ones are not used.
+    step_radians, step_radians_of_many : float
+        [rad] of the fastest motion in a step of the series; and with many contacts.
+    series_tolerance : float
+        Bound of the last term of the series, relative to the first.
+    blas_products : int
+        Products of a matrix from which on BLAS is faster.
+    max_steps : float
+        Steps that take longer than to square the exponential.
+    few_disturbances : int
+        Up to which the exponential itself is made, by squaring.
+    squared_radians : float
+        [rad] of the fastest motion, from which it is squared. Its series has ten terms, complete at 0.25.
+    """
+
+    max_states: int = 256
+    max_numbers: int = 4_000_000
+    max_condition: float = 1e6
+    step_radians: float = 6.0
+    step_radians_of_many: float = 3.0
+    series_tolerance: float = 1e-13
+    blas_products: int = 3000
+    max_steps: float = 3.0
+    few_disturbances: int = 12
+    squared_radians: float = 0.25
+
+
+@dataclass(frozen=True)
 class StabilityOptions:
     """All of the package, by what they are for: see the class of each field."""
 
@@ -282,6 +318,7 @@ class StabilityOptions:
     sampling: SamplingOptions = SamplingOptions()
     hill: HillOptions = HillOptions()
     planar: PlanarStabilityOptions = PlanarStabilityOptions()
+    propagation: PropagationOptions = PropagationOptions()
 
 
 STABILITY = StabilityOptions()  # where nothing else is said
