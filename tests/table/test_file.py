@@ -198,11 +198,11 @@ def test_shipped_table_with_a_flipped_byte(tmp_path):
 def test_failed_write_leaves_the_old_file_and_nothing_else(copy, monkeypatch):
     before = copy.read_bytes()
 
-    def fail(path, arrays, attributes):
-        path.write_bytes(b"half")
+    def fail(path, *_, **__):
+        Path(path).write_bytes(b"half")
         raise RuntimeError("NetCDF: HDF error")
 
-    monkeypatch.setattr(store, "_write", fail)
+    monkeypatch.setattr(netCDF4, "Dataset", fail)
     with pytest.raises(OSError, match="could not be written"):
         build_table(copy, (5, 5, 5, 5), points=10_000)
     assert copy.read_bytes() == before

@@ -13,7 +13,7 @@ import numpy as np
 
 from fcm.contact.limits import BoolArray, FloatArray
 from fcm.model.scene import Contact, Modal, Scene
-from fcm.reduction.options import REDUCTION
+from fcm.reduction.options import REDUCTION, ReductionOptions
 from fcm.reduction.sentences import has_friction, named
 from fcm.reduction.static_modes import with_static_modes
 from fcm.scene.errors import counted
@@ -43,7 +43,12 @@ def keep_all(curves: tuple[Scene, ...]) -> Lighter:
     return Lighter(curves, curves, curves, tuple(range(len(curves[0].contacts))), (), whole=True)
 
 
-def leave_out(curves: tuple[Scene, ...], tolerance: float = REDUCTION.tolerance, highest: int = 1) -> Lighter:
+def leave_out(
+    curves: tuple[Scene, ...],
+    tolerance: float = REDUCTION.tolerance,
+    highest: int = 1,
+    options: ReductionOptions = REDUCTION,
+) -> Lighter:
     """The scenes without what they do not need; a tolerance of 0 leaves out only what has no effect.
 
     highest : the greatest harmonic of the response, which modes that are far above are far above, too.
@@ -52,15 +57,17 @@ def leave_out(curves: tuple[Scene, ...], tolerance: float = REDUCTION.tolerance,
     lighter = tuple(_with_contacts(s, needed) for s in curves)
     lighter, said = _without_still_modes(lighter)
     sentences = (*_idle_contacts(curves[0], needed), *said)
-    found = _static(Lighter(curves, lighter, lighter, needed, sentences), tolerance, highest)
+    found = _static(Lighter(curves, lighter, lighter, needed, sentences), tolerance, highest, options)
     return replace(found, sentences=(*found.sentences, *_parts_of_contacts(found)))
 
 
-def leave_out_modes(curves: tuple[Scene, ...], tolerance: float, highest: int) -> Lighter:
+def leave_out_modes(
+    curves: tuple[Scene, ...], tolerance: float, highest: int, options: ReductionOptions = REDUCTION
+) -> Lighter:
     """The same with all contacts: only modes are left out."""
     lighter, said = _without_still_modes(curves)
     every = tuple(range(len(curves[0].contacts)))
-    return _static(Lighter(curves, lighter, lighter, every, tuple(said)), tolerance, highest)
+    return _static(Lighter(curves, lighter, lighter, every, tuple(said)), tolerance, highest, options)
 
 
 def _without_still_modes(curves: tuple[Scene, ...]) -> tuple[tuple[Scene, ...], list[str]]:
@@ -74,12 +81,12 @@ def _without_still_modes(curves: tuple[Scene, ...]) -> tuple[tuple[Scene, ...], 
     return lighter, [f"{what}: neither a force nor a contact moves {them} (no effect)"]
 
 
-def _static(lighter: Lighter, tolerance: float, highest: int) -> Lighter:
+def _static(lighter: Lighter, tolerance: float, highest: int, options: ReductionOptions) -> Lighter:
     """Modes far above the range replaced, where every curve has the same structure."""
     curves = lighter.curves
     if len(_different(curves)) > 1:
         return lighter
-    found = with_static_modes(_stiffest(curves), tolerance, highest)
+    found = with_static_modes(_stiffest(curves), tolerance, highest, options)
     if found is None:
         return lighter
     modal, above = found

@@ -26,12 +26,14 @@ class ReductionOptions:
     max_names: int = 6  # of contacts in one sentence
     min_saving: float = 0.6  # of the modes may remain; otherwise nothing is gained
     min_modes: int = 30  # modes of a structure for which it is worth trying
+    # times the range's end: where modes begin to be far above, the first that the tolerance allows is taken
+    range_factors: tuple[float, ...] = (2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0)
     rank_tolerance: float = (
         1e-10  # relative size below which a static response is a combination of the others
     )
     first_modes: int = 8  # combinations of many directions that are tried first
     added_modes: float = 1.5  # times as many after those that are too few
-    frequency_margin: float = 0.5  # of the tolerance, for the estimate that decides
+    estimate_margin: float = 0.5  # of the tolerance, for the estimate that decides
 
 
 REDUCTION = ReductionOptions()

@@ -25,38 +25,40 @@ import numpy as np
 from fcm.contact.limits import BoolArray, FloatArray
 from fcm.model.scene import Modal, Scene
 from fcm.reduction.linear import all_springs, change
-from fcm.reduction.options import REDUCTION
-
-ABOVE = (2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0)  # times the range's end: where modes begin to be far above
+from fcm.reduction.options import REDUCTION, ReductionOptions
 
 
-def with_static_modes(scene: Scene, tolerance: float, highest: int = 1) -> tuple[Modal, float] | None:
+def with_static_modes(
+    scene: Scene, tolerance: float, highest: int = 1, options: ReductionOptions = REDUCTION
+) -> tuple[Modal, float] | None:
     """Fewer modes for the scene, and the frequency above which they are replaced; None if it does not pay.
 
     The error is estimated on the structure with springs for contacts, see `_linear_error`.
     """
     modal = scene.modal
-    if modal.frequency.size < REDUCTION.min_modes or tolerance <= 0.0 or not scene.contacts:
+    if modal.frequency.size < options.min_modes or tolerance <= 0.0 or not scene.contacts:
         return None
     most = REDUCTION.min_saving * modal.frequency.size
-    for factor in ABOVE:
+    for factor in options.range_factors:
         limit = factor * highest * scene.frequency_range[1]
         high = modal.frequency > limit
         if modal.frequency.size - int(high.sum()) > most:
             return None
-        choices = list(_choices(scene, high))
+        choices = list(_choices(scene, high, options))
         for directions in choices:
-            fewer = condensed(modal, directions, high)
+            fewer = condensed(modal, directions, high, options)
             if fewer.frequency.size > most:
                 break
-            if _linear_error(scene, replace(scene, modal=fewer)) < REDUCTION.frequency_margin * tolerance:
+            if _linear_error(scene, replace(scene, modal=fewer)) < options.estimate_margin * tolerance:
                 return fewer, limit
         if len(choices) > 1:  # what is missing are combinations, at any limit
             return None
     return None
 
 
-def condensed(modal: Modal, directions: FloatArray, high: BoolArray) -> Modal:
+def condensed(
+    modal: Modal, directions: FloatArray, high: BoolArray, options: ReductionOptions = REDUCTION
+) -> Modal:
     """The modes with those marked high replaced by their static response to directions (dof, direction)."""
     shapes = modal.shapes[high] / np.sqrt(modal.mass[high])[:, None]  # of modal mass 1
     w, damping = modal.frequency[high], modal.damping[high]
@@ -64,7 +66,7 @@ def condensed(modal: Modal, directions: FloatArray, high: BoolArray) -> Modal:
     static = (shapes @ directions) / w[:, None]
     static = np.concatenate((_unit(static), _unit(_unit(static) / w[:, None] ** 2)), axis=1)
     left, singular, _ = np.linalg.svd(static, full_matrices=False)
-    basis = left[:, singular > REDUCTION.rank_tolerance * singular.max(initial=0.0)] / w[:, None]
+    basis = left[:, singular > options.rank_tolerance * singular.max(initial=0.0)] / w[:, None]
     # in this basis the stiffness is 1: the eigenvalues of the mass are 1 / frequency^2
     value, vector = np.linalg.eigh(basis.T @ basis)
     frequency = 1.0 / np.sqrt(value)
@@ -87,22 +89,22 @@ def _unit(columns: FloatArray) -> FloatArray:
     return unit
 
 
-def _choices(scene: Scene, high: BoolArray) -> Iterator[FloatArray]:
+def _choices(scene: Scene, high: BoolArray, options: ReductionOptions) -> Iterator[FloatArray]:
     """Directions (dof, direction) to which the modes marked high may answer: all where these are few, else
     those of the forces and more and more of the combinations along which these modes yield most."""
     contacts, pushes = (np.array(d).T for d in (scene.directions_of_contacts(), scene.pushes()))
     every = contacts.shape[1] + pushes.shape[1]
-    if 2 * every <= REDUCTION.min_saving * scene.modal.frequency.size - int((~high).sum()):
+    if 2 * every <= options.min_saving * scene.modal.frequency.size - int((~high).sum()):
         yield np.concatenate((contacts, pushes), axis=1)
         return
     weighted = contacts * np.sqrt(all_springs(scene))
     modal = scene.modal
     yields = (modal.shapes[high] @ weighted) / (np.sqrt(modal.mass) * modal.frequency)[high, None]
     order = np.linalg.eigh(yields.T @ yields)[1][:, ::-1]
-    number = REDUCTION.first_modes
+    number = options.first_modes
     while number < contacts.shape[1]:
         yield np.concatenate((pushes, weighted @ order[:, :number]), axis=1)
-        number = int(REDUCTION.added_modes * number)
+        number = int(options.added_modes * number)
 
 
 def _linear_error(full: Scene, fewer: Scene) -> float:

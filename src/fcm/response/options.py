@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from fcm.accuracy.options import REFINEMENT, RefinementOptions
 from fcm.harmonic_balance.options import HARMONIC_BALANCE, HarmonicBalanceOptions
+from fcm.reduction.options import REDUCTION, ReductionOptions
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.tracking.options import SEARCH, SearchOptions
 
@@ -292,6 +293,8 @@ class ResponseOptions:
         How the least peak is found.
     sweep : SweepOptions
         How the curves of a sweep are traced.
+    reduction : ReductionOptions
+        What curves do not need: modes that are replaced by static ones.
     exact : ExactOptions
         How exact curves are calculated,
     shooting : ShootingOptions
@@ -306,6 +309,7 @@ class ResponseOptions:
     refinement: RefinementOptions = REFINEMENT
     optimum: OptimumOptions = OPTIMUM
     sweep: SweepOptions = SWEEP
+    reduction: ReductionOptions = REDUCTION
     exact: ExactOptions = EXACT_CURVES
     shooting: ShootingOptions = SHOOTING
     others: tuple[object, ...] = ()

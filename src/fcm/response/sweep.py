@@ -138,14 +138,14 @@ def _traced(sweep: _Sweep, tolerance: float | None, progress: Progress | None) -
     if tolerance is None or sweep.scene.ring is not None or sweep.scene.with_own_laws:
         lighter = keep_all(curves)
     else:
-        lighter = leave_out(curves, tolerance, highest)
+        lighter = leave_out(curves, tolerance, highest, sweep.wanted.options.reduction)
     response, said = sweep.run(lighter, part(progress, 0.0, options.traced_share)), list(lighter.sentences)
     if lighter.above is not None and tolerance is not None:
         shift = checked(response, lighter)
         if 2.0 * shift <= tolerance or response.interrupted:
             said.append(sentences.on_modes(lighter, shift))
         else:  # the estimate was too good: with all modes after all
-            lighter = leave_out(curves, 0.0, highest)
+            lighter = leave_out(curves, 0.0, highest, sweep.wanted.options.reduction)
             response = sweep.run(lighter, part(progress, options.traced_share, 1.0))
     response = restored(response, lighter)
     response.curves = [without_rounding(one) for one in response.curves]
