@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import minimize
 
 from fcm import periodic_forces, planar_forces, planar_gradients
 from fcm.contact.plane.options import OPTIONS
@@ -223,6 +224,49 @@ def test_a_slider_that_never_slips_rests_where_it_began_or_as_near_as_the_discs_
         inside = np.all(np.hypot(*(u[:, :, None] - near[:, None])) <= r[:, None], axis=0)
         assert np.all(np.hypot(*near[:, inside]) >= np.hypot(*w) - 1e-4 * np.abs(u).max())
     assert min(met.values()) >= 3, met
+
+
+def passing_near(rng, count):
+    """Motions that pass near to their sliders where the load is least: two discs in turn hold them."""
+    size = np.array([1.0, 1.0, 0.25, 1.0 / 9.0])
+    wave = np.exp(1j * np.multiply.outer(np.linspace(0.0, 2.0 * np.pi, 2000), np.arange(4)))
+    for harmonics in rng.integers(1, 4, count):
+        u_x, u_y, v = (rng.standard_normal((3, 4)) + 1j * rng.standard_normal((3, 4))) * size
+        u_x[0], u_y[0], v[0] = u_x[0].real, u_y[0].real, v[0].real
+        u_x, u_y, v = u_x[: harmonics + 1], u_y[: harmonics + 1], v[: harmonics + 1]
+        least = (wave[:, : harmonics + 1] @ v).real.min()
+        n_0 = 10.0 ** rng.uniform(-4.0, -1.0) - least
+        yield Planar(u_x, u_y, v, 1.0, 10.0 ** rng.uniform(-1.0, 0.0), 1.0, n_0)
+
+
+def discs(case, count):
+    """Centres (2, angle) and radii of those that hold a slider."""
+    wave = np.exp(1j * np.multiply.outer(np.linspace(0.0, 2.0 * np.pi, count), np.arange(case.u_x.size)))
+    u = np.stack([(wave @ one).real for one in (case.u_x, case.u_y)])
+    return u, case.mu / case.k_u * (case.n_0 + case.k_v * (wave @ case.v).real)
+
+
+def test_a_slider_rests_where_discs_less_than_a_step_of_the_sampled_cycle_apart_hold_it():
+    """Within each of twenty thousand discs, and as far from where it began as eight thousand demand."""
+    near = 0
+    for case in passing_near(np.random.default_rng(1), 1000):
+        cycle = case.cycle()
+        if cycle.kind != STUCK:
+            continue
+        w = np.array([cycle.resting.w_x, cycle.resting.w_y]) * cycle.motion.scale / case.k_u
+        w += np.array([case.u_x[0].real, case.u_y[0].real])
+        u, r = discs(case, 20001)
+        size = np.abs(u).max() + np.abs(r).max()
+        assert np.all(np.hypot(*(u - w[:, None])) <= r + 1e-12 * size)
+        u, r = discs(case, 8001)
+        room = {"type": "ineq", "fun": lambda w, u=u, r=r: r - np.hypot(*(u - w[:, None]))}
+        start = [case.u_x[0].real, case.u_y[0].real]
+        best = minimize(lambda w: w @ w, start, constraints=room, method="SLSQP", options={"ftol": 1e-10})
+        assert np.hypot(*w) == pytest.approx(np.hypot(*best.x), rel=0.0, abs=1e-5 * size)
+        if cycle.resting.held == 2:
+            apart = np.abs(np.angle(np.exp(1j * (cycle.resting.basis[0, 3] - cycle.resting.basis[1, 3]))))
+            near += bool(apart < cycle.resting.step)
+    assert near >= 10
 
 
 def test_at_the_slip_limit_and_where_the_load_touches_zero():

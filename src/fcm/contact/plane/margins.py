@@ -123,7 +123,7 @@ class PlanarMargins:
         self.resting.sampled = False
         if start:
             self.resting.sample()
-            self.resting.farthest(-self.motion.mean_x, -self.motion.mean_y)
+            self.resting.farthest_of_all(-self.motion.mean_x, -self.motion.mean_y)
         else:
             self.resting.encloses(True)
 
@@ -161,7 +161,7 @@ class PlanarMargins:
             self.note(HOLDS, 0.0, self.other())
         elif self.resting.held == 2:
             self.note(HOLDS, 0.0, -min(self.weaker(s_x, s_y), PAST))
-        self.resting.farthest(s_x, s_y)
+        self.resting.farthest_of_all(s_x, s_y)
         starts: float = -self.resting.beyond
         self.resting.encloses(True)
         room: float = max(-self.resting.overlap, 0.0)
@@ -171,21 +171,7 @@ class PlanarMargins:
 
     def other(self) -> float:
         """How far the next disc is from holding the place that one disc holds."""
-        j: cython.int
-        n: cython.int = self.resting.nodes
-        near: float = self.resting.basis[0, 3]
-        self.resting.farthest(self.resting.w_x, self.resting.w_y)
-        self.resting.beyond = -FAR
-        for j in range(n):
-            here: float = self.resting.gap[j]
-            theta: float = self.resting.step * (j + 0.1171)
-            off: float = fabs(theta - near)
-            while off > 0.5 * TWO_PI:
-                off = fabs(off - TWO_PI)
-            if off <= 2.0 * self.resting.step or here < self.resting.gap[j - 1 if j > 0 else n - 1]:
-                continue
-            if here >= self.resting.gap[j + 1 if j + 1 < n else 0]:
-                self.resting.refine(theta)
+        self.resting.next_farthest()
         room: float = min(-self.resting.beyond, PAST)
         return room
 

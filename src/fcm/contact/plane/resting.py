@@ -7,6 +7,15 @@ Two small convex problems, each with a disc for every angle: the least t by whic
 they have a place in common (that of the smallest enclosing circle, with weights), and that nearest place. A
 solution is held by three discs, or two, at most. Both are solved by exchange: the disc that is missed most
 joins those that hold it, and the best that these allow takes its place, until none is missed.
+
+The disc that is missed most is sought among nodes first. That it is no other is proved by
+
+    h = |U - W|^2 - (R + t)^2,
+
+a trigonometric polynomial, positive where a disc that has grown by t is missed. Its values and slopes at both
+ends of a step, and a bound of its fourth derivative, prove that it is negative, monotone or concave between;
+a step that proves nothing is halved. That ends: where the cubic through both ends errs by no more than
+rounding, h has no second maximum, as a cubic has none.
 """
 
 from __future__ import annotations
@@ -24,6 +33,12 @@ TWO_PI = cython.declare(cython.double, 6.283185307179586)
 FIRST = cython.declare(cython.double, 0.1171)  # of a step: nodes lie beside the multiples of pi / 2
 EPSILON = cython.declare(cython.double, 2.220446049250313e-16)
 FAR = cython.declare(cython.double, 1e300)
+DEEPEST = cython.declare(cython.int, 60)  # halvings; the cubic is exact after a third of them
+# Of the cubic with the values and slopes at both ends of a length, over the greatest fourth derivative and
+# powers of the length: errors of the value, the slope and the second derivative (Birkhoff and Priver, 1967).
+VALUE_ERROR = cython.declare(cython.double, 1.0 / 384.0)
+SLOPE_ERROR = cython.declare(cython.double, 3.0**0.5 / 216.0)
+BEND_ERROR = cython.declare(cython.double, 1.0 / 12.0)
 
 
 @cython.cclass
@@ -40,7 +55,8 @@ class Resting:
     held, basis (3, 4)
         The number of discs that hold the place, and of each its centre, radius and angle.
     beyond, angle
-        Of the place asked for last by `farthest`: how far outside the disc it is that it misses most.
+        Of the place asked for last by `farthest` or `farthest_of_all`: how far outside the disc it is that it
+        misses most.
     """
 
     def __init__(self, motion: PlaneMotion) -> None:
@@ -55,7 +71,9 @@ class Resting:
         self.basis = np.zeros((4, 4))
         self.held = self.best_i = self.best_j = 0
         self.w_x = self.w_y = self.overlap = self.beyond = self.angle = 0.0
+        self.square, self.stack = np.zeros(self.nodes), np.empty((DEEPEST + 2, 4))
         self.x = self.y = self.t = self.best = 0.0
+        self.level = self.fourth = self.noise = self.rounding = self.but = 0.0
         self.found = self.sampled = False
 
     def stays(self, s_x: float, s_y: float) -> bool:
@@ -67,6 +85,7 @@ class Resting:
             return True
         self.sample()
         self.farthest(s_x, s_y)
+        self.hidden(0.0)
         if self.beyond <= 0.0:
             return True
         if not self.encloses(False):
@@ -77,13 +96,16 @@ class Resting:
     def encloses(self, exact: bool) -> bool:
         """Whether all discs have a place in common; `overlap` only as far as that takes, unless exactly."""
         i: cython.int
+        level: float
         rounding: float = 4.0 * EPSILON * (self.motion.size + self.motion.reach)
         self.sample()
         self.held, self.overlap = 0, -FAR
         self.w_x = self.w_y = 0.0
         for i in range(self.exchanges):  # noqa: B007
+            level = (self.overlap if exact else max(0.0, self.overlap)) + rounding
             self.farthest(self.w_x, self.w_y)
-            if self.beyond <= (self.overlap if exact else max(0.0, self.overlap)) + rounding:
+            self.hidden(level)
+            if self.beyond <= level:
                 break
             self.exchange(False, 0.0, 0.0)
             if not self.found or (self.overlap > rounding and not exact):
@@ -100,6 +122,7 @@ class Resting:
         self.w_x, self.w_y = s_x, s_y
         for i in range(self.exchanges):  # noqa: B007
             self.farthest(self.w_x, self.w_y)
+            self.hidden(rounding)
             if self.beyond <= rounding:
                 break
             self.exchange(True, s_x, s_y)
@@ -149,7 +172,7 @@ class Resting:
             self.at[0, j], self.at[1, j], self.at[2, j] = x, y, r
 
     def farthest(self, w_x: float, w_y: float) -> None:
-        """`beyond` and `angle`: the disc that a place misses most."""
+        """`beyond` and `angle`: the disc that a place misses most, of those that nodes tell."""
         j: cython.int
         before: float
         after: float
@@ -170,9 +193,180 @@ class Resting:
             after = self.gap[j + 1 if j + 1 < self.nodes else 0]
             if self.gap[j] >= before and self.gap[j] >= after and self.gap[j] + rise >= most:
                 self.refine(self.step * (FIRST + j))
-        # two discs less than a step apart, between which no node tells: each goes on from where it was
-        for j in range(self.held):
-            self.refine(self.basis[j, 3])
+
+    def farthest_of_all(self, w_x: float, w_y: float) -> None:
+        """`beyond` and `angle`: the disc that a place misses most."""
+        i: cython.int
+        self.farthest(w_x, w_y)
+        for i in range(self.exchanges):  # noqa: B007
+            before: float = self.beyond
+            self.hidden(before)
+            if not self.beyond > before:
+                break
+
+    def next_farthest(self) -> None:
+        """`beyond`: how far the place is outside the disc that it misses most but the one that holds it."""
+        self.farthest(self.w_x, self.w_y)
+        self.beyond = -FAR
+        self.maxima(0.0, -FAR, self.basis[0, 3])
+
+    def hidden(self, level: float) -> None:
+        """After `farthest`: a disc that is missed by more than a level, if no node tells of any.
+
+        `beyond` rises above the level if and only if there is one.
+        """
+        if self.beyond > level:
+            return
+        self.maxima(level, 0.0, FAR)
+        if self.beyond > level:
+            self.refine(self.angle)
+
+    def maxima(self, level: float, least: float, but: float) -> None:
+        """The disc that is missed most of those where h is greatest, above its least value that matters.
+
+        Of the angle `but` it is not. `level` is the t of h.
+        """
+        j: cython.int
+        k: cython.int
+        mean: float = 0.0
+        rms: float = 0.0
+        most: float = 0.0
+        self.level, self.but = level, but
+        for j in range(self.nodes):
+            d_x: float = self.at[0, j] - self.x
+            d_y: float = self.at[1, j] - self.y
+            d: float = d_x * d_x + d_y * d_y
+            r: float = self.at[2, j] + level
+            self.square[j] = d - r * r
+            most = max(most, d, r * r)
+            mean += self.square[j]
+        mean /= self.nodes
+        for j in range(self.nodes):
+            d = self.square[j] - mean
+            rms += d * d
+        rms = sqrt(rms / self.nodes)
+        # of twice the highest harmonic, which the nodes resolve: the sum of all amplitudes is no more than
+        # the root of twice their number times the root mean square
+        order: float = 2.0 * max(self.motion.highest, 1)
+        second: float = order * order * sqrt(2.0 * order) * rms
+        self.fourth = order * order * second
+        self.noise = EPSILON * most
+        self.rounding = 8.0 * EPSILON * (self.motion.size + self.motion.reach)
+        second *= 0.125 * self.step * self.step
+        for j in range(self.nodes):
+            k = j + 1 if j + 1 < self.nodes else 0
+            if max(self.square[j], self.square[k]) + second > least:
+                self.between(self.step * (FIRST + j), least)
+
+    def between(self, begin: float, least: float) -> None:
+        """Maxima of h in a step from an angle on."""
+        depth: cython.int = 0
+        middle: float
+        value: float
+        slope: float
+        size: float
+        next_value: float
+        next_slope: float
+        next_size: float
+        value, slope, size = self.missed(begin)
+        next_value, next_slope, next_size = self.missed(begin + self.step)
+        self.stack[0, 0], self.stack[0, 1] = begin + self.step, next_value
+        self.stack[0, 2], self.stack[0, 3] = next_slope, next_size
+        while depth >= 0:
+            length: float = self.stack[depth, 0] - begin
+            next_value, next_slope = self.stack[depth, 1], self.stack[depth, 2]
+            next_size = self.stack[depth, 3]
+            error: float = self.fourth * length * length
+            count: cython.int = self.most_maxima(
+                length,
+                value,
+                slope,
+                next_value,
+                next_slope,
+                least + self.rounding * max(size, next_size),
+            )
+            if count > 1 and depth < DEEPEST and VALUE_ERROR * error * length * length > self.noise:
+                depth += 1
+                middle = begin + 0.5 * length
+                next_value, next_slope, next_size = self.missed(middle)
+                self.stack[depth, 0], self.stack[depth, 1] = middle, next_value
+                self.stack[depth, 2], self.stack[depth, 3] = next_slope, next_size
+                continue
+            if count > 0:
+                self.peak(begin, self.stack[depth, 0])
+            begin, value, slope, size = self.stack[depth, 0], next_value, next_slope, next_size
+            depth -= 1
+
+    def most_maxima(
+        self, length: float, g_0: float, d_0: float, g_1: float, d_1: float, least: float
+    ) -> cython.int:
+        """How many maxima above a value h has at most in a length; 2 where nothing is proved."""
+        error: float = self.fourth * length * length
+        b_1: float = g_0 + length * d_0 / 3.0
+        b_2: float = g_1 - length * d_1 / 3.0
+        if max(g_0, b_1, b_2, g_1) + VALUE_ERROR * error * length * length <= least:
+            return 0
+        middle: float = 3.0 * (b_2 - b_1) / length
+        off: float = SLOPE_ERROR * error * length
+        if min(d_0, middle, d_1) > off or max(d_0, middle, d_1) < -off:
+            return 0
+        if 2.0 * max(middle - d_0, d_1 - middle) + BEND_ERROR * error * length < 0.0:
+            return 1
+        return 2
+
+    def missed(self, theta: float) -> tuple[float, float, float]:
+        """h, its slope, and |U - W| + |R + t| at an angle."""
+        self.motion.place(SCAN, theta)
+        d_x: float = self.motion.value[SCAN, 0] - self.x
+        d_y: float = self.motion.value[SCAN, 1] - self.y
+        r: float = self.motion.value[SCAN, 2] + self.level
+        d: float = hypot(d_x, d_y)
+        slope: float = d_x * self.motion.value[SCAN, 3] + d_y * self.motion.value[SCAN, 4]
+        slope -= r * self.motion.value[SCAN, 5]
+        return (d - r) * (d + r), 2.0 * slope, d + fabs(r)
+
+    def peak(self, low: float, high: float) -> None:
+        """The one maximum of h between two angles, where its gap is greater than any before."""
+        i: cython.int
+        first: float = low
+        last: float = high
+        theta: float = 0.5 * (low + high)
+        step: float
+        for i in range(50):  # noqa: B007
+            _, slope, _ = self.missed(theta)
+            self.motion.bend(SCAN)
+            d_x: float = self.motion.value[SCAN, 0] - self.x
+            d_y: float = self.motion.value[SCAN, 1] - self.y
+            x_1: float = self.motion.value[SCAN, 3]
+            y_1: float = self.motion.value[SCAN, 4]
+            r_1: float = self.motion.value[SCAN, 5]
+            bend: float = x_1 * x_1 + y_1 * y_1 - r_1 * r_1
+            bend += d_x * self.motion.value[SCAN, 6] + d_y * self.motion.value[SCAN, 7]
+            bend -= (self.motion.value[SCAN, 2] + self.level) * self.motion.value[SCAN, 8]
+            if slope > 0.0:
+                low = theta
+            else:
+                high = theta
+            step = -0.5 * slope / bend if bend < 0.0 else high - low
+            if fabs(step) < 1e-9:
+                break
+            if not low < theta + step < high:
+                step = 0.5 * (low + high) - theta
+            theta += step
+        if self.but < FAR and self.within(first, last):
+            return
+        gap: float = self.outside(theta)
+        if gap > self.beyond:
+            self.beyond, self.angle = gap, theta
+
+    def within(self, first: float, last: float) -> bool:
+        """Whether `but`, or a turn more or less, is between two angles, or one with their ends."""
+        middle: float = 0.5 * (first + last)
+        off: float = fabs(self.but - middle)
+        while off > 0.5 * TWO_PI:
+            off = fabs(off - TWO_PI)
+        inside: bool = off <= 0.5 * (last - first) + self.same
+        return inside
 
     def outside(self, theta: float) -> float:
         """How far the place in `x`, `y` is outside the disc of an angle; see `refine` for the slope."""
@@ -209,9 +403,11 @@ class Resting:
             else:
                 high = theta
             step = -slope / bend if bend < 0.0 else high - low
+            if fabs(step) < 1e-15:  # which the bracket, open at the angle itself, would not allow
+                break
             if not low < theta + step < high:
                 step = 0.5 * (low + high) - theta
-            if fabs(step) < 1e-15 or high - low < 1e-15:
+            if high - low < 1e-15:
                 break
             theta += step
             gap = self.outside(theta)
