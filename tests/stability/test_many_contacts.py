@@ -9,7 +9,7 @@ from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.shooting import periodic
 from fcm.stability.bifurcations import stability
-from fcm.stability.confirmation import _ConfirmedPoints, confirmed_stable
+from fcm.stability.confirmation import ConfirmedPoints, confirmed_stable
 from fcm.stability.floquet import multipliers_of
 from fcm.stability.options import STABILITY
 from fcm.stability.rebalanced import Rebalancing
@@ -68,6 +68,17 @@ def test_what_errs_by_a_fifth_is_told_where_further_harmonics_confirm_it():
         assert exact(system, z).stable
 
 
+def test_what_more_harmonics_do_not_have_is_no_steady_state():
+    """Of one harmonic, below the fold at which the upper branch of five turns back."""
+    one, five = (trace(elastic_strip((11.0, 20.0)), harmonics=h).curves[0] for h in (1, 5))
+    upper = one.amplitude.max(axis=1) > 0.2
+    (fold,) = (f for f in five.folds if 11.6 < f < 11.7)
+    below, above = upper & (one.frequency < 0.998 * fold), upper & (one.frequency > 1.005 * fold)
+    assert below.sum() > 20 and (one.truncation_error[below] > 0.9).all()
+    assert not one.stable[below].any()
+    assert (one.stable[above] == 1.0).sum() > 5 and not np.isnan(one.stable[above]).any()
+
+
 def test_points_between_two_that_are_confirmed_are_confirmed():
     """Against looks at single points; the upper branch of more harmonics ends at 11.64 rad/s."""
     system = System(elastic_strip((11.3, 20.0)), (1,))
@@ -87,13 +98,13 @@ def test_a_motion_that_is_far_is_found_from_beside_the_next_points():
     path = traced(system).branches.paths[-1]
     inside = np.flatnonzero((path.parameter > 11.35) & (path.parameter < 13.0))
     way = inside if path.parameter[inside[0]] > path.parameter[inside[-1]] else inside[::-1]
-    found, looks = np.zeros(len(path.z), dtype=bool), _ConfirmedPoints(system, path.z, STABILITY)
+    found, looks = np.zeros(len(path.z), dtype=bool), ConfirmedPoints(system, path.z, STABILITY)
     looks.along(int(way[0]), int(way[-1]), found)
     assert not found[np.setdiff1d(np.arange(len(found)), inside)].any()
     reached = path.parameter[way[1:]][found[way[1:]]].min()
     assert 11.64 < reached < 11.75
     assert found[way[1:]].tolist() == (path.parameter[way[1:]] >= reached).tolist()
-    alone = _ConfirmedPoints(system, path.z, STABILITY)
+    alone = ConfirmedPoints(system, path.z, STABILITY)
     assert found[way[1:]].tolist() == [alone.confirms(int(i)) for i in way[1:]]
 
 

@@ -44,7 +44,8 @@ class Errors:
     truncation (point,): the greatest difference of an amplitude over the greatest amplitude.
     is_same_curve (point,): whether the partner's own branch comes to that frequency. Where it does not, as
     beside a fold that it has elsewhere, errors are the distance to the nearest motion that the partner has
-    there.
+    there. ends_before (point,): where the partner has fewer motions of the branch than the curve, as it turns
+    back before.
     peak (dof,): of the height of the greatest amplitude.
     height (dof,): the greatest amplitude of the partner, as an amplitude.
     fold (fold,): of the frequencies of the folds, in their order.
@@ -61,6 +62,7 @@ class Errors:
     amplitude: FloatArray
     truncation: FloatArray
     is_same_curve: Mask
+    ends_before: Mask
     peak: FloatArray
     height: FloatArray
     fold: FloatArray
@@ -105,7 +107,19 @@ def errors_along(
             (piece_of(path, shown, _flat(contacts.contact_loads)),) if known.all() and len(path.z) > 1 else ()
         )
         more = system.harmonics
-        told = none, none[:, 0], known, none[0], size, of_folds, share, more, contact_loads, contact_loads[0]
+        told = (
+            none,
+            none[:, 0],
+            known,
+            np.zeros_like(known),
+            none[0],
+            size,
+            of_folds,
+            share,
+            more,
+            contact_loads,
+            contact_loads[0],
+        )
         return Errors(*told, contacts, own)
     seconds = budget or Budget(options.max_seconds)
     partner = PartnerCurve(system, path, shown, _flat(contacts.contact_loads), more, options, seconds)
@@ -151,6 +165,7 @@ def errors_along(
         amplitude=error,
         truncation=_truncation(error, shown.amplitude),
         is_same_curve=comes,
+        ends_before=partner.ends_before,
         peak=np.where(told | ~settles, error[tops, d], np.nan),
         height=height,
         fold=of_folds,

@@ -20,7 +20,7 @@ from fcm.accuracy.curve_distance import (
 )
 from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.partner import give_back, partner_of, prolongation_to
-from fcm.accuracy.partner_pieces import CurvePiece, distinct, piece_of, piece_through, rates
+from fcm.accuracy.partner_pieces import CurvePiece, distinct, nearest, piece_of, piece_through, rates
 from fcm.accuracy.partner_stretch import PartnerPiece, StretchFollower
 from fcm.accuracy.residual import changes_left_out
 from fcm.continuation import Mark, Path
@@ -92,6 +92,7 @@ class PartnerCurve:
     freedom that hardly moves, a part of the greatest, as the others would be lost in its rounding.
     linear (point,): where no contact slips or separates, so that nothing is displaced.
     contact_loads (point, 4 contact): what the contacts bear.
+    ends_before (point,): whose frequency the partner passes less often, as it turns back.
     """
 
     def __init__(
@@ -124,7 +125,7 @@ class PartnerCurve:
         steepness(np.ascontiguousarray(path.parameter), self.amplitude, options.max_steepness, self.weight)
         self.change = np.zeros((count, 1 + dofs))
         self.theirs = np.full((count, len(lifted.newton.z)), np.nan)  # where it was found
-        self.known = self.linear.copy()
+        self.known, self.ends_before = self.linear.copy(), np.zeros_like(self.linear)
         self.filled = PartialInterpolant(self.place, self.change, self.known.view(np.uint8), options.distance)
 
     def displacements(self, special: Indices) -> FloatArray:
@@ -383,29 +384,33 @@ class PartnerCurve:
         shift = shifted(
             self.place, path.z, path.direction, compared.value, compared.growth, compared.unit, change
         )
-        missing = np.isnan(change).any(axis=1)
-        shift[missing] = np.nan
-        if not missing.any():
-            self._where_both_pass_once(compared, shift)
+        shift[np.isnan(change).any(axis=1)] = np.nan
+        self._where_it_turns_back(compared, followed, shift)
         for one in followed:
             self._by_pieces(one, compared, shift)
         return shift
 
-    def _where_both_pass_once(self, compared: ComparedQuantities, shift: FloatArray) -> None:
-        """Fill those that are missing as the partner turns back, where both pass the frequency once all the
-        same: there is no other motion of the branch that it could be."""
-        rows, whole = np.flatnonzero(np.isnan(shift).any(axis=1)), self._displaced(compared, slice(None))
-        own = self.path.parameter
-        if whole is None:
+    def _where_it_turns_back(
+        self, compared: ComparedQuantities, followed: list[FollowedStretch], shift: FloatArray
+    ) -> None:
+        """Of points that are missing although the partner is known there, as it turns back: fill those whose
+        frequency both pass but once, and remember those that it passes less often, where all of it is known.
+        """
+        missing = np.isnan(shift).any(axis=1) & np.isfinite(compared.change).all(axis=1)
+        whole = all(len(one.pieces) == 1 and one.pieces[0].reached_end for one in followed)
+        rows, own = np.flatnonzero(missing), self.path.parameter
+        if not whole or not rows.size:
             return
+        pieces = self.pieces(compared, followed)
         for first in range(0, len(rows), PAIR.batch):
             some = rows[first : first + PAIR.batch]
-            omega, now = own[some], compared.value[some]
-            once = (_passes(own, omega).sum(axis=1) == 1) & (_passes(whole.frequency, omega).sum(axis=1) == 1)
+            mine = _passes(own, own[some]).sum(axis=1)
+            theirs = sum(_passes(one.frequency, own[some]).sum(axis=1) for one in pieces)
+            self.ends_before[some] = theirs < mine
+            some = some[(mine == 1) & (theirs == 1)]
+            now, even = compared.value[some], np.zeros(len(some))
             by = np.ascontiguousarray(now[:, : self.amplitude.shape[1]])
-            which = np.where(once, 0, -2).astype(np.intc)
-            theirs = whole.values_at(omega, np.zeros(len(some)), by, which)
-            shift[some] = np.where(once[:, None], (theirs - now) / compared.unit[some], np.nan)
+            shift[some] = (nearest(pieces, own[some], even, by) - now) / compared.unit[some]
 
     def _by_pieces(self, one: FollowedStretch, compared: ComparedQuantities, shift: FloatArray) -> None:
         """Fill those along a stretch, and next to it where the way to the same frequency leads into

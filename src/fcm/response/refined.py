@@ -169,6 +169,7 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
                 amplitude=_between(error.amplitude, after),
                 truncation=_between(error.truncation, after),
                 is_same_curve=np.insert(error.is_same_curve, after + 1, error.is_same_curve[after]),
+                ends_before=np.insert(error.ends_before, after + 1, error.ends_before[after]),
                 contact_loads=_between(error.contact_loads, after),
                 contacts=error.contacts.with_rows(after, ContactRecord.at(found.system, z)),
             )

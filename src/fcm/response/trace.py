@@ -158,6 +158,9 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
         stable[of] = np.where(sure, 1.0, stable[of])
         doubted[of] &= ~sure
     stable[doubted] = np.nan
+    if not quick:  # with more harmonics the branch turns back before
+        ended = np.concatenate([one.ends_before for one in found.errors])
+        stable[np.isnan(stable) & ended] = 0.0
     peak = np.full_like(found.peak, np.nan) if response.exceeded else found.peak
     error = np.maximum(np.concatenate([one.amplitude for one in found.errors]), rounding)
     open_to_past = undetermined(scene, words)

@@ -55,7 +55,7 @@ def confirmed_stable(
     found = np.zeros(len(z), dtype=np.bool_)
     far = np.zeros_like(doubted) if far is None else far
     if (doubted | far).any() and not system.own_laws:
-        looks = _ConfirmedPoints(system, z, options)
+        looks = ConfirmedPoints(system, z, options)
         for first, end in runs(doubted):
             parts = -(-(end - 1 - first) // options.confirmation.point_interval) or 1
             nodes = sorted({first + k * (end - 1 - first) // parts for k in range(parts + 1)})
@@ -70,7 +70,7 @@ def confirmed_stable(
     return found
 
 
-class _ConfirmedPoints:
+class ConfirmedPoints:
     """Points that are looked at, each once."""
 
     def __init__(self, system: System, z: FloatArray, options: StabilityOptions) -> None:
