@@ -50,6 +50,7 @@ class PlanarOptions:
     Of a slider at rest, and of what is told
     ----------------------------------------
     exchanges : of the discs that hold it.
+    missed_part : of the motion and the radius, by which it may lie outside a disc that no sample tells of.
     same : half of what is between two discs that are one.
     steps : to a radian of the highest harmonic, between which an extreme is sought.
     invisible : a state that is shorter is rounding.
@@ -86,6 +87,7 @@ class PlanarOptions:
     inside: float = 0.1
     hardly: float = 1e-3
     exchanges: int = 100
+    missed_part: float = 1e-11
     same: float = 1e-6
     steps: float = 12.0
     invisible: float = 1e-12

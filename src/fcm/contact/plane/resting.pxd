@@ -1,7 +1,7 @@
 from fcm.contact.plane.panel cimport PlaneMotion
 
 cdef class Resting:
-    cdef double same
+    cdef double same, missed_part
     cdef int exchanges
     cdef readonly PlaneMotion motion
     cdef readonly int nodes, held

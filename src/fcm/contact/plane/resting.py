@@ -15,7 +15,7 @@ The disc that is missed most is sought among nodes first. That it is no other is
 a trigonometric polynomial, positive where a disc that has grown by t is missed. Its values and slopes at both
 ends of a step, and a bound of its fourth derivative, prove that it is negative, monotone or concave between;
 a step that proves nothing is halved. That ends: where the cubic through both ends errs by no more than
-rounding, h has no second maximum, as a cubic has none.
+a tolerance, h has no second maximum, as a cubic has none.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ TWO_PI = cython.declare(cython.double, 6.283185307179586)
 FIRST = cython.declare(cython.double, 0.1171)  # of a step: nodes lie beside the multiples of pi / 2
 EPSILON = cython.declare(cython.double, 2.220446049250313e-16)
 FAR = cython.declare(cython.double, 1e300)
-DEEPEST = cython.declare(cython.int, 60)  # halvings; the cubic is exact after a third of them
+DEEPEST = cython.declare(cython.int, 20)  # halvings, after which the cubic is exact
 # Of the cubic with the values and slopes at both ends of a length, over the greatest fourth derivative and
 # powers of the length: errors of the value, the slope and the second derivative (Birkhoff and Priver, 1967).
 VALUE_ERROR = cython.declare(cython.double, 1.0 / 384.0)
@@ -61,7 +61,7 @@ class Resting:
 
     def __init__(self, motion: PlaneMotion) -> None:
         given = motion.options
-        self.exchanges, self.same = given.exchanges, given.same
+        self.exchanges, self.same, self.missed_part = given.exchanges, given.same, given.missed_part
         self.motion = motion
         self.nodes = 12 * max(motion.highest, 1) + 3
         self.step = TWO_PI / self.nodes
@@ -242,16 +242,21 @@ class Resting:
             mean += self.square[j]
         mean /= self.nodes
         for j in range(self.nodes):
-            d = self.square[j] - mean
+            d = (
+                (self.square[j] - mean) / most if most > 0.0 else 0.0
+            )  # whose square may be beyond all numbers
             rms += d * d
-        rms = sqrt(rms / self.nodes)
+        rms = most * sqrt(rms / self.nodes)
         # of twice the highest harmonic, which the nodes resolve: the sum of all amplitudes is no more than
         # the root of twice their number times the root mean square
         order: float = 2.0 * max(self.motion.highest, 1)
         second: float = order * order * sqrt(2.0 * order) * rms
         self.fourth = order * order * second
-        self.noise = EPSILON * most
-        self.rounding = 8.0 * EPSILON * (self.motion.size + self.motion.reach)
+        whole: float = self.motion.size + self.motion.reach
+        self.rounding = self.missed_part * whole
+        self.noise = (
+            self.missed_part * most + 64.0 * EPSILON * EPSILON * whole * whole
+        )  # all discs may be points
         second *= 0.125 * self.step * self.step
         for j in range(self.nodes):
             k = j + 1 if j + 1 < self.nodes else 0
