@@ -9,7 +9,6 @@ from fcm.continuation.options import (
     SIGN_CHANGE,
     EventOptions,
     FollowOptions,
-    NewtonOptions,
     SignChangeOptions,
     StepOptions,
 )
@@ -71,7 +70,11 @@ class PairOptions:
     max_seconds_elsewhere, work_fraction_elsewhere, min_seconds_elsewhere : float
         The same of what the partner has elsewhere.
     piece_fraction : float
-        Part of what is left of that, that following the partner from one motion may take.
+        Part of that, that following the partner one way may take before others are followed,
+    level_fraction : float
+        and part of what is left of it, that the level of the forces may take at one frequency.
+    interval_factor : int
+        `point_interval` over the next one, at which motions are tried that may lead to the partner.
     probes, min_found : int, float
         About so many points along a curve are displaced first. Where less than this part of them is found,
         the partner is another curve.
@@ -154,9 +157,11 @@ class PairOptions:
     work_fraction: float = 0.3
     min_seconds: float = 0.4
     max_seconds_elsewhere: float = 8.0
-    work_fraction_elsewhere: float = 1.2
+    work_fraction_elsewhere: float = 1.6
     min_seconds_elsewhere: float = 0.8
-    piece_fraction: float = 0.25
+    piece_fraction: float = 0.0625
+    level_fraction: float = 0.25
+    interval_factor: int = 4
     probes: int = 24
     min_found: float = 0.5
     fewer_factors: tuple[int, ...] = (3, 2)
@@ -166,8 +171,6 @@ class PairOptions:
     coarse_following: FollowOptions = field(
         default_factory=lambda: FollowOptions(
             0.2,
-            stations_only=True,
-            newton=NewtonOptions(preliminary_tolerance=1e-6),
             step=StepOptions(target_turn=0.4, target_miss=0.1, target_output_error=0.5, min_cosine=0.8),
             events=EventOptions(peak_threshold=math.inf),
         )

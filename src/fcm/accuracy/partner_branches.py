@@ -8,8 +8,8 @@ one budget.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +20,7 @@ from fcm.accuracy.partner import partner_of
 from fcm.accuracy.partner_curve import curve_piece
 from fcm.accuracy.partner_pieces import CurvePiece
 from fcm.accuracy.partner_stretch import StretchFollower
-from fcm.continuation import Path
+from fcm.continuation import Path, Status
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.options import DampedOptions, ProlongationOptions
 from fcm.harmonic_balance.prolongation import Prolongation
@@ -48,38 +48,18 @@ def further_partner_pieces(
 
     They are followed from points of the paths from the first on whose errors are not told, those of the
     smallest motions before the others: there the partner has fewest. Where no motion of such a path leads to
-    one of its partner, the level of the forces may.
+    one of its partner, the level of the forces may; then points between those that were tried.
     """
-    found: list[list[CurvePiece]] = [[] for _ in paths]
-    known = [piece for one in errors for piece in one.pieces]
-    untold = [_UnknownError(*one, system.harmonics) for one in zip(paths, shown, errors, strict=True)]
-    for piece in known:
-        _told_by(piece, untold)
     part = share_of([path.evaluations for path in paths], first)
-    budget, followers = Budget.elsewhere(system.work, options, part), dict[int, StretchFollower]()
-    for by_level in (False, True):
-        for one in untold:
-            one.tried[:] = False
-        while budget.seconds > 0.0:
-            k = min(range(first, len(paths)), key=lambda k: untold[k].least, default=-1)
-            if k < 0 or not np.isfinite(untold[k].least):
-                break
-            i = untold[k].smallest
-            untold[k].tried[max(i - options.point_interval, 0) : i + options.point_interval] = True
-            stretches = followers.get(k)
-            if stretches is None:
-                stretches = followers[k] = _stretches(system, paths[k], errors[k].partner, options)
-            stretches.budget = Budget(budget.seconds * options.piece_fraction)
-            given = stretches.budget.seconds
-            span = _gap(known, float(paths[k].parameter[i]), system.scene.frequency_range)
-            for piece in (curve_piece(stretches.finer, one) for one in stretches.through(i, span, by_level)):
-                found[k].append(piece)
-                known.append(piece)
-                _told_by(piece, untold)
-            budget.seconds -= given - stretches.budget.seconds
+    search = _Search(
+        system, paths, shown, errors, first, options, Budget.elsewhere(system.work, options, part)
+    )
+    interval = options.point_interval
+    while interval and search.is_open and search.leads(interval):
+        interval //= options.interval_factor
     # what the levels took is paid already
-    system.work.add(sum(one.each * one.evaluations for one in followers.values()))
-    return found
+    system.work.add(sum(one.each * one.evaluations for one in search.followers.values()))
+    return search.found
 
 
 def affordable_partner(
@@ -99,6 +79,141 @@ def affordable_partner(
         fewer = replace(options, harmonics_factor=times, max_named=1)
         more = partner_of(system.harmonics, share, ports, fewer)
     return more
+
+
+@dataclass(eq=False)
+class _Front:
+    """Where following the partner of a path begins or was left: a point, the direction there, and how many
+    points its last piece told of in a second of work."""
+
+    path: int
+    z: FloatArray
+    direction: FloatArray | None
+    forward: bool
+    gain: float = np.inf
+
+
+class _Search:
+    """Pieces of partners found for each path, within a budget, until every frequency is passed."""
+
+    def __init__(
+        self,
+        system: System,
+        paths: Sequence[Path],
+        shown: Sequence[ReportedQuantities],
+        errors: Sequence[Errors],
+        first: int,
+        options: PairOptions,
+        budget: Budget,
+    ) -> None:
+        self.system, self.paths, self.errors, self.first = system, paths, errors, first
+        self.options, self.budget, self.each = options, budget, budget.seconds * options.piece_fraction
+        self.found: list[list[CurvePiece]] = [[] for _ in paths]
+        self.known = [piece for one in errors for piece in one.pieces]
+        self.untold = [
+            _UnknownError(*one, system.harmonics) for one in zip(paths, shown, errors, strict=True)
+        ]
+        self.followers = dict[int, StretchFollower]()
+        for piece in self.known:
+            _told_by(piece, self.untold)
+
+    @property
+    def is_open(self) -> bool:
+        """Whether there is something to tell, and work that it may take."""
+        rest = self.untold[self.first :]
+        return self.budget.seconds > 0.0 and any(np.isfinite(one.size).any() for one in rest)
+
+    def leads(self, interval: int) -> bool:
+        """Whether points at least so far apart lead to any motion of a partner, and on from there."""
+        before = len(self.known)
+        self.from_motions(interval)
+        if interval == self.options.point_interval:
+            self.from_levels(interval)
+        return len(self.known) > before
+
+    def from_motions(self, interval: int) -> None:
+        """First a piece from each, then on from where most is told."""
+        left = list[_Front]()
+        for k, i in self._places(interval):
+            for front in self._fronts(k, i, by_level=False):
+                left += self._followed(front)
+        self._follow(left)
+
+    def from_levels(self, interval: int) -> None:
+        """The same by the level of the forces, until that takes more than it may."""
+        for k, i in self._places(interval):
+            fronts = self._fronts(k, i, by_level=True)
+            self._follow(fronts)
+            if not fronts and self.followers[k].budget.seconds <= 0.0:
+                break
+
+    def _places(self, interval: int) -> Iterator[tuple[int, int]]:
+        """Paths and points on them, of the smallest motions of which nothing is told yet."""
+        for one in self.untold:
+            one.tried[:] = False
+        while self.budget.seconds > 0.0:
+            k = min(range(self.first, len(self.paths)), key=lambda k: self.untold[k].least, default=-1)
+            if k < 0 or not np.isfinite(self.untold[k].least):
+                break
+            i = self.untold[k].smallest
+            self.untold[k].tried[max(i - interval + 1, 0) : i + interval] = True
+            yield k, i
+
+    def _fronts(self, k: int, i: int, by_level: bool) -> list[_Front]:
+        """Both ways from a motion at a point of a path, if there is one."""
+        stretches, most = self._stretches(k), self.each
+        if by_level:
+            most = self.budget.seconds * self.options.level_fraction
+        stretches.budget = Budget(most)
+        z = stretches.start(i, by_level)
+        self.budget.seconds -= most - stretches.budget.seconds
+        if z is None:
+            return []
+        return [_Front(k, z, None, forward) for forward in (True, False)]
+
+    def _follow(self, fronts: list[_Front]) -> None:
+        """On from fronts, from that which told most."""
+        while fronts and self.is_open:
+            best = max(fronts, key=lambda one: one.gain)
+            fronts.remove(best)
+            fronts += self._followed(best)
+
+    def _followed(self, front: _Front) -> list[_Front]:
+        """The front where the piece from another is left, if that told of any point."""
+        stretches, told = self._stretches(front.path), 0
+        given = min(self.each, self.budget.seconds)
+        if given <= 0.0:
+            return []
+        stretches.budget = Budget(given)
+        span = _gap(self.known, float(front.z[-1]), self.system.scene.frequency_range)
+        piece = stretches.along(front.z, front.direction, span, front.forward)
+        spent = given - stretches.budget.seconds
+        self.budget.seconds -= spent
+        path = piece.path
+        if len(path.z) > 1:
+            new = curve_piece(stretches.finer, piece)
+            self.found[front.path].append(new)
+            self.known.append(new)
+            told = _told_by(new, self.untold)
+        if not told or path.status is not Status.INTERRUPTED:
+            return []
+        return [_Front(front.path, path.z[-1], path.direction[-1], True, told / spent)]
+
+    def _stretches(self, k: int) -> StretchFollower:
+        """Of the partner of a path, sought from motions that lie far from it."""
+        if k not in self.followers:
+            more = self.errors[k].partner
+            finer, options = self.system.with_harmonics(more), self.options
+            lifted = Prolongation(
+                finer.new_balance(),
+                list(self.system.harmonics),
+                list(more),
+                options.newton_tolerance,
+                OF_FAR_MOTIONS,
+            )
+            rough = replace(options, following=options.coarse_following)
+            self.followers[k] = StretchFollower(self.system, finer, lifted, self.paths[k], rough, Budget(0.0))
+        return self.followers[k]
 
 
 class _UnknownError:
@@ -123,9 +238,14 @@ class _UnknownError:
         return int(np.where(self.tried, np.inf, self.size).argmin())
 
 
-def _told_by(piece: CurvePiece, untold: Sequence[_UnknownError]) -> None:
+def _told_by(piece: CurvePiece, untold: Sequence[_UnknownError]) -> int:
+    """Of how many points a piece tells, that nothing was told of."""
+    count = 0
     for one in untold:
-        one.size[piece.passes(one.path.parameter)] = np.inf
+        passed = piece.passes(one.path.parameter)
+        count += int(np.isfinite(one.size[passed]).sum())
+        one.size[passed] = np.inf
+    return count
 
 
 def _gap(known: Sequence[CurvePiece], omega: float, span: tuple[float, float]) -> tuple[float, float]:
@@ -133,13 +253,3 @@ def _gap(known: Sequence[CurvePiece], omega: float, span: tuple[float, float]) -
     low = max((top for piece in known if (top := float(piece.frequency.max())) < omega), default=span[0])
     high = min((end for piece in known if (end := float(piece.frequency.min())) > omega), default=span[1])
     return max(low, span[0]), min(high, span[1])
-
-
-def _stretches(system: System, path: Path, more: tuple[int, ...], options: PairOptions) -> StretchFollower:
-    """Of the partner of a path, sought from motions that lie far from it."""
-    finer = system.with_harmonics(more)
-    lifted = Prolongation(
-        finer.new_balance(), list(system.harmonics), list(more), options.newton_tolerance, OF_FAR_MOTIONS
-    )
-    rough = replace(options, following=options.coarse_following)
-    return StretchFollower(system, finer, lifted, path, rough, Budget(0.0))

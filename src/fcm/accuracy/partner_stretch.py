@@ -98,21 +98,23 @@ class StretchFollower:
             pieces += [piece] if len(piece.path.z) > 1 else []
         return pieces
 
-    def through(self, i: int, span: tuple[float, float], by_level: bool) -> list[PartnerPiece]:
-        """The partner both ways from the frequency of a point, as far as it stays in a span and the work
-        allows; nothing where no motion of it is found there."""
+    def start(self, i: int, by_level: bool) -> FloatArray | None:
+        """A motion of the partner at the frequency of a point, if one is found as the work allows: what the
+        motion there leads to, or that the level of the forces passes."""
         before = self.lifted.newton.evaluations
         begin = self._nearest_passed(i, False) if by_level else self._same_frequency(i)
         new = int(self.lifted.newton.evaluations - before)
         self.evaluations += new
         self.budget.seconds -= new * self.each
-        if begin is None:
-            return []
-        pieces = list[PartnerPiece]()
-        for way in (True, False):
-            if self.budget.seconds > 0.0 and not any(piece.path.status is Status.CLOSED for piece in pieces):
-                pieces.append(self._followed(begin, None, span, way))
-        return [piece for piece in pieces if len(piece.path.z) > 1]
+        return None if begin is None else begin.z
+
+    def along(
+        self, z: FloatArray, direction: FloatArray | None, span: tuple[float, float], forward: bool
+    ) -> PartnerPiece:
+        """The partner from a point, where its direction may be known, as far as it stays in a span and the
+        work allows."""
+        path = self._path(z, direction, span, Events(), forward)
+        return PartnerPiece(path, reported_quantities(self.finer, path), False)
 
     def _end(self, places: Iterable[int]) -> StretchEnd | None:
         """At the first of some places where there is one."""
@@ -178,25 +180,8 @@ class StretchFollower:
         self, begin: StretchEnd, end: StretchEnd | None, span: tuple[float, float], forward: bool
     ) -> PartnerPiece:
         """The partner from one end to the other, or as far as it stays in the span."""
-        stepper, known = self.stepper, 0
-
-        def pay(_: float) -> None:
-            nonlocal known
-            new, known = stepper.newton.evaluations - known, stepper.newton.evaluations
-            self.evaluations += new
-            self.budget.seconds -= new * self.each
-            if self.budget.seconds < 0.0:
-                raise BudgetSpentError
-
         wanted = Events((float(end.z[-1]),) if end else ())
-        follower = Follower(stepper.problem, span, wanted, self.options.following, pay, stepper)
-        if not follower.begin(begin.z, forward):
-            path = follower.path(Status.STALLED)
-        else:
-            try:
-                path = follower.run(None)
-            except BudgetSpentError:
-                path = follower.path(Status.INTERRUPTED)
+        path = self._path(begin.z, None, span, wanted, forward)
         shown = reported_quantities(self.finer, path)
         if end is None:
             return PartnerPiece(path, shown, False)
@@ -207,6 +192,33 @@ class StretchFollower:
             return PartnerPiece(path, shown, False)
         rows = slice(0, int(there[0]) + 1)
         return PartnerPiece(_part(path, rows), shown.part(rows), True)
+
+    def _path(
+        self,
+        start: FloatArray,
+        direction: FloatArray | None,
+        span: tuple[float, float],
+        wanted: Events,
+        forward: bool,
+    ) -> Path:
+        """The partner from a point, as far as the work allows."""
+        stepper, known = self.stepper, 0
+
+        def pay(_: float) -> None:
+            nonlocal known
+            new, known = stepper.newton.evaluations - known, stepper.newton.evaluations
+            self.evaluations += new
+            self.budget.seconds -= new * self.each
+            if self.budget.seconds < 0.0:
+                raise BudgetSpentError
+
+        follower = Follower(stepper.problem, span, wanted, self.options.following, pay, stepper)
+        if not follower.begin(start, forward, direction):
+            return follower.path(Status.STALLED)
+        try:
+            return follower.run(None)
+        except BudgetSpentError:
+            return follower.path(Status.INTERRUPTED)
 
     @property
     def stepper(self) -> Stepper:
