@@ -557,7 +557,7 @@ def test_the_lock_goes_with_the_process(program):
 
 
 def test_checkpoints_have_a_limit_aside(tmp_path):
-    three = RunOptions(most_aside=3)
+    three = RunOptions(max_set_aside=3)
     path = Path(tmp_path / "kept")
     for number in range(3):
         path.write_text("foreign")

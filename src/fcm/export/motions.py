@@ -92,14 +92,14 @@ class _Solver:
         dofs, amplitude = self.scene.modal.dofs, self.curve.amplitude
         shown = [d for d, one in enumerate(reported) if one and np.isfinite(amplitude[:, d]).any()]
         heights = [float(np.nanmax(amplitude[:, d])) for d in shown]
-        first = greatest_first([dofs[d] for d in shown], heights)[: options.peaks]
+        first = greatest_first([dofs[d] for d in shown], heights)[: options.max_peaks]
         of: dict[int, list[str]] = {}
         for d in sorted(shown[i] for i in first):
             of.setdefault(int(np.nanargmax(amplitude[:, d])), []).append(dofs[d])
         for point, names in of.items():
             z = self._unknowns(point)
             solved = self._solved(z, along=True)
-            if solved is None or abs(solved[-1] - z[-1]) > options.drift * z[-1]:
+            if solved is None or abs(solved[-1] - z[-1]) > options.max_drift * z[-1]:
                 raise ResponseError(
                     f"{self.scene.name}: the peak of {names[0]} at {z[-1]:.6g} rad/s is no solution "
                     "with all contacts and modes; try --keep-all"

@@ -13,16 +13,16 @@ class ExportOptions:
 
     Attributes
     ----------
-    peaks
+    max_peaks
         Degrees of freedom of each curve whose peaks are exported: those that its line of the printed table
         has, the greatest displacements before rotations.
-    drift
+    max_drift
         How far the frequency of a peak may move, relative, where its point is corrected with all digits; what
         the balance has left is far below.
     """
 
-    peaks: int = MOST_DOFS
-    drift: float = 1e-6
+    max_peaks: int = MOST_DOFS
+    max_drift: float = 1e-6
 
 
 EXPORT = ExportOptions()

@@ -27,14 +27,16 @@ class FitOptions:
     max_levels, level_step : of the forces that are traced where every point has its own: at most so many,
         and no nearer to one another than by this ratio.
     min_effect : rate in units of the errors, by a factor e of a number, below which it has none.
-    max_standard_error : standard error of a number, relative, from which it is not told. max_correlation :
-    correlation from which two numbers may not be told apart. sure_standard_error : standard error of a
-    number, relative, up to which it is told whatever it is correlated with. poor_misfit : misfit of data,
-    relative, from which the model does not meet them. confidence : of the intervals. reweightings : times
-    that errors which are not stated are estimated, and the fit is made again. min_error : of a measured
-    value, relative to the greatest: what is below is rounding. rank_tolerance : of the greatest singular
-    value, below which a combination of numbers is not seen at all. lost_residual : residual where the model
-    has no response, in units of the errors.
+    max_standard_error : standard error of a number, relative, from which it is not told.
+    max_correlation : from which two numbers may not be told apart.
+    sure_standard_error : standard error of a number, relative, up to which it is told whatever it is
+        correlated with.
+    poor_misfit : misfit of data, relative, from which the model does not meet them.
+    confidence : of the intervals.
+    reweightings : times that errors which are not stated are estimated, and the fit is made again.
+    min_error : of a measured value, relative to the greatest: what is below is rounding.
+    rank_tolerance : of the greatest singular value, below which a combination of numbers is not seen at all.
+    lost_residual : where the model has no response, in units of the errors.
     """
 
     amplitude_error: float = 0.01
@@ -87,10 +89,11 @@ class NearestOptions:
 class BackboneOptions:
     """How a mode of the model is met at the amplitudes of a backbone.
 
-    amplitude_factor, modal_amplitude_factor : factor by which it is followed past the amplitudes measured;
-    past modal ones. difference : of the residual by a number, and of an amplitude along a direction,
-    relative. max_steps, step_tolerance : at most, to where a displacement has its amplitude, and the last of
-    them in ln a.
+    amplitude_factor, modal_amplitude_factor : by which it is followed past the amplitudes measured; past
+        modal ones.
+    difference : of the residual by a number, and of an amplitude along a direction, relative.
+    max_steps, step_tolerance : at most, to where a displacement has its amplitude, and the last of them in
+        ln a.
     """
 
     amplitude_factor: float = 3.0

@@ -13,9 +13,8 @@ class ReductionOptions:
     cycle_angles: int = 64  # of a cycle at which that is looked at
     # times the highest mode: a stiffer spring would lose digits that the contact's force keeps
     stiffness_ratio: float = 100.0
-    frequencies: int = (
-        24  # frequencies of the range at which linear responses are looked at, besides resonances
-    )
+    # frequencies of the range at which linear responses are looked at, besides resonances
+    frequencies: int = 24
     resonance_offset: float = 1e-7  # relative distance from a resonance, where nothing is infinite
     max_curves: int = 8  # of a sweep, of which points are looked at
     max_points: int = 4  # of a curve, those of its peaks first
@@ -28,9 +27,8 @@ class ReductionOptions:
     min_modes: int = 30  # modes of a structure for which it is worth trying
     # times the range's end: where modes begin to be far above, the first that the tolerance allows is taken
     range_factors: tuple[float, ...] = (2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0)
-    rank_tolerance: float = (
-        1e-10  # relative size below which a static response is a combination of the others
-    )
+    # relative size below which a static response is a combination of the others
+    rank_tolerance: float = 1e-10
     first_modes: int = 8  # combinations of many directions that are tried first
     added_modes: float = 1.5  # times as many after those that are too few
     estimate_margin: float = 0.5  # of the tolerance, for the estimate that decides

@@ -160,7 +160,7 @@ class Checkpoint:
         if self._known() and not self.resumable:
             os.ftruncate(self._file, 0)
             return
-        aside = _free(self.path, self.options.most_aside)
+        aside = _free(self.path, self.options.max_set_aside)
         self.path.rename(aside)
         warnings.warn(f"{self.path}: {reason}; moved to {aside.name}", stacklevel=3)
         os.close(self._file)

@@ -47,7 +47,7 @@ def connected(address: str, options: RunOptions = RUN) -> Iterator[Factory]:
             yield lambda compute, _count: Cluster(compute, workers)
         finally:
             with undisturbed(), suppress(Exception):
-                client.close(timeout=options.leave)
+                client.close(timeout=options.leave_time)
 
 
 @contextmanager

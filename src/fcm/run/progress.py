@@ -23,7 +23,7 @@ class Bar:
         """The progress of one batch; draw if it comes from the thread that may draw."""
 
         def show(fraction: float, text: str) -> None:
-            self._set(number, RUN.almost * min(fraction, 1.0))
+            self._set(number, RUN.almost_done * min(fraction, 1.0))
             if draw:
                 self.text = text
                 self.draw()

@@ -191,7 +191,7 @@ class _Sweep:
     def _hand_over(self, place: Place) -> None:
         """Ask everybody for what they have; whoever has no answer at once has none."""
         place.stop()
-        done, _ = wait(self.waiting, RUN.grace)
+        done, _ = wait(self.waiting, RUN.grace_time)
         self._keep_states()
         for future in done:
             number, found = self.waiting[future], None

@@ -242,7 +242,7 @@ class PlanarSequence:
         options: PlanarStabilityOptions = STABILITY.planar,
     ) -> None:
         numbers = [int(h) for h in harmonics]
-        self.options, self.invisible = options, OPTIONS.invisible
+        self.options, self.invisible = options, OPTIONS.min_state_length
         self.contact, self.contacts = np.ascontiguousarray(contact), contact.shape[0]
         self.kernel = PlanarContact(numbers, [1], options.initial_panels)
         self.width, self.capacity = 3 + 6 * len(numbers), self.kernel.cycle.slider.capacity

@@ -42,9 +42,8 @@ class EigenOptions:
     max_shift: float = 1e-4  # the same, where rounding has made rigid-body modes more negative than that
     frequency_shift: float = 1e-3  # of the square of that frequency
     last_digits: float = 10.0  # units of the last digit of entries that a shift is at least, if they have few
-    massless_tolerance: float = (
-        1e-13  # relative: such an eigenvalue of the inverse problem is a row without mass
-    )
+    # relative: such an eigenvalue of the inverse problem is a row without mass
+    massless_tolerance: float = 1e-13
     mass_tolerance: float = 1e-9  # of a mass whose diagonal is 1: an eigenvalue less negative is rounding
     missed_tolerance: float = 1e-3  # relative: how closely it is looked for a mode that was passed by
     frequency_tolerance: float = 1e-6  # relative: so near to the highest, a mode that is left is not below it

@@ -34,9 +34,8 @@ class FactorOptions:
     superlu_size: int = 600  # rows up to which SuperLU is taken: there the orderings of CHOLMOD gain nothing
     dissection_size: int = 5000  # rows from which on nested dissection pays
     light_entries: int = 5_000_000  # entries of a factor up to which SuperLU and its copy take little memory
-    polled_entries: int = (
-        200_000  # entries of a matrix from which on SuperLU has a thread that may be left behind
-    )
+    # entries of a matrix from which on SuperLU has a thread that may be left behind
+    polled_entries: int = 200_000
     poll_interval: float = 0.1  # [s] between looks at whether it is done, or the run interrupted
     fronts: FrontOptions = field(default_factory=FrontOptions)
 

@@ -32,9 +32,8 @@ class MistunedOptions:
     """Tolerances of what is computed of a mistuned ring."""
 
     rigid_tolerance: float = 1e-9  # of the lowest w^2 of the tuned ring that is not 0: a w^2 below it is 0
-    min_likeness: float = (
-        0.5  # least likeness of the shapes of one family, where their strains are taken as alike
-    )
+    # least likeness of the shapes of one family, where their strains are taken as alike
+    min_likeness: float = 0.5
 
 
 OPTIONS = MistunedOptions()

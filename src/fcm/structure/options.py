@@ -23,15 +23,22 @@ class DampingOptions:
     """The effect of damping that a structure's modes leave out."""
 
     max_resonances: int = 60  # at and beside which two responses are compared
-    places_between: int = (
-        4  # places up to each next one: an effect between two of them is then seen to a fifth
-    )
+    # places up to each next one: an effect between two of them is then seen to a fifth
+    places_between: int = 4
     # complex multiplications of all places, some tenths of a second: with many modes there are fewer
     max_multiplications: float = 3e8
     refined_places: int = 12  # further places beside the one with the greatest effect
     rounding: float = 1e-9  # of the greatest coefficient: less negative than that is none
     cancellation_tolerance: float = 1e-13  # of the terms of a sum: what is left of them is rounding
     min_ratio: float = 1e-9  # of an undamped mode at its own frequency, relative
+
+
+@dataclass(frozen=True)
+class ReceptanceOptions:
+    """How sums over the modes are made: they decide how fast, not what comes out."""
+
+    blas_products: int = 4000  # of a sum, from which on BLAS is faster
+    many_ports: int = 4  # from which on the sums of all their pairs go on side by side
 
 
 @dataclass(frozen=True)
@@ -47,13 +54,11 @@ class RetainedModeOptions:
     # times the shift: a first elastic mode that is so much farther has lost five digits
     max_shift_ratio: float = 1e5
     max_places: int = 8  # places between resonances at which the rounding of a receptance is looked at
-    max_loads: int = (
-        24  # of many contacts, on which that is looked at: those off most, or moving least, at rest
-    )
+    # of many contacts, on which that is looked at: those off most, or moving least, at rest
+    max_loads: int = 24
     safety: float = 2.0  # times what is found at these places: beside them it is not much more
-    min_resonance_distance: float = (
-        0.01  # how far squares of frequencies are from resonances at least, relative
-    )
+    # how far squares of frequencies are from resonances at least, relative
+    min_resonance_distance: float = 0.01
     shape_tolerance: float = 1e-12  # relative: shapes this near are the same
     max_cached: int = 8  # structures, as all curves of a sweep have the same
     max_combination: float = 10.0  # times a shape, of those that it is combined from
@@ -65,9 +70,8 @@ class RigidBodyOptions:
 
     # of the next frequency: so low are rigid-body modes that come out of an eigensolver
     rigid_ratio: float = 1e-3
-    cancellation_tolerance: float = (
-        4e-16  # share of the elastic energy's terms that is left where it is rounding
-    )
+    # share of the elastic energy's terms that is left where it is rounding
+    cancellation_tolerance: float = 4e-16
     max_cancelled_ratio: float = 0.1  # of the next frequency: a mode of such energy is below it
     # of the largest ratio of stiffness to mass on the diagonals: a mode below it may be rigid
     soft_stiffness: float = 1e-8
@@ -75,9 +79,8 @@ class RigidBodyOptions:
     uncoupled_share: float = 0.99  # share of its terms that a row has which the stiffness couples to no other
     uncoupled_stiffness: float = 1e-11  # `low`, where all rows of a mode are such
     negative_factor: float = 10.0  # times the most negative stiffness: what is no greater is as little known
-    standard_deviations: float = (
-        4.0  # of the energy by the digits of the entries: a mode of less may be rigid
-    )
+    # of the energy by the digits of the entries: a mode of less may be rigid
+    standard_deviations: float = 4.0
     max_frequency_ratio: float = 0.3  # of the next frequency: such a mode is below it
     # of the first elastic frequency: so near to it a soft mode may be taken for a rigid one
     doubtful_ratio: float = 0.03
@@ -91,13 +94,13 @@ class RigidBodyOptions:
     min_distinct_entries: int = 20  # different ones, of which even fewer digits are not typed
     # share of the terms that is left, and part of the next frequency: such a mode may be rigid
     nearly_rigid: tuple[float, ...] = (1e-6, 1e-4)
-    ratio_exponent: float = (
-        0.36  # exponent by which the next frequency may be nearer, where less of the terms is left
-    )
+    # exponent by which the next frequency may be nearer, where less of the terms is left
+    ratio_exponent: float = 0.36
     min_ratio: float = 0.03  # of the next frequency: it may be no nearer
 
 
 FLEXIBILITY = FlexibilityOptions()
 DAMPING = DampingOptions()
+RECEPTANCE = ReceptanceOptions()
 REDUCTION = RetainedModeOptions()
 RIGID_BODY = RigidBodyOptions()

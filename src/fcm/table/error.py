@@ -129,7 +129,7 @@ def disagreement(recorded: dict[str, Any], again: dict[str, Any], fresh: dict[st
     """
     for path, was in _numbers(recorded):
         now = _at(again, path)
-        if now is None or abs(now - was) > ERROR_OPTIONS.same * abs(was) + 1e-12:
+        if now is None or abs(now - was) > ERROR_OPTIONS.max_change * abs(was) + 1e-12:
             return f"{' '.join(path)} is {now if now is None else f'{now:.3g}'}, recorded {was:.3g}"
     for name, factor in (("max", SAMPLED), ("rms", SAMPLED_RMS)):
         if fresh[name] > factor * recorded[name]:

@@ -35,7 +35,11 @@ def problem(resolution: Resolution) -> str:
     if not all(LEAST <= count <= MOST for count in resolution):
         return f"each axis has from {LEAST} to {MOST} nodes"
     total = (nu_1 + nu_2) * nx * nz
-    return f"{total} nodes in all are more than {NODE_OPTIONS.most}" if total > NODE_OPTIONS.most else ""
+    return (
+        f"{total} nodes in all are more than {NODE_OPTIONS.max_nodes}"
+        if total > NODE_OPTIONS.max_nodes
+        else ""
+    )
 
 
 def separation_nodes(u: FloatArray, x: FloatArray, z: FloatArray) -> Nodes:
@@ -53,8 +57,8 @@ def slip_nodes(u: FloatArray, x: FloatArray, z: FloatArray, resolved: bool = Fal
     phi = atlas.phi_phase(Z)
     b = atlas.b_variation(X, phi)
     if resolved:
-        b = np.minimum(b, NODE_OPTIONS.largest_slip_b)
-        away = np.where(b < 1.0 - 1e-10, 0.0, NODE_OPTIONS.smallest_phi * b)
+        b = np.minimum(b, NODE_OPTIONS.max_slip_b)
+        away = np.where(b < 1.0 - 1e-10, 0.0, NODE_OPTIONS.min_phi * b)
         phi = np.clip(phi, away, np.pi - away)
     return Nodes(b + atlas.t_slip(U) * atlas.geometry(b, phi).width, b, phi)
 

@@ -13,7 +13,7 @@ class ErrorOptions:
     # of these points: as good as any; recorded beside an error, so that it can be measured again
     seed: int = 1998
     chunk: int = 50_000  # points between two looks at the progress; a few megabytes
-    same: float = 1e-3  # relative difference that other arithmetic may make at the same points
+    max_change: float = 1e-3  # relative difference that other arithmetic may make at the same points
 
 
 @dataclass(frozen=True)
@@ -32,10 +32,10 @@ class ErrorMapOptions:
 class NodeOptions:
     """The nodes of a table, and how splines are evaluated between them."""
 
-    most: int = 20_000_000  # nodes of a table; 20 times the default, half a gigabyte
+    max_nodes: int = 20_000_000  # nodes of a table; 20 times the default, half a gigabyte
     # well beyond, the slip regime is thinner than rounding errors allow to resolve
-    largest_slip_b: float = 1e4
-    smallest_phi: float = 3e-6  # stands for the limit phi -> 0 of the slip regime where b >= 1
+    max_slip_b: float = 1e4
+    min_phi: float = 3e-6  # stands for the limit phi -> 0 of the slip regime where b >= 1
     margin: int = 1  # nodes around those reached by a part: a solver's path is another with another table
     guard: int = 6  # nodes at a cut side, beyond which the splines are those through all nodes, to 1e-7
     newton_steps: int = 60  # of the inverse of a coordinate: the first ones gain a third only

@@ -49,12 +49,12 @@ class Cycle:
     def __init__(self, motion: PlaneMotion, outputs: list[int], most_panels: int) -> None:
         given = motion.options
         self.most_periods, self.double_point, self.slight, self.hardly = (
-            given.periods,
-            given.double_point,
-            given.slight,
-            given.hardly,
+            given.max_periods,
+            given.double_point_tolerance,
+            given.slight_miss,
+            given.min_way,
         )
-        self.inside = given.inside
+        self.inside = given.min_depth
         self.motion = motion
         self.slider = Slider(motion, outputs, most_panels)
         self.resting = Resting(motion)

@@ -62,7 +62,7 @@ class PlanarMargins:
 
     def __init__(self, cycle: Cycle) -> None:
         given = cycle.motion.options
-        self.steps = given.steps
+        self.steps = given.samples_per_radian
         self.cycle, self.motion, self.resting = cycle, cycle.motion, cycle.resting
         self.crossings = Crossings(cycle.motion.normal)
         self.most, self.count = FIXED + self.crossings.capacity + 4 * cycle.motion.highest + 4, 0
@@ -265,7 +265,7 @@ class PlanarMeasures:
 
     def __init__(self, cycle: Cycle) -> None:
         given = cycle.motion.options
-        self.invisible, self.steps = given.invisible, given.steps
+        self.invisible, self.steps = given.min_state_length, given.samples_per_radian
         self.cycle, self.motion = cycle, cycle.motion
         self.crossings = Crossings(cycle.motion.normal)
         self.greatest_load = self.greatest_friction = self.dissipation = self.slip_path = 0.0

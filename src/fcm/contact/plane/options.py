@@ -13,90 +13,114 @@ class PlanarOptions:
     ---------------------------------------
     tolerance : what the last coefficient of a panel's polynomial may be, times its radius over the greatest.
         Forces err by about 1e-3 of that, their derivatives by more, see below.
-    resolved : how long a panel may be, times the highest harmonic that is integrated.
-    before : of the last coefficient but one, what the last is taken for at least, as it may vanish by chance.
-    converged : a change of t in Newton's method after which one more step, of about its square, is the last.
-    settled : a change after which there is none.
-    newton : steps of it; where it takes more, the panel is too long.
-    steepest : t at the end of a panel, at most, to begin with.
-    widest : of t; directions are then within 100 degrees of that at the start.
-    growth : exponent by which directions may part in a panel.
-    varied : times the derivative of the force by the direction at the start of a panel, the last coefficient
-        of how that goes on, and likewise; where derivatives are wanted.
-    light : times the length of a panel, where the load is small: tolerance of derivatives there.
-    shrink, grow, safety : limits of the ratio of two lengths, and what it is multiplied by.
-    near : before it opens, times the highest harmonic, panels are graded towards that.
-    ends : times the tolerance, the force that a last panel is left, up to where it opens.
-    unturned : the derivative of the impulse by the direction that is left then, where derivatives are wanted.
-    deepest : of what is left until it opens, a graded panel takes at most.
-    nothing : of its bound, a radius that is none.
-    negligible : before it opens, where the force adds nothing any more.
+    panel_length : how long a panel may be, times the highest harmonic that is integrated.
+    coefficient_floor : of the last coefficient but one, what the last is taken for at least, as it may vanish
+        by chance.
+    last_change : a change of t in Newton's method after which one more step, of about its square, is the
+        last.
+    zero_change : a change after which there is none.
+    max_iterations : steps of it; where it takes more, the panel is too long.
+    max_initial_tangent : t at the end of a panel, at most, to begin with.
+    max_tangent : of t; directions are then within 100 degrees of that at the start.
+    max_growth : exponent by which directions may part in a panel.
+    derivative_fraction : times the derivative of the force by the direction at the start of a panel, the last
+        coefficient of how that goes on, and likewise; where derivatives are wanted.
+    light_load_tolerance : times the length of a panel, where the load is small: tolerance of derivatives
+        there.
+    min_factor, max_factor, safety : limits of the ratio of two lengths, and what it is multiplied by.
+    grading_length : before it opens, times the highest harmonic, panels are graded towards that.
+    end_factor : times the tolerance, the force that a last panel is left, up to where it opens.
+    impulse_tolerance : the derivative of the impulse by the direction that is left then, where derivatives
+        are wanted.
+    max_grading : of what is left until it opens, a graded panel takes at most.
+    zero_radius : of its bound, a radius that is none.
+    negligible_length : before it opens, where the force adds nothing any more.
 
     Of sticks
     ---------
-    shortest : of a step, or of a slip.
+    min_step : of a step, or of a slip.
     first_step : from the start of a stick, at least; doubled while no slip follows it.
-    on_edge : of the square of the radius, by which a slider within its disc lies on the edge of it.
+    edge_tolerance : of the square of the radius, by which a slider within its disc lies on the edge of it.
 
     Of steady cycles
     ----------------
-    periods : that are gone through in search of one.
-    double_point : of the radius, by which a slider may be off after a period that nothing improves: at the
-        slip limit itself the fixed point is double, and as uncertain as the square root of the rounding.
-    slight : of the radius, by which the discs miss one place where a slider hardly slips.
-    inside : of the radius, by which that place lies within one of the discs, at least.
-    hardly : of the radius, a way in a period that is summed, and no difference of places.
+    max_periods : that are gone through in search of one.
+    double_point_tolerance : of the radius, by which a slider may be off after a period that nothing improves:
+        at the slip limit itself the fixed point is double, and as uncertain as the square root of the
+        rounding.
+    slight_miss : of the radius, by which the discs miss one place where a slider hardly slips.
+    min_depth : of the radius, by which that place lies within one of the discs, at least.
+    min_way : of the radius, a way in a period that is summed, and no difference of places.
 
     Of a slider at rest, and of what is told
     ----------------------------------------
-    exchanges : of the discs that hold it.
+    max_exchanges : of the discs that hold it.
     missed_part : of the motion and the radius, by which it may lie outside a disc that no sample tells of.
-    same : half of what is between two discs that are one.
-    steps : to a radian of the highest harmonic, between which an extreme is sought.
-    invisible : a state that is shorter is rounding.
-    smooth : of a disc beside the motion, which is then as none.
-    faint : motion that is smaller than its mean by that is none.
+    disc_tolerance : half of what is between two discs that are one.
+    samples_per_radian : to a radian of the highest harmonic, between which an extreme is sought.
+    min_state_length : a state that is shorter is rounding.
+    smooth_radius : of a disc beside the motion, which is then as none.
+    min_motion : motion that is smaller than its mean by that is none.
     """
 
     tolerance: float = 5e-8
-    resolved: float = 6.0
-    before: float = 0.1
-    converged: float = 3e-5
-    settled: float = 1e-10
-    newton: int = 12
-    steepest: float = 0.6
-    widest: float = 1.2
-    growth: float = 2.0
-    light: float = 1.0
-    varied: float = 3e-5
-    shrink: float = 0.2
-    grow: float = 2.5
+    panel_length: float = 6.0
+    coefficient_floor: float = 0.1
+    last_change: float = 3e-5
+    zero_change: float = 1e-10
+    max_iterations: int = 12
+    max_initial_tangent: float = 0.6
+    max_tangent: float = 1.2
+    max_growth: float = 2.0
+    light_load_tolerance: float = 1.0
+    derivative_fraction: float = 3e-5
+    min_factor: float = 0.2
+    max_factor: float = 2.5
     safety: float = 0.7
-    near: float = 1.0
-    ends: float = 1e-3
-    unturned: float = 1e-9
-    deepest: float = 0.8
-    nothing: float = 1e-12
-    negligible: float = 1e-10
-    shortest: float = 1e-13
+    grading_length: float = 1.0
+    end_factor: float = 1e-3
+    impulse_tolerance: float = 1e-9
+    max_grading: float = 0.8
+    zero_radius: float = 1e-12
+    negligible_length: float = 1e-10
+    min_step: float = 1e-13
     first_step: float = 1e-8
-    on_edge: float = 1e-12
-    periods: int = 100
-    double_point: float = 1e-9
-    slight: float = 0.02
-    inside: float = 0.1
-    hardly: float = 1e-3
-    exchanges: int = 100
+    edge_tolerance: float = 1e-12
+    max_periods: int = 100
+    double_point_tolerance: float = 1e-9
+    slight_miss: float = 0.02
+    min_depth: float = 0.1
+    min_way: float = 1e-3
+    max_exchanges: int = 100
     missed_part: float = 1e-11
-    same: float = 1e-6
-    steps: float = 12.0
-    invisible: float = 1e-12
-    smooth: float = 1e-14
-    faint: float = 1e-150
+    disc_tolerance: float = 1e-6
+    samples_per_radian: float = 12.0
+    min_state_length: float = 1e-12
+    smooth_radius: float = 1e-14
+    min_motion: float = 1e-150
 
 
+@dataclass(frozen=True)
+class LoopOptions:
+    """How a loop is read from a cycle.
+
+    recorded_panels : of slip that are recorded at first.
+    angles_per_harmonic : of the highest harmonic, at which the greatest force is looked for.
+    """
+
+    recorded_panels: int = 1000
+    angles_per_harmonic: int = 64
+
+
+LOOP = LoopOptions()
 OPTIONS = PlanarOptions()  # of a balance: forces within 1e-10, derivatives 1e-8 mostly, 1e-6 at worst
 FINE = replace(
-    OPTIONS, tolerance=1e-9, resolved=4.0, deepest=0.6, converged=1e-6, varied=1e-3, unturned=1e-11
+    OPTIONS,
+    tolerance=1e-9,
+    panel_length=4.0,
+    max_grading=0.6,
+    last_change=1e-6,
+    derivative_fraction=1e-3,
+    impulse_tolerance=1e-11,
 )  # of `planar_forces`: forces within 1e-11, derivatives 1e-8
 FINEST = replace(FINE, tolerance=1e-11)  # of a loop, whose polynomials are read between the ends of panels

@@ -81,7 +81,7 @@ class PlaneMotion:
 
     def __init__(self, harmonics: list[int], stages: int, options: PlanarOptions) -> None:
         self.options = given = options
-        self.smooth, self.faint = given.smooth, given.faint
+        self.smooth, self.faint = given.smooth_radius, given.min_motion
         numbers, self.count = np.array(harmonics, dtype=np.intc), len(harmonics)
         self.normal = Motion(harmonics)
         self.highest, self.stages = max(harmonics, default=0), stages
@@ -266,13 +266,13 @@ class Panel:
     def __init__(self, motion: PlaneMotion) -> None:
         given = motion.options
         self.converged, self.settled, self.most_steps, self.steepest, self.widest = (
-            given.converged,
-            given.settled,
-            given.newton,
-            given.steepest,
-            given.widest,
+            given.last_change,
+            given.zero_change,
+            given.max_iterations,
+            given.max_initial_tangent,
+            given.max_tangent,
         )
-        self.before, self.growth = given.before, given.growth
+        self.before, self.growth = given.coefficient_floor, given.max_growth
         rule = radau(STAGES)
         self.motion = motion
         self.node, self.weight, self.slopes, self.tail, self.bary = (

@@ -61,7 +61,11 @@ class Resting:
 
     def __init__(self, motion: PlaneMotion) -> None:
         given = motion.options
-        self.exchanges, self.same, self.missed_part = given.exchanges, given.same, given.missed_part
+        self.exchanges, self.same, self.missed_part = (
+            given.max_exchanges,
+            given.disc_tolerance,
+            given.missed_part,
+        )
         self.motion = motion
         self.nodes = 12 * max(motion.highest, 1) + 3
         self.step = TWO_PI / self.nodes

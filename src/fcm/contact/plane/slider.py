@@ -58,19 +58,24 @@ class Slider:
     def __init__(self, motion: PlaneMotion, outputs: list[int], most_panels: int) -> None:
         given = motion.options
         self.shortest, self.least_step, self.on_edge, self.negligible = (
-            given.shortest,
+            given.min_step,
             given.first_step,
-            given.on_edge,
-            given.negligible,
+            given.edge_tolerance,
+            given.negligible_length,
         )
         self.near, self.ends, self.deepest, self.nothing = (
-            given.near,
-            given.ends,
-            given.deepest,
-            given.nothing,
+            given.grading_length,
+            given.end_factor,
+            given.max_grading,
+            given.zero_radius,
         )
-        self.light, self.shrink, self.grow, self.safety = given.light, given.shrink, given.grow, given.safety
-        self.varied, self.unturned = given.varied, given.unturned
+        self.light, self.shrink, self.grow, self.safety = (
+            given.light_load_tolerance,
+            given.min_factor,
+            given.max_factor,
+            given.safety,
+        )
+        self.varied, self.unturned = given.derivative_fraction, given.impulse_tolerance
         self.motion = motion
         self.panel = Panel(motion)
         self.sums = Sums(motion, max(outputs, default=0))
@@ -85,7 +90,7 @@ class Slider:
         self.gap = self.gap_slope = self.noise = self.stalled = 0.0
         self.first_step = self.least_step
         self.tolerance = given.tolerance
-        self.longest = given.resolved / max(self.sums.highest, 1)
+        self.longest = given.panel_length / max(self.sums.highest, 1)
         self.sliding = self.varying = self.gathering = self.gradient = self.failed = False
 
     def add(self, state: cython.int) -> None:
