@@ -20,7 +20,6 @@ from fcm.scene import Force, Modal, scene_from_dict
 from fcm.shooting import (
     OrbitProblem,
     harmonic_state,
-    initial_orbits,
     periodic,
     trace,
 )
@@ -33,6 +32,7 @@ from fcm.shooting.initial_orbits import (
     inner_resonances,
     near_balance,
 )
+from fcm.shooting.options import SHOOTING
 from fcm.shooting.trace import distinct_motions, explore, incomplete, is_known
 from fcm.time_domain import State, simulate
 from fcm.time_domain.errors import SimulationError
@@ -168,9 +168,9 @@ def test_a_branch_is_found_that_only_the_converged_balance_has():
 def test_a_curve_is_not_complete_while_the_balance_has_a_stable_branch_that_it_has_not(monkeypatch):
     """Where shooting leads to none of its motions, nor does the level of the forces."""
     scene = fcm.load_scene(SCENES / "stuck_at_the_ends.toml")
-    monkeypatch.setattr(initial_orbits, "_points", lambda *_: iter(()))
+    without = replace(SHOOTING, start=replace(SHOOTING.start, max_guesses=0))
     monkeypatch.setattr(trace, "level_motions", lambda *_: iter(()))
-    paths, missed = explore(OrbitProblem(scene))
+    paths, missed = explore(OrbitProblem(scene, options=without))
     assert paths and "from the stable branch of the balance at 1.5794" in missed
 
 

@@ -163,14 +163,37 @@ class Point:
         """
         i: cython.Py_ssize_t
         first: cython.Py_ssize_t = k - k % self.group
-        end: cython.Py_ssize_t = first + self.group
         if self.kind[k] == NONE:
             return -1
         if kind[k] == self.kind[k] and angle[k] == self.angle[k]:
             return k
-        far: cython.double = self.max_angle
-        i = nearest(self.kind[k], self.angle[k], kind, angle, first, end, far)
-        return i if i >= 0 and nearest(kind[i], angle[i], self.kind, self.angle, first, end, far) == k else -1
+        i = self.nearest(self.kind[k], self.angle[k], kind, angle, first)
+        return i if i >= 0 and self.nearest(kind[i], angle[i], self.kind, self.angle, first) == k else -1
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def nearest(
+        self,
+        wanted: cython.int,
+        at: cython.double,
+        kind: cython.int[::1],
+        angle: cython.double[::1],
+        first: cython.Py_ssize_t,
+    ) -> cython.Py_ssize_t:
+        """Of the group from first on the number of that of a kind whose angle is nearest to one given.
+
+        -1 if there is none near it.
+        """
+        i: cython.Py_ssize_t
+        best: cython.Py_ssize_t = -1
+        least: cython.double = self.max_angle
+        for i in range(first, first + self.group):
+            if kind[i] == wanted:
+                off: cython.double = fabs(at - angle[i])
+                off = off if off <= PI else fabs(2.0 * PI - off)
+                if off < least:
+                    least, best = off, i
+        return best
 
     @cython.ccall
     @cython.exceptval(-1e300, check=False)
@@ -207,33 +230,6 @@ class Point:
             if i >= 0:
                 self.slope[k] = (problem.margin[i] - self.margin[k]) / length
         return 0
-
-
-@cython.cfunc
-@cython.exceptval(check=False)
-def nearest(
-    wanted: cython.int,
-    at: cython.double,
-    kind: cython.int[::1],
-    angle: cython.double[::1],
-    first: cython.Py_ssize_t,
-    end: cython.Py_ssize_t,
-    far: cython.double,
-) -> cython.Py_ssize_t:
-    """Of those from first to before end the number of that of a kind whose angle is nearest to one given.
-
-    -1 if there is none nearer than far [rad].
-    """
-    i: cython.Py_ssize_t
-    best: cython.Py_ssize_t = -1
-    least: cython.double = far
-    for i in range(first, end):
-        if kind[i] == wanted:
-            off: cython.double = fabs(at - angle[i])
-            off = off if off <= PI else fabs(2.0 * PI - off)
-            if off < least:
-                least, best = off, i
-    return best
 
 
 class Points(NamedTuple):

@@ -99,7 +99,7 @@ def family(
     contacts = sticking_contacts(begun)
     if not contacts:
         return None
-    shots, complete = _members(begun, poll, options)
+    shots, complete = members(begun, poll, options)
     shown = [shot for shot in shots if _stable(shot, options)] if _stable(begun, options) else shots
     amplitude = np.array([shot.amplitude for shot in shown])
     friction = np.array(
@@ -111,7 +111,9 @@ def family(
     )  # fmt: skip
 
 
-def _members(begun: Shot, poll: Poll, options: ShootingOptions = SHOOTING) -> tuple[list[Shot], bool]:
+def members(
+    begun: Shot, poll: Poll = never_interrupt, options: ShootingOptions = SHOOTING
+) -> tuple[list[Shot], bool]:
     """Motions of the family up to its ends, and whether these were reached on every way."""
     shots, waiting, seen, complete = [begun], [begun], list[_VisitedTractions](), True
     left = options.family.max_motions

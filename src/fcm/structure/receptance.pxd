@@ -20,6 +20,8 @@ cdef class Receptance:
     cdef public double[:, ::1] square_im
     cdef public double[:, ::1] static
     cdef public bint large
+    cdef bint many
+    cdef double min_ratio
     cdef public bint summed
     cdef public double[:, ::1] pairs
     cdef public double[:, ::1] total
@@ -53,6 +55,7 @@ cdef class TravellingReceptance(Receptance):
     cdef void from_real(self, int j, Receptance wave) noexcept
 
 cdef class ForcedModes:
+    cdef double min_ratio
     cdef double[:, ::1] ports
     cdef double[:, ::1] dofs
     cdef double[::1] natural

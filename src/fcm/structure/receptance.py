@@ -24,11 +24,7 @@ import numpy.typing as npt
 from cython.cimports.libc.math import sqrt
 
 from fcm.structure.layout import Layout
-
-LARGE = cython.declare(cython.int, 4000)  # products of a sum over the modes from which on BLAS is faster
-MANY = cython.declare(cython.int, 4)  # ports from which on the sums of all their pairs go on side by side
-# twice the damping ratio of an undamped mode exactly at its own frequency
-LEAST_DAMPING = cython.declare(cython.double, 1e-9)
+from fcm.structure.options import DAMPING, RECEPTANCE
 
 
 @cython.cclass
@@ -76,8 +72,9 @@ class Receptance:
         self.c_re, self.c_im, self.s_re, self.s_im = np.asarray(self.weights).reshape(4, count, modes)
         sums = np.asarray(self.sum).reshape(4, count, size, size)
         self.G_re, self.G_im, self.dG_re, self.dG_im = sums
-        low, self.large = np.tril_indices(ports), modes * ports * ports > LARGE
-        pairs = MANY <= ports and summed and not self.large
+        low, self.large = np.tril_indices(ports), modes * ports * ports > RECEPTANCE.blas_products
+        self.many, self.min_ratio = ports >= RECEPTANCE.many_ports, DAMPING.min_ratio
+        pairs = self.many and summed and not self.large
         self.pairs = (
             np.ascontiguousarray(shapes[:, low[0]] * shapes[:, low[1]]) if pairs else np.zeros((0, 0))
         )
@@ -121,7 +118,7 @@ class Receptance:
         if self.large and self.summed:
             self.large_sums()
         for j in range(self.count if self.summed and not self.large else 0):
-            if self.ports >= MANY:
+            if self.many:
                 self.sums_by_pairs(j)
             else:
                 self.sums(j)
@@ -155,7 +152,7 @@ class Receptance:
                 re: cython.double = (self.natural[i] - w) * (self.natural[i] + w)
                 im: cython.double = self.rate[i] * w
                 if re == 0.0 and im == 0.0:  # nothing damps a mode that is excited at its own frequency
-                    im = LEAST_DAMPING * w * w
+                    im = self.min_ratio * w * w
                 size: cython.double = re * re + im * im
                 c_re: cython.double = re / size
                 c_im: cython.double = -im / size
@@ -338,6 +335,7 @@ class ForcedModes:
         ports: npt.NDArray[np.float64],
         dofs: npt.NDArray[np.float64],
     ) -> None:
+        self.min_ratio = DAMPING.min_ratio
         self.natural, self.rate = np.array(natural), 2.0 * np.asarray(damping) * natural
         self.ports, self.dofs = np.ascontiguousarray(ports), np.ascontiguousarray(dofs)
         self.q_re, self.q_im = np.zeros((2, len(natural)))
@@ -379,7 +377,7 @@ class ForcedModes:
             re: cython.double = (self.natural[m] - w) * (self.natural[m] + w)
             im: cython.double = self.rate[m] * w
             if re == 0.0 and im == 0.0:
-                re = LEAST_DAMPING * w * w
+                re = self.min_ratio * w * w
             square: cython.double = re * re + im * im
             self.q_re[m] = (f_re * re + f_im * im) / square
             self.q_im[m] = (f_im * re - f_re * im) / square

@@ -9,13 +9,10 @@ import numpy.typing as npt
 
 from fcm.contact.plane.coefficients import ComplexArray, FloatArray, one_motion
 from fcm.contact.plane.forces import PlanarContact
-from fcm.contact.plane.options import FINEST
+from fcm.contact.plane.options import FINEST, LOOP
 from fcm.contact.plane.radau import STAGES, radau
 
-INVISIBLE = 1e-12  # [rad] a state that is shorter is rounding
 LETTERS = "EPS"  # by the kernel's states
-PANELS = 1000  # that are recorded at first
-DENSE = 64  # angles to a harmonic at which the greatest force is looked for
 
 
 @dataclass(frozen=True)
@@ -184,7 +181,7 @@ def planar_loop(
 
 def _solved(harmonics: list[int], x: FloatArray, parameters: FloatArray) -> PlanarContact:
     """The kernel with the steady cycle, all panels of which are recorded."""
-    most = PANELS
+    most = LOOP.recorded_panels
     while True:
         contact = PlanarContact(harmonics, harmonics, most, FINEST)
         contact.at(x, *parameters)
@@ -202,7 +199,7 @@ def visible(contact: PlanarContact) -> list[tuple[str, float, tuple[float, float
     lengths = np.diff(begin, append=begin[0] + 2.0 * np.pi)
     regions: list[tuple[str, float, tuple[float, float]]] = []
     for p in range(slider.pieces):
-        if lengths[p] > INVISIBLE or slider.pieces == 1:
+        if lengths[p] > FINEST.min_state_length or slider.pieces == 1:
             state = LETTERS[slider.state[p]]
             if not regions or regions[-1][0] != state:
                 place = (float(slider.rest_x[p]), float(slider.rest_y[p]))
@@ -217,7 +214,7 @@ def visible(contact: PlanarContact) -> list[tuple[str, float, tuple[float, float
 
 def _greatest(loop: PlanarLoop, harmonics: int) -> float:
     """The greatest |f|: at a transition, or near the greatest of many angles, by parabolas."""
-    step = 2.0 * np.pi / (DENSE * max(harmonics, 1))
+    step = 2.0 * np.pi / (LOOP.angles_per_harmonic * max(harmonics, 1))
     theta = np.concatenate((loop.angles, np.arange(0.0, 2.0 * np.pi, step)))
     size = np.hypot(*np.moveaxis(loop.force(theta), -1, 0))
     best = theta[np.argmax(size)]
