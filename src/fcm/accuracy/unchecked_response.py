@@ -150,14 +150,15 @@ def with_more(
     options: RefinementOptions = REFINEMENT,
 ) -> tuple[UncheckedResponse | None, tuple[int, ...], bool]:
     """The response with more harmonics; if there is none, those that take too long, and whether they had
-    been begun. told: whether something tells that they bring the accuracy nearer."""
+    been begun. told: whether something tells that they bring the accuracy nearer. Where it does not, or they
+    take too long, as many as are quick, the lowest three at least."""
     work, wanted, most = found.system.work, more, found.system.options.work.max_seconds
-    if not told:
+    if not told or work.seconds + found.seconds_with(more) > most:
         more = found.limited_harmonics(options.max_doubtful_seconds - work.seconds, more, options)
     if more == found.system.harmonics:
         return None, () if more == wanted else wanted, False
     if work.seconds + found.seconds_with(more) > most:
-        return None, more, False
+        return None, wanted, False
     stable = prolongated_solutions(found, more)
     try:
         with work.limited_to(most):
