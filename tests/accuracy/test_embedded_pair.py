@@ -330,7 +330,7 @@ def test_a_partner_that_is_another_curve_is_told_of_by_fewer_harmonics_where_its
         errors = with_errors(outline, 1e-2, options=options).errors
         told.append(np.concatenate([np.isfinite(one.truncation) for one in errors]).mean())
         count.append(len(errors[0].partner))
-    assert count[0] < count[1] and told[0] > 1.5 * told[1]
+    assert count[0] < count[1] and told[0] > told[1] + 0.2
 
 
 def test_the_partner_of_a_further_branch_takes_no_more_than_its_part_of_the_work():

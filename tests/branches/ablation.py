@@ -34,7 +34,7 @@ OFF = {
     ],
     "prolongation": [
         (unchecked_response, "prolongated_solutions", lambda before, harmonics: []),
-        (refinement, "near", lambda before, harmonics: []),
+        (refinement, "prolongated_solutions", lambda before, harmonics: []),
     ],
     "levels below peaks": [(refined, "with_levels_below_peaks", lambda found, accuracy: found)],
     "levels where nothing is stable": [

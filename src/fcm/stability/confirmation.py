@@ -91,9 +91,14 @@ class ConfirmedPoints:
     def at(self, i: int) -> Verdict:
         """Of the motion with further harmonics."""
         if i not in self.known:
-            self.work.poll()
+            self._poll()
             self.known[i] = self.multipliers.confirmation(self.z[i], self.options.confirmation.max_addition)
         return self.known[i]
+
+    def _poll(self) -> None:
+        """Of many contacts, as a look takes long: multipliers of few may be those of another curve then."""
+        if self.many:
+            self.work.poll()
 
     def between(self, a: int, b: int, found: Mask) -> None:
         """Fill found after a point up to another."""
@@ -121,7 +126,7 @@ class ConfirmedPoints:
         last, motion = self._before_turn(at, last), self.multipliers.beside
         step = options.point_interval
         while motion is not None and (last - at) * way > 0:
-            self.work.poll()
+            self._poll()
             ahead = at + way * min(step, abs(last - at))
             if self.multipliers.continued(self.z[ahead], motion, options.max_addition).stable == 1.0:
                 found[min(at + way, ahead) : max(at + way, ahead) + 1] = True
