@@ -74,7 +74,9 @@ TABLES: dict[str, dict[str, Key]] = {
         "mass": Key("mass matrix; a list of numbers is its diagonal", _MATRIX),
         "stiffness": Key("stiffness matrix", _MATRIX),
         "damping": Key("of every mode, in proportion, or a matrix", "ratio, table, or matrix as above"),
-        "modes": Key("how many are kept", "whole number", "all up to 3 times the forces' highest frequency"),
+        "modes": Key(
+            "how many are kept", "whole number", "all up to 3 times the highest frequency, at least 10"
+        ),
         "flexibility": Key("whether that of the other modes is kept", "true or false", "true"),
         "coupling": Key("to the next sector, with [cyclic]", "table", "none"),
     },

@@ -55,7 +55,6 @@ class PlanarOptions:
     Of a slider at rest, and of what is told
     ----------------------------------------
     max_exchanges : of the discs that hold it.
-    missed_part : of the motion and the radius, by which it may lie outside a disc that no sample tells of.
     disc_tolerance : half of what is between two discs that are one.
     samples_per_radian : to a radian of the highest harmonic, between which an extreme is sought.
     min_state_length : a state that is shorter is rounding.
@@ -92,7 +91,6 @@ class PlanarOptions:
     min_depth: float = 0.1
     min_way: float = 1e-3
     max_exchanges: int = 100
-    missed_part: float = 1e-11
     disc_tolerance: float = 1e-6
     samples_per_radian: float = 12.0
     min_state_length: float = 1e-12

@@ -1,7 +1,7 @@
 from fcm.contact.plane.panel cimport PlaneMotion
 
 cdef class Resting:
-    cdef double same, missed_part
+    cdef double same
     cdef int exchanges
     cdef readonly PlaneMotion motion
     cdef readonly int nodes, held

@@ -15,7 +15,7 @@ The disc that is missed most is sought among nodes first. That it is no other is
 a trigonometric polynomial, positive where a disc that has grown by t is missed. Its values and slopes at both
 ends of a step, and a bound of its fourth derivative, prove that it is negative, monotone or concave between;
 a step that proves nothing is halved. That ends: where the cubic through both ends errs by no more than
-a tolerance, h has no second maximum, as a cubic has none.
+rounding, h has no second maximum, as a cubic has none.
 """
 
 from __future__ import annotations
@@ -61,11 +61,7 @@ class Resting:
 
     def __init__(self, motion: PlaneMotion) -> None:
         given = motion.options
-        self.exchanges, self.same, self.missed_part = (
-            given.max_exchanges,
-            given.disc_tolerance,
-            given.missed_part,
-        )
+        self.exchanges, self.same = given.max_exchanges, given.disc_tolerance
         self.motion = motion
         self.nodes = 12 * max(motion.highest, 1) + 3
         self.step = TWO_PI / self.nodes
@@ -245,22 +241,18 @@ class Resting:
             most = max(most, d, r * r)
             mean += self.square[j]
         mean /= self.nodes
+        unit: float = most if most > 0.0 else 1.0  # squares of h may be beyond all numbers
         for j in range(self.nodes):
-            d = (
-                (self.square[j] - mean) / most if most > 0.0 else 0.0
-            )  # whose square may be beyond all numbers
+            d = (self.square[j] - mean) / unit
             rms += d * d
-        rms = most * sqrt(rms / self.nodes)
+        rms = unit * sqrt(rms / self.nodes)
         # of twice the highest harmonic, which the nodes resolve: the sum of all amplitudes is no more than
         # the root of twice their number times the root mean square
         order: float = 2.0 * max(self.motion.highest, 1)
         second: float = order * order * sqrt(2.0 * order) * rms
         self.fourth = order * order * second
-        whole: float = self.motion.size + self.motion.reach
-        self.rounding = self.missed_part * whole
-        self.noise = (
-            self.missed_part * most + 64.0 * EPSILON * EPSILON * whole * whole
-        )  # all discs may be points
+        self.rounding = 8.0 * EPSILON * (self.motion.size + self.motion.reach)
+        self.noise = EPSILON * most
         second *= 0.125 * self.step * self.step
         for j in range(self.nodes):
             k = j + 1 if j + 1 < self.nodes else 0
