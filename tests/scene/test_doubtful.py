@@ -7,7 +7,7 @@ from math import pi
 import pytest
 
 from fcm.scene import scene_from_dict
-from fcm.scene.listing import units_doubt
+from fcm.scene.listing import resonance_doubt
 
 from ..program import called
 
@@ -87,6 +87,49 @@ def test_a_mode_that_contacts_bring_near_the_range_is_no_slip_of_units():
     }
     contact = {"name": "a", "tangential": "u", "normal": "v", "mu": 0.3, "k_u": 1e5, "k_v": 1.0, "n_0": 1.0}
     rest = {"response": {"frequency": [310, 320]}, "force": [{"dof": "u", "amplitude": 1.0}]}
-    assert not units_doubt(scene_from_dict({"modal": modal, "contact": [contact], **rest}))
+    assert not resonance_doubt(scene_from_dict({"modal": modal, "contact": [contact], **rest}))
     weak = contact | {"k_u": 1.0}
-    assert "give the mass in t" in units_doubt(scene_from_dict({"modal": modal, "contact": [weak], **rest}))
+    assert "give the mass in t" in resonance_doubt(
+        scene_from_dict({"modal": modal, "contact": [weak], **rest})
+    )
+
+
+STEEL = {  # two modes, 35.6 and 93.2 Hz, as a program in N, m, kg writes it
+    "dofs": ["u", "v"],
+    "mass": [[2.0, 0.0], [0.0, 2.0]],
+    "stiffness": [[4e5, -2e5], [-2e5, 4e5]],
+    "damping": 0.01,
+}
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        ({}, ""),
+        ({"mass": [[2e-3, 0.0], [0.0, 2e-3]]}, "31.6 times as low"),
+        ({"mass": [[2e3, 0.0], [0.0, 2e3]]}, "31.6 times as high"),
+        ({"mass": STEEL["stiffness"], "stiffness": STEEL["mass"]}, "stiffness and mass may be in each other"),
+        ({"unit": "rad/s"}, 'in Hz: frequency_unit = "Hz"'),
+        ({"k_u": 1e12}, ""),  # a resonance lies between the free mode and the stuck one
+        ({"mass": [[2e-5, 0.0], [0.0, 2e-5]]}, "are the units of the structure"),
+        (
+            {"stiffness": [[2.0, -2.0], [-2.0, 2.0]], "k_u": 1e2, "k_v": 1e2},
+            "at 0.225079 Hz",
+        ),  # beside a rigid body
+    ],
+)
+def test_a_range_without_a_resonance_says_so_with_the_nearest_modes(change, words):
+    structure = STEEL | {key: change[key] for key in ("mass", "stiffness") if key in change}
+    contact = {"name": "a", "tangential": "u", "normal": "v", "mu": 0.3, "k_u": 1e5, "k_v": 1e5, "n_0": 1.0}
+    data = {
+        "frequency_unit": change.get("unit", "Hz"),
+        "structure": structure,
+        "contact": [contact | {key: change[key] for key in ("k_u", "k_v") if key in change}],
+        "force": [{"dof": "u", "amplitude": 1.0}],
+        "response": {"frequency": [40.0, 60.0]},
+    }
+    said = resonance_doubt(scene_from_dict(data))
+    assert words in said and bool(said) == bool(words)
+    if words:
+        assert "no resonance is near the range of frequencies: the nearest mode is at" in said
+        assert "without contacts" in said and "while all stick" in said

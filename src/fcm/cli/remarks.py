@@ -31,24 +31,34 @@ if TYPE_CHECKING:
     from fcm.model.scene import Scene
 
 
-def announce(messages: Messages, scene: Scene, asked: Asked) -> None:
-    """What is going to be computed; without being asked where that is a great deal."""
-    from fcm.scene.listing import units_doubt
+def announce(messages: Messages, scene: Scene, asked: Asked) -> bool:
+    """What is going to be computed; without being asked where that is a great deal.
+
+    Returns whether a resonance is near the range of frequencies, as far as that is known.
+    """
+    from fcm.scene.listing import resonance_doubt
     from fcm.scene.rules import least_points
 
-    if slip := units_doubt(scene):
-        messages.warning(f"no mode is near the range of frequencies; {slip}")
+    in_steps = asked.at is None and asked.mode is None and scene.has_range
+    doubt = resonance_doubt(scene) if in_steps else ""
+    if doubt:
+        messages.warning(doubt)
     count = len(scene.each_curve())
     method = asked.method if asked.mode is None else f"nonlinear mode {asked.mode}"
     messages.detail(f"{scene.title or scene.name}: curves to trace: {count}, method: {method}")
-    in_steps = asked.at is None and asked.mode is None and scene.has_range
     if in_steps and (points := least_points(scene)) > SENTENCES.many_points:
         curves = f"{count} curve{'s' * (count > 1)}"
         messages.info(f"at least {points} points: {curves} in steps of {scene.max_step:g} at most")
+    return not doubt
 
 
-def close(messages: Messages, result: dict[str, Any], defects: list[str], written: bool) -> None:
-    """What the run left out, cost, and how wrong it is; the exit code of one that stopped early."""
+def close(
+    messages: Messages, result: dict[str, Any], defects: list[str], written: bool, resonant: bool
+) -> None:
+    """What the run left out, cost, and how wrong it is; the exit code of one that stopped early.
+
+    That contacts change no state is said where a resonance is near the range: elsewhere it is no wonder.
+    """
     for text in dict.fromkeys(defects):
         messages.detail(text)
     for text in result["left_out"]:
@@ -59,7 +69,7 @@ def close(messages: Messages, result: dict[str, Any], defects: list[str], writte
         messages.info(track.cost(result))
     if levels := looked_at(result):
         messages.detail(levels)
-    if stuck := linear(result):
+    if resonant and (stuck := linear(result)):
         messages.info(stuck)
     if images := mirrored(result):
         messages.info(images)

@@ -49,7 +49,7 @@ def respond(messages: Messages, /, scene: str, **options: Any) -> None:
     loaded, exporting = _loaded(messages, scene, asked)
     check_not_read(_files(asked), [*loaded.files, asked.table, asked.mesh])
     _check_scene(loaded, asked)
-    announce(messages, loaded, asked)
+    resonant = announce(messages, loaded, asked)
     if not asked.resume:
         messages.expect(len(loaded.each_curve()))
     exported = [] if exporting is None else exporting.files
@@ -61,7 +61,7 @@ def respond(messages: Messages, /, scene: str, **options: Any) -> None:
                 exporting.take(response, loaded)
         response = visible(response, loaded)
         result = outputs.write(response, asked.to_json)
-    close(messages, result, response.defects, outputs.written)
+    close(messages, result, response.defects, outputs.written, resonant)
 
 
 def _compare(messages: Messages, scene: str, asked: Asked) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray, Force, Scene
 from fcm.scene.options import MESSAGES, TOLERANCES
+from fcm.structure.diameters import nodal_diameters
 
 METRE_AND_MILLIMETRE = float(np.sqrt(1000.0))  # of frequencies, where stiffness and mass mix the two systems
 UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}
@@ -53,30 +54,58 @@ def listing(scene: Scene) -> dict[str, Any]:
     }
 
 
-def units_doubt(scene: Scene) -> str:
-    """Where no mode is near the range of frequencies, by which usual slip of units one would be; else ''."""
+def resonance_doubt(scene: Scene) -> str:
+    """That no resonance is near the range of frequencies: the nearest modes, a usual slip of units; else ''.
+
+    A resonance lies between a mode of the structure alone and that with all contacts stuck: springs only
+    raise frequencies, and a contact in motion is softer than its spring (Rayleigh).
+    """
     if not scene.has_range:
         return ""
-    ring, modal = scene.ring, scene.modal
-    own = (
-        modal.frequency[: modal.frequency.size - modal.added] if ring is None else ring.frequency[~ring.added]
-    )
-    elastic, ends, unit = own[own > 0.0], scene.frequency_range, scene.frequency_unit
-    if elastic.size and scene.of_matrices and _swapped(elastic, ends):
-        return "stiffness and mass may be in each other's place: modes are far below the range"
-    slip = _slip_of_units(np.sort(elastic), ends, unit) if elastic.size else ""
-    if slip and ring is None and scene.contacts:  # contacts that stick may bring a mode there
-        slip = _slip_of_units(np.sort(np.concatenate((elastic, _stuck(scene)))), ends, unit)
-    return slip
+    opened, stuck = _modes_open_and_stuck(scene)
+    ends, room = scene.frequency_range, MESSAGES.range_near
+    near = ends[0] / room, ends[1] * room
+    if not opened.size or _resonance_within(opened, stuck, near):
+        return ""
+    unit = scene.frequency_unit
+    places = f"the nearest mode is at {_nearest(opened, ends) / UNIT[unit]:.6g} {unit}"
+    if scene.contacts:
+        places += f" without contacts, at {_nearest(stuck, ends) / UNIT[unit]:.6g} {unit} while all stick"
+    slip = _slip_of_units(opened, stuck, ends, unit)
+    reciprocal = 1.0 / opened[opened > 0.0]
+    if scene.of_matrices and _resonance_within(reciprocal, reciprocal, near):
+        slip = "stiffness and mass may be in each other's place"
+    if not slip:
+        slip = "are the units of the structure, of the contacts' stiffness and of the range those meant?"
+    return f"no resonance is near the range of frequencies: {places}; {slip}"
 
 
-def _swapped(elastic: FloatArray, ends: tuple[float, float]) -> bool:
-    """Whether frequencies [rad/s] are so low that their reciprocals may be meant."""
-    return bool(elastic.max() < TOLERANCES.far_below * min(1.0, ends[0]))
+def _modes_open_and_stuck(scene: Scene) -> tuple[FloatArray, FloatArray]:
+    """Natural frequencies (mode,) [rad/s] of elastic modes, without contacts and with all of them stuck."""
+    if scene.ring is not None:
+        every = nodal_diameters(scene)
+        opened, stuck = (np.concatenate([getattr(one, of) for one in every]) for of in ("opened", "stuck"))
+    else:
+        own = scene.modal.frequency.size - scene.modal.added
+        opened = np.sort(scene.modal.frequency[:own])
+        stuck = _stuck(scene)[:own] if scene.contacts else opened
+    elastic = stuck > 0.0
+    return opened[elastic], stuck[elastic]
+
+
+def _resonance_within(opened: FloatArray, stuck: FloatArray, ends: tuple[float, float]) -> bool:
+    return bool(((opened <= ends[1]) & (stuck >= ends[0])).any())
+
+
+def _nearest(frequency: FloatArray, ends: tuple[float, float]) -> float:
+    """The one that takes the least factor to an end of the range."""
+    with np.errstate(divide="ignore"):
+        away = np.abs(np.log(frequency[:, None] / np.array(ends)))
+    return float(frequency[np.argmin(away.min(axis=1))])
 
 
 def _stuck(scene: Scene) -> FloatArray:
-    """Frequencies (mode,) [rad/s] of the structure whose contacts all stick, in its modes."""
+    """Frequencies (mode,) [rad/s], ascending, of the structure whose contacts all stick, in its modes."""
     modal, springs = scene.modal, list[tuple[float, FloatArray]]()
     for contact in scene.contacts:
         springs += [(contact.k_u, contact.tangential), (contact.k_v, contact.normal)]
@@ -84,8 +113,8 @@ def _stuck(scene: Scene) -> FloatArray:
             springs.append((contact.k_u, contact.second))
     along = modal.shapes @ np.array([direction for _, direction in springs]).T / np.sqrt(modal.mass)[:, None]
     stiffness = np.diag(modal.frequency**2) + (along * np.array([k for k, _ in springs])) @ along.T
-    squares = np.linalg.eigvalsh(stiffness)
-    return np.sqrt(squares[squares > 0.0])
+    squares: FloatArray = np.linalg.eigvalsh(stiffness)
+    return np.sqrt(np.maximum(squares, 0.0))
 
 
 def _of_ring(scene: Scene, ring: Ring) -> dict[str, Any]:
@@ -142,14 +171,15 @@ def _read(scene: Scene, frequency: FloatArray) -> list[str]:
     said = [*scene.read, f"{bodies}; others from {in_hertz}, which are {low:.6g} to {high:.6g} rad/s"]
     if scene.ring is None and scene.contacts:
         said.append(_said_of_stuck(scene))
-    if slip := units_doubt(scene):
-        said.append(slip)
+    if doubt := resonance_doubt(scene):
+        said.append(doubt)
     return said
 
 
 def _said_of_stuck(scene: Scene) -> str:
     """Where the resonances are while all contacts stick."""
-    first = np.sort(_stuck(scene))[: MESSAGES.stuck_modes] / UNIT[scene.frequency_unit]
+    stuck = _stuck(scene)
+    first = stuck[stuck > 0.0][: MESSAGES.stuck_modes] / UNIT[scene.frequency_unit]
     places = ", ".join(f"{frequency:.6g}" for frequency in first)
     return (
         f"first modes while all contacts stick: {places} {scene.frequency_unit}; peaks lie between these and "
@@ -157,15 +187,8 @@ def _said_of_stuck(scene: Scene) -> str:
     )
 
 
-def _slip_of_units(elastic: FloatArray, ends: tuple[float, float], unit: str) -> str:
-    """What a structure without a frequency near the range [rad/s] looks like, if that is a usual slip of
-    units; else ''."""
-
-    def near(factor: float, room: float) -> bool:
-        return bool(((elastic * factor >= ends[0] / room) & (elastic * factor <= ends[1] * room)).any())
-
-    if near(1.0, MESSAGES.range_near):
-        return ""
+def _slip_of_units(opened: FloatArray, stuck: FloatArray, ends: tuple[float, float], unit: str) -> str:
+    """By which usual slip of units the range [rad/s] would have a resonance; else ''."""
     hertz = 2.0 * np.pi
     slips = {
         1.0 / hertz: 'the range would hold modes if its numbers were in Hz: frequency_unit = "Hz"',
@@ -177,7 +200,10 @@ def _slip_of_units(elastic: FloatArray, ends: tuple[float, float], unit: str) ->
         "a stiffness in N/m and a mass in t: give the mass in kg",
     }
     del slips[hertz if unit == "rad/s" else 1.0 / hertz]  # it is in that unit already
-    return next((text for factor, text in slips.items() if near(factor, 1.0)), "")
+    return next(
+        (text for factor, text in slips.items() if _resonance_within(opened * factor, stuck * factor, ends)),
+        "",
+    )
 
 
 def _directions(scene: Scene) -> dict[str, FloatArray]:

@@ -103,9 +103,6 @@ class ToleranceOptions:
     equal_frequency: float = 1e-6  # of frequencies that are one
     rotated: float = 1e-8  # of ring shapes that are real but for a factor: what is left of the imaginary part
     same_mode: float = 1e-6  # of what two datasets write of one mode
-    far_below: float = (
-        1e-3  # of the range, and of 1 rad/s: modes so low may have mass and stiffness exchanged
-    )
     collinear: float = 1e-4  # of a shape: what may be left when it is turned to be real
 
 
