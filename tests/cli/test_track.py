@@ -122,6 +122,18 @@ def test_a_peak_that_falls_by_decades_is_to_be_seen_at_its_least_and_named():
     assert upper.get_yscale() == "log" and upper.get_ylabel() == "Peak amplitude of u"
 
 
+@pytest.mark.parametrize("low, scale", [(1.0, "log"), (100.0, "linear"), (0.0, "linear"), (-5.0, "linear")])
+def test_a_number_over_decades_has_a_logarithmic_axis(low, scale):
+    number, none = np.linspace(low, 200.0, 5), np.zeros(5)
+    tracks = [
+        DrawnTrack("peak of u", number, number, none[:, None] + height, none, none, none + 1.0)
+        for height in (1.0, 2.0)
+    ]
+    figure = draw_tracked(DrawnTracking("contact.c.n_0", ("u",), "Hz", tuple(tracks)))
+    assert [axes.get_xscale() for axes in figure.axes] == [scale, scale]
+    assert figure.axes[1].get_title(loc="left") == "a colour for each peak"
+
+
 @pytest.mark.slow
 def test_the_error_of_tracked_curves_is_told_or_said_to_be_unknown(fcm):
     """Two of three cusps that lie close together move too far by more harmonics to be found again."""

@@ -15,7 +15,7 @@ from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, staying, symbols, with_unit
 from fcm.plot.read import BoolArray, FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
-from fcm.plot.style import LAYOUT, house_style, logarithmic_axis, new_figure, sequence_colours
+from fcm.plot.style import LAYOUT, house_style, logarithmic_axis, new_figure, sequence_colours, swept_axis
 from fcm.rotation import unit_of
 
 if TYPE_CHECKING:
@@ -143,8 +143,7 @@ def _finish_axes(upper: Axes, lower: Axes, peaks: Peaks, key: str, column: int, 
     dof = peaks.dofs[column]
     upper.set_ylabel(with_unit(f"Peak amplitude of {dof}", unit_of(dof, peaks.length)), parse_math=False)
     lower.set_ylabel(frequency_label(peaks.frequency_unit).replace("Frequency", "Peak frequency"))
-    if x.min() > 0.0 and x.max() > LAYOUT.peak_decades * x.min():
-        lower.set_xscale("log")
+    swept_axis(lower, float(x.min()), float(x.max()))
     y = peaks.amplitude[known, column]
     if y.max() > 10.0 * y.min() > 0.0:
         logarithmic_axis(upper)

@@ -74,7 +74,7 @@ class Layout:
     planar_room: float = 0.56  # of the extent of a planar loop, to each side of the middle
     planar_samples: int = 1440  # of a cycle of a planar loop
     planar_instants: int = 4  # of a cycle at which the disc is drawn
-    peak_decades: float = 100.0  # positive swept values that span more are on a logarithmic axis
+    swept_span: float = 30.0  # positive swept values of a greater ratio are on a logarithmic axis
     peak_lines: int = 12  # more combinations of the other swept values than this are a cloud of points
     marked_points: int = 60  # values or points on a line that are marked; of more, none is or some are
     point_edge: float = 0.7  # [point] of a marked point
@@ -163,6 +163,13 @@ def logarithmic_axis(axes: Axes) -> None:
     """A logarithmic amplitude axis with its ticks as plain numbers."""
     axes.set_yscale("log")
     plain_ticks(axes.yaxis, 1e3)
+
+
+def swept_axis(axes: Axes, lowest: float, highest: float) -> None:
+    """The axis of a number between two values, logarithmic with plain ticks where they are far apart."""
+    if highest > LAYOUT.swept_span * lowest > 0.0:
+        axes.set_xscale("log")
+        plain_ticks(axes.xaxis, 1e3)
 
 
 def plain_ticks(axis: Axis, widest: float) -> None:

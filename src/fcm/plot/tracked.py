@@ -14,7 +14,15 @@ from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label, staying, symbols, with_unit
 from fcm.plot.read import FloatArray, floats, opened
 from fcm.plot.reader_process import apart
-from fcm.plot.style import LAYOUT, has_decades, house_style, logarithmic_axis, new_figure, sequence_colours
+from fcm.plot.style import (
+    LAYOUT,
+    has_decades,
+    house_style,
+    logarithmic_axis,
+    new_figure,
+    sequence_colours,
+    swept_axis,
+)
 from fcm.rotation import unit_of
 
 if TYPE_CHECKING:
@@ -119,9 +127,9 @@ def _draw_folds(drawn: DrawnTracking) -> Figure:
             at = track.turn == 1.0
             axes.plot(track.number[at], track.frequency[at], "o", markersize=3.5, color=_MARK, zorder=3)
         axes.set_ylabel(frequency_label(drawn.frequency_unit).replace("Frequency", "Frequency of folds"))
-        _name_number(axes, drawn)
+        _name_number(axes, drawn, tracks)
         axes.set_title("shaded: several solutions", loc="right", fontsize=8)
-        _say_unstable(axes, tracks)
+        _name_lines(axes, tracks)
     return figure
 
 
@@ -156,8 +164,8 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
             logarithmic_axis(upper)
         if len({track.what for track in wanted}) > 1:
             figure.legend(*upper.get_legend_handles_labels(), loc="outside right upper")
-        _say_unstable(lower, wanted)
-        _name_number(lower, drawn)
+        _name_lines(lower, wanted)
+        _name_number(lower, drawn, wanted)
         _mark_optimum(upper, lower, drawn)
     return figure
 
@@ -184,20 +192,24 @@ def _line(axes: Axes, track: DrawnTrack, y: FloatArray, colour: str, label: str 
             axes.plot(track.number, np.where(reach, y, np.nan), style, color=colour, linewidth=1.1)
 
 
-def _say_unstable(axes: Axes, tracks: Sequence[DrawnTrack]) -> None:
-    """What dashed and dotted lines mean, where there are some."""
+def _name_lines(axes: Axes, tracks: Sequence[DrawnTrack]) -> None:
+    """What colours, dashed and dotted lines mean, where there are some."""
     stable = np.concatenate([track.stable[track.trough != 1.0] for track in tracks])
-    said = ["dashed: no motion stays there"] if (stable == 0.0).any() else []
+    peaks = {track.what for track in tracks if track.what != "fold"}
+    said = ["a colour for each peak"] if len(tracks) > 1 and len(peaks) == 1 else []
+    said += ["dashed: no motion stays there"] if (stable == 0.0).any() else []
     said += ["dotted: stability unknown"] if np.isnan(stable).any() else []
     if said:
         axes.set_title("; ".join(said), loc="left", fontsize=8)
 
 
-def _name_number(axes: Axes, drawn: DrawnTracking) -> None:
+def _name_number(axes: Axes, drawn: DrawnTracking, tracks: Sequence[DrawnTrack]) -> None:
     (symbol,), key = symbols([drawn.key], {drawn.key: drawn.unit}), drawn.key
     known = symbols([key]) != [key]
     axes.set_xlabel(f"{symbol}  ({key})" if known else symbol, parse_math=known)
     axes.minorticks_on()
+    numbers = np.concatenate([track.number for track in tracks])
+    swept_axis(axes, float(numbers.min()), float(numbers.max()))
 
 
 def _mark_optimum(upper: Axes, lower: Axes, drawn: DrawnTracking) -> None:
