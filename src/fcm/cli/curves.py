@@ -242,9 +242,11 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
         peaks = [error for error, dof in told if dof in shown]
         harmonic = max([harmonic, *(error for error, _ in told)])  # also where what lies around is not told
         if harmonic > 0.0 or not untold:  # the 0 of a motion at rest tells nothing of peaks
-            of_peaks = f", of peaks {max(peaks):.1e}" if peaks and max(peaks) < harmonic else ""
+            of_all = f"{harmonic:.1e}"
+            if peaks and max(peaks) < harmonic:
+                of_all = f"{max(peaks):.1e} of peaks and {of_all} of any point"
             but = ", and of some peaks unknown" if untold else ""
-            errors.append(f"{harmonic:.1e} by leaving out higher harmonics{of_peaks}{but}")
+            errors.append(f"{of_all} by leaving out higher harmonics{but}")
     return (
         f"{count}, {points} points in {summary['seconds']:.2f} s\n"
         f"largest relative error: {'; '.join(errors) or 'not known'}"

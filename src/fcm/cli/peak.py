@@ -15,8 +15,8 @@ from fcm.files import replacing
 @draws_file("-peak.png", page=True)
 @click.option(
     "--dof", metavar="NAME",
-    help="The degree of freedom to draw.  [default: the first; of more than 4 that of the greatest peak; of "
-    "tracked peaks those of all that were followed]",
+    help="The degree of freedom to draw.  [default: the first; of more than 4 that of the greatest peak; "
+    "what was tracked]",
 )  # fmt: skip
 @click.option("--against", metavar="KEY", help="The swept quantity of the axis.  [default: the first]")
 @click.option("--folds", is_flag=True, help="The folds, of --track folds: where there are several solutions.")

@@ -155,9 +155,16 @@ def _optimum(one: Mapping[str, Any], unit: str) -> str:
     said = "".join(text for mark, text in _SAID.items() if mark in map(_mark, one["at"]))
     least = (
         f"least {' and '.join(map(plain, one['minimise']))}: {one['value']:.6g}{_stays(one)} "
-        f"(error {short(one['error'])}{_ranges(one)})"
+        f"({_error(one)}{_ranges(one)})"
     )
     return f"{least} with {where}{kind}{_flat(one)}\n{at}{f'; {swept}' if swept else ''}{said}"
+
+
+def _error(one: Mapping[str, Any]) -> str:
+    """Of equal peaks the greatest, which the table of the curve shows of the highest alone."""
+    count = len(one["at"])
+    of = f", the greatest of {count} equal peaks" if count > 1 and one["error"] else ""
+    return f"error {short(one['error'])}{of}"
 
 
 def _flat(one: Mapping[str, Any]) -> str:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Sequence
 
 from fcm.scene.options import MESSAGES
 from fcm.scene.told import Told
+
+_NUMBER = re.compile(r"[0-9]{1,18}")  # of a node, at the beginning of a name
 
 
 class SceneError(ValueError):
@@ -71,18 +74,32 @@ def suggestion(word: str, among: Iterable[str]) -> str:
 
 
 def nearest(word: str, among: Iterable[str]) -> str:
-    """The name that a word may be a misspelling of; empty when none is close.
+    """The name that a word may be a misspelling of; empty when none is close. Nodes are compared by number.
 
     >>> nearest("frequncy", ["frequency", "damping"]), nearest("x", ["frequency"])
     ('frequency', '')
+    >>> nearest("21x", ["2x", "20x", "20y"])
+    '20x'
     """
     if not word or len(word) > MESSAGES.longest_value:
         return ""
     names = {name.casefold(): name for name, _ in zip(among, range(MESSAGES.names_compared), strict=False)}
     from difflib import get_close_matches
 
+    if beside := _of_nearest_number(word, names):
+        return names[get_close_matches(word.casefold(), beside, n=1, cutoff=0.0)[0]]
     close = get_close_matches(word.casefold(), names, n=1)
     return names[close[0]] if close else ""
+
+
+def _of_nearest_number(word: str, among: Iterable[str]) -> list[str]:
+    """Names that begin with the number nearest to that of a word; none if there is no number."""
+    if not (wanted := _NUMBER.match(word)):
+        return []
+    numbers = {name: int(match[0]) for name in among if (match := _NUMBER.match(name))}
+    away = {name: abs(number - int(wanted[0])) for name, number in numbers.items()}
+    least = min(away.values(), default=0)
+    return [name for name in away if away[name] == least]
 
 
 def counted(count: int, what: str) -> str:

@@ -78,7 +78,8 @@ def _aims(section: Section, reported: Sequence[str]) -> list[Aim]:
         elif reported and not (named := Names(reported).find(dof)):
             section.wrong(
                 "minimise",
-                f"there is no degree of freedom {quoted(dof)} in the results, which have {choices(reported)}",
+                f"there is no degree of freedom {quoted(dof)} in the results, which have "
+                f"{choices(reported)}; output in [response] adds others of the structure",
                 dof,
                 reported,
             )
