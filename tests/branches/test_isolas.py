@@ -15,6 +15,7 @@ from fcm.branches.search import every_branch
 from fcm.branches.surface import Surface
 from fcm.branches.trace import traced
 from fcm.continuation import Mark, Status
+from fcm.harmonic_balance.modal_condensation import CONDENSATION, CondensationOptions
 from fcm.harmonic_balance.system import System
 from fcm.response.options import ResponseOptions
 from fcm.response.request import Request
@@ -22,6 +23,7 @@ from fcm.response.trace import traced_curve
 from fcm.scene import load_scene
 
 SCENES = Path(__file__).parent / "scenes"
+EVERY_MODE = CondensationOptions(min_unknowns=1, max_fraction=2.0)  # as of many contacts
 ACCURACY = 1e-2  # relative, that is asked for of peaks and folds
 
 
@@ -66,9 +68,11 @@ def folds_of(system, omega):
         yield turn, folds_from(surface, z, turn.directions, system.scene.frequency_range)
 
 
-def test_a_curve_of_folds_passes_where_the_level_turns_at_other_frequencies():
+@pytest.mark.parametrize("condensation", [CONDENSATION, EVERY_MODE])
+def test_a_curve_of_folds_passes_where_the_level_turns_at_other_frequencies(condensation):
     """With four harmonics: at 1.6 rad/s the level turns at 2.308 and 0.896, as following it there says."""
-    system = System(scene("closed_impact"), (1, 2, 3, 4))
+    system = System(scene("closed_impact"), (1, 2, 3, 4), condensation=condensation)
+    assert (system.new_balance().rank > 0) == (condensation is EVERY_MODE)
     expected = sorted(turn.level for turn in solutions(system, 1.6, np.inf).folds)[:2]
     assert expected == pytest.approx([0.896, 2.308], abs=1e-3)
     found = []
@@ -92,10 +96,11 @@ def levels_at(curve, omega):
 
 
 @pytest.mark.parametrize("preload", [2.0, 10.0, 20.0])
-def test_where_two_curves_of_folds_touch_the_one_leads_to_the_other(preload):
+@pytest.mark.parametrize("condensation", [CONDENSATION, EVERY_MODE])
+def test_where_two_curves_of_folds_touch_the_one_leads_to_the_other(preload, condensation):
     """They come together at 1.27 rad/s, where the level turns no more: below, it does on either."""
     (one,) = (one for one in load_scene("yang1998").each_curve() if one.contacts[0].n_0 == preload)
-    system = System(one)
+    system = System(one, condensation=condensation)
     (omega,) = (
         w for w in level_frequencies(system) if any(turn.unfinished for turn in solutions(system, w).folds)
     )

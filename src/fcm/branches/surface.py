@@ -14,6 +14,11 @@ Where the surface folds over (omega, lambda), its tangents are not independent i
 which is the bordered test function of a fold with a border of two rows (Govaerts, "Numerical Methods for
 Bifurcations of Dynamical Equilibria", 2000, chapters 3 and 4). Its sign changes also at a fold in a corner.
 
+Many contacts have a condensed system for a frequency and displacements y = (x, omega) at one level, closed by
+a row r. Its solutions with the right sides -F_lambda and r . y = 1 alone are the directions y_l and y_r. Then
+y = y_0 + y_l lambda + y_r rho, and the two axes leave two equations for lambda and rho (block elimination,
+Govaerts 2000, section 3.2). The row is the combination of the axes that does not change the level.
+
 `FoldSteps` are the steps along a curve of folds, see `fcm.branches.fold_continuation`.
 """
 
@@ -29,7 +34,6 @@ from cython.cimports.libc.math import atan2, cos, fabs, isfinite, sin, sqrt
 
 from fcm.branches.options import SURFACE, FoldOptions, SurfaceOptions
 from fcm.continuation.dense_solver import Solver
-from fcm.harmonic_balance.dense_jacobian import jacobian_of
 from fcm.harmonic_balance.residual import Balance
 from fcm.model.scene import FloatArray
 
@@ -57,7 +61,9 @@ class Surface:
         self.z, self.centre, self.right = np.zeros(n + 2), np.zeros(n + 2), np.zeros(n + 2)
         self.scale, self.balance_point = np.ones(n + 2), np.zeros(n + 1)
         self.axes, self.tangents = np.zeros((2, n + 2)), np.zeros((2, n + 2))
-        self.solver = Solver(n + 2)
+        self.condensed = balance.rank > 0
+        self.row, self.at_level, self.by_level = np.zeros((3, n + 1))
+        self.solver = Solver(2 if self.condensed else n + 2)
 
     def begin(self, z: cython.double[::1], along: cython.double[::1], across: cython.double[::1]) -> bool:
         """Go to the surface from near it, in the plane across two directions (n + 2,), in the units of z;
@@ -143,38 +149,128 @@ class Surface:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def factor(self) -> cython.bint:
-        """The equations at z, with the two axes."""
-        n: cython.Py_ssize_t = self.n
+    def evaluate(self) -> cython.int:
+        """The balance at z."""
         i: cython.Py_ssize_t
-        j: cython.Py_ssize_t
+        for i in range(self.n + 1):
+            self.balance_point[i] = self.z[i]
+        self.balance.load = self.z[self.n + 1]
+        self.balance.evaluate(self.balance_point)
+        self.evaluations += 1
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def forces(self, out: cython.double[::1]) -> cython.int:
+        """Fill out (n,) with -F_lambda, scaled: what the harmonic forces do to the free structure."""
+        i: cython.Py_ssize_t
         p: cython.Py_ssize_t
         h: cython.int
         k: cython.int
         unit: cython.double
         b: Balance = self.balance
-        for i in range(n + 1):
-            self.balance_point[i] = self.z[i]
-        b.load = self.z[n + 1]
-        b.evaluate(self.balance_point)
-        self.evaluations += 1
-        jacobian: cython.double[:, ::1] = jacobian_of(b) if b.rank else b.jacobian
-        for i in range(n):
-            unit = 1.0 / self.scale[i]
-            for j in range(n + 1):
-                self.solver.matrix[i, j] = jacobian[i, j] * (self.scale[j] * unit)
-            self.solver.matrix[i, n + 1] = 0.0
+        for i in range(self.n):
+            out[i] = 0.0
         for h in range(b.seen.count):
             k = b.seen.forced[h]
             for p in range(b.ports if k >= 0 else 0):
                 i = b.seen.wave_at[p] + b.seen.stride * h
-                unit = self.scale[n + 1] / self.scale[i]
-                self.solver.matrix[i, n + 1] = -b.seen.X_re[k, p] * unit
-                self.solver.matrix[i + 1, n + 1] = -b.seen.X_im[k, p] * unit
+                unit = self.scale[self.n + 1] / self.scale[i]
+                out[i] = b.seen.X_re[k, p] * unit
+                out[i + 1] = b.seen.X_im[k, p] * unit
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def factor(self) -> cython.bint:
+        """The equations at z, with the two axes."""
+        self.evaluate()
+        return self.factor_condensed() if self.condensed else self.factor_dense()
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def factor_dense(self) -> cython.bint:
+        """The whole matrix."""
+        n: cython.Py_ssize_t = self.n
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        unit: cython.double
+        jacobian: cython.double[:, ::1] = self.balance.jacobian
+        self.forces(self.right)
+        for i in range(n):
+            unit = 1.0 / self.scale[i]
+            for j in range(n + 1):
+                self.solver.matrix[i, j] = jacobian[i, j] * (self.scale[j] * unit)
+            self.solver.matrix[i, n + 1] = -self.right[i]
         for j in range(n + 2):
             self.solver.matrix[n, j] = self.axes[0, j]
             self.solver.matrix[n + 1, j] = self.axes[1, j]
         return self.solver.factor()
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def factor_condensed(self) -> cython.bint:
+        """The condensed system at a level, and what the axes leave for the level and along the row."""
+        n: cython.Py_ssize_t = self.n
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        square: cython.double = 0.0
+        for i in range(n + 1):
+            self.row[i] = self.axes[0, i] * self.axes[1, n + 1] - self.axes[1, i] * self.axes[0, n + 1]
+            square += self.row[i] * self.row[i]
+        if square == 0.0:  # neither axis changes the level
+            self.row[:] = self.axes[0, : n + 1]
+            square = 1.0
+        for i in range(n + 1):
+            self.row[i] /= sqrt(square)
+        if self.balance.factor(self.row, self.scale[: n + 1]) == 0.0:
+            return False
+        system = self.balance.condensed
+        assert system is not None
+        self.forces(self.by_level)
+        self.by_level[n] = 0.0
+        system.solve(np.asarray(self.by_level), False)
+        for i in range(n):
+            self.at_level[i] = 0.0
+        self.at_level[n] = 1.0
+        system.solve(np.asarray(self.at_level), False)
+        for k in range(2):
+            self.solver.matrix[k, 0], self.solver.matrix[k, 1] = self.axes[k, n + 1], 0.0
+            for i in range(n + 1):
+                self.solver.matrix[k, 0] += self.axes[k, i] * self.by_level[i]
+                self.solver.matrix[k, 1] += self.axes[k, i] * self.at_level[i]
+        return self.solver.factor()
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def solve(self, equations: cython.bint) -> cython.int:
+        """Replace the right side (n + 2,) by the solution; equations: those of the balance have one."""
+        n: cython.Py_ssize_t = self.n
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        if not self.condensed:
+            for i in range(n + 2):
+                self.solver.right[i] = self.right[i]
+            self.solver.solve()
+            for i in range(n + 2):
+                self.right[i] = self.solver.right[i]
+            return 0
+        for k in range(2):
+            self.solver.right[k] = self.right[n + k]
+        if equations:
+            self.right[n] = 0.0
+            self.balance.solve(self.right[: n + 1])
+            for k in range(2):
+                for i in range(n + 1):
+                    self.solver.right[k] -= self.axes[k, i] * self.right[i]
+        else:
+            for i in range(n + 1):
+                self.right[i] = 0.0
+        self.solver.solve()
+        for i in range(n + 1):
+            self.right[i] += self.solver.right[0] * self.by_level[i] + self.solver.right[1] * self.at_level[i]
+        self.right[n + 1] = self.solver.right[0]
+        return 0
 
     @cython.cfunc
     @cython.exceptval(-2, check=False)
@@ -184,15 +280,15 @@ class Surface:
         i: cython.Py_ssize_t
         total: cython.double = 0.0
         for i in range(n):
-            self.solver.right[i] = -self.balance.residual[i] / self.scale[i]
-        self.solver.right[n], self.solver.right[n + 1] = ahead, aside
+            self.right[i] = -self.balance.residual[i] / self.scale[i]
+        self.right[n], self.right[n + 1] = ahead, aside
         for i in range(n + 2):
-            self.solver.right[n] -= self.axes[0, i] * (self.z[i] - self.centre[i]) / self.scale[i]
-            self.solver.right[n + 1] -= self.axes[1, i] * (self.z[i] - self.centre[i]) / self.scale[i]
-        self.solver.solve()
+            self.right[n] -= self.axes[0, i] * (self.z[i] - self.centre[i]) / self.scale[i]
+            self.right[n + 1] -= self.axes[1, i] * (self.z[i] - self.centre[i]) / self.scale[i]
+        self.solve(True)
         for i in range(n + 2):
-            self.z[i] += self.scale[i] * self.solver.right[i]
-            total += self.solver.right[i] * self.solver.right[i]
+            self.z[i] += self.scale[i] * self.right[i]
+            total += self.right[i] * self.right[i]
         return sqrt(total) if isfinite(total) else 2.0 * self.diverged_step
 
     @cython.cfunc
@@ -204,11 +300,11 @@ class Surface:
         k: cython.Py_ssize_t
         for k in range(2):
             for i in range(n + 2):
-                self.solver.right[i] = 0.0
-            self.solver.right[n + k] = 1.0
-            self.solver.solve()
+                self.right[i] = 0.0
+            self.right[n + k] = 1.0
+            self.solve(False)
             for i in range(n + 2):
-                self.tangents[k, i] = self.solver.right[i]
+                self.tangents[k, i] = self.right[i]
         self.value = (
             self.tangents[0, n] * self.tangents[1, n + 1] - self.tangents[0, n + 1] * self.tangents[1, n]
         )

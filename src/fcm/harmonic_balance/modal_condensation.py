@@ -159,12 +159,15 @@ class CondensedSystem:
         return float(self.equations.factor())
 
     @np.errstate(invalid="ignore", over="ignore")
-    def solve(self, right: FloatArray) -> None:
-        """Replace a right side (unknown + 1,) in units of scale by the solution in these."""
+    def solve(self, right: FloatArray, step: bool = True) -> None:
+        """Replace a right side (unknown + 1,) in units of scale by the solution in these.
+
+        step: it is one of Newton's method, or a direction if the equations have no right side but the last.
+        """
         whole, found, options = right * self.scale, np.empty_like(right), self.options
         whole[-1] = right[-1]
         self.equations.condensed(whole, found)
-        enough = self._tolerance(whole, found)
+        enough = self._tolerance(found, step and bool(right[:-1].any()))
         while (self.by_contacts or self.modes < self.ranking.size) and np.isfinite(found).all():
             if self.equations.correct(whole, found, enough, options.max_corrections) <= enough:
                 break
@@ -179,9 +182,9 @@ class CondensedSystem:
                 found += change
         np.divide(found, self.scale, out=right)
 
-    def _tolerance(self, right: FloatArray, found: FloatArray) -> float:
+    def _tolerance(self, found: FloatArray, step: bool) -> float:
         """What a correction of a solution may leave, in units of scale; of a direction, which is no step,
         little."""
         size, options = float(np.linalg.norm(found / self.scale)), self.options
-        step = min(size, 1.0) if right[:-1].any() else 0.0
-        return max(options.tolerance * max(size, options.min_step), options.newton_tolerance * step * step)
+        of_step = options.newton_tolerance * min(size, 1.0) ** 2 if step else 0.0
+        return max(options.tolerance * max(size, options.min_step), of_step)
