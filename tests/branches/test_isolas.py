@@ -10,7 +10,7 @@ import pytest
 from fcm.branches.fold_continuation import Ending, Folds, folds_from
 from fcm.branches.force_level import level_frequencies, solutions
 from fcm.branches.isolas import level_one_crossings
-from fcm.branches.options import FoldOptions
+from fcm.branches.options import FoldOptions, LevelCurveOptions
 from fcm.branches.search import every_branch
 from fcm.branches.surface import Surface
 from fcm.branches.trace import traced
@@ -128,9 +128,12 @@ def test_folds_in_corners_are_followed_round_a_closed_curve():
             assert np.abs(turns / level - 1.0).min() < 1e-2
 
 
-def test_where_a_curve_of_folds_passes_the_level_one_the_response_has_a_fold():
-    """The solutions beside the crossings are on branches with folds there, and on none that was known."""
-    system = System(scene("closed_impact"), (1, 2, 3, 4))
+@pytest.mark.parametrize("few", [4, 1])
+def test_where_a_curve_of_folds_passes_the_level_one_the_response_has_a_fold(few):
+    """The solutions beside the crossings are on branches with folds there, and on none that was known; also
+    where folds are followed with fewer harmonics first, which do not have them."""
+    options = (LevelCurveOptions(few_harmonics=few),)
+    system = System(scene("closed_impact"), (1, 2, 3, 4), other_options=options)
     known = traced(system)
     found = level_one_crossings(system, known.found, known.branches.paths)
     assert found.uncertain == () and len(found.solutions) == 2

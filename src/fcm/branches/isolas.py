@@ -45,23 +45,19 @@ def level_one_crossings(
     Parameters
     ----------
     system : System
-        Whose level was followed; with many harmonics the folds are followed with a few of them, and what
-        they come to is led to all.
+        Whose level was followed; with many harmonics the folds are followed with a few of them if these have
+        such folds, and what they come to is led to all.
     found : sequence of Found
         At which frequencies, and where it turned.
     paths : tuple of Path
         The branches that are known.
     """
-    options = system.option(FOLDS)
-    few = system.with_harmonics(system.harmonics[: few_harmonics(system)])
-    solutions, span = list[FloatArray](), system.scene.frequency_range
-    turns = [turn.extended(few, one.harmonics) for one in found for turn in one.folds]
-    turns = [turn for turn in turns if turn.unfinished and options.covers(turn.level)]
-    curves = _Curves(few, turns, options)
+    options, span = system.option(FOLDS), system.scene.frequency_range
+    solutions, curves = list[FloatArray](), _Curves(system, found, options)
     seconds = max(options.work_fraction * system.work.seconds, options.min_seconds)
     try:
         with system.work.limited_to(system.work.seconds + seconds):
-            for curve in curves:
+            for few, curve in curves:
                 for z in _at_level_one(few, system, curve):
                     known = any(contains(path, z, system.reset_balance()) for path in paths)
                     if span[0] <= z[-1] <= span[1] and not known:
@@ -72,44 +68,74 @@ def level_one_crossings(
 
 
 class _Curves:
-    """The curves of folds, each once."""
+    """The curves of folds, each once, with the system that they are followed with.
 
-    def __init__(self, few: System, turns: Sequence[LevelFold], options: FoldOptions) -> None:
-        self.few, self.options, self.left = few, options, list(turns)
+    That has a few harmonics, or those that a fold was found with where the few do not have it.
+    """
+
+    def __init__(self, system: System, found: Sequence[LevelSolutions], options: FoldOptions) -> None:
+        self.options, self.system = options, system
+        self.few = system.harmonics[: few_harmonics(system)]
+        self.left = [
+            (turn, one.harmonics)
+            for one in found
+            for turn in one.folds
+            if turn.unfinished and options.covers(turn.level)
+        ]
         self.lost = list[float]()  # frequencies at which curves were lost
+        self.known = dict[tuple[int, ...], _CurvesWith]()
 
     @property
     def uncertain(self) -> tuple[float, ...]:
         """Frequencies of what was lost, and of what is left to be followed."""
-        return *self.lost, *(float(turn.z[-1]) for turn in self.left)
+        return *self.lost, *(float(turn.z[-1]) for turn, _ in self.left)
 
-    def __iter__(self) -> Iterator[Folds]:
-        if not self.left:
-            return
-        few, options, span = self.few, self.options, self.few.scene.frequency_range
-        surface, known = (
-            Surface(few.new_balance()),
-            list[Folds](),
-        )  # of its own: others are followed meanwhile
-        paid = 0
-
-        def pay() -> None:
-            nonlocal paid
-            new, paid = surface.evaluations - paid, surface.evaluations
-            few.work.add(seconds_of(few, new, len(few.harmonics)))
-
+    def __iter__(self) -> Iterator[tuple[System, Folds]]:
         while self.left:
-            turn = self.left[0]
-            if not any(_passes_fold(curve, turn, surface, options) for curve in known):
-                start = np.append(turn.z, turn.level)
-                curve = folds_from(surface, start, turn.directions, span, options, pay)
-                if curve is None:
-                    self.lost.append(float(turn.z[-1]))
-                else:
+            turn, own = self.left[0]
+            for harmonics in dict.fromkeys((self.few, own)):
+                curves = self._with(harmonics)
+                there = turn.extended(curves.system, own)
+                if curves.pass_fold(there):
+                    break
+                curve = curves.follow(there)
+                if curve is not None:
                     self.lost += curve.lost
-                    known.append(curve)
-                    yield curve
+                    yield curves.system, curve
+                    break
+            else:
+                self.lost.append(float(turn.z[-1]))
             del self.left[0]
+
+    def _with(self, harmonics: tuple[int, ...]) -> _CurvesWith:
+        if harmonics not in self.known:
+            self.known[harmonics] = _CurvesWith(self.system.with_harmonics(harmonics), self.options)
+        return self.known[harmonics]
+
+
+class _CurvesWith:
+    """The curves of folds of a system that are known."""
+
+    def __init__(self, system: System, options: FoldOptions) -> None:
+        self.system, self.options, self.curves = system, options, list[Folds]()
+        self.surface = Surface(system.new_balance())  # of its own: others are followed meanwhile
+        self.paid = 0
+
+    def pass_fold(self, turn: LevelFold) -> bool:
+        """Whether one of them passes a fold."""
+        return any(_passes_fold(curve, turn, self.surface, self.options) for curve in self.curves)
+
+    def follow(self, turn: LevelFold) -> Folds | None:
+        """The curve through a fold; None where there is none near it."""
+        start, span = np.append(turn.z, turn.level), self.system.scene.frequency_range
+        curve = folds_from(self.surface, start, turn.directions, span, self.options, self._pay)
+        if curve is not None:
+            self.curves.append(curve)
+        return curve
+
+    def _pay(self) -> None:
+        new, self.paid = self.surface.evaluations - self.paid, self.surface.evaluations
+        self.system.work.add(seconds_of(self.system, new, len(self.system.harmonics)))
 
 
 def _passes_fold(curve: Folds, turn: LevelFold, surface: Surface, options: FoldOptions) -> bool:
