@@ -10,7 +10,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-PROBE = 1 << 20  # bytes that have to fit beside a file that failed for its disk not to be the reason
 MEASURED = (".csv", ".txt", ".dat", ".mat", ".npz", ".uff", ".unv")  # endings of measured points
 NETCDF = "NetCDF:"  # how a RuntimeError begins that comes from that library
 
@@ -139,14 +138,14 @@ def _unwritten(error: OSError | RuntimeError, partial: Path, path: str | Path) -
 
 def _refusal(partial: Path) -> int | None:
     """What the system says to as many bytes as there are and some more; None if it takes them."""
-    size = 0
+    size, block = 0, bytes(1 << 20)  # a megabyte more: else the disk is not the reason
     with suppress(OSError):
         size = partial.stat().st_size
         partial.unlink()
     try:
         with partial.open("wb") as file:
-            for _ in range(size // PROBE + 1):
-                file.write(bytes(PROBE))
+            for _ in range(size // len(block) + 1):
+                file.write(block)
     except OSError as error:
         return error.errno
     return None

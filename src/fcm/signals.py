@@ -21,16 +21,21 @@ if TYPE_CHECKING:
 
 NOT_COMPLETED = 3  # exit code
 INTERRUPTED = "interrupted: the calculation was not completed"
-ONE = 1.0  # [s] signals closer together are one: `timeout` sends two, a terminal that closes even more
-AGAIN = 0.005  # [s] after which an interruption that nobody could raise is raised again
 ALL = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 
 
 class _Program:
-    """What an interruption means now."""
+    """What an interruption means now.
+
+    Signals within `min_interval` [s] are one: `timeout` sends two, a terminal that closes even more. An
+    interruption that nobody could raise is raised again after `delay` [s].
+    """
+
+    min_interval = 1.0
+    delay = 0.005
 
     def __init__(self) -> None:
-        self.works, self.last = False, -ONE
+        self.works, self.last = False, -self.min_interval
         self.shields, self.waits = 0, False  # what must not be disturbed, and whether an interruption waits
         self.imports = 0  # that were under way when the work began
         self.before: dict[int, Any] = {}
@@ -39,7 +44,7 @@ class _Program:
         if not self.works:
             self.leave()
         now = time.monotonic()
-        if now - self.last >= ONE:
+        if now - self.last >= self.min_interval:
             self.last = now
             self.again(_number, _frame)
 
@@ -53,7 +58,7 @@ class _Program:
         """Interrupt, but not in the middle of an import: libraries make other errors of it, or swallow it."""
         if self.shields:
             self.waits = True
-        elif _imports(frame) > self.imports and time.monotonic() - self.last < ONE and _later():
+        elif _imports(frame) > self.imports and time.monotonic() - self.last < self.min_interval and _later():
             return
         else:
             raise KeyboardInterrupt
@@ -68,7 +73,7 @@ def _later() -> bool:
     """Have an interruption come again, where the system has a timer."""
     if not hasattr(signal, "setitimer"):
         return False
-    signal.setitimer(signal.ITIMER_REAL, AGAIN)
+    signal.setitimer(signal.ITIMER_REAL, _Program.delay)
     return True
 
 

@@ -26,6 +26,6 @@ def test_one_other_field_makes_other_options():
         own = getattr(CHANGED, part)
         for field in fields(own):
             value = getattr(own, field.name)
-            other = (3,) if isinstance(value, tuple) else value + 1
+            other = (3,) if isinstance(value, tuple) else 2 * value + 1
             assert replace(CHANGED, **{part: replace(own, **{field.name: other})}) != CHANGED
     assert NewtonOptions() != StepOptions()

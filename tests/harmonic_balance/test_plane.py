@@ -13,8 +13,7 @@ import pytest
 import fcm
 from fcm.branches.force_level import solutions
 from fcm.branches.trace import traced
-from fcm.contact.periodic.workspace import periodic_contact
-from fcm.contact.plane.workspace import planar_contact
+from fcm.contact.kernels import periodic_contact, planar_contact
 from fcm.continuation import Mark, Status
 from fcm.harmonic_balance.contact_law import LineLaw, PlanarLaw
 from fcm.harmonic_balance.reported_quantities import reported_at

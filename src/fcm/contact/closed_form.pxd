@@ -1,5 +1,5 @@
 cdef int UNKNOWN, STUCK, SLIPPING, OPEN
-cdef double PI
+cdef double PI, NAN
 
 cdef class SlipLimits:
     cdef double n0, b, sin_phi, cos_phi
@@ -35,7 +35,7 @@ cdef (double, double, double) arc(double y) noexcept nogil
 
 cdef class Sequence(Cycle):
     cdef int count
-    cdef double side_shown, last_slip, state, since
+    cdef double min_change, side_shown, last_slip, state, since
     cdef double[:, ::1] regions
     cdef void of(self, double n0_bar, double b_bar, double phi) noexcept nogil
     cdef void take(self) noexcept nogil
@@ -59,6 +59,7 @@ cdef class CoefficientLaw:
 
 cdef class Integrals(Cycle):
     cdef bint light, gradient
+    cdef double light_load
     cdef double F_b, F_s, F_c
     cdef double b_n, b_b, b_phi, s_n, s_b, s_phi, c_n, c_b, c_phi
     cdef double kept_n, kept_b, kept_phi, force, span_b, span_s, span_c

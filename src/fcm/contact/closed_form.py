@@ -37,6 +37,8 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import atan2, cos, fabs, hypot, isfinite, isnan, sin, sqrt
 
+from fcm.contact.options import CLOSED_FORM, ClosedFormOptions
+
 LARGEST = cython.declare(cython.double, 1e300)  # beyond, sums of a few terms would overflow
 FARTHEST = cython.declare(cython.double, 1e304)  # preloads beyond, infinite ones too, are this
 SHRINK = cython.declare(cython.double, 2.0**-32)  # both by this, where b is beyond LARGEST
@@ -287,8 +289,6 @@ class Cycle(SlipLimits):
 
 
 NAN = cython.declare(cython.double, float("nan"))
-# A slip that moves w by less than this, a stick shorter than this, is below what float64 can tell from none.
-INVISIBLE = cython.declare(cython.double, 1e-15)
 
 LETTER_E = cython.declare(cython.int, ord("E"))
 LETTER_P = cython.declare(cython.int, ord("P"))
@@ -308,7 +308,8 @@ class Sequence(Cycle):
     while it sticks. ``state`` is +1 in positive slip, -1 in negative slip, 0 in stick, 2 in separation.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, options: ClosedFormOptions = CLOSED_FORM) -> None:
+        self.min_change = options.min_change
         self.regions = np.empty((MOST, 3))
 
     def of(self, n0_bar: float, b_bar: float, phi: float) -> None:
@@ -332,7 +333,7 @@ class Sequence(Cycle):
         side: float = self._seen()
         slip: float = self.slip if side == self.side else 0.0
         stick: float = self.length - (self.slip if side != 0.0 else 0.0)
-        if self.state != 0.0 and (stick > INVISIBLE or (side != 0.0 and self.state == -side)):
+        if self.state != 0.0 and (stick > self.min_change or (side != 0.0 and self.state == -side)):
             self._region(LETTER_E, self.since, self.w_start)
             self.state = 0.0
         self.since += self.length
@@ -344,8 +345,8 @@ class Sequence(Cycle):
     def _seen(self) -> float:
         """Side of the slip in a span, 0 where there is none to be seen."""
         if self.opens:
-            return self.side if fabs(self.w_end - self.w_start) > INVISIBLE else 0.0
-        if self.lower_P - self.upper_N <= INVISIBLE:  # there are both slips, equally large, or none
+            return self.side if fabs(self.w_end - self.w_start) > self.min_change else 0.0
+        if self.lower_P - self.upper_N <= self.min_change:  # there are both slips, equally large, or none
             return 0.0
         return 1.0 if self.span == 0 else -1.0
 
@@ -441,9 +442,6 @@ class CoefficientLaw:
         return False
 
 
-LIGHT = cython.declare(cython.double, 0.01)  # loads below are integrated as forces, see `Integrals`
-
-
 @cython.final
 @cython.cclass
 class Integrals(Cycle):
@@ -454,6 +452,9 @@ class Integrals(Cycle):
     relative error of the arguments, however small they are against the motion, 1; else u - w is: exact where
     the load is not small, and faster.
     """
+
+    def __init__(self, options: ClosedFormOptions = CLOSED_FORM) -> None:
+        self.light_load = options.light_load
 
     def sum(self, n0_bar: float, b_bar: float, phi: float, gradient: bool) -> cython.int:
         """All of one contact; says what it does."""
@@ -500,7 +501,7 @@ class Integrals(Cycle):
     def take(self) -> None:
         """Adds the integrals over a span."""
         if self.span == 0:
-            self.light = max(abs(self.n0), self.b) < LIGHT
+            self.light = max(abs(self.n0), self.b) < self.light_load
             self.force = 0.0 if self.opens else -self._load(self.start_sin, self.start_cos)
             self._keep(self.pull, self.start_sin, self.start_cos)
         if self.light:
@@ -619,8 +620,8 @@ class Integrals(Cycle):
 class ClosedForm(CoefficientLaw):
     """The closed form as a law."""
 
-    def __init__(self) -> None:
-        self.integrals = Integrals()
+    def __init__(self, options: ClosedFormOptions = CLOSED_FORM) -> None:
+        self.integrals = Integrals(options)
 
     def evaluate(
         self,

@@ -10,8 +10,6 @@ from fcm.contact.limits import FloatArray
 from fcm.contact.loop import Loop
 from fcm.contact.periodic.loop import PeriodicLoop
 
-STEPS = 720  # of a whole cycle
-
 
 @dataclass(frozen=True)
 class Part:
@@ -39,8 +37,8 @@ class Transition:
     force: float
 
 
-def parts(loop: Loop | PeriodicLoop, steps: int = STEPS) -> list[Part]:
-    """The states of a cycle in order, sampled.
+def parts(loop: Loop | PeriodicLoop, steps: int = 720) -> list[Part]:
+    """The states of a cycle in order, sampled; `steps` are those of a whole cycle.
 
     >>> from fcm.contact.loop import hysteresis_loop
     >>> [(part.state, round(float(part.theta[0]), 3)) for part in parts(hysteresis_loop(0.5, 0.0, 0.0))]

@@ -2,8 +2,6 @@ from fcm.continuation.dense_solver cimport Solver
 from fcm.continuation.options cimport NewtonOptions
 from fcm.continuation.problem cimport Problem
 
-cdef double DIVERGED
-
 cdef class BorderedSystem:
     cdef public Problem problem
     cdef public Solver solver

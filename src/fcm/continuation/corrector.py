@@ -23,9 +23,7 @@ from fcm.continuation.path import FloatArray
 from fcm.continuation.problem import Problem
 
 EPS = cython.declare(cython.double, 2.220446049250313e-16)
-DIVERGED = cython.declare(
-    cython.double, 1e30
-)  # a step of this length, in the curve's own size, leads nowhere
+INFINITY = cython.declare(cython.double, float("inf"))
 
 
 @cython.cclass
@@ -103,7 +101,7 @@ class BorderedSystem:
         self.solve()
         for i in range(n + 1):
             total += self.delta[i] * self.delta[i]
-        return sqrt(total) if isfinite(total) else 2.0 * DIVERGED
+        return sqrt(total) if isfinite(total) else INFINITY
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -176,7 +174,7 @@ class Newton(BorderedSystem):
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def correct(self, reach: cython.double, most: cython.double = DIVERGED) -> cython.bint:
+    def correct(self, reach: cython.double, most: cython.double = INFINITY) -> cython.bint:
         """Whether z came to the curve; moved is then how far, and tangent and orientation are those there.
 
         reach is the length, in scaled coordinates, that stands before the first step. Where that is longer
@@ -189,14 +187,14 @@ class Newton(BorderedSystem):
             self.guess[i] = self.z[i]
         if self.converges(reach, most):
             return True
-        return self.problem.rooted and most == DIVERGED and self.correct_by_half_steps(reach)
+        return self.problem.rooted and most == INFINITY and self.correct_by_half_steps(reach)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def single_step(self) -> cython.bint:
         """Take one step from z; whether there is one."""
         self.guess[:] = self.z
-        if not self.factor() or not self.step() < DIVERGED:
+        if not self.factor() or not self.step() < self.options.max_step:
             return False
         _move(self)
         return True
@@ -219,12 +217,12 @@ class Newton(BorderedSystem):
             if not self.factor():
                 return False
             step = self.step()
-            if not step < DIVERGED or (count > 1 and step > before):
+            if not step < self.options.max_step or (count > 1 and step > before):
                 return False
             for i in range(self.z.shape[0]):
                 self.z[i] += 0.5 * self.scale[i] * self.delta[i]
             before = step
-        return self.converges(reach, DIVERGED)
+        return self.converges(reach, INFINITY)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -239,14 +237,14 @@ class Newton(BorderedSystem):
             if not self.factor():
                 return False
             step = self.step()
-            if most < DIVERGED and self.too_far(step, before, most, count):
+            if most < INFINITY and self.too_far(step, before, most, count):
                 return False
             if self.problem.labelled and self.at_rounding(step, step / before, count):
                 return self.compute_tangent()
             noise: cython.bint = count > 0 and step > 0.25 * before and self.is_rounding(step, count)
             hasten: cython.bint = self.problem.labelled or self.problem.costly
             worse: cython.double = self.options.divergence_ratio if hasten else 2.0
-            if not step < DIVERGED or (count > 2 and step > worse * before and not noise):
+            if not step < self.options.max_step or (count > 2 and step > worse * before and not noise):
                 return False
             _move(self)
             ratio = step / before
@@ -279,7 +277,7 @@ class Newton(BorderedSystem):
             return not step < most
         if count == 1:  # of short steps the first may be rounding, in a stiff direction
             return not step < max(0.5 * before, self.options.small_second_step * most)
-        return not step < DIVERGED
+        return not step < self.options.max_step
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)

@@ -3,7 +3,7 @@ cdef class Options:
 
 cdef class NewtonOptions(Options):
     cdef readonly int max_iterations, max_chord_steps, max_cheap_chord_steps, half_steps
-    cdef readonly double tolerance, preliminary_tolerance, final_step, negligible_step, stalled_rounding, growing_rounding, chord_step, chord_contraction, last_chord_step, divergence_ratio
+    cdef readonly double max_step, tolerance, preliminary_tolerance, final_step, negligible_step, stalled_rounding, growing_rounding, chord_step, chord_contraction, last_chord_step, divergence_ratio
     cdef readonly double small_second_step, max_rounding, rounding_multiple
 
 cdef class StepOptions(Options):

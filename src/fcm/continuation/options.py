@@ -86,6 +86,8 @@ class NewtonOptions(Options):
     ----------
     max_iterations : int
         Steps before a guess is judged too far away.
+    max_step : float
+        A longer one leads nowhere.
     tolerance : float
         Error that a point may have, estimated from the convergence.
     preliminary_tolerance : float
@@ -119,6 +121,7 @@ class NewtonOptions(Options):
     """
 
     max_iterations: cython.int = 8
+    max_step: cython.double = 1e30
     tolerance: cython.double = 1e-13
     preliminary_tolerance: cython.double = 1e-9
     final_step: cython.double = 1e-12

@@ -23,16 +23,21 @@ from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.periodic.margins import Margins, Measures
 from fcm.contact.plane.forces import PlanarContact
 from fcm.contact.plane.margins import PlanarMargins, PlanarMeasures
+from fcm.harmonic_balance import options
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
-    from cython.cimports.fcm.contact.periodic.motion import CLOSED, MIXED
+    from cython.cimports.fcm.contact.closed_form import PI
+    from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
+    from cython.cimports.fcm.contact.periodic.margins import CLOSES, LEAST, MOST, OPENS, SLIPS
+    from cython.cimports.fcm.contact.periodic.motion import CLOSED, MIXED, TWO_PI
     from cython.cimports.fcm.contact.plane.cycle import STUCK
     from cython.cimports.fcm.contact.plane.integrals import CONTACT, SLIPS_X, SLIPS_Y, STICKS
     from cython.cimports.fcm.continuation.problem import NONE
 else:
-    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
-    from fcm.contact.periodic.motion import CLOSED, MIXED
+    from fcm.contact.closed_form import PI
+    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
+    from fcm.contact.periodic.margins import CLOSES, LEAST, MOST, OPENS, SLIPS
+    from fcm.contact.periodic.motion import CLOSED, MIXED, TWO_PI
     from fcm.contact.plane.cycle import STUCK
     from fcm.contact.plane.integrals import CONTACT, SLIPS_X, SLIPS_Y, STICKS
     from fcm.continuation.problem import NONE
@@ -41,13 +46,7 @@ else:
 KINDS = cython.declare(cython.int, 9)  # of margins, at most
 
 
-PI = cython.declare(cython.double, 3.141592653589793)
-MIN_AMPLITUDE = cython.declare(cython.double, 1e-150)  # amplitudes below this count as this in a division
-CLOSES = cython.declare(cython.int, 0)  # margins, see `bound`
-OPENS = cython.declare(cython.int, 1)
-SLIPS = cython.declare(cython.int, 2)
-MOST = cython.declare(cython.int, 3)
-LEAST = cython.declare(cython.int, 4)
+MIN_AMPLITUDE = cython.declare(cython.double, options.MIN_AMPLITUDE)
 
 
 @cython.cclass

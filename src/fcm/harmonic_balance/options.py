@@ -338,3 +338,4 @@ class HarmonicBalanceOptions:
 
 HARMONIC_BALANCE = HarmonicBalanceOptions()  # where nothing else is said
 PROLONGATION = ProlongationOptions()
+MIN_AMPLITUDE = 1e-150  # amplitudes below count as this in a division: its square is a number still

@@ -12,12 +12,12 @@ import numpy.typing as npt
 from fcm.contact.loop import sequences
 from fcm.continuation import Path
 from fcm.continuation.corrector import distances
+from fcm.harmonic_balance.options import MIN_AMPLITUDE
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
 from fcm.harmonic_balance.residual import PointQuantities, cycles_of
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Contact, FloatArray
 
-MIN_AMPLITUDE = 1e-150  # amplitudes below this count as this in a division
 NO_STATE = 3  # beside the states of a cycle: no state
 OPEN = 2  # of these, by its place in the letters
 LETTERS = np.array(["E", "P", "S", "", "N"])  # of the states; that of a negative slip is -1

@@ -13,8 +13,7 @@ from typing import TypeVar
 import numpy as np
 
 from fcm.contact.closed_form import ClosedForm, CoefficientLaw
-from fcm.contact.periodic.workspace import periodic_contact
-from fcm.contact.plane.workspace import planar_contact
+from fcm.contact.kernels import periodic_contact, planar_contact
 from fcm.continuation.step_control import Stepper
 from fcm.harmonic_balance.contact_law import Law, LineLaw, PlanarLaw, SingleHarmonicLaw
 from fcm.harmonic_balance.displacement import Displacements, TravellingDisplacements

@@ -19,7 +19,8 @@ _SHAPES = {  # the name of an element, of which letters for its formulation may 
     "B31": ("line", 2), "B32": ("line3", 3), "T3D2": ("line", 2), "T3D3": ("line3", 3),
 }  # fmt: skip
 _KIND = re.compile("(" + "|".join(sorted(_SHAPES, key=len, reverse=True)) + r")[A-Z]*5?", re.ASCII)
-_TOO_DEEP = 20  # files within files
+# keyword, options, where it stands, words of each line
+_Block = tuple[str, dict[str, str], str, list[list[str]]]
 
 
 class _Deck:
@@ -41,7 +42,7 @@ def read_abaqus(path: Path) -> Mesh:
         With the line that is wrong, and what is wrong there.
     """
     deck = _Deck()
-    for keyword, options, where, rows in _blocks(path, 0):
+    for keyword, options, where, rows in _blocks(path):
         if keyword == "INSTANCE":
             raise MeshError(
                 f"{where}: *INSTANCE numbers nodes by part; write the input flat, as "
@@ -65,12 +66,14 @@ def read_abaqus(path: Path) -> Mesh:
     return Mesh(tuple(deck.xyz), xyz, tuple(cells), sets, tuple(deck.lacking))
 
 
-def _blocks(path: Path, depth: int) -> Iterator[tuple[str, dict[str, str], str, list[list[str]]]]:
+def _blocks(
+    path: Path, within: tuple[Path, ...] = ()
+) -> Iterator[tuple[str, dict[str, str], str, list[list[str]]]]:
     """Each keyword with its options, where it stands, and the words of the lines behind it.
 
-    Remarks may be in any coding; a number is not.
+    Remarks may be in any coding; a number is not. `within` are the files that include this one.
     """
-    if depth > _TOO_DEEP:
+    if path.resolve() in within:
         raise MeshError("its files include one another")
     keyword, options, where, rows = "", dict[str, str](), "", list[list[str]]()
     for number, line in enumerate(path.read_text("utf-8", errors="replace").splitlines(), 1):
@@ -85,13 +88,13 @@ def _blocks(path: Path, depth: int) -> Iterator[tuple[str, dict[str, str], str, 
         pairs = (word.partition("=") for word in more if word)
         options = {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}
         keyword, where, rows = head.upper(), f"line {number}", []
-        if depth:
+        if within:
             where = f"{path.name}, {where}"
         if keyword == "INCLUDE":
             inner = path.parent / options.get("INPUT", "")
             if not inner.is_file():
                 raise MeshError(f"{where}: includes {inner.name!r}, which is not there")
-            yield from _blocks(inner, depth + 1)
+            yield from _blocks(inner, (*within, path.resolve()))
             keyword = ""
     if keyword:
         yield keyword, options, where, rows

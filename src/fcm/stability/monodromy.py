@@ -50,13 +50,15 @@ from fcm.stability.disturbance import Propagator
 from fcm.stability.options import STABILITY, PropagationOptions
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
+    from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
+    from cython.cimports.fcm.contact.periodic.motion import TWO_PI
     from cython.cimports.fcm.harmonic_balance.modal_equations import sum_of_rows
     from cython.cimports.fcm.stability.disturbance import Disturbances, Stiffness
     from cython.cimports.fcm.stability.monodromy import add_term, add_two_products
     from cython.cimports.fcm.stability.state_sequence import StateSequence
 else:
-    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
+    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
+    from fcm.contact.periodic.motion import TWO_PI
     from fcm.harmonic_balance.modal_equations import sum_of_rows
     from fcm.stability.disturbance import Disturbances, Stiffness
     from fcm.stability.state_sequence import StateSequence

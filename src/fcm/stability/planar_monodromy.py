@@ -38,11 +38,11 @@ from cython.cimports.libc.math import fabs
 from fcm.contact.plane.radau import radau
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.cycle import TWO_PI
+    from cython.cimports.fcm.contact.periodic.motion import TWO_PI
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK
     from cython.cimports.fcm.stability.state_sequence import PlanarSequence
 else:
-    from fcm.contact.periodic.cycle import TWO_PI
+    from fcm.contact.periodic.motion import TWO_PI
     from fcm.contact.plane.slider import SEPARATION, SLIP, STICK
     from fcm.stability.state_sequence import PlanarSequence
 

@@ -14,21 +14,21 @@ import numpy as np
 import numpy.typing as npt
 from cython.cimports.libc.math import cos, fabs, log, sin
 
-from fcm.contact.periodic.workspace import periodic_contact
+from fcm.contact.kernels import periodic_contact
 from fcm.contact.plane.options import OPTIONS
 from fcm.contact.plane.radau import radau
 from fcm.stability.options import STABILITY, PlanarStabilityOptions
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, TWO_PI
-    from cython.cimports.fcm.contact.periodic.motion import OPEN, UNKNOWN
+    from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK
+    from cython.cimports.fcm.contact.periodic.motion import OPEN, TWO_PI, UNKNOWN
     from cython.cimports.fcm.contact.plane.cycle import UNSOLVED
     from cython.cimports.fcm.contact.plane.forces import PlanarContact
     from cython.cimports.fcm.contact.plane.panel import STAGES
     from cython.cimports.fcm.contact.plane.slider import SLIP
 else:
-    from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, TWO_PI
-    from fcm.contact.periodic.motion import OPEN, UNKNOWN
+    from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK
+    from fcm.contact.periodic.motion import OPEN, TWO_PI, UNKNOWN
     from fcm.contact.plane.cycle import UNSOLVED
     from fcm.contact.plane.forces import PlanarContact
     from fcm.contact.plane.radau import STAGES

@@ -37,6 +37,8 @@ class NodeOptions:
     max_slip_b: float = 1e4
     min_phi: float = 3e-6  # stands for the limit phi -> 0 of the slip regime where b >= 1
     margin: int = 1  # nodes around those reached by a part: a solver's path is another with another table
+    # of u from an end, at least: there its derivative by n0 is infinite
+    end_distance: float = 1e-14
     guard: int = 6  # nodes at a cut side, beyond which the splines are those through all nodes, to 1e-7
     newton_steps: int = 60  # of the inverse of a coordinate: the first ones gain a third only
     # multiplications of a matrix product that OpenBLAS does in one thread

@@ -4,6 +4,7 @@ cdef class Place:
     # of the table
     cdef double span_1, span_2, span_x, span_z
     cdef int first_slip
+    cdef double near
     # of the point
     cdef double sin_half, cos_half, sin_phi, cos_phi
     cdef double ell_1, ell_2, low, high, width

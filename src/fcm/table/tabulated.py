@@ -20,16 +20,16 @@ from cython.cimports.libc.math import asin, atan, atan2, cbrt, fabs, fmod, hypot
 from cython.cimports.libc.math import cos as cosine
 
 from fcm.table import constants
+from fcm.table.options import NODE_OPTIONS
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.closed_form import ClosedForm, CoefficientLaw
+    from cython.cimports.fcm.contact.closed_form import PI, ClosedForm, CoefficientLaw
 else:
-    from fcm.contact.closed_form import ClosedForm, CoefficientLaw
+    from fcm.contact.closed_form import PI, ClosedForm, CoefficientLaw
 
 Resolution = tuple[int, int, int, int]  # nodes along u in separation, u in slip, x, z
 NODES_BETWEEN = 3  # from the last node of separation to the first of slip in the stacked coefficients
 
-PI = cython.declare(cython.double, 3.141592653589793)
 FOLD_Z = cython.declare(cython.double, constants.FOLD_Z)
 FOLD_U = cython.declare(cython.double, constants.FOLD_U)
 CONE = cython.declare(cython.double, constants.CONE)
@@ -38,7 +38,6 @@ LARGEST_B = cython.declare(cython.double, constants.LARGEST_B)
 HUGE_B = cython.declare(cython.double, constants.HUGE_B)
 SIN_FOLD_Z = cython.declare(cython.double, sin(constants.FOLD_Z))
 SIN_FOLD_U = cython.declare(cython.double, sin(constants.FOLD_U))
-NEAR = cython.declare(cython.double, 1e-14)  # u this close to an end is moved away: du/dn0 is infinite there
 TINY = cython.declare(cython.double, 1e-300)  # a divisor is at least that: none is 0
 
 
@@ -57,6 +56,7 @@ class Place:
         self.span_1, self.span_2 = nodes_1 - 1, nodes_2 - 1
         self.span_x, self.span_z = nodes_x - 1, nodes_z - 1
         self.first_slip = nodes_1 - 1 + NODES_BETWEEN
+        self.near = NODE_OPTIONS.end_distance
 
     def find(self, n0: float, b: float, phi: float, gradient: bool) -> None:
         """The place of a point, all finite, b not negative; the chain rule with the gradient only."""
@@ -114,7 +114,7 @@ class Place:
         half: float = 0.5 * cbrt(inverse / other)
         self.x = (s * half + 0.5) * self.span_x
         by_s: float = half * (1.0 - s * s * inverse * (2.0 / 3.0)) * (2.0 / PI)
-        self.x_b = by_s / ((1.0 + root * root) * sqrt(max(b, NEAR))) * self.span_x
+        self.x_b = by_s / ((1.0 + root * root) * sqrt(max(b, self.near))) * self.span_x
         by_cone: float = s * half * (other - inverse) * (2.0 * CONE / 3.0)
         self.x_phi = by_cone * self.sin_phi * self.cos_phi * self.span_x
 
@@ -128,8 +128,8 @@ class Place:
         """n0 < b: F = b / (1 + b) G, and 0 for n0 <= -b; u is 0 at n0 = b, the last node at n0 = -b."""
         safe_b: float = max(b, TINY)
         bounded: float = max(n0, -safe_b)
-        below: float = max((safe_b - bounded) / safe_b, NEAR)  # 1 - n0 / b
-        above: float = max((safe_b + bounded) / safe_b, NEAR)
+        below: float = max((safe_b - bounded) / safe_b, self.near)  # 1 - n0 / b
+        above: float = max((safe_b + bounded) / safe_b, self.near)
         root_below: float = sqrt(below)
         root_above: float = sqrt(above)
         delta: float = 2.0 * atan2(root_below, root_above)
@@ -155,7 +155,7 @@ class Place:
     def _slip(self, b: float, excess: float, gradient: bool) -> None:
         """n0 = b + excess: F = F_edge + width G below the slip limit, F_edge above; t = sin(pi u / 2)^2."""
         share: float = min(excess, self.width) / max(self.width, TINY)
-        t: float = min(max(share, NEAR), 1.0 - NEAR)
+        t: float = min(max(share, self.near), 1.0 - self.near)
         root: float = sqrt(t)
         rest: float = sqrt(1.0 - t)
         slips: cython.bint = excess < self.width

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from fcm.model.scene import FloatArray
 from fcm.time_domain.errors import SimulationError
-from fcm.time_domain.flow import BLOCK, FITS, NEGATIVE_SLIP, ORDER, POSITIVE_SLIP, SEPARATED, STICKING
+from fcm.time_domain.flow import BLOCK, NEGATIVE_SLIP, ORDER, POSITIVE_SLIP, SEPARATED, STICKING
 
 if TYPE_CHECKING:
     from fcm.time_domain.system import System
@@ -109,7 +109,7 @@ def _step(system: System, a: FloatArray) -> tuple[float, bool]:
     fastest = system.flows.highest * system.omega
     longest = 1.0 / rate if rate > SLOWEST else 2.0 ** np.ceil(1.0 - np.log2(fastest))
     step = longest
-    while fastest * step > FITS:
+    while fastest * step > system.flows.max_step_angle:
         step *= 0.5
     return float(step), bool(step < longest)
 

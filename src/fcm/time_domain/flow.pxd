@@ -1,3 +1,6 @@
+cdef int SERIES_ORDER, FLOW_POWERS
+cdef int STATE_SEPARATED, STATE_STICKING, STATE_POSITIVE_SLIP, STATE_NEGATIVE_SLIP
+
 cdef class FlowArrays:
     cdef readonly Py_ssize_t modes, contacts, springs, linear, size, waves, count, clock
     cdef readonly double omega, highest
@@ -18,7 +21,10 @@ cdef class FlowArrays:
     cdef Py_ssize_t min_count
     cdef double max_bytes, max_steps, rounding, depth, grazing
     cdef readonly int dense_size, taylor_size
-    cdef int few_rows, max_passes, max_blocks
+    cdef int few_rows, max_passes, max_blocks, first_doublings, max_order
+    cdef readonly int max_halvings
+    cdef double negligible_power
+    cdef readonly double max_step_angle
     cdef readonly Py_ssize_t[::1] used
     cdef Py_ssize_t find(self, signed char[:, ::1] states, Py_ssize_t k) noexcept nogil
 

@@ -41,18 +41,19 @@ POWERS = 8  # of exp(A h): 1, 2, 4 ... 128 steps
 BLOCK = 8  # steps that are looked at together: a power of two
 WATCHED = 3  # g, g' h and g'''' h**4 of each exit
 SEPARATED, STICKING, POSITIVE_SLIP, NEGATIVE_SLIP = 0, 1, 2, 3  # states of a contact
-FITS = 1.0 + 1e-12  # radians of the forces that a step lasts at most: one, and rounding
-_ORDER = cython.declare(cython.int, ORDER)
-_FITS = cython.declare(cython.double, FITS)
 # of (A h)**k in what a force that grows as the j-th power of the time does in a step, for k + j < ORDER
 PUSHED = np.array(
     [[1.0 / factorial(k + j + 1) if k + j < ORDER else 0.0 for k in range(ORDER)] for j in range(ORDER)]
 )
 
 
-_SEPARATED = cython.declare(cython.int, 0)
-_STICKING = cython.declare(cython.int, 1)
-_POSITIVE_SLIP = cython.declare(cython.int, 2)
+# the same in C, for this kernel and others
+SERIES_ORDER = cython.declare(cython.int, ORDER)
+FLOW_POWERS = cython.declare(cython.int, POWERS)
+STATE_SEPARATED = cython.declare(cython.int, SEPARATED)
+STATE_STICKING = cython.declare(cython.int, STICKING)
+STATE_POSITIVE_SLIP = cython.declare(cython.int, POSITIVE_SLIP)
+STATE_NEGATIVE_SLIP = cython.declare(cython.int, NEGATIVE_SLIP)
 
 
 # arrays of the pool that are no floating-point numbers
@@ -166,6 +167,12 @@ class FlowArrays:
         self.few_rows, of = options.few_rows, options.transitions
         self.rounding, self.depth, self.grazing = of.rounding, of.depth, of.grazing
         self.max_passes, self.max_steps, self.max_blocks = of.max_passes, of.max_steps, of.max_blocks
+        self.max_halvings, self.first_doublings, self.max_order = (
+            of.max_halvings,
+            of.first_doublings,
+            of.max_order,
+        )
+        self.negligible_power, self.max_step_angle = of.negligible_power, options.max_step_angle
 
     def _place(self) -> int:
         """A place for one more."""
@@ -212,7 +219,7 @@ class FlowArrays:
         angle: cython.double
         for i in range(self.count):
             angle = self.highest * self.omega * self.step[i]
-            if angle > _FITS or (self.halved[i] and 2.0 * angle <= _FITS):
+            if angle > self.max_step_angle or (self.halved[i] and 2.0 * angle <= self.max_step_angle):
                 continue
             j = 0
             while j < self.contacts and self.states[i, j] == states[k, j]:
@@ -352,12 +359,12 @@ def contact(
     u: cython.double = 0.0
     f: cython.double = z[a, 2 * m + j]
     n: cython.double = z[a, 2 * m + series.contacts + j]
-    if state == _SEPARATED:  # the preload is missing
+    if state == STATE_SEPARATED:  # the preload is missing
         f, n = 0.0, -max(series.n_0[j], 0.0) * z[a, series.linear - 1]
     else:  # a gap is not pressed
         n += min(series.n_0[j], 0.0) * z[a, series.linear - 1]
-        if state != _STICKING:
-            u = series.mu[j] * v if state == _POSITIVE_SLIP else -series.mu[j] * v
+        if state != STATE_STICKING:
+            u = series.mu[j] * v if state == STATE_POSITIVE_SLIP else -series.mu[j] * v
         elif series.rough[j]:
             u = factor * series.k_u[j] * velocity(series.tangential, j, z, a)
     push(series.push_u, j, f * factor, z, a + 1)
@@ -432,9 +439,6 @@ def push(
             z[b, m + i] -= shape[j, i] * force
 
 
-NOTHING = cython.declare(cython.double, 1e-20)  # of the first term: those from there on are left out
-
-
 @cython.cclass
 class ForcedFlows(FlowSeries):
     """`refresh` makes the columns of a flow for `omega` [rad/s] and one step; as `FlowArrays`.
@@ -486,10 +490,10 @@ class ForcedFlows(FlowSeries):
         size: cython.double = 1.0
         power: cython.double = 1.0
         before: cython.double = 0.0
-        for j in range(_ORDER):
+        for j in range(SERIES_ORDER):
             self._add_term(slot, h, j, power, j * before * step)
             size *= x / (j + 1)
-            if size < NOTHING * x:
+            if size < self.negligible_power * x:
                 return
             before = power
             power *= -x if j % 2 else x
@@ -662,7 +666,7 @@ class ExitFunctions(ForcedFlows):
             return 0
         self._angles(slot)
         for e in range(exits):
-            w = e * (_ORDER + 1)
+            w = e * (SERIES_ORDER + 1)
             self.spread[slot, e] = 0
             self._of_exit(slot, e, 1)
             self._of_exit(slot, e, 2)
@@ -685,7 +689,7 @@ class ExitFunctions(ForcedFlows):
         x: cython.double
         for h in range(self.waves):
             power, x = 1.0, self.harmonic[h] * self.omega * self.step[slot]
-            for j in range(_ORDER):
+            for j in range(SERIES_ORDER):
                 self._rotated[h, j] = power
                 power *= -x if j % 2 else x
 
@@ -717,8 +721,8 @@ class ExitFunctions(ForcedFlows):
                     sine, cosine = sine - other, cosine + first
                 else:
                     sine, cosine = sine + first, cosine + other
-            self.series_forced[slot, 2 * h, e * (_ORDER + 1) + a] = sine / total
-            self.series_forced[slot, 2 * h + 1, e * (_ORDER + 1) + a] = cosine / total
+            self.series_forced[slot, 2 * h, e * (SERIES_ORDER + 1) + a] = sine / total
+            self.series_forced[slot, 2 * h + 1, e * (SERIES_ORDER + 1) + a] = cosine / total
 
     @cython.cfunc
     @cython.nogil
@@ -729,7 +733,7 @@ class ExitFunctions(ForcedFlows):
         if self.spread[slot, e]:
             return
         self._angles(slot)
-        for a in range(1, _ORDER + 1):
+        for a in range(1, SERIES_ORDER + 1):
             self._of_exit(slot, e, a)
         self.spread[slot, e] = 1
 
@@ -825,25 +829,25 @@ class ExitFunctions(ForcedFlows):
     ) -> cython.void:
         """Taylor coefficients (ORDER + 1,) of exit e in the step from row k of y, into its row."""
         n: cython.Py_ssize_t = self.linear
-        w: cython.Py_ssize_t = e * (_ORDER + 1)
+        w: cython.Py_ssize_t = e * (SERIES_ORDER + 1)
         i: cython.Py_ssize_t
         h: cython.Py_ssize_t
         j: cython.int
         x: cython.double
         other: cython.double
         self.expand(slot, e)
-        for j in range(_ORDER + 1):
+        for j in range(SERIES_ORDER + 1):
             powers[e, j] = 0.0
         for h in range(0, 2 * self.waves, 2):
             x, other = y[k, n + h], y[k, n + h + 1]
-            for j in range(_ORDER + 1):
+            for j in range(SERIES_ORDER + 1):
                 powers[e, j] += (
                     self.series_forced[slot, h, w + j] * x + self.series_forced[slot, h + 1, w + j] * other
                 )
         for i in range(n):
             x = y[k, i]
             if x != 0.0:
-                for j in range(_ORDER + 1):
+                for j in range(SERIES_ORDER + 1):
                     powers[e, j] += self.series[slot, i, w + j] * x
 
 
@@ -858,7 +862,7 @@ def value(powers: cython.double[::1], order: cython.int, x: cython.double) -> cy
     j: cython.int
     factor: cython.double
     total: cython.double = 0.0
-    for j in range(_ORDER, order - 1, -1):
+    for j in range(SERIES_ORDER, order - 1, -1):
         factor = (
             1.0 if order == 0 else j if order == 1 else j * (j - 1) if order == 2 else j * (j - 1) * (j - 2)
         )
@@ -902,7 +906,7 @@ def needed(x: cython.double) -> cython.int:
     """The terms beyond the first that a part x of a step takes, to rounding."""
     j: cython.int = 0
     size: cython.double = 1.0
-    while size > _SERIES_END and j < _ORDER:
+    while size > _SERIES_END and j < SERIES_ORDER:
         j += 1
         size *= x / j
     return j
@@ -919,13 +923,10 @@ def summed(
     j: cython.int
     n: cython.Py_ssize_t = terms.shape[1]
     for i in range(n):
-        y[k, i] = terms[_ORDER, i]
-    for j in range(_ORDER - 1, -1, -1):
+        y[k, i] = terms[SERIES_ORDER, i]
+    for j in range(SERIES_ORDER - 1, -1, -1):
         for i in range(n):
             y[k, i] = y[k, i] * x + terms[j, i]
-
-
-_POWERS = cython.declare(cython.int, 8)  # of two, of the steps by which a flow moves at once
 
 
 @cython.cclass
@@ -973,10 +974,10 @@ class Flows(ExitFunctions):
         whole: cython.longlong = cython.cast(cython.longlong, position)
         x: cython.double = position - whole
         j: cython.int
-        while whole >> _POWERS:
-            self.advance(slot, _POWERS - 1, y, k)
-            whole -= 1 << (_POWERS - 1)
-        for j in range(_POWERS):
+        while whole >> FLOW_POWERS:
+            self.advance(slot, FLOW_POWERS - 1, y, k)
+            whole -= 1 << (FLOW_POWERS - 1)
+        for j in range(FLOW_POWERS):
             if whole >> j & 1:
                 self.advance(slot, j, y, k)
         self.part(slot, x, y, k, k + 1)
@@ -1021,7 +1022,7 @@ class Flows(ExitFunctions):
         i: cython.Py_ssize_t
         for i in range(self.size):
             terms[0, i] = y[k, i]
-        self.extend(slot, terms, _ORDER, self.step[slot], terms, False)
+        self.extend(slot, terms, SERIES_ORDER, self.step[slot], terms, False)
 
     @cython.cfunc
     @cython.nogil

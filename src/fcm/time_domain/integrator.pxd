@@ -1,7 +1,7 @@
 from fcm.time_domain.flow cimport Flows
 from fcm.time_domain.segments cimport Segments
 
-cdef double first_descent(double[:, ::1] powers, Py_ssize_t k, double floor, double[:, ::1] work) noexcept nogil
+cdef double first_descent(double[:, ::1] powers, Py_ssize_t k, double floor, double negligible, double[:, ::1] work) noexcept nogil
 
 cdef class EventDetector:
     cdef readonly Flows flows

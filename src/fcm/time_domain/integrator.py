@@ -26,48 +26,50 @@ from cython.cimports.libc.math import cos, fabs, isfinite, ldexp, sin
 
 from fcm.model.scene import FloatArray
 from fcm.time_domain.flow import BLOCK, ORDER
+from fcm.time_domain.options import TIME
 from fcm.time_domain.stop_reason import Stopped
 
 if cython.compiled:
-    from cython.cimports.fcm.time_domain.flow import Flows
+    from cython.cimports.fcm.time_domain.flow import (
+        SERIES_ORDER,
+        STATE_NEGATIVE_SLIP,
+        STATE_POSITIVE_SLIP,
+        STATE_SEPARATED,
+        STATE_STICKING,
+        Flows,
+    )
     from cython.cimports.fcm.time_domain.segments import Segments
 else:
-    from fcm.time_domain.flow import Flows
+    from fcm.time_domain.flow import (
+        SERIES_ORDER,
+        STATE_NEGATIVE_SLIP,
+        STATE_POSITIVE_SLIP,
+        STATE_SEPARATED,
+        STATE_STICKING,
+        Flows,
+    )
     from fcm.time_domain.segments import Segments
-
-
-N = 19  # degree, ORDER of fcm.time_domain.segments
-DEEPEST = 50  # halvings
-_N = cython.declare(cython.int, 19)
-_DEEPEST = cython.declare(cython.int, 50)
-NOTHING = cython.declare(
-    cython.double, 1e-20
-)  # of what the powers add up to: those above the last that is more are left out
 
 
 _DONE = cython.declare(cython.int, Stopped.DONE)  # as the loops know it, which have numbers alone
 _MISSING = cython.declare(cython.int, Stopped.MISSING)
 _UNDECIDED = cython.declare(cython.int, Stopped.UNDECIDED)
-_LEADING = cython.declare(cython.int, 8)  # derivatives of an exit that may tell which combination follows
-_SEPARATED = cython.declare(cython.int, 0)
-_STICKING = cython.declare(cython.int, 1)
-_POSITIVE_SLIP = cython.declare(cython.int, 2)
 
 
 def _weights(degree: int) -> FloatArray:
     """Of the powers in the Bernstein coefficients of a degree: (power, coefficient)."""
-    weights = np.zeros((N + 1, N + 1))
+    weights = np.zeros((ORDER + 1, ORDER + 1))
     for i in range(degree + 1):
         weights[i, i : degree + 1] = [comb(j, i) / comb(degree, i) for j in range(i, degree + 1)]
     return weights
 
 
-_WEIGHTS = cython.declare(cython.double[:, :, ::1], np.array([_weights(n) for n in range(N + 1)]))
+_WEIGHTS = cython.declare(cython.double[:, :, ::1], np.array([_weights(n) for n in range(ORDER + 1)]))
 
 
-def workspace() -> FloatArray:
+def workspace(max_halvings: int) -> FloatArray:
     """Room for `first_descent`: the coefficients at every depth of halving."""
-    return np.zeros((DEEPEST + 2, N + 1))
+    return np.zeros((max_halvings + 2, ORDER + 1))
 
 
 def first_descent_of(powers: FloatArray, floor: float) -> float | None:
@@ -95,7 +97,8 @@ def first_descent_of(powers: FloatArray, floor: float) -> float | None:
     True
     """
     row = np.ascontiguousarray(powers, dtype=np.float64).reshape(1, -1)
-    found = first_descent(row, 0, floor, workspace())
+    options = TIME.flows.transitions
+    found = first_descent(row, 0, floor, options.negligible_power, workspace(options.max_halvings))
     return found if found >= 0.0 else None
 
 
@@ -106,22 +109,26 @@ def first_descent(
     powers: cython.double[:, ::1],
     k: cython.Py_ssize_t,
     floor: cython.double,
+    negligible: cython.double,
     work: cython.double[:, ::1],
 ) -> cython.double:
-    """The root for row k of the powers, -1 where there is none."""
+    """The root for row k of the powers, -1 where there is none.
+
+    Powers above the last that is more than `negligible` of what they add up to are left out.
+    """
     i: cython.int
     j: cython.int
     degree: cython.int
     leading: cython.int = 0
     change: cython.double = 0.0
-    while leading < _N and powers[k, leading] == 0.0:
+    while leading < SERIES_ORDER and powers[k, leading] == 0.0:
         leading += 1
-    for i in range(leading + 1, _N + 1):
+    for i in range(leading + 1, SERIES_ORDER + 1):
         change += fabs(powers[k, i])
     if powers[k, leading] - change >= -floor:
         return -1.0
-    degree = _N
-    while degree > 1 and fabs(powers[k, degree]) <= NOTHING * change:
+    degree = SERIES_ORDER
+    while degree > 1 and fabs(powers[k, degree]) <= negligible * change:
         degree -= 1
     for j in range(degree + 1):
         work[0, j] = powers[k, 0]
@@ -150,7 +157,7 @@ def _search(
     verdict: cython.int
     while True:
         verdict = _judge(work, degree, depth, floor)
-        if verdict == 2 or (verdict == 3 and depth >= _DEEPEST):
+        if verdict == 2 or (verdict == 3 and depth >= work.shape[0] - 2):
             return low  # it descends from rounding at the very start
         if verdict == 1:
             return _root(powers, k, degree, low, low + ldexp(1.0, -depth), work[depth])
@@ -276,8 +283,6 @@ def _root(
 
 
 UNSEEN = cython.declare(cython.double, 1e300)  # bound of what no step has been looked at for
-_ORDER = cython.declare(cython.int, 19)
-_FIRST = cython.declare(cython.int, 2)  # a segment's first look is at 2**2 steps, for many are short
 _WHOLE = cython.declare(cython.int, 3)  # BLOCK is 2**3 steps
 
 
@@ -296,7 +301,11 @@ class EventDetector:
         self.base, self.left, self.inside = 0.0, 0.0, 0.0
         self.there, self.powers, self.slack = np.zeros((1, d)), np.zeros((e, ORDER + 1)), np.zeros(e)
         self.touched = np.zeros(e, np.int8)
-        self._here, self._begun, self._work = np.zeros((1, d)), np.zeros((1, d)), workspace()
+        self._here, self._begun, self._work = (
+            np.zeros((1, d)),
+            np.zeros((1, d)),
+            workspace(flows.max_halvings),
+        )
         self._floors, self._largest, self._marked = np.zeros(e), np.zeros(e), np.zeros(e, np.int8)
         self._seen = np.zeros((BLOCK + 1) * 3 * e)
 
@@ -307,7 +316,7 @@ class EventDetector:
         """Begin a segment of at most so many steps at y, the powers of the exits touched there known."""
         i: cython.Py_ssize_t
         e: cython.Py_ssize_t
-        self.base, self.left, self._doubled = 0.0, left, _FIRST
+        self.base, self.left, self._doubled = 0.0, left, self.flows.first_doublings
         for i in range(self.flows.size):
             self._here[0, i] = self._begun[0, i] = y[0, i]
         for i in range(self.flows.contacts):
@@ -385,7 +394,7 @@ class EventDetector:
         size: cython.double
         if self._floors[e] < 0.0:
             for j in range(3):
-                w = e * (_ORDER + 1) + j
+                w = e * (SERIES_ORDER + 1) + j
                 size = 0.0
                 for b in range(2 * self.flows.waves):
                     size += fabs(self.flows.series_forced[self.slot, b, w] * self._begun[0, n + b])
@@ -421,7 +430,7 @@ class EventDetector:
             if self._marked[e]:
                 if before > 0.0 or not self.touched[e]:
                     self.flows.leave(self.slot, e, self.there, 0, self.powers)
-                at = first_descent(self.powers, e, self._floor(e), self._work)
+                at = first_descent(self.powers, e, self._floor(e), self.flows.negligible_power, self._work)
                 if 0.0 <= at < best:
                     best, self.exit = at, e
         if self.exit >= 0 and before + best <= self.left:
@@ -526,8 +535,8 @@ class Successor:
         zero: cython.double
         self.flows.leave(slot, e, self.y, 0, powers)
         powers[e, 0] = 0.0
-        for j in range(1, _LEADING):
-            w = e * (_ORDER + 1) + j
+        for j in range(1, self.flows.max_order + 1):
+            w = e * (SERIES_ORDER + 1) + j
             zero = 0.0
             for b in range(2 * self.flows.waves):
                 zero += fabs(self.flows.series_forced[slot, b, w]) * self._noise[n + b]
@@ -556,21 +565,20 @@ class Successor:
                 if self._failed[e] and self.flows.owner[slot, e] == j:
                     goal = self.flows.goal[slot, e]
                     # both limits of stick passed at once, or the load gone while slipping: the contact opens
-                    wanted = goal if wanted < 0 or wanted == goal else _SEPARATED
+                    wanted = goal if wanted < 0 or wanted == goal else STATE_SEPARATED
             if wanted < 0:
                 continue
             self.states[0, j] = wanted
             load = self.flows.mu[j] * (self.flows.n_0[j] + self.y[0, f + self.flows.contacts + j])
-            if wanted == _SEPARATED:
+            if wanted == STATE_SEPARATED:
                 self.y[0, f + j] = 0.0
-            elif wanted != _STICKING:
-                self.y[0, f + j] = load if wanted == _POSITIVE_SLIP else -load
+            elif wanted != STATE_STICKING:
+                self.y[0, f + j] = load if wanted == STATE_POSITIVE_SLIP else -load
 
 
 _FULL = cython.declare(cython.int, Stopped.FULL)
 _PAUSED = cython.declare(cython.int, Stopped.PAUSED)
 _LONG = cython.declare(cython.int, Stopped.LONG)
-_NEGATIVE_SLIP = cython.declare(cython.int, 3)
 
 
 @cython.cclass
@@ -628,13 +636,13 @@ class March:
         load: cython.double = self.flows.n_0[j] + self.y[0, f + self.flows.contacts]
         limit: cython.double = self.flows.mu[j] * load
         if load < 0.0 or (load == 0.0 and self.flows.k_v[j] == 0.0):
-            self.y[0, f], self.states[0, j] = 0.0, _SEPARATED
+            self.y[0, f], self.states[0, j] = 0.0, STATE_SEPARATED
         elif not self.flows.rough[j]:
-            self.y[0, f], self.states[0, j] = 0.0, _STICKING
+            self.y[0, f], self.states[0, j] = 0.0, STATE_STICKING
         elif fabs(self.y[0, f]) <= limit:
-            self.states[0, j] = _STICKING
+            self.states[0, j] = STATE_STICKING
         else:
-            self.states[0, j] = _POSITIVE_SLIP if self.y[0, f] > 0.0 else _NEGATIVE_SLIP
+            self.states[0, j] = STATE_POSITIVE_SLIP if self.y[0, f] > 0.0 else STATE_NEGATIVE_SLIP
             self.y[0, f] = limit if self.y[0, f] > 0.0 else -limit
 
     def lasts(self, duration: float, limit: int) -> None:

@@ -27,19 +27,33 @@ from fcm.time_domain.flow import ORDER
 from fcm.time_domain.segments import SPAN
 
 if cython.compiled:
-    from cython.cimports.fcm.time_domain.flow import Flows, root, summed, value
+    from cython.cimports.fcm.time_domain.flow import (
+        SERIES_ORDER,
+        STATE_NEGATIVE_SLIP,
+        STATE_POSITIVE_SLIP,
+        Flows,
+        root,
+        summed,
+        value,
+    )
     from cython.cimports.fcm.time_domain.segments import Segments, Walk
 else:
-    from fcm.time_domain.flow import Flows, root, summed, value
+    from fcm.time_domain.flow import (
+        SERIES_ORDER,
+        STATE_NEGATIVE_SLIP,
+        STATE_POSITIVE_SLIP,
+        Flows,
+        root,
+        summed,
+        value,
+    )
     from fcm.time_domain.segments import Segments, Walk
 
 
 POWER_NODES = 8  # integrate exactly polynomials of degree 15
 _POWER_PLACES, _POWER_SHARES = np.polynomial.legendre.leggauss(POWER_NODES)
 _POWER_ON_ONE = 0.5 * (_POWER_PLACES + 1.0), 0.5 * _POWER_SHARES  # on [0, 1]
-_POWER_NODES = cython.declare(cython.int, 8)
-_POSITIVE_SLIP = cython.declare(cython.int, 2)
-_NEGATIVE_SLIP = cython.declare(cython.int, 3)
+_POWER_NODES = cython.declare(cython.int, POWER_NODES)
 
 
 @cython.cclass
@@ -98,7 +112,7 @@ class Powers(Walk):
         i: cython.Py_ssize_t
         slips: cython.bint = self._everywhere
         for i in range(self.flows.contacts):
-            slips |= self.segments.states[self.at, i] >= _POSITIVE_SLIP
+            slips |= self.segments.states[self.at, i] >= STATE_POSITIVE_SLIP
         if not slips:
             return 0
         for i in range(self.flows.size):
@@ -137,10 +151,10 @@ class Powers(Walk):
             loss += self._damper[i] * self._y[0, m + i] * self._y[0, m + i]
         for j in range(self.flows.contacts):
             state = self.segments.states[self.at, j]
-            if state != _POSITIVE_SLIP and state != _NEGATIVE_SLIP:
+            if state != STATE_POSITIVE_SLIP and state != STATE_NEGATIVE_SLIP:
                 continue
             ratio = self.flows.mu[j] * self.flows.k_v[j] / self.flows.k_u[j]
-            if state == _NEGATIVE_SLIP:
+            if state == STATE_NEGATIVE_SLIP:
                 ratio = -ratio
             rate = 0.0
             for i in range(m):
@@ -157,8 +171,8 @@ class Powers(Walk):
 
 TERMS = 8  # of a step's displacements at either end: 8!**2 / (16! 17!) = 2e-19
 NODES = 16  # integrate exactly polynomials of degree 31
-_TERMS = cython.declare(cython.int, 8)
-_NODES = cython.declare(cython.int, 16)
+_TERMS = cython.declare(cython.int, TERMS)
+_NODES = cython.declare(cython.int, NODES)
 
 
 def _basis(x: FloatArray) -> FloatArray:
@@ -380,8 +394,7 @@ class Rows:
 
 
 LARGEST = cython.declare(cython.double, 1.7976931348623157e308)  # beyond every value
-_ORDER = cython.declare(cython.int, 19)
-_SPAN = cython.declare(cython.int, 128)
+_SPAN = cython.declare(cython.int, SPAN)
 
 
 @cython.cclass
@@ -552,7 +565,7 @@ class Scan(Walk):
         first: cython.double = self._values[1, k, r]
         j: cython.int
         inflection: cython.double
-        for j in range(_ORDER + 1):
+        for j in range(SERIES_ORDER + 1):
             self._powers[j] = self._rows.dot(r, self._terms, j)
         if first * self._values[1, k + 1, r] < 0.0:
             self._extreme_between(r, k, 0.0, self._length)

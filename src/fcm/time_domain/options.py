@@ -53,7 +53,10 @@ class TransitionOptions:
     rounding: of a state after a step, relative to its terms. depth: an exit that is passed by less, relative
     to its size, is not. grazing: rate of an exit where it is passed, relative to its terms; with less the
     instant does not move. max_passes: until a combination of states agrees with itself. max_steps: in one
-    segment. max_blocks: of steps until signals are looked at.
+    segment. max_blocks: of steps until signals are looked at. max_halvings: of a step in which an exit is
+    sought. negligible_power: of a series, over what it adds up to; the last of its powers that are less are
+    left out. first_doublings: steps of a segment's first look, as a power of two, for many are short.
+    max_order: of the derivatives of an exit that may tell which combination follows.
     """
 
     rounding: float = 3e-14
@@ -62,6 +65,10 @@ class TransitionOptions:
     max_passes: int = 100
     max_steps: float = 2e8
     max_blocks: int = 50_000
+    max_halvings: int = 50
+    negligible_power: float = 1e-20
+    first_doublings: int = 2
+    max_order: int = 7
 
 
 @dataclass(frozen=True)
@@ -70,8 +77,8 @@ class FlowOptions:
 
     min_count: that are kept at least. max_bytes: memory of those that are kept otherwise. dense_size:
     components of the state from which on matrices are multiplied by BLAS. taylor_size: components up to which
-    Taylor coefficients are kept. few_rows: derivatives that are sooner moved one by one. transitions: how
-    they are found.
+    Taylor coefficients are kept. few_rows: derivatives that are sooner moved one by one. max_step_angle: of
+    the highest harmonic of the forces in a step [rad]: one, and rounding. transitions: how they are found.
     """
 
     min_count: int = 8
@@ -79,6 +86,7 @@ class FlowOptions:
     dense_size: int = 32
     taylor_size: int = 256
     few_rows: int = 4
+    max_step_angle: float = 1.0 + 1e-12
     transitions: TransitionOptions = TransitionOptions()
 
 

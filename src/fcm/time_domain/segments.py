@@ -14,13 +14,31 @@ from fcm.model.scene import FloatArray
 from fcm.time_domain.flow import ORDER
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
+    from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
+    from cython.cimports.fcm.contact.periodic.motion import TWO_PI
     from cython.cimports.fcm.stability.state_sequence import FREE, StateSequence
-    from cython.cimports.fcm.time_domain.flow import FlowArrays, Flows, summed
+    from cython.cimports.fcm.time_domain.flow import (
+        SERIES_ORDER,
+        STATE_POSITIVE_SLIP,
+        STATE_SEPARATED,
+        STATE_STICKING,
+        FlowArrays,
+        Flows,
+        summed,
+    )
 else:
-    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, TWO_PI
+    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
+    from fcm.contact.periodic.motion import TWO_PI
     from fcm.stability.state_sequence import FREE, StateSequence
-    from fcm.time_domain.flow import FlowArrays, Flows, summed
+    from fcm.time_domain.flow import (
+        SERIES_ORDER,
+        STATE_POSITIVE_SLIP,
+        STATE_SEPARATED,
+        STATE_STICKING,
+        FlowArrays,
+        Flows,
+        summed,
+    )
 
 
 TINY = cython.declare(cython.double, 1e-300)  # instead of a division by zero where nothing moves
@@ -28,11 +46,6 @@ TINY = cython.declare(cython.double, 1e-300)  # instead of a division by zero wh
 
 DOUBLINGS = 7  # of the steps that are made at once
 SPAN = 2**DOUBLINGS
-
-
-_SEPARATED = cython.declare(cython.int, 0)
-_STICKING = cython.declare(cython.int, 1)
-_POSITIVE_SLIP = cython.declare(cython.int, 2)
 
 
 @cython.cclass
@@ -273,9 +286,6 @@ class Steps:
         return 1
 
 
-_ORDER = cython.declare(cython.int, 19)
-
-
 def sample(
     steps: Steps, times: cython.double[::1], out: cython.double[:, ::1], done: cython.Py_ssize_t
 ) -> int:
@@ -312,8 +322,8 @@ def _sample(
         ):
             x = (times[done] - steps.time) / steps.h
             for i in range(steps.flows.size):
-                out[done, i] = steps.terms[_ORDER, i]
-            for j in range(_ORDER - 1, -1, -1):
+                out[done, i] = steps.terms[SERIES_ORDER, i]
+            for j in range(SERIES_ORDER - 1, -1, -1):
                 for i in range(steps.flows.size):
                     out[done, i] = out[done, i] * x + steps.terms[j, i]
             done += 1
@@ -373,11 +383,11 @@ class SegmentSequence(StateSequence):
     def _state(self, segments: Segments, k: cython.Py_ssize_t, c: cython.int) -> cython.int:
         """Of a contact in a segment, as a `StateSequence` has it."""
         state: cython.int = segments.states[k, c]
-        if state == _SEPARATED:
+        if state == STATE_SEPARATED:
             return SEPARATION
-        if state == _STICKING:
+        if state == STATE_STICKING:
             return STICK if self.law[c, 0] > 0.0 and self.law[c, 1] > 0.0 else FREE
-        return POSITIVE if state == _POSITIVE_SLIP else NEGATIVE
+        return POSITIVE if state == STATE_POSITIVE_SLIP else NEGATIVE
 
     @cython.cfunc
     @cython.exceptval(check=False)

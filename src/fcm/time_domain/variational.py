@@ -26,13 +26,27 @@ from cython.cimports.libc.math import cos, fabs, sin
 from fcm.time_domain.flow import ORDER
 
 if cython.compiled:
-    from cython.cimports.fcm.time_domain.flow import Flows, needed
+    from cython.cimports.fcm.time_domain.flow import (
+        FLOW_POWERS,
+        SERIES_ORDER,
+        STATE_NEGATIVE_SLIP,
+        STATE_POSITIVE_SLIP,
+        STATE_SEPARATED,
+        Flows,
+        needed,
+    )
     from cython.cimports.fcm.time_domain.segments import Segments
 else:
-    from fcm.time_domain.flow import Flows, needed
+    from fcm.time_domain.flow import (
+        FLOW_POWERS,
+        SERIES_ORDER,
+        STATE_NEGATIVE_SLIP,
+        STATE_POSITIVE_SLIP,
+        STATE_SEPARATED,
+        Flows,
+        needed,
+    )
     from fcm.time_domain.segments import Segments
-
-_POWERS = cython.declare(cython.int, 8)  # of two, of the steps by which a flow moves at once
 
 
 @cython.cclass
@@ -60,10 +74,10 @@ class VariationalFlow:
         whole: cython.longlong = cython.cast(cython.longlong, position)
         x: cython.double = position - whole
         j: cython.int
-        while whole >> _POWERS:
-            self._whole(slot, _POWERS - 1)
-            whole -= 1 << (_POWERS - 1)
-        for j in range(_POWERS):
+        while whole >> FLOW_POWERS:
+            self._whole(slot, FLOW_POWERS - 1)
+            whole -= 1 << (FLOW_POWERS - 1)
+        for j in range(FLOW_POWERS):
             if whole >> j & 1:
                 self._whole(slot, j)
         self._part(slot, x)
@@ -264,9 +278,6 @@ class VariationalFlow:
 
 
 # an exit passed this slowly, relative to its terms, is touched
-_SEPARATED = cython.declare(cython.int, 0)
-_POSITIVE_SLIP = cython.declare(cython.int, 2)
-_NEGATIVE_SLIP = cython.declare(cython.int, 3)
 
 
 @cython.cclass
@@ -459,15 +470,12 @@ class Derivative(VariationalFlow):
             state = segments.states[i, j]
             if not every and segments.states[i - 1, j] == state:
                 continue
-            if state == _POSITIVE_SLIP:
+            if state == STATE_POSITIVE_SLIP:
                 z[k, f + j] = self.flows.mu[j] * z[k, f + c + j]
-            elif state == _NEGATIVE_SLIP:
+            elif state == STATE_NEGATIVE_SLIP:
                 z[k, f + j] = -self.flows.mu[j] * z[k, f + c + j]
-            elif state == _SEPARATED:
+            elif state == STATE_SEPARATED:
                 z[k, f + j] = 0.0
-
-
-_ORDER = cython.declare(cython.int, 19)
 
 
 @cython.cclass
@@ -548,12 +556,12 @@ class Directional(Derivative):
                 self.pace * self.columns[2, i],
                 self.pace * self.columns[2, i + 1],
             )
-            for j in range(_ORDER):
+            for j in range(SERIES_ORDER):
                 self._angle[j + 1, i], self._angle[j + 1, i + 1] = (
                     angle / (j + 1) * self._angle[j, i + 1],
                     -angle / (j + 1) * self._angle[j, i],
                 )
-        self.flows.extend(slot, self._series, _ORDER, self.flows.step[slot], self._angle, True)
+        self.flows.extend(slot, self._series, SERIES_ORDER, self.flows.step[slot], self._angle, True)
 
     @cython.cfunc
     @cython.nogil
@@ -564,7 +572,7 @@ class Directional(Derivative):
         j: cython.int
         k: cython.Py_ssize_t = self.done
         for i in range(self.flows.modes):
-            out[k, i] = self._series[_ORDER, i]
-        for j in range(_ORDER - 1, -1, -1):
+            out[k, i] = self._series[SERIES_ORDER, i]
+        for j in range(SERIES_ORDER - 1, -1, -1):
             for i in range(self.flows.modes):
                 out[k, i] = out[k, i] * x + self._series[j, i]

@@ -1,7 +1,6 @@
 from fcm.contact.periodic.motion cimport Crossings, Events
 
 cdef int STICK, POSITIVE, NEGATIVE, SEPARATION, STUCK
-cdef double TWO_PI
 
 cdef class Slider(Events):
     cdef readonly Crossings crossings

@@ -32,6 +32,7 @@ if cython.compiled:
         OPENS,
         REACH,
         TOP,
+        TWO_PI,
         UNKNOWN,
         UPPER,
         UPPER_RATE,
@@ -53,6 +54,7 @@ else:
         OPENS,
         REACH,
         TOP,
+        TWO_PI,
         UNKNOWN,
         UPPER,
         UPPER_RATE,
@@ -187,8 +189,6 @@ class Slider(Events):
 
 
 STUCK = cython.declare(cython.int, 4)  # of a whole cycle, beside OPEN, MIXED and UNKNOWN: MIXED is any other
-
-TWO_PI = cython.declare(cython.double, 6.283185307179586)
 
 
 @cython.cclass

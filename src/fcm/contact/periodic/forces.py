@@ -19,11 +19,13 @@ from cython.cimports.libc.math import fabs, sin
 from fcm.contact.periodic.gauss import gauss
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, TWO_PI, Cycle
-    from cython.cimports.fcm.contact.periodic.motion import FORCE, LOAD, MIXED, REACH, UNKNOWN, Motion
+    from cython.cimports.fcm.contact.closed_form import NAN, PI
+    from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, Cycle
+    from cython.cimports.fcm.contact.periodic.motion import FORCE, LOAD, MIXED, REACH, TWO_PI, UNKNOWN, Motion
 else:
-    from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, TWO_PI, Cycle
-    from fcm.contact.periodic.motion import FORCE, LOAD, MIXED, REACH, UNKNOWN, Motion
+    from fcm.contact.closed_form import NAN, PI
+    from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, Cycle
+    from fcm.contact.periodic.motion import FORCE, LOAD, MIXED, REACH, TWO_PI, UNKNOWN, Motion
 
 # Sets of pieces over which exp(-i m theta) is integrated
 STICKS = cython.declare(cython.int, 0)
@@ -202,9 +204,6 @@ class Integrals:
         self.total_im[h] += im
 
 
-PI = cython.declare(cython.double, 3.141592653589793)
-
-
 @cython.cclass
 class Derivatives:
     """`jacobian` (force, unknown), in the order of `PeriodicContact`, while its rows are made.
@@ -370,9 +369,6 @@ class Derivatives:
             self.jacobian[row, k + 1] *= by_motion
             self.jacobian[row, k + 2] *= by_load
             self.jacobian[row, k + 3] *= by_load
-
-
-NAN = cython.declare(cython.double, float("nan"))
 
 
 @cython.cclass

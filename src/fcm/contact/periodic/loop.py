@@ -7,13 +7,12 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from fcm.contact.options import PERIODIC
 from fcm.contact.periodic.coefficients import ComplexArray, FloatArray, one_motion
 from fcm.contact.periodic.cycle import Cycle
 from fcm.contact.periodic.margins import Measures
 from fcm.contact.pieces import friction, piece_at
 
-# A state shorter than this [rad], or a slip that moves w by less of its greatest extent, is rounding.
-INVISIBLE = 1e-14
 LETTERS = {-1: "N", 0: "E", 1: "P", 2: "S"}  # by the kernel's states
 
 
@@ -161,7 +160,7 @@ def _visible(cycle: Cycle) -> list[tuple[str, float, float]]:
     length = np.diff(begin, append=begin[0] + 2.0 * np.pi)
     regions: list[tuple[str, float, float]] = []
     for p in range(cycle.pieces):
-        if length[p] > INVISIBLE or cycle.pieces == 1:
+        if length[p] > PERIODIC.min_state_length or cycle.pieces == 1:
             state, rest = LETTERS[cycle.state[p]], float(cycle.rest[p])
             if state in "PN":
                 rest, moves = _slip(cycle, p)
@@ -175,7 +174,7 @@ def _slip(cycle: Cycle, p: int) -> tuple[float, bool]:
     """Where the slider is when slip p begins, and whether it is seen to move."""
     limit = cycle.lower if cycle.state[p] > 0 else cycle.upper
     begin, end = (float(limit[cycle.event[q % cycle.pieces]]) for q in (p, p + 1))
-    return begin, abs(end - begin) > INVISIBLE
+    return begin, abs(end - begin) > PERIODIC.min_state_length
 
 
 def _ordered(regions: list[tuple[str, float, float]]) -> list[tuple[str, float, float]]:

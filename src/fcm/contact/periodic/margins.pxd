@@ -1,6 +1,9 @@
 from fcm.contact.periodic.cycle cimport Cycle
 from fcm.contact.periodic.motion cimport Crossings, Motion
 
+cdef int CLOSES, OPENS, SLIPS, MOST, LEAST, MINIMUM, MAXIMUM, FIXED
+cdef double PAST
+
 cdef class Margins:
     cdef readonly Motion motion
     cdef readonly Cycle cycle

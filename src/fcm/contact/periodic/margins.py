@@ -29,7 +29,6 @@ if cython.compiled:
         SEPARATION,
         STICK,
         STUCK,
-        TWO_PI,
         Cycle,
     )
     from cython.cimports.fcm.contact.periodic.motion import (
@@ -45,13 +44,14 @@ if cython.compiled:
         OPEN,
         REACH,
         TOP,
+        TWO_PI,
         UNKNOWN,
         UPPER,
         UPPER_RATE,
         Crossings,
     )
 else:
-    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, STUCK, TWO_PI, Cycle
+    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, STUCK, Cycle
     from fcm.contact.periodic.motion import (
         BOTTOM,
         CLOSED,
@@ -65,6 +65,7 @@ else:
         OPEN,
         REACH,
         TOP,
+        TWO_PI,
         UNKNOWN,
         UPPER,
         UPPER_RATE,

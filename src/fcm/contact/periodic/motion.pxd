@@ -1,5 +1,5 @@
 cdef int LOAD, LOAD_RATE, LOWER, LOWER_RATE, UPPER, UPPER_RATE, FORCE, FORCE_RATE, REACH, OPEN, CLOSED, MIXED, UNKNOWN
-cdef double EPSILON
+cdef double EPSILON, LEAST, TWO_PI, FIRST_NODE, VALUE_ERROR, SLOPE_ERROR
 
 cdef class Nodes:
     cdef readonly int highest, nodes
@@ -40,7 +40,8 @@ cdef class Crossings:
     cdef int row, rising, falling
     cdef public double curvature
     cdef readonly double noise
-    cdef double fourth, last, last_value, last_slope
+    cdef double fourth, last, last_value, last_slope, min_interval
+    cdef int max_halvings
     cdef void begin(self) noexcept nogil
     cdef void search(self, int row, int rising, int falling) noexcept nogil
     cdef void bounds(self) noexcept nogil

@@ -22,9 +22,10 @@ import numpy as np
 import numpy.typing as npt
 from cython.cimports.libc.math import atan2, ceil, cos, fabs, floor, hypot, isfinite, sin, sqrt
 
+from fcm.contact.options import PERIODIC, PeriodicOptions
+
 # Nodes lie beside the multiples of pi / 2, where symmetric motions have their events.
 FIRST_NODE = cython.declare(cython.double, 0.1171)
-NODES_PER_HARMONIC = cython.declare(cython.int, 4)  # at first: where that proves nothing it is halved
 TWO_PI = cython.declare(cython.double, 6.283185307179586)
 
 
@@ -33,8 +34,6 @@ TWO_PI = cython.declare(cython.double, 6.283185307179586)
 VALUE_ERROR = cython.declare(cython.double, 1.0 / 384.0)
 SLOPE_ERROR = cython.declare(cython.double, 3.0**0.5 / 216.0)
 PI = cython.declare(cython.double, 3.141592653589793)
-DEEPEST = cython.declare(cython.int, 60)  # halvings; at half of them rounding has long been reached
-SHORTEST = cython.declare(cython.double, 1e-15)  # [rad] an interval that is not halved further
 
 
 @cython.cclass
@@ -45,9 +44,10 @@ class Nodes:
     stand from `before` on.
     """
 
-    def __init__(self, harmonics: list[int]) -> None:
+    def __init__(self, harmonics: list[int], options: PeriodicOptions = PERIODIC) -> None:
         self.highest = max(harmonics, default=0)
-        self.few, self.many = NODES_PER_HARMONIC + 1, NODES_PER_HARMONIC * max(self.highest, 1) + 1
+        self.few = options.nodes_per_harmonic + 1
+        self.many = options.nodes_per_harmonic * max(self.highest, 1) + 1
         both = _waves(self.few, harmonics), _waves(self.many, harmonics)
         self.node_cos, self.node_sin = (np.concatenate(waves) for waves in zip(*both, strict=True))
         self.fundamental = harmonics[:1] == [1]
@@ -103,8 +103,8 @@ class Motion(Nodes):
     are those of that motion.
     """
 
-    def __init__(self, harmonics: list[int]) -> None:
-        Nodes.__init__(self, harmonics)
+    def __init__(self, harmonics: list[int], options: PeriodicOptions = PERIODIC) -> None:
+        Nodes.__init__(self, harmonics, options)
         numbers, self.count = np.array(harmonics, dtype=np.intc), len(harmonics)
         self.number, self.order = numbers, numbers.astype(np.float64)
         self.re = np.zeros((ROWS, max(self.count, 1)))
@@ -307,13 +307,14 @@ class Motion(Nodes):
 class Crossings:
     """Angles where rows of a motion change sign, in `angle` up to `count`, in the order of each search."""
 
-    def __init__(self, motion: Motion) -> None:
+    def __init__(self, motion: Motion, options: PeriodicOptions = PERIODIC) -> None:
         self.motion = motion
+        self.max_halvings, self.min_interval = options.max_halvings, options.min_interval
         self.capacity = 4 * motion.highest + 4  # twice as many zeros as harmonics, and as many extremes
         self.angle = np.empty(self.capacity)
         self.kind = np.empty(self.capacity, dtype=np.intc)
         self.open = np.zeros(motion.at.shape[1], dtype=np.intc)
-        self.stack = np.empty((DEEPEST + 2, 3))
+        self.stack = np.empty((self.max_halvings + 2, 3))
         self.count = self.row = self.rising = self.falling = self.sign = 0
         self.curvature = self.fourth = self.noise = 0.0
         self.last = self.last_value = self.last_slope = 0.0
@@ -390,8 +391,8 @@ class Crossings:
             end: float = self.stack[depth, 0]
             length: float = end - begin
             if (
-                depth == DEEPEST
-                or length < SHORTEST
+                depth == self.max_halvings
+                or length < self.min_interval
                 or self.proved(length, g, d, self.stack[depth, 1], self.stack[depth, 2])
             ):
                 begin, g, d = end, self.stack[depth, 1], self.stack[depth, 2]

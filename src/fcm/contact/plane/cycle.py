@@ -13,12 +13,22 @@ import numpy as np
 from cython.cimports.libc.math import fabs, hypot
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.motion import CLOSED, LOAD, MIXED, OPEN, UNKNOWN
+    from cython.cimports.fcm.contact.periodic.motion import (
+        CLOSED,
+        CLOSES,
+        EPSILON,
+        LOAD,
+        MIXED,
+        OPEN,
+        OPENS,
+        TWO_PI,
+        UNKNOWN,
+    )
     from cython.cimports.fcm.contact.plane.panel import SCAN, PlaneMotion
     from cython.cimports.fcm.contact.plane.resting import Resting
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK, Slider
 else:
-    from fcm.contact.periodic.motion import CLOSED, LOAD, MIXED, OPEN, UNKNOWN
+    from fcm.contact.periodic.motion import CLOSED, CLOSES, EPSILON, LOAD, MIXED, OPEN, OPENS, TWO_PI, UNKNOWN
     from fcm.contact.plane.panel import SCAN, PlaneMotion
     from fcm.contact.plane.resting import Resting
     from fcm.contact.plane.slider import SEPARATION, SLIP, STICK, Slider
@@ -27,11 +37,6 @@ from fcm.contact.periodic.motion import Crossings
 
 STUCK = cython.declare(cython.int, 4)  # of a whole cycle, beside OPEN, MIXED and UNKNOWN
 UNSOLVED = cython.declare(cython.int, 5)
-
-TWO_PI = cython.declare(cython.double, 6.283185307179586)
-EPSILON = cython.declare(cython.double, 2.220446049250313e-16)
-CLOSES = cython.declare(cython.int, 0)
-OPENS = cython.declare(cython.int, 1)
 
 
 @cython.cclass

@@ -10,11 +10,13 @@ import numpy as np
 from cython.cimports.libc.math import hypot
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.closed_form import NAN, PI
     from cython.cimports.fcm.contact.periodic.motion import CLOSED, MIXED, UNKNOWN
     from cython.cimports.fcm.contact.plane.cycle import STUCK, UNSOLVED, Cycle
     from cython.cimports.fcm.contact.plane.integrals import CONTACT, SLIPS_X, SLIPS_Y, STICKS
     from cython.cimports.fcm.contact.plane.panel import LOAD, REACH, SCAN, STAGES, PlaneMotion, X, Y
 else:
+    from fcm.contact.closed_form import NAN, PI
     from fcm.contact.periodic.motion import CLOSED, MIXED, UNKNOWN
     from fcm.contact.plane.cycle import STUCK, UNSOLVED, Cycle
     from fcm.contact.plane.integrals import CONTACT, SLIPS_X, SLIPS_Y, STICKS
@@ -22,9 +24,6 @@ else:
     from fcm.contact.plane.radau import STAGES
 
 from fcm.contact.plane.options import OPTIONS, PlanarOptions
-
-PI = cython.declare(cython.double, 3.141592653589793)
-NAN = cython.declare(cython.double, float("nan"))
 
 
 @cython.cclass

@@ -27,9 +27,11 @@ import numpy.typing as npt
 from cython.cimports.libc.math import cos, fabs, sin
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.closed_form import PI
     from cython.cimports.fcm.contact.plane.integrals import carry_eight, turn_eight
     from cython.cimports.fcm.contact.plane.panel import SCAN, STAGES, Panel, PlaneMotion
 else:
+    from fcm.contact.closed_form import PI
     from fcm.contact.plane.panel import SCAN, Panel, PlaneMotion
     from fcm.contact.plane.radau import STAGES
 
@@ -39,9 +41,6 @@ STICKS = cython.declare(cython.int, 0)  # 1 while it sticks
 CONTACT = cython.declare(cython.int, 1)  # 1 while it is closed
 SLIPS_X = cython.declare(cython.int, 2)  # the direction while it slips
 SLIPS_Y = cython.declare(cython.int, 3)
-
-
-PI = cython.declare(cython.double, 3.141592653589793)
 
 
 @cython.cclass

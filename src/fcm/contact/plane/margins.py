@@ -20,12 +20,22 @@ import numpy as np
 from cython.cimports.libc.math import fabs, hypot, sqrt
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.periodic.margins import (
+        CLOSES,
+        FIXED,
+        MAXIMUM,
+        MINIMUM,
+        OPENS,
+        PAST,
+        SLIPS,
+    )
     from cython.cimports.fcm.contact.periodic.motion import (
         CLOSED,
         LOAD,
         LOAD_RATE,
         MIXED,
         OPEN,
+        TWO_PI,
         UNKNOWN,
         Crossings,
     )
@@ -33,23 +43,16 @@ if cython.compiled:
     from cython.cimports.fcm.contact.plane.panel import SCAN
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK
 else:
-    from fcm.contact.periodic.motion import CLOSED, LOAD, LOAD_RATE, MIXED, OPEN, UNKNOWN, Crossings
+    from fcm.contact.periodic.margins import CLOSES, FIXED, MAXIMUM, MINIMUM, OPENS, PAST, SLIPS
+    from fcm.contact.periodic.motion import CLOSED, LOAD, LOAD_RATE, MIXED, OPEN, TWO_PI, UNKNOWN, Crossings
     from fcm.contact.plane.cycle import STUCK, UNSOLVED, Cycle
     from fcm.contact.plane.panel import SCAN
     from fcm.contact.plane.slider import SEPARATION, SLIP, STICK
 
 
-TWO_PI = cython.declare(cython.double, 6.283185307179586)
-CLOSES = cython.declare(cython.int, 0)  # kinds of margins; those of the load as on a line
-OPENS = cython.declare(cython.int, 1)
-SLIPS = cython.declare(cython.int, 2)
 STARTS = cython.declare(cython.int, 3)
 HOLDS = cython.declare(cython.int, 4)
 PUSHES = cython.declare(cython.int, 5)
-MINIMUM = cython.declare(cython.int, 7)
-MAXIMUM = cython.declare(cython.int, 8)
-FIXED = cython.declare(cython.int, 5)  # kinds of which there is one each
-PAST = cython.declare(cython.double, 1.0)  # a margin of which only the sign is known
 FAR = cython.declare(cython.double, 1e300)
 
 

@@ -55,6 +55,7 @@ class PlanarOptions:
     Of a slider at rest, and of what is told
     ----------------------------------------
     max_exchanges : of the discs that hold it.
+    max_halvings : of a step between two nodes, after which its cubic is exact.
     disc_tolerance : half of what is between two discs that are one.
     samples_per_radian : to a radian of the highest harmonic, between which an extreme is sought.
     min_state_length : a state that is shorter is rounding.
@@ -91,6 +92,7 @@ class PlanarOptions:
     min_depth: float = 0.1
     min_way: float = 1e-3
     max_exchanges: int = 100
+    max_halvings: int = 20
     disc_tolerance: float = 1e-6
     samples_per_radian: float = 12.0
     min_state_length: float = 1e-12

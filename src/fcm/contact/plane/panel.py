@@ -36,10 +36,10 @@ from fcm.contact.plane.options import PlanarOptions
 from fcm.contact.plane.radau import radau
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.motion import UNKNOWN, Motion
+    from cython.cimports.fcm.contact.periodic.motion import EPSILON, LEAST, UNKNOWN, Motion
     from cython.cimports.fcm.contact.plane.panel import newton_eight, place_eight
 else:
-    from fcm.contact.periodic.motion import UNKNOWN, Motion
+    from fcm.contact.periodic.motion import EPSILON, LEAST, UNKNOWN, Motion
     from fcm.contact.plane.radau import STAGES
 
 
@@ -52,10 +52,6 @@ ROWS = cython.declare(cython.int, 4)
 SCAN = cython.declare(cython.int, 0)  # the slot of single angles; those of a panel follow
 
 BOUNDS = cython.declare(cython.int, 5)  # orders of derivatives that are bounded
-LEAST = cython.declare(cython.double, 1e-290)  # what is smaller counts as nothing
-
-
-EPSILON = cython.declare(cython.double, 2.220446049250313e-16)
 
 
 @cython.cclass

@@ -2,7 +2,7 @@ from fcm.contact.plane.panel cimport PlaneMotion
 
 cdef class Resting:
     cdef double same
-    cdef int exchanges
+    cdef int exchanges, max_halvings
     cdef readonly PlaneMotion motion
     cdef readonly int nodes, held
     cdef readonly double step, w_x, w_y, overlap, beyond, angle

@@ -25,19 +25,21 @@ import numpy as np
 from cython.cimports.libc.math import fabs, hypot, sin, sqrt
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.periodic.motion import (
+        EPSILON,
+        FIRST_NODE,
+        SLOPE_ERROR,
+        TWO_PI,
+        VALUE_ERROR,
+    )
     from cython.cimports.fcm.contact.plane.panel import REACH, SCAN, PlaneMotion, X, Y
 else:
+    from fcm.contact.periodic.motion import EPSILON, FIRST_NODE, SLOPE_ERROR, TWO_PI, VALUE_ERROR
     from fcm.contact.plane.panel import REACH, SCAN, PlaneMotion, X, Y
 
-TWO_PI = cython.declare(cython.double, 6.283185307179586)
-FIRST = cython.declare(cython.double, 0.1171)  # of a step: nodes lie beside the multiples of pi / 2
-EPSILON = cython.declare(cython.double, 2.220446049250313e-16)
 FAR = cython.declare(cython.double, 1e300)
-DEEPEST = cython.declare(cython.int, 20)  # halvings, after which the cubic is exact
 # Of the cubic with the values and slopes at both ends of a length, over the greatest fourth derivative and
 # powers of the length: errors of the value, the slope and the second derivative (Birkhoff and Priver, 1967).
-VALUE_ERROR = cython.declare(cython.double, 1.0 / 384.0)
-SLOPE_ERROR = cython.declare(cython.double, 3.0**0.5 / 216.0)
 BEND_ERROR = cython.declare(cython.double, 1.0 / 12.0)
 
 
@@ -62,16 +64,17 @@ class Resting:
     def __init__(self, motion: PlaneMotion) -> None:
         given = motion.options
         self.exchanges, self.same = given.max_exchanges, given.disc_tolerance
+        self.max_halvings = given.max_halvings
         self.motion = motion
         self.nodes = 12 * max(motion.highest, 1) + 3
         self.step = TWO_PI / self.nodes
-        angle = np.outer(self.step * (FIRST + np.arange(self.nodes)), np.asarray(motion.order))
+        angle = np.outer(self.step * (FIRST_NODE + np.arange(self.nodes)), np.asarray(motion.order))
         self.node_cos, self.node_sin = np.cos(angle), np.sin(angle)
         self.at, self.gap = np.zeros((3, self.nodes)), np.zeros(self.nodes)
         self.basis = np.zeros((4, 4))
         self.held = self.best_i = self.best_j = 0
         self.w_x = self.w_y = self.overlap = self.beyond = self.angle = 0.0
-        self.square, self.stack = np.zeros(self.nodes), np.empty((DEEPEST + 2, 4))
+        self.square, self.stack = np.zeros(self.nodes), np.empty((self.max_halvings + 2, 4))
         self.x = self.y = self.t = self.best = 0.0
         self.level = self.fourth = self.noise = self.rounding = self.but = 0.0
         self.found = self.sampled = False
@@ -192,7 +195,7 @@ class Resting:
             before = self.gap[j - 1 if j > 0 else self.nodes - 1]
             after = self.gap[j + 1 if j + 1 < self.nodes else 0]
             if self.gap[j] >= before and self.gap[j] >= after and self.gap[j] + rise >= most:
-                self.refine(self.step * (FIRST + j))
+                self.refine(self.step * (FIRST_NODE + j))
 
     def farthest_of_all(self, w_x: float, w_y: float) -> None:
         """`beyond` and `angle`: the disc that a place misses most."""
@@ -257,7 +260,7 @@ class Resting:
         for j in range(self.nodes):
             k = j + 1 if j + 1 < self.nodes else 0
             if max(self.square[j], self.square[k]) + second > least:
-                self.between(self.step * (FIRST + j), least)
+                self.between(self.step * (FIRST_NODE + j), least)
 
     def between(self, begin: float, least: float) -> None:
         """Maxima of h in a step from an angle on."""
@@ -286,7 +289,7 @@ class Resting:
                 next_slope,
                 least + self.rounding * max(size, next_size),
             )
-            if count > 1 and depth < DEEPEST and VALUE_ERROR * error * length * length > self.noise:
+            if count > 1 and depth < self.max_halvings and VALUE_ERROR * error * length * length > self.noise:
                 depth += 1
                 middle = begin + 0.5 * length
                 next_value, next_slope, next_size = self.missed(middle)

@@ -13,9 +13,11 @@ import numpy as np
 from cython.cimports.libc.math import exp, fabs, hypot, sqrt
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.periodic.motion import EPSILON, SLOPE_ERROR, VALUE_ERROR
     from cython.cimports.fcm.contact.plane.integrals import Derivatives, Sums
     from cython.cimports.fcm.contact.plane.panel import SCAN, STAGES, Panel, PlaneMotion
 else:
+    from fcm.contact.periodic.motion import EPSILON, SLOPE_ERROR, VALUE_ERROR
     from fcm.contact.plane.integrals import Derivatives, Sums
     from fcm.contact.plane.panel import SCAN, Panel, PlaneMotion
     from fcm.contact.plane.radau import STAGES
@@ -23,10 +25,6 @@ else:
 STICK = cython.declare(cython.int, 0)  # states
 SLIP = cython.declare(cython.int, 1)
 SEPARATION = cython.declare(cython.int, 2)
-
-EPSILON = cython.declare(cython.double, 2.220446049250313e-16)
-VALUE_ERROR = cython.declare(cython.double, 1.0 / 384.0)  # of a cubic, over step**4 and its fourth derivative
-SLOPE_ERROR = cython.declare(cython.double, 3.0**0.5 / 216.0)  # of its slope, over step**3
 
 
 @cython.cclass

@@ -1,0 +1,39 @@
+"""Kernels of contacts that are made once: what uses them reads the results before another does."""
+
+from __future__ import annotations
+
+import threading
+from functools import lru_cache
+
+from fcm.contact.options import KERNELS
+from fcm.contact.periodic.forces import PeriodicContact
+from fcm.contact.plane.forces import PlanarContact
+
+
+class _Kernels(threading.local):
+    """Of each thread, by their harmonics."""
+
+    def __init__(self) -> None:
+        self.on_a_line = lru_cache(KERNELS.max_kernels)(_periodic)
+        self.in_a_plane = lru_cache(KERNELS.max_kernels)(_planar)
+
+
+def periodic_contact(harmonics: tuple[int, ...], outputs: tuple[int, ...]) -> PeriodicContact:
+    """The kernel of this thread for these harmonics of motions and of forces, on a line."""
+    return _KERNELS.on_a_line(harmonics, outputs)
+
+
+def planar_contact(harmonics: tuple[int, ...], outputs: tuple[int, ...]) -> PlanarContact:
+    """The same in a plane."""
+    return _KERNELS.in_a_plane(harmonics, outputs)
+
+
+def _periodic(harmonics: tuple[int, ...], outputs: tuple[int, ...]) -> PeriodicContact:
+    return PeriodicContact(list(harmonics), list(outputs))
+
+
+def _planar(harmonics: tuple[int, ...], outputs: tuple[int, ...]) -> PlanarContact:
+    return PlanarContact(list(harmonics), list(outputs))
+
+
+_KERNELS = _Kernels()
