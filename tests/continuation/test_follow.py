@@ -440,6 +440,42 @@ def test_a_curve_that_ends_is_kept_up_to_there():
     assert path.parameter[-1] == pytest.approx(2.0, abs=1e-6)
 
 
+class Hook(Problem):
+    """y = c w(r), r = s + y / 2: nothing for r < 0, the root of r up to q^2, then straight on.
+
+    So moves the slider of a contact in the plane that ceases to slip between two discs: along the edge of the
+    place that they leave it, until one disc alone holds it.
+    """
+
+    def __init__(self, c, q):
+        super().__init__(1, 1, 0)
+        self.rooted, self.c, self.q = True, c, q
+
+    def evaluate(self, z):
+        r, w, rate = z[1] + 0.5 * z[0], 0.0, 0.0
+        if 0.0 < r < self.q**2:
+            w, rate = np.sqrt(r), 0.5 / np.sqrt(r)
+        elif r > 0.0:
+            w, rate = self.q - 0.3 * (r - self.q**2), -0.3
+        self.residual[0] = z[0] - self.c * w
+        self.jacobian[0, 0], self.jacobian[0, 1] = 1.0 - 0.5 * self.c * rate, -self.c * rate
+        return 0
+
+    def bound(self, z):
+        r = z[1] + 0.5 * z[0]
+        self.margin[0] = np.sign(r) * np.sqrt(abs(r))
+        return 0
+
+
+@pytest.mark.parametrize("q", [1e-2, 1e-3, 5e-4])
+def test_a_corner_that_is_a_hook(q):
+    """The curve comes with r < 0, goes back along the root by 0.25 q, and then on: as one corner."""
+    path = follow(Hook(0.5, q), np.array([0.0, -1.0]), (-1.0, 1.0))
+    assert path.status is Status.COMPLETE
+    y, s = path.z[-1]  # where y = (q - 0.3 (s + y / 2 - q^2)) / 2
+    assert s == 1.0 and y == pytest.approx((q - 0.3 + 0.3 * q * q) / 2.15, abs=1e-9)
+
+
 def test_backwards_and_then():
     path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), options=FollowOptions(0.1))
     back = path.backwards()

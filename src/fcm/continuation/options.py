@@ -287,7 +287,7 @@ class SwitchingOptions(Options):
     departure_length : float
         Length past a corner at which the curve's new direction is looked for first,
     departure_tries : int
-        at so many lengths, each ten times the last,
+        at so many lengths, each ten times the last: what takes less of the curve is one corner,
     max_pieces : int
         in so many of the smooth pieces that meet in the corner.
     max_deviation : float
@@ -308,7 +308,7 @@ class SwitchingOptions(Options):
     approach_distance: cython.double = 1e-4
     approach_fraction: cython.double = 0.9
     departure_length: cython.double = 1e-7
-    departure_tries: cython.int = 3
+    departure_tries: cython.int = 6
     max_pieces: cython.int = 3
     max_deviation: cython.double = 0.5
     many_unknowns: cython.int = 64
