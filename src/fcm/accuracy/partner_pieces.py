@@ -80,12 +80,13 @@ def piece_through(
     if np.count_nonzero(apart) < 2:
         return None
     place, omega, orientation, value = place[apart], omega[apart], orientation[apart], value[apart]
+    rate = np.gradient(np.column_stack((omega, value)), place, axis=0)
     return CurvePiece(
-        PartnerCurveData(place, omega, np.gradient(omega, place)),
+        PartnerCurveData(place, omega, np.ascontiguousarray(rate[:, 0])),
         omega,
         np.ascontiguousarray(orientation),
         np.ascontiguousarray(value),
-        np.gradient(value, place, axis=0),
+        np.ascontiguousarray(rate[:, 1:]),
     )
 
 

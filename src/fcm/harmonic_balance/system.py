@@ -332,8 +332,10 @@ def _workspace_of(system: System) -> _Workspace:
     if scene.ring is not None or scene.loads or system.own_laws or large:
         return _Workspace(system)
     approximate = system.table is not None, system.corrected
-    key = (*system.linear.numbers, scene.frequency_range, system.harmonics, system.options, *approximate)
-    found = kept.pop(key, None) or _Workspace(system)
+    key = (*system.linear.numbers, scene.frequency_range, system.harmonics, *approximate)
+    found = kept.pop(key, None)
+    if found is None or found.system.options != system.options:  # whose hash takes as long as a point
+        found = _Workspace(system)
     kept[key] = found
     if len(kept) > system.options.workspace.max_count:
         kept.popitem(last=False)

@@ -144,6 +144,8 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
     bifurcations, options = list(now.bifurcations), now.found.system.option(VALIDITY)
     short, known = accuracy is not None and not found.reached, len(stable)
     every = found.traced.branches.paths
+    if known == len(every):
+        return now
     paths, shown, errors = list(every[:known]), list(found.shown[:known]), list(found.errors[:known])
     for path, seen, error in zip(every[known:], found.shown[known:], found.errors[known:], strict=True):
         beyond = on_other_branch(error.on_same_branch, options) if short else None

@@ -51,7 +51,8 @@ def without_rounding(curve: Curve, options: RestOptions | None = None) -> Curve:
 def _at_rest(curve: Curve, options: RestOptions) -> BoolArray:
     """Which degrees of freedom (dof,) move by rounding alone, or not at all."""
     peaks = curve.peaks.values()  # between points they may be higher, and a nonlinear mode has none
-    size = np.fmax.reduce([[peak.amplitude for peak in peaks], *curve.amplitude], axis=0)
+    size = np.fmax.reduce(curve.amplitude, axis=0, initial=np.nan)
+    size = np.fmax(size, [peak.amplitude for peak in peaks])
     rest = at_rest(size, options)
     if curve.digits:
         rest &= (size == 0.0) | [peak.error >= options.uncertain for peak in peaks]

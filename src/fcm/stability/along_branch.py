@@ -69,6 +69,8 @@ class PathVerdicts:
     def look_at(self, points: Sequence[int], enough: Sequence[float] = ()) -> None:
         """At several points, which have verdicts then; `enough` as of `Multipliers.verdict`."""
         new = [i for i in points if i not in self._verdicts]
+        if not new:
+            return
         self.evaluations += len(new)
         z, fold, alone = [self.path.z[i] for i in new], self.fold[new].tolist(), self.alone[new].tolist()
         for i, verdict in zip(new, self.multipliers.verdicts(z, fold, alone, enough), strict=True):
