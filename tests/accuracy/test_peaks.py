@@ -171,3 +171,17 @@ def test_a_peak_in_a_stretch_beside_which_nothing_is_found_is_not_told_from_far_
     (shown,), problem = found.shown, OrbitProblem(found.system.scene)
     true = abs(shown.amplitude[:, 1].max() / height(found, problem, [], 0, 1) - 1.0)
     assert true > 1e-2 and true / 2.0 < found.peak[1] < 2.0 * true
+
+
+@pytest.mark.parametrize(
+    ("seed", "harmonics"),
+    [(45, (*up_to(6), 8)), pytest.param(165, up_to(21), marks=pytest.mark.slow)],
+    ids=["seventh-meets-a-mode", "slow-decrease"],
+)
+def test_a_peak_of_the_partner_that_its_points_miss_is_not_told_too_low(seed, harmonics):
+    """The seventh harmonic meets a mode between points, where the partner is 2.2 % higher than the curve; of
+    four contacts that rattle three more harmonics than 21 do a fifth of what all others do."""
+    one = replace(random_scene(seed), harmonics=None)
+    found = with_estimated_errors(System(one, harmonics), 0.0)
+    true = abs(found.shown[0].amplitude[:, 2].max() / height(found, OrbitProblem(one), [], 0, 2) - 1.0)
+    assert true > 1e-3 and true / 3.0 < found.peak[2] < 2.0 * true

@@ -142,7 +142,7 @@ def errors_along(
     for end in {0, len(path.z) - 1}.intersection(tops.tolist()):  # which the partner is known beyond, or not
         there = partner.amplitude_at_frequency(end)
         at_ends = at_ends if there is None else np.where(tops == end, there, at_ends)
-    height = np.where(inside, heights(partner, change[:, 1:], followed, tops), at_ends)
+    height = np.where(inside, heights(partner, change[:, 1:], followed, tops, met), at_ends)
     rise = rise_between_points(partner, np.zeros_like(unit), tops)  # no error
     now = shown.amplitude[tops, d] + np.where(inside, rise, 0.0)
     settles = inside | ~partner.linear[tops]
@@ -153,7 +153,7 @@ def errors_along(
     )
     which = np.searchsorted(every, tops[told])
     height[told] += further[which, d[told]]
-    at_tops = _of_peaks(np.abs(height - now) / unit[tops, d], options)[told]
+    at_tops = (np.abs(height - now) / unit[tops, d])[told]
     left = np.abs(beyond[which, d[told]]) / unit[tops[told], d[told]]
     error[tops[told], d[told]] = np.maximum(at_tops, left)
     error *= unit / np.where(shown.amplitude > 0.0, shown.amplitude, unit)
@@ -193,6 +193,8 @@ def with_nearest(
     That is another motion, and a degree of freedom in which it happens to be the same says nothing: each has
     at least the distance of the greatest. The paths before the first have theirs already.
     """
+    if all(one.is_same_curve.all() and not np.isnan(one.fold).any() for one in errors[first:]):
+        return tuple(errors)
     every = list(errors)
     for k, further in enumerate(further_partner_pieces(system, paths, shown, errors, first, options)):
         every[k] = replace(every[k], pieces=(*every[k].pieces, *further)) if further else every[k]
@@ -261,26 +263,12 @@ def _spectrum(
 
 def _of_points(partner: PartnerCurve, shift: FloatArray, change: FloatArray) -> FloatArray:
     """Errors (point, dof) at the same frequency, in units of the partner's curve."""
-    error = np.abs(shift)
-    # what hardly moves may have any error, and says nothing of that of others
-    most = np.where(partner.amplitude < partner.unit, 0.0, error).max(axis=1, keepdims=True)
-    typical = _medians(np.minimum(error, most))[:, None]
-    error = np.where(
-        partner.linear[:, None], 0.0, np.maximum(error, partner.options.chance_fraction * typical)
-    )
+    error = np.where(partner.linear[:, None], 0.0, np.abs(shift))
     # displacements may cancel at a frequency, but not what the partner itself is off by
     moved = partner.weight[:, None] * np.abs(change[:, :1]) + np.abs(change[:, 1:])
     moved[np.isnan(moved).any(axis=1)] = 0.0  # where it was followed the shifts alone tell
     every: FloatArray = np.maximum(error, partner.options.partner_error * moved)
     return every
-
-
-def _of_peaks(error: FloatArray, options: PairOptions) -> FloatArray:
-    """Errors (dof,) of the greatest amplitudes by their changes, of which one may be small by chance."""
-    told = error[np.isfinite(error)]
-    typical = _medians(told[None])[0] if told.size else 0.0
-    peaks: FloatArray = np.maximum(error, options.chance_fraction_at_peaks * typical)
-    return peaks
 
 
 def _of_folds(
@@ -334,11 +322,3 @@ def _side(parameter: FloatArray, fold: int) -> float:
     """How far a fold lies above the points beside it, in the parameter."""
     neighbours = parameter[[max(fold - 1, 0), min(fold + 1, len(parameter) - 1)]].mean()
     return float(parameter[fold] - neighbours)
-
-
-def _medians(values: FloatArray) -> FloatArray:
-    """Of each row, NaN where all of it is; as `numpy.median`, which takes ten times as long for so few."""
-    count = values.shape[1]
-    ordered = np.sort(values, axis=1) if count > 2 else values
-    middle: FloatArray = 0.5 * (ordered[:, (count - 1) // 2] + ordered[:, count // 2])
-    return middle

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from fcm.continuation.options import (
     SIGN_CHANGE,
@@ -98,10 +99,6 @@ class PairOptions:
         together one tells for all what the harmonics do that are left out, and of tops and folds which.
     partner_error : float
         Part of a displacement, by which the partner itself is off: no error at a point is told to be less.
-    chance_fraction : float
-        Part of the typical error of the degrees of freedom: less is a chance, at a change of sign;
-    chance_fraction_at_peaks : float
-        the same of peaks.
     second_factor : int
         Times the partner's harmonics those of its own partner are, which is looked for where amplitudes of
         curve and partner cross,
@@ -117,8 +114,6 @@ class PairOptions:
         Points to either side of a top where it is looked for, too, if it is not at the top.
     rival_fraction : float
         Part of the greatest amplitude: what is this high may become the greatest.
-    gap_fraction : float
-        Part of a change of an amplitude, by which it may be more in the gap that a moved corner leaves.
     residual_factor : float
         Times the harmonic that meets the highest mode, up to which is looked at what the partner lacks,
     max_residual_harmonic, max_products : int
@@ -180,8 +175,6 @@ class PairOptions:
     end_tolerance: float = 0.02
     peak_spacing: float = 0.005
     partner_error: float = 0.05
-    chance_fraction: float = 0.1
-    chance_fraction_at_peaks: float = 0.05
     second_factor: int = 2
     second_named: int = 8
     max_second_unknowns: int = 480
@@ -190,7 +183,6 @@ class PairOptions:
     crossing_spacing: int = 4
     peak_offsets: tuple[int, ...] = (1, 2, 4, 8)
     rival_fraction: float = 0.8
-    gap_fraction: float = 0.2
     residual_factor: float = 1.5
     max_residual_harmonic: int = 1024
     max_products: int = 10_000_000
@@ -201,6 +193,16 @@ class PairOptions:
     peak_neighbours: int = 8
     rounding: float = 1e-9
     distance: CurveDistanceOptions = CURVE_DISTANCE
+
+    @cached_property
+    def of_second(self) -> PairOptions:
+        """Of the partner's own partner."""
+        return replace(
+            self,
+            harmonics_factor=self.second_factor,
+            max_named=self.second_named,
+            max_unknowns=self.max_second_unknowns,
+        )
 
 
 PAIR = PairOptions()

@@ -4,7 +4,7 @@ leads nowhere."""
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -202,12 +202,12 @@ class PartnerCurve:
         )  # fmt: skip
 
     def own_error(self, i: int) -> FloatArray | None:
-        """By how much (dof,) a partner of its own differs from it at the frequency of a point, in the unit of
-        that; None where either has no motion there."""
-        lifted = self.finding.lifted
-        if not lifted.find_at_frequency(self._guesses[i], True):
+        """By how much (dof,) a partner of its own differs from it, in the unit of the curve, at the frequency
+        to which a point is displaced; None where either has no motion there."""
+        self.find(np.array([i]))
+        z, amplitude = self.theirs[i], self.amplitude[i] + self.unit[i] * self.change[i, 1:]
+        if np.isnan(amplitude).any():
             return None
-        z, amplitude = np.array(lifted.newton.z), np.array(lifted.found[1:])
         second = self._second(z, amplitude)
         if second is None or not second.found(z, None):
             return None
@@ -276,12 +276,9 @@ class PartnerCurve:
             return None
         if self.second is None:
             share = FurtherHarmonics(finer).shares(z[None], amplitude[None])[0]
-            own = replace(options, harmonics_factor=options.second_factor, max_named=options.second_named)
-            more = partner_of(finer.harmonics, share, finer.layout.ports, own)
-            self.is_costly = (
-                more == finer.harmonics
-                or finer.layout.ports * (1 + 2 * len(more)) > options.max_second_unknowns
-            )
+            more = partner_of(finer.harmonics, share, finer.layout.ports, options.of_second)
+            unknowns = 2 * finer.layout.ports * len(more)  # besides the means
+            self.is_costly = more == finer.harmonics or unknowns > options.max_second_unknowns
             self.second = None if self.is_costly else SecondPartner(finer, more)
         return self.second
 

@@ -8,16 +8,22 @@ from fcm.accuracy.curve_distance import rises
 from fcm.accuracy.options import PAIR
 from fcm.accuracy.partner_curve import FollowedStretch, Indices, PartnerCurve
 from fcm.continuation import Mark
+from fcm.harmonic_balance.runs import runs
 from fcm.model.scene import FloatArray
 
 
 def heights(
-    partner: PartnerCurve, change: FloatArray, followed: list[FollowedStretch], tops: Indices
+    partner: PartnerCurve,
+    change: FloatArray,
+    followed: list[FollowedStretch],
+    tops: Indices,
+    resonant: Indices,
 ) -> FloatArray:
     """Greatest amplitudes (dof,) of the partner of a curve that is highest at the tops (dof,).
 
-    change (point, dof): of the amplitudes along the curve, in their unit. Unknown along a stretch that
-    is nearly as high, and that the partner could not be followed along.
+    change (point, dof): of the amplitudes along the curve, in their unit. resonant: points where a harmonic
+    that only the partner has meets a mode: between these it may have a peak, and is followed where they are
+    nearly as high. Unknown along a stretch that is as high, and that the partner could not be followed along.
     """
     amplitude, options = partner.amplitude, partner.options
     d = np.arange(len(tops))
@@ -25,12 +31,11 @@ def heights(
     change, highest = _highest(partner, change)
     greatest: FloatArray = amplitude[highest, d] + partner.unit[highest, d] * change[highest, d]
     greatest += rise_between_points(partner, partner.unit * change, highest)
-    for top in np.unique(tops[(partner.path.mark[tops] & Mark.CORNER) > 0]).tolist():
-        if _gap(partner, top):
-            for piece in partner.stretches.between(top - 1, top + 1):
-                beyond = piece.shown.amplitude.max(axis=0)
-                greatest = np.where(tops == top, np.fmax(greatest, beyond), greatest)
-    for one in followed:
+    near = np.zeros(len(amplitude), dtype=np.bool_)
+    near[resonant] = True
+    high = [run for run in runs(near) if (amplitude[slice(*run)] > options.rival_fraction * now).any()]
+    between = [FollowedStretch(*run, partner.stretches.between(run[0] - 1, run[1])) for run in high]
+    for one in (*followed, *between):
         for piece in one.pieces:
             greatest = np.fmax(greatest, piece.shown.amplitude.max(axis=0))
     for one in followed:
@@ -79,20 +84,3 @@ def _highest(partner: PartnerCurve, change: FloatArray) -> tuple[FloatArray, Ind
         new = np.unique(around[higher])
         partner.find(new)
         change[new] = partner.change[new, 1:]
-
-
-def _gap(partner: PartnerCurve, top: int) -> bool:
-    """Whether a corner moves so far along the curve that no point of the partner is near its top.
-
-    Of the two pieces of the partner beside it one then goes on beyond what is displaced to it.
-    """
-    path, growth, neighbours = partner.path, partner.shown.growth, np.array([top - 1, top + 1])
-    if top == 0 or top == len(path.z) - 1:
-        return False
-    partner.find(neighbours)
-    moved = path.parameter[neighbours] * partner.change[neighbours, 0]
-    slope = np.abs(growth[neighbours] / path.direction[neighbours, -1][:, None]).min(axis=0)
-    higher = np.abs(moved[1] - moved[0]) * slope
-    changed = np.abs(partner.change[neighbours, 1:]).max(axis=0) * partner.unit[top]
-    top_of = partner.amplitude[top] >= partner.amplitude.max(axis=0)
-    return bool((higher > partner.options.gap_fraction * changed)[top_of].any())
