@@ -11,6 +11,7 @@ from fcm import load_scene
 from fcm.branches.force_level import resonances, solutions
 from fcm.continuation import Mark, Status
 from fcm.harmonic_balance.system import System
+from fcm.scene import scene_from_dict
 
 from ..response.random_scenes import random_scene
 from .scenes import Curves, up_to
@@ -87,3 +88,30 @@ def test_a_curve_does_not_come_back_on_itself():
     assert path.status is Status.COMPLETE
     folds = path.parameter[path.where(Mark.FOLD)]
     assert folds.size == 18 and np.diff(np.sort(folds)).min() > 1e-9
+
+
+def test_a_slider_comes_to_rest_between_two_discs():
+    """Both the slider and the slip go as the root of the distance from there, at 2.795 rad/s.
+
+    The curve came ever nearer by shorter steps, until they were as short as those of rounding.
+    """
+    forces = {"x": (0.7448, 1.5294), "y": (1.086, 4.4698), "z": (0.9508, 4.4541)}
+    data = {
+        "structure": {
+            "dofs": ["x", "y", "z"],
+            "mass": np.eye(3).tolist(),
+            "stiffness": [[1.39, 0.1, 0.2], [0.1, 1.394, 0.15], [0.2, 0.15, 0.9494]],
+            "damping": 0.02,
+        },
+        "contact": [
+            {"name": "c", "tangential": ["x", "y"], "normal": "z"}
+            | {"mu": 0.4531, "k_u": 1.693, "k_v": 4.339, "n_0": 1.649}
+        ],
+        "force": [{"dof": dof, "amplitude": a, "phase": phase} for dof, (a, phase) in forces.items()],
+        "response": {"frequency": [0.5, 3.5]},
+    }
+    curves = Curves(scene_from_dict(data), up_to(1))
+    (path,) = curves.paths
+    assert path.status is Status.COMPLETE and np.unique(path.orientation).size == 1
+    corners = path.parameter[path.where(Mark.CORNER)]
+    assert np.abs(corners - 2.7946).min() < 1e-4

@@ -303,7 +303,7 @@ class SwitchingOptions(Options):
     crossing_factor: cython.double = 1.1
     root_fraction: cython.double = 0.75
     smooth_fraction: cython.double = 1e-6
-    reached_distance: cython.double = 1e-8
+    reached_distance: cython.double = 5e-8
     reached_distance_root: cython.double = 1e-4
     approach_distance: cython.double = 1e-4
     approach_fraction: cython.double = 0.9
