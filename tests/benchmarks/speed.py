@@ -22,6 +22,7 @@ from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.plane.forces import PlanarContact
 from fcm.model.scene import Scene
 from fcm.response import trace
+from fcm.run import Execution
 from fcm.table import Table
 from fcm.table.tabulated import locate
 
@@ -209,11 +210,11 @@ def curves() -> None:
     table = fcm.open_table()
     scene = fcm.load_scene("yang1998")
     singles = [replace(curve, curves=()) for curve in scene.curves]
-    points = sum(curve.points for curve in trace(scene, table=table).curves)
+    points = sum(curve.points for curve in trace(scene, method=table).curves)
     rows: list[Row] = [
-        ("ten curves together", lambda: trace(scene, table=table), points),
+        ("ten curves together", lambda: trace(scene, method=table), points),
         ("ten curves together, closed form", lambda: trace(scene, "closed-form"), points),
-        ("a loop over single curves", lambda: [trace(single, table=table) for single in singles], points),
+        ("a loop over single curves", lambda: [trace(single, method=table) for single in singles], points),
     ]
     block("the ten curves of yang1998, everything included, a point", rows)
     one = fcm.load_scene("yang1998-n5")
@@ -225,7 +226,7 @@ def curves() -> None:
 
 def harmonics_row(scene: Scene, table: Table, highest: int) -> Row:
     """A curve of all harmonics up to one."""
-    call = partial(trace, scene, table=table, harmonics=highest)
+    call = partial(trace, scene, method=table, harmonics=highest)
     name = f"{highest} harmonic{'s' if highest > 1 else ''}"
     return name, call, sum(curve.points for curve in call().curves)
 
@@ -240,10 +241,10 @@ def many_curves(count: int = 1000) -> None:
         for mu, n_0 in draws
     )
     scene = replace(base, curves=drawn)
-    points = sum(curve.points for curve in trace(scene, table=table, jobs=1).curves)
+    points = sum(curve.points for curve in trace(scene, method=table, execution=Execution(jobs=1)).curves)
     rows: list[Row] = [
-        ("together", lambda: trace(scene, table=table, jobs=1), points),
-        ("together, closed form", lambda: trace(scene, "closed-form", jobs=1), points),
+        ("together", lambda: trace(scene, method=table, execution=Execution(jobs=1)), points),
+        ("together, closed form", lambda: trace(scene, "closed-form", execution=Execution(jobs=1)), points),
     ]
     block(f"{count} curves of random mu and n_0, everything included, a point", rows, repeats=1)
 

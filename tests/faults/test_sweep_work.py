@@ -16,7 +16,7 @@ import pytest
 
 import fcm
 from fcm.response import groups, trace
-from fcm.run import Checkpoint, CheckpointError, ExecutorPlace, Lost, fingerprint, place_for, sweep
+from fcm.run import Checkpoint, CheckpointError, Execution, ExecutorPlace, Lost, fingerprint, place_for, sweep
 from fcm.run.fingerprint import installed
 from fcm.run.fingerprint import program as of_program
 from fcm.run.options import RunOptions
@@ -290,7 +290,7 @@ def test_a_forged_record_does_not_count(tmp_path, forged):
             return super().results(mark, *more)
 
     with Marked(keep) as kept:
-        reference = trace(scene, "closed-form", keep=kept)
+        reference = trace(scene, "closed-form", execution=Execution(keep=kept))
         kept.done()
     curves = reference.curves
     payload = {
@@ -302,7 +302,7 @@ def test_a_forged_record_does_not_count(tmp_path, forged):
     with Checkpoint(keep):
         header = keep.read_bytes()
     keep.write_bytes(header + packed(Record(marks[0], 0, payload)))
-    again = trace(scene, "closed-form", keep=keep, resume=True)
+    again = trace(scene, "closed-form", execution=Execution(keep=keep, resume=True))
     for one, two in zip(again.curves, curves, strict=True):
         np.testing.assert_array_equal(one.amplitude, two.amplitude)
         assert one.parameters == two.parameters
@@ -391,17 +391,22 @@ def test_of_120_curves_84_percent_are_kept(tmp_path):
     scene = replace(one, curves=tuple(replace(one, parameters={"n": float(n)}) for n in range(120)))
 
     keep = tmp_path / "kept"
-    part = trace(scene, "closed-form", progress=interrupted_beyond(0.84 * 0.9), keep=keep)
+    part = trace(
+        scene, "closed-form", execution=Execution(keep=keep, progress=interrupted_beyond(0.84 * 0.9))
+    )
     # the first share beyond 84 % is that of 101 curves: the one beyond the last whole group is kept, too
     assert sum(curve.complete for curve in part.curves) == 101 and part.interrupted
-    assert all(curve.complete for curve in trace(scene, "closed-form", keep=keep, resume=True).curves)
+    assert all(
+        curve.complete
+        for curve in trace(scene, "closed-form", execution=Execution(keep=keep, resume=True)).curves
+    )
 
 
 def test_there_is_one_bar_and_it_never_goes_back():
     shown = []
     scene = fcm.load_scene("yang1998")
-    trace(replace(scene, curves=tuple(replace(one, max_step=0.3) for one in scene.curves)),
-          progress=lambda share, _: shown.append(share))  # fmt: skip
+    coarse = replace(scene, curves=tuple(replace(one, max_step=0.3) for one in scene.curves))
+    trace(coarse, execution=Execution(progress=lambda share, _: shown.append(share)))
     assert shown == sorted(shown) and shown[-1] == 1.0 and shown[-2] < 1.0
     assert len(set(shown)) > 5
 

@@ -19,6 +19,7 @@ from fcm.response.request import Request
 from fcm.response.sweep import trace
 from fcm.response.trace import traced_curve
 from fcm.results.result import Curve
+from fcm.run import Execution
 from fcm.scene.load import load_scene
 from fcm.table import Table, open_table
 
@@ -112,7 +113,7 @@ def _scene(case: Case) -> Scene:
 
 def _curve(scene: Scene, harmonics: int) -> Curve:
     """The curve with exact forces, errors and stability included."""
-    return trace(scene, "closed-form", harmonics=harmonics, jobs=1).curves[0]
+    return trace(scene, "closed-form", harmonics=harmonics, execution=Execution(jobs=1)).curves[0]
 
 
 def greatest_error(curve: Curve, peaks: Mapping[str, float]) -> float:

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from fcm.cli.messages import Messages, pass_messages
 from fcm.response.sweep import trace
+from fcm.run import Execution
 from fcm.scene import scene_from_dict
 
 from .kept_modes_picture import Kept, draw_kept_modes
@@ -99,7 +100,7 @@ def _peaks(
     data["structure"] |= {"modes": modes, "flexibility": flexibility}
     data["response"]["output"] = [dof]
     scene = scene_from_dict(data, "a scene with fewer modes", folder)
-    curves = trace(scene, "closed-form", jobs=1).curves
+    curves = trace(scene, "closed-form", execution=Execution(jobs=1)).curves
     stated = re.search(r"off by at most (\S+), .*resonance by at most (\S+)", " ".join(scene.notes))
     peaks = [(curve.peaks[dof].amplitude, curve.peaks[dof].frequency) for curve in curves]
     return np.array(peaks), (float(stated[2]), float(stated[1])) if stated else (np.nan, np.nan)

@@ -71,7 +71,7 @@ def _element(length: float, width: float) -> tuple[FloatArray, FloatArray]:
     return K, M
 
 
-def blade_scene(made: Blade | None = None) -> dict[str, Any]:
+def blade_scene(made: Blade | None = None, preloads: tuple[float, ...] = PRELOADS) -> dict[str, Any]:
     """Its scene: a contact at a corner of the tip, a force at the middle, some preloads."""
     made = made or blade()
     contact = {"name": "tip", "tangential": f"{made.corner}y", "normal": f"{made.corner}x", "mu": 0.3}
@@ -84,8 +84,8 @@ def blade_scene(made: Blade | None = None) -> dict[str, Any]:
             "mass": made.mass.toarray().tolist(),
             "damping": DAMPING,
         },
-        "contact": [contact | {"k_u": STIFFNESS, "k_v": STIFFNESS, "n_0": PRELOADS[0]}],
+        "contact": [contact | {"k_u": STIFFNESS, "k_v": STIFFNESS, "n_0": preloads[0]}],
         "force": [{"dof": f"{made.middle}y", "amplitude": FORCE}],
         "response": {"frequency": [300.0, 2500.0], "harmonics": 1},
-        "sweep": {"contact.tip.n_0": list(PRELOADS)},
+        "sweep": {"contact.tip.n_0": list(preloads)},
     }

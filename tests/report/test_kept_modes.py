@@ -25,10 +25,9 @@ def test_the_blade_is_one_of_steel():
     )
 
 
-def test_errors_are_within_the_bounds_and_far_from_those_without_flexibility(monkeypatch):
-    monkeypatch.setattr(plane_blade, "PRELOADS", (300.0,))
+def test_errors_are_within_the_bounds_and_far_from_those_without_flexibility():
     made = plane_blade.blade(20, 2)
-    scene = plane_blade.blade_scene(made)
+    scene = plane_blade.blade_scene(made, preloads=(300.0,))
     rows = kept_modes.errors(scene, f"{made.middle}y", (4, 12))
     for one in rows:
         assert all(x < bound for x, bound in zip(one.with_flexibility, one.bound, strict=True))

@@ -23,6 +23,7 @@ import numpy as np
 
 from fcm.response import exact_curve
 from fcm.response.exact import trace_exact
+from fcm.response.options import RESPONSE
 from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.orbit_curve import orbit_curve
 from fcm.results.result import Curve
@@ -58,9 +59,10 @@ def taken(seed: int, limit: float, damping: float | None, only: str | None) -> T
         groups[:] = found
         return orbit_curve(found, *rest)
 
+    options = replace(RESPONSE, exact=replace(RESPONSE.exact, max_seconds=limit))
     begin = time.process_time()
     with patch.object(exact_curve, "orbit_curve", noted):
-        (curve,) = trace_exact(scene, limit=limit, only=only).curves
+        (curve,) = trace_exact(scene, only=only, options=options).curves
     seconds, points = time.process_time() - begin, np.count_nonzero(np.isfinite(curve.frequency))
     return Taken(curve.complete, curve.reason, seconds, int(points), len(curve.folds), _bare(groups))
 

@@ -11,7 +11,7 @@ from fcm.reduction.linear import change, linear_response, telling_frequencies
 from fcm.reduction.options import REDUCTION
 from fcm.reduction.static_modes import condensed
 from fcm.response import trace
-from fcm.response.options import ResponseOptions
+from fcm.response.options import ResponseOptions, leaving_out
 from fcm.scene import scene_from_dict
 
 
@@ -52,7 +52,7 @@ def bound(response):
 @pytest.mark.slow
 def test_five_hundred_modes_within_the_bound():
     scene = structure(500, 4, 40, 300.0)
-    light, full = trace(scene), trace(scene, tolerance=None)
+    light, full = trace(scene), trace(scene, options=leaving_out(None))
     assert full.left_out == [] and 0.0 < bound(light) <= REDUCTION.tolerance
     one, other = light.curves[0], full.curves[0]
     assert len(one.folds) == len(other.folds)
@@ -87,9 +87,9 @@ def test_the_error_falls_with_the_fourth_power_of_the_frequency():
 @pytest.mark.slow
 def test_a_wrong_estimate_is_found_and_everything_kept():
     scene = structure(120, 2, 20, 100.0)
-    reference = trace(scene, tolerance=None)
+    reference = trace(scene, options=leaving_out(None))
     any_estimate = ResponseOptions(reduction=replace(REDUCTION, estimate_margin=np.inf))
-    response = trace(scene, tolerance=1e-9, options=any_estimate)
+    response = trace(scene, options=leaving_out(1e-9, any_estimate))
     assert not any("far above" in sentence for sentence in response.left_out)
     for dof, peak in reference.curves[0].peaks.items():
         assert response.curves[0].peaks[dof][:2] == pytest.approx(peak[:2], rel=1e-9)
@@ -126,7 +126,7 @@ def strip(contacts):
 def test_of_many_contacts_few_combinations_answer():
     """Against the structure itself, solved as matrices, with springs that part of the contacts are."""
     scene = strip(120)
-    (lighter,) = negligible_parts.leave_out((scene,)).curves
+    (lighter,) = negligible_parts.leave_out((scene,), REDUCTION.tolerance).curves
     assert lighter.modal.frequency.size < 0.4 * scene.modal.frequency.size
     assert negligible_parts.leave_out((scene,), 1e-6).curves[0].modal.frequency.size > (
         lighter.modal.frequency.size
@@ -195,7 +195,7 @@ def test_idle_modes_and_contacts_have_no_effect():
 
 def test_the_regimes_of_contacts_left_out_are_those_of_contacts_kept():
     scene = oscillator()
-    light, full = trace(scene, "closed-form"), trace(scene, "closed-form", tolerance=None)
+    light, full = trace(scene, "closed-form"), trace(scene, "closed-form", options=leaving_out(None))
     assert len(light.left_out) == 3 and [text.partition(",")[0] for text in full.left_out] == [
         "the mean of 1 rigid-body mode"
     ]
@@ -251,7 +251,7 @@ def test_friction_is_computed_only_where_there_is_any():
         replace(scene, contacts=(replace(scene.contacts[0], mu=mu), *scene.contacts[1:]))
         for mu in (0.0, 1e-9)
     )
-    one, other = (trace(each, "closed-form", tolerance=0.0) for each in (smooth, nearly))
+    one, other = (trace(each, "closed-form", options=leaving_out(0.0)) for each in (smooth, nearly))
     assert [text for text in one.left_out if "friction" in text] == [
         "the friction of contact c0: mu or k_u is 0 (no effect)"
     ]
@@ -264,11 +264,11 @@ def test_normal_forces_are_computed_only_where_something_moves_along_them():
     shapes = scene.modal.shapes.copy()
     shapes[:, scene.contacts[1].normal != 0.0] = 0.0
     scene = replace(scene, modal=replace(scene.modal, shapes=shapes))
-    light, full = (trace(scene, "closed-form", tolerance=tolerance) for tolerance in (0.0, None))
+    light, full = (trace(scene, "closed-form", options=leaving_out(tolerance)) for tolerance in (0.0, None))
     assert "the normal force of contact c1" in [text.partition(":")[0] for text in light.left_out]
     same(light, full)
     soft = (scene.contacts[0], replace(scene.contacts[1], k_v=0.0), scene.contacts[2])
-    same(light, trace(replace(scene, contacts=soft), "closed-form", tolerance=None))
+    same(light, trace(replace(scene, contacts=soft), "closed-form", options=leaving_out(None)))
 
 
 def test_contacts_that_stay_stuck_or_open_are_springs_or_nothing():
@@ -281,4 +281,4 @@ def test_contacts_that_stay_stuck_or_open_are_springs_or_nothing():
     for column, load in enumerate(loads):
         if abs(load) > 1.0:
             assert set(curve.regime[:, column]) == {"E" if load > 0.0 else "S"}
-    same(response, trace(scene, "closed-form", tolerance=None))
+    same(response, trace(scene, "closed-form", options=leaving_out(None)))

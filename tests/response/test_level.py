@@ -17,6 +17,7 @@ from fcm.response import trace
 from fcm.response.level import trace_levels
 from fcm.results.csv_file import write_csv
 from fcm.results.output import to_dataset
+from fcm.run import Execution
 from fcm.scene import load_scene
 from fcm.shooting import periodic
 
@@ -229,9 +230,9 @@ def test_an_interruption_keeps_the_curves_of_levels_that_are_finished(stops_at, 
     progress = interrupted_after(stops_at - 1)
     if not kept:
         with pytest.raises(KeyboardInterrupt):
-            trace_levels(isola(), [1.22, 1.23, 1.24], (0.0, 2.0), progress=progress)
+            trace_levels(isola(), [1.22, 1.23, 1.24], (0.0, 2.0), execution=Execution(progress=progress))
         return
-    response = trace_levels(isola(), [1.22, 1.23, 1.24], (0.0, 2.0), progress=progress)
+    response = trace_levels(isola(), [1.22, 1.23, 1.24], (0.0, 2.0), execution=Execution(progress=progress))
     assert [curve.level.size > 0 for curve in response.curves] == [i < kept for i in range(3)]
     assert [curve.complete for curve in response.curves] == [i < kept - 1 for i in range(3)]
     assert response.curves[kept - 1].reason == "interrupted before it was known with 3 harmonics"

@@ -7,6 +7,7 @@ import pytest
 
 import fcm
 from fcm.response import respond, trace
+from fcm.response.options import leaving_out
 
 
 def relative_motion(curve, contact):
@@ -38,7 +39,7 @@ def test_its_states_are_the_regime():
 def test_a_contact_that_was_left_out_has_one():
     scene = fcm.load_scene("two-contacts")
     idle = replace(scene, contacts=(replace(scene.contacts[0], mu=0.0, k_v=0.0), scene.contacts[1]))
-    without, whole = trace(idle), trace(idle, tolerance=None)
+    without, whole = trace(idle), trace(idle, options=leaving_out(None))
     assert any("contact" in text for text in without.left_out) and not whole.left_out
     for end in (0, -1):  # of the range: the same frequency in both
         loops = [response.curves[0].loop[end] for response in (without, whole)]

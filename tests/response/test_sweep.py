@@ -13,6 +13,7 @@ import fcm
 from fcm.response.options import ResponseOptions, SweepOptions
 from fcm.response.sweep import trace
 from fcm.results.result import NOT_BEGUN
+from fcm.run import Execution
 
 from ..computed import Interrupted, by
 from ..interrupted import interrupted_beyond
@@ -60,7 +61,7 @@ def test_groups_give_the_curves_of_the_whole(scene, whole):
 def test_two_cores_give_what_one_gives(scene):
     shown = []
     show = lambda share, _: shown.append(share)  # noqa: E731
-    response = trace(scene, "closed-form", jobs=2, options=PAIRS, progress=show)
+    response = trace(scene, "closed-form", execution=Execution(jobs=2, progress=show), options=PAIRS)
     same(response, trace(scene, "closed-form", options=PAIRS))
     assert shown[-1] == 1.0 and shown == sorted(shown)
 
@@ -71,7 +72,7 @@ def test_a_curve_that_fails_loses_no_other(scene, whole):
             raise MemoryError("too much")
         return compute(batch, report)
 
-    response = trace(scene, "closed-form", place=by(fails))
+    response = trace(scene, "closed-form", execution=Execution(place=by(fails)))
     lost = response.curves[3]
     assert not lost.complete and lost.reason == "MemoryError: too much" and lost.points == 0
     others = [c for i, c in enumerate(response.curves) if i != 3]
@@ -82,10 +83,12 @@ def test_a_curve_that_fails_loses_no_other(scene, whole):
 def test_an_interrupted_sweep_is_continued(scene, tmp_path):
     reference = trace(scene, "closed-form", options=PAIRS)
     keep, last = tmp_path / "a.nc.unfinished", Interrupted()
-    part = trace(scene, "closed-form", keep=keep, options=PAIRS, place=Interrupted(4))
+    part = trace(scene, "closed-form", execution=Execution(place=Interrupted(4), keep=keep), options=PAIRS)
     assert part.interrupted and keep.is_file()
     assert [c.reason for c in part.curves] == [""] * 4 + [NOT_BEGUN] * 2
-    resumed = trace(scene, "closed-form", keep=keep, resume=True, options=PAIRS, place=last)
+    resumed = trace(
+        scene, "closed-form", execution=Execution(place=last, keep=keep, resume=True), options=PAIRS
+    )
     assert last.begun == 2  # only the last group
     same(resumed, reference)
     assert not keep.exists()
@@ -98,26 +101,28 @@ def test_what_is_finished_of_a_group_is_not_traced_again(scene, tmp_path, slow):
     options, last = ResponseOptions(sweep=often), Interrupted()
     reference = trace(scene, "closed-form", options=options)
     keep = tmp_path / "a.nc.unfinished"
-    part = trace(scene, "closed-form", keep=keep, options=options, place=Interrupted(5))
+    part = trace(scene, "closed-form", execution=Execution(place=Interrupted(5), keep=keep), options=options)
     assert part.interrupted and [c.reason for c in part.curves] == [""] * 5 + [NOT_BEGUN]
-    resumed = trace(scene, "closed-form", keep=keep, resume=True, options=options, place=last)
+    resumed = trace(
+        scene, "closed-form", execution=Execution(place=last, keep=keep, resume=True), options=options
+    )
     assert last.begun == 1
     same(resumed, reference)
 
 
 def test_another_scene_does_not_take_what_was_kept(scene, tmp_path):
     keep, every = tmp_path / "a.nc.unfinished", Interrupted()
-    trace(scene, "closed-form", keep=keep, options=PAIRS, place=Interrupted(4))
+    trace(scene, "closed-form", execution=Execution(place=Interrupted(4), keep=keep), options=PAIRS)
     other = replace(scene, curves=tuple(replace(c, frequency_range=(0.8, 1.2)) for c in scene.curves))
     with pytest.warns(UserWarning, match="of another scene.*moved to a.nc.unfinished.1"):
-        trace(other, "closed-form", keep=keep, resume=True, options=PAIRS, place=every)
+        trace(other, "closed-form", execution=Execution(place=every, keep=keep, resume=True), options=PAIRS)
     assert every.begun == 6
 
 
 def test_interrupted_before_anything_is_finished(scene, tmp_path):
     keep = tmp_path / "a.nc.unfinished"
     with pytest.raises(KeyboardInterrupt):
-        trace(scene, "closed-form", keep=keep, options=PAIRS, place=Interrupted(0))
+        trace(scene, "closed-form", execution=Execution(place=Interrupted(0), keep=keep), options=PAIRS)
     assert not keep.exists()
 
 
@@ -179,11 +184,13 @@ import fcm
 from deadly import Deadly
 from fcm.response.options import ResponseOptions, SweepOptions
 from fcm.response.sweep import trace
+from fcm.run import Execution
 
 scene = replace(fcm.load_scene("yang1998-n5"), max_step=0.3)
 curves = [replace(scene, contacts=(replace(scene.contacts[0], n_0=n),)) for n in (50.0, 1e12, 60.0)]
 one = ResponseOptions(sweep=SweepOptions(batch=1))
-response = trace(replace(scene, curves=tuple(curves)), table=Deadly(), jobs=2, options=one)
+several = replace(scene, curves=tuple(curves))
+response = trace(several, Deadly(), Execution(jobs=2), options=one)
 print([(curve.complete, curve.reason[:31]) for curve in response.curves])
 """
 
@@ -207,8 +214,12 @@ def test_an_interrupted_sweep_is_not_continued_with_other_harmonics(scene, tmp_p
 
     keep = tmp_path / "kept"
     stop = interrupted_beyond(0.4)
-    part = trace(few, "closed-form", progress=stop, keep=keep, harmonics=1, options=PAIRS)
+    part = trace(
+        few, "closed-form", harmonics=1, execution=Execution(keep=keep, progress=stop), options=PAIRS
+    )
     assert part.interrupted
     with pytest.warns(UserWarning, match="other options"):
-        done = trace(few, "closed-form", keep=keep, resume=True, harmonics=2, options=PAIRS)
+        done = trace(
+            few, "closed-form", harmonics=2, execution=Execution(keep=keep, resume=True), options=PAIRS
+        )
     assert [curve.harmonics for curve in done.curves] == [(1, 2)] * len(few.curves)

@@ -14,6 +14,7 @@ from fcm.branches.force_level import solutions
 from fcm.harmonic_balance.response_quantities import amplitudes_at
 from fcm.harmonic_balance.system import System
 from fcm.response import trace
+from fcm.response.options import ResponseOptions, SweepOptions
 from fcm.scene import SceneError, scene_from_dict
 from fcm.structure.linear import linear_of
 from fcm.structure.mistuned import basis_of, modes_of_mistuned
@@ -164,7 +165,9 @@ def test_drawn_rings_have_percentiles_and_each_is_as_if_it_were_given():
     data = sector(3, 1, (rings.SHROUD,), harmonics=1, max_step=0.5, frequency=[165.0, 200.0])
     factors = {"normal": [1.0, 0.02], "count": 3, "seed": 7}
     data["cyclic"]["mistuning"] |= {"factors": factors, "of": "frequency"}
-    response = trace(scene_from_dict(data), "closed-form", peaks_only=True)
+    response = trace(
+        scene_from_dict(data), "closed-form", options=ResponseOptions(sweep=SweepOptions(peaks_only=True))
+    )
     few = copy.deepcopy(data)
     few["cyclic"]["mistuning"]["factors"]["count"] = 2
     drawn = response.blades.factors

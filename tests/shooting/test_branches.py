@@ -15,7 +15,7 @@ from fcm.continuation import FollowOptions, Mark, Status, follow
 from fcm.continuation.corrector import Newton
 from fcm.continuation.path import Path as Followed
 from fcm.response.exact import trace_exact
-from fcm.response.options import ExactOptions
+from fcm.response.options import ExactOptions, ResponseOptions, leaving_out
 from fcm.scene import Force, Modal, scene_from_dict
 from fcm.shooting import (
     OrbitProblem,
@@ -40,7 +40,7 @@ from fcm.time_domain.errors import SimulationError
 from ..interrupted import interrupted_after
 from ..response.random_scenes import random_scene
 from ..time_domain.cases import one_mode, two_contacts, yang
-from .curves import between, curve_of
+from .curves import between, curve_of, within
 
 SCENES = Path(__file__).parent / "scenes"
 
@@ -319,7 +319,7 @@ def test_an_interrupted_curve_goes_on_from_its_last_point(tmp_path):
 
 
 def test_a_limit_of_time_is_said():
-    curve = curve_of(between(yang(), 1.15, 1.27), limit=1e-9)
+    curve = curve_of(between(yang(), 1.15, 1.27), options=within(1e-9))
     assert not curve.complete and curve.reason.startswith("not finished in 1e-09 s of processor time, at ")
 
 
@@ -331,7 +331,7 @@ def test_of_a_contact_too_stiff_to_follow_it_is_said_what_would_do():
     def of(k_u):
         return replace(bundled, contacts=(replace(bundled.contacts[0], k_u=k_u),))
 
-    curve = curve_of(of(1e12), options=ExactOptions(stiff_seconds=1e-9))
+    curve = curve_of(of(1e12), options=ResponseOptions(exact=ExactOptions(stiff_seconds=1e-9)))
     said = re.fullmatch(
         r"not finished in 1e-09 s of processor time, at the start; the k_u of contact wall is 1e\+12 times "
         r"as stiff as the structure there, so .*: try (\S+), nearly rigid; half of that tells how nearly",
@@ -342,7 +342,7 @@ def test_of_a_contact_too_stiff_to_follow_it_is_said_what_would_do():
     nearly, half = curve_of(enough), curve_of(of(0.5 * float(said[1])))
     assert nearly.complete and half.complete
     assert nearly.peaks["x"][0] == pytest.approx(half.peaks["x"][0], rel=1e-3)
-    assert "stiff" not in curve_of(enough, limit=1e-9).reason
+    assert "stiff" not in curve_of(enough, options=within(1e-9)).reason
 
 
 def test_sharp_resonances_take_few_periods_and_no_step_limit_changes_them():
@@ -446,7 +446,7 @@ def many(high):
 
 def test_modes_that_follow_without_delay_are_left_out_with_a_bound():
     scene = many(5.0)
-    light, full = trace_exact(scene, tolerance=1e-5), curve_of(scene, tolerance=None)
+    light, full = trace_exact(scene, options=leaving_out(1e-5)), curve_of(scene, options=leaving_out(None))
     (said,) = light.left_out
     assert "30 modes of 32" in said and "changes the response by less than" in said
     for dof in full.peaks:

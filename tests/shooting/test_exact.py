@@ -11,6 +11,7 @@ import pytest
 import fcm
 from fcm.response import ResponseError
 from fcm.response.exact import trace_exact
+from fcm.run import Execution
 from fcm.shooting import periodic, trace_orbits
 from fcm.time_domain import SimulationError, simulate
 
@@ -177,10 +178,10 @@ def test_an_interrupted_sweep_goes_on(tmp_path):
     curves = tuple(replace(one_mode(n_0=n), parameters={"n_0": n}) for n in (0.5, 1.0, 2.0))
     scene = replace(curves[0], curves=curves)
     keep, at = tmp_path / "kept", [0.9, 1.1]
-    first = trace_exact(scene, at, interrupted_after(6), keep=keep)
+    first = trace_exact(scene, at, Execution(keep=keep, progress=interrupted_after(6)))
     assert [curve.complete for curve in first.curves] == [True, False, False]
     assert keep.is_file()
-    done = trace_exact(scene, at, interrupted_after(14), keep=keep, resume=True)
+    done = trace_exact(scene, at, Execution(keep=keep, resume=True, progress=interrupted_after(14)))
     assert all(curve.complete for curve in done.curves) and not keep.exists()
     whole = trace_exact(scene, at)
     for one, other in zip(done.curves, whole.curves, strict=True):
@@ -191,7 +192,7 @@ def test_an_interrupted_sweep_goes_on(tmp_path):
 def test_cores_give_the_same():
     curves = tuple(replace(one_mode(n_0=n), parameters={"n_0": n}) for n in (0.5, 2.0))
     scene = replace(curves[0], curves=curves)
-    one, two = (trace_exact(scene, [1.1], jobs=jobs) for jobs in (1, 2))
+    one, two = (trace_exact(scene, [1.1], execution=Execution(jobs=jobs)) for jobs in (1, 2))
     for a, b in zip(one.curves, two.curves, strict=True):
         np.testing.assert_array_equal(a.amplitude, b.amplitude)
         assert b.parameters == a.parameters

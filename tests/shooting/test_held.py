@@ -12,6 +12,7 @@ from fcm.model.scene import Held, Load
 from fcm.reduction import constant_state_contacts
 from fcm.response.exact import trace_exact
 from fcm.response.exact_curve import ExactWork
+from fcm.response.options import leaving_out
 from fcm.response.resumable_branches import BranchLeg, Legs, TimeOver
 from fcm.run import Report
 from fcm.scene import Contact, Force, Modal, Scene
@@ -19,6 +20,8 @@ from fcm.shooting.harmonic_balance_state import balanced_states
 from fcm.shooting.initial_orbits import first_point, near_balance
 from fcm.shooting.problem import OrbitProblem
 from fcm.time_domain import simulate
+
+from .curves import within
 
 SAME = 1e-8  # of amplitudes, of curves that are known to a few 1e-10
 OMEGA = 1.2  # of the one point that is looked at
@@ -57,7 +60,7 @@ def lightened(scene):
 
 @pytest.fixture(scope="module")
 def responses(scene):
-    return trace_exact(scene), trace_exact(scene, tolerance=None)
+    return trace_exact(scene), trace_exact(scene, options=leaving_out(None))
 
 
 @pytest.mark.slow
@@ -136,7 +139,7 @@ def test_a_curve_goes_on_where_a_contact_has_lost_its_state(scene):
     wrong = (Held(1, weak[1], False, constant_state_contacts.resting(scene)[1]), Held(2, weak[2], True))
     curve = with_expected(scene, wrong)
     assert curve.complete and np.isfinite(curve.orbits.held).tolist()[1:] == [[False, False], [False, True]]
-    (whole,) = trace_exact(scene, tolerance=None).curves
+    (whole,) = trace_exact(scene, options=leaving_out(None)).curves
     for dof, peak in whole.peaks.items():
         assert curve.peaks[dof].amplitude == pytest.approx(peak.amplitude, rel=SAME)
 
@@ -159,7 +162,7 @@ def over(*_):
 @pytest.mark.parametrize("tolerance", [1e-5, None])
 def test_a_limit_of_time_before_the_first_point(scene, tolerance):
     """In the balance that tells which contacts keep their state; and where the first motion is sought."""
-    (curve,) = trace_exact(scene, limit=1e-9, tolerance=tolerance).curves
+    (curve,) = trace_exact(scene, options=within(1e-9, leaving_out(tolerance))).curves
     assert curve.points == 0 and curve.reason == "not finished in 1e-09 s of processor time, at the start"
 
 

@@ -13,6 +13,7 @@ import pytest
 import fcm
 from fcm.response import exact_curve, resumable_branches
 from fcm.response.groups import KINDS
+from fcm.response.options import RESPONSE
 from fcm.response.orbit_curve import orbit_curve
 from fcm.results.orbits import Stuck
 from fcm.run.records import unpacked
@@ -22,7 +23,7 @@ from fcm.shooting.period_doubling import DoubledPeriodProblem
 
 from ..interrupted import interrupted_after, interrupted_beyond
 from ..time_domain.cases import yang
-from .curves import between, curve_of
+from .curves import between, curve_of, within
 
 SCENES = Path(__file__).parent / "scenes"
 AT = [1.4, 1.45, 1.5]  # up and down
@@ -182,10 +183,11 @@ def test_of_a_curve_whose_time_is_over_no_period_is_computed_again(monkeypatch):
 
     monkeypatch.setattr(resumable_branches.CurveTimeLimit, "poll", poll)
     monkeypatch.setattr(exact_curve, "orbit_curve", made)
-    forgetful = replace(SHOOTING, orbit=replace(SHOOTING.orbit, max_cached=0))
-    curve_of(yang(5.0), limit=100.0, shooting=forgetful)
+    shooting = replace(SHOOTING, orbit=replace(SHOOTING.orbit, max_cached=0))
+    forgetful = within(100.0, replace(RESPONSE, shooting=shooting))
+    curve_of(yang(5.0), options=forgetful)
     looks, most = 0, 3 * looks // 10  # while the curve is followed
     before.clear()
-    curve = curve_of(yang(5.0), limit=100.0, shooting=forgetful)
+    curve = curve_of(yang(5.0), options=forgetful)
     assert curve.reason.startswith("not finished in 100 s") and np.isfinite(curve.amplitude).sum() > 20
     assert curve.orbits.periods == before[0] > 100

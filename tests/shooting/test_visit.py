@@ -11,10 +11,12 @@ import pytest
 
 from fcm import load_scene
 from fcm.response.exact import trace_exact
-from fcm.response.options import ExactOptions
+from fcm.response.options import ExactOptions, ResponseOptions
+from fcm.run import Execution
 from fcm.time_domain import simulate
 
 from ..time_domain.cases import one_mode, two_contacts, yang
+from .curves import within
 
 SCENES = Path(__file__).parent / "scenes"
 
@@ -67,13 +69,15 @@ def test_a_contact_a_hundred_thousand_times_as_stiff_as_the_structure_that_stick
 
 
 def test_of_a_contact_too_stiff_to_visit_it_is_said_what_would_do():
-    (curve,) = trace_exact(yang(k_u=1e12), [1.0, 1.3], options=ExactOptions(stiff_seconds=1e-9)).curves
+    (curve,) = trace_exact(
+        yang(k_u=1e12), [1.0, 1.3], options=ResponseOptions(exact=ExactOptions(stiff_seconds=1e-9))
+    ).curves
     assert re.fullmatch(
         r"not finished in 1e-09 s of processor time, at the start; the k_u of contact \S+ is \S+ times as "
         r"stiff as the structure there, so .*: try \S+, nearly rigid; half of that tells how nearly",
         curve.reason,
     )
-    (slow,) = trace_exact(yang(), [1.0], limit=1e-9).curves
+    (slow,) = trace_exact(yang(), [1.0], options=within(1e-9)).curves
     assert not slow.complete and slow.reason == "not finished in 1e-09 s of processor time, at the start"
 
 
@@ -162,7 +166,7 @@ def test_a_frequency_at_which_the_motion_is_not_determined_does_not_take_the_oth
 def test_a_long_motion_at_one_frequency_shows_that_it_goes_on():
     """At 1.235 the motion is simulated for many cycles: the text says at which step of them it is."""
     said = []
-    trace_exact(yang(), [1.235], progress=lambda share, text: said.append((share, text)))
+    trace_exact(yang(), [1.235], execution=Execution(progress=lambda share, text: said.append((share, text))))
     steps = [text for share, text in said if "up, 1.235 rad/s, step" in text]
     assert len(steps) > 10 and len(set(steps)) == len(steps)
     shares = [share for share, _ in said]

@@ -30,6 +30,7 @@ from fcm.fit.options import FIT
 from fcm.plot.style import house_style, new_figure
 from fcm.response.fit import fit
 from fcm.results.fitted import Fitted
+from fcm.run import Execution
 from fcm.scene.load import load_scene
 
 from ..guide.figures import BLUE, ORANGE
@@ -66,7 +67,7 @@ def fitted(path: Path) -> Fitted:
             print(f"\r{path.stem}: {100.0 * fraction:3.0f} % {text:60s}", end="", file=sys.stderr)
 
     keep = path.with_suffix(".unfinished")
-    response = fit(load_scene(path), progress=show, keep=keep, resume=keep.exists())
+    response = fit(load_scene(path), execution=Execution(keep=keep, resume=keep.exists(), progress=show))
     assert response.fitted is not None
     return response.fitted
 

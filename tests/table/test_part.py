@@ -138,7 +138,7 @@ def test_guards_are_wide_enough():
 
 
 def test_response_is_the_same(table):
-    (curve,) = trace(load_scene(SCENE), table=table).curves
+    (curve,) = trace(load_scene(SCENE), method=table).curves
     (other,) = trace(load_scene(SCENE), method="closed-form").curves
     assert curve.peaks["u"][:2] == pytest.approx(other.peaks["u"][:2], rel=1e-6)
     assert len(curve.folds) == 2
@@ -153,7 +153,7 @@ def test_sweep_is_the_same_with_its_own_table(tmp_path):
         reach.note(*curve.loop[:, 0, :3].T)
     build_table(tmp_path / "t.nc", PRESETS["fast"], points=10_000, part=reach.part())
     table = open_table(tmp_path / "t.nc")
-    response = trace(scene, table=table)
+    response = trace(scene, method=table)
     for curve, other in zip(response.curves, exact.curves, strict=True):
         assert curve.peaks["u"][:2] == pytest.approx(other.peaks["u"][:2], rel=1e-6)
         assert np.ravel(curve.folds) == pytest.approx(np.ravel(other.folds), rel=1e-6)

@@ -20,6 +20,7 @@ from fcm.response.optimum import optimise
 from fcm.response.options import ResponseOptions
 from fcm.response.track import track
 from fcm.results.output import write_netcdf
+from fcm.run import Execution
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
 from fcm.scene.load import scene_from_dict
@@ -129,7 +130,9 @@ def test_at_a_cusp_no_branch_is_born(scene, folds):
 def test_interrupted_the_curves_that_are_finished_are_kept(scene, folds, tmp_path):
     def stop_at(limit):
         progress = interrupted_beyond(limit)
-        return track(scene, "folds", PRELOAD, (-20.0, 10.0), harmonics=1, progress=progress)
+        return track(
+            scene, "folds", PRELOAD, (-20.0, 10.0), harmonics=1, execution=Execution(progress=progress)
+        )
 
     kept = stop_at(0.2)
     (curve,), (problem,) = kept.tracking.curves, kept.tracking.problems
@@ -153,13 +156,14 @@ def test_an_interrupted_run_goes_on_to_the_same_curves(scene, folds, tmp_path):
             if share > limit:
                 raise KeyboardInterrupt
 
-        return {"progress": progress, "keep": place, "resume": True, "harmonics": 1}
+        execution = Execution(progress=progress, keep=place, resume=True)
+        return track(scene, "folds", PRELOAD, (-20.0, 10.0), execution, harmonics=1)
 
-    assert track(scene, "folds", PRELOAD, (-20.0, 10.0), **stop_at(0.2)).interrupted
+    assert stop_at(0.2).interrupted
     with pytest.raises(KeyboardInterrupt):
-        track(scene, "folds", PRELOAD, (-20.0, 10.0), **stop_at(-1.0))
+        stop_at(-1.0)
     stepped = len(shares)
-    done = track(scene, "folds", PRELOAD, (-20.0, 10.0), **stop_at(1.0))
+    done = stop_at(1.0)
     assert done.complete and not place.exists() and len(shares) > stepped
     for one, other in zip(done.tracking.curves, folds.curves, strict=True):
         assert np.array_equal(one.frequency, other.frequency) and one.errors == other.errors

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from fcm.cli import exact, fit, nonlinear_mode, schedule, sensitivity, track
@@ -12,6 +13,8 @@ from fcm.cli.respond_options import Asked
 if TYPE_CHECKING:
     from fcm.model.scene import Scene
     from fcm.response import Response
+    from fcm.response.options import ResponseOptions
+    from fcm.run import Execution
 
 
 def calculated(messages: Messages, scene: Scene, asked: Asked, place: Any, keep: Any) -> Response:
@@ -19,7 +22,10 @@ def calculated(messages: Messages, scene: Scene, asked: Asked, place: Any, keep:
 
     Sweeps of curves run at a place, and what of them is finished is kept.
     """
-    response = _response(messages, scene, asked, {"jobs": asked.jobs, "place": place, "keep": keep})
+    from fcm.run import Execution
+
+    execution = Execution(asked.jobs, place, keep, progress=messages.progress)
+    response = _response(messages, scene, asked, execution)
     if asked.sensitivity:
         sensitivity.added(messages, response, scene, asked.to_json or asked.output is not None)
     if scene.schedule and asked.level is None and asked.track is None:
@@ -27,92 +33,96 @@ def calculated(messages: Messages, scene: Scene, asked: Asked, place: Any, keep:
     return response
 
 
-def _response(messages: Messages, scene: Scene, asked: Asked, run: dict[str, Any]) -> Response:
-    balanced = {**_balanced(asked), "options": messages.settings.response}
+def _response(messages: Messages, scene: Scene, asked: Asked, execution: Execution) -> Response:
     if asked.track is not None:
-        return _tracked(messages, scene, asked, run)
+        return _tracked(messages, scene, asked, execution)
     if asked.mode is not None:
-        return _mode(messages, scene, asked, run["keep"])
+        return _mode(messages, scene, asked, execution)
     if scene.optimum is not None:
-        table = _opened(asked.table)
-        response = track.optimised(messages, scene, asked.method, {**run, **balanced, "table": table})
-        _say_outside(messages, asked.table, table)
+        method = _method(asked)
+        response = track.optimised(messages, scene, method, execution, _balanced(messages, asked))
+        _say_outside(messages, asked.table, method)
         return response
     if scene.fit is not None:
-        balanced |= {key: run[key] for key in ("jobs", "place", "keep")}
-        return fit.fitted(messages, scene, asked.method, balanced)
+        return fit.fitted(messages, scene, asked.method, execution, _balanced(messages, asked))
     if asked.method == "exact" and (scene.has_range or asked.at):
-        options = {**run, "tolerance": _tolerance(asked), "only": asked.only}
-        options["periods"] = asked.periods
-        options["limit"] = None if asked.time_limit is None else math.inf  # that of the run is enough
-        return exact.traced(messages, scene, asked.at, options)
+        chosen = {"only": asked.only, "periods": asked.periods, "options": _options(messages, asked)}
+        return exact.traced(messages, scene, asked.at, _before_schedule(scene, execution), chosen)
     if asked.level is not None:
-        return _levels(messages, scene, asked, run["keep"])
+        return _levels(messages, scene, asked, execution)
     if scene.has_range:
-        return _traced(messages, scene, asked, {**run, **balanced})
+        return _traced(messages, scene, asked, _before_schedule(scene, execution))
     from fcm.response import Response
 
     return Response.without_curves(scene)
 
 
-def _tolerance(asked: Asked) -> float | None:
-    return None if asked.keep_all else asked.tolerance
+def _before_schedule(scene: Scene, execution: Execution) -> Execution:
+    """Curves take half of the progress, where a schedule is simulated after them."""
+    return execution.stage(0.0, 0.5) if scene.schedule else execution
 
 
-def _balanced(asked: Asked) -> dict[str, Any]:
+def _options(messages: Messages, asked: Asked) -> ResponseOptions:
+    """Tolerances and limits, with those that options of the command say."""
+    from fcm.response.options import RESPONSE, leaving_out
+
+    options = messages.settings.response or RESPONSE
+    options = leaving_out(None if asked.keep_all else asked.tolerance, options)
+    if asked.time_limit is not None:  # that of the run is enough
+        options = replace(options, exact=replace(options.exact, max_seconds=math.inf))
+    return replace(options, sweep=replace(options.sweep, peaks_only=asked.peaks_only))
+
+
+def _balanced(messages: Messages, asked: Asked) -> dict[str, Any]:
     """What a balance is to do."""
     return {
-        "tolerance": _tolerance(asked),
         "harmonics": asked.harmonics,
         "accuracy": asked.accuracy,
-        "peaks_only": asked.peaks_only,
+        "options": _options(messages, asked),
     }
 
 
-def _tracked(messages: Messages, scene: Scene, asked: Asked, run: dict[str, Any]) -> Response:
+def _tracked(messages: Messages, scene: Scene, asked: Asked, execution: Execution) -> Response:
     assert asked.track is not None and asked.over is not None  # --track needs the others
     assert asked.low is not None and asked.high is not None
-    options = {**run, "harmonics": asked.harmonics, "accuracy": asked.accuracy}
-    options["options"] = messages.settings.response
-    return track.tracked(messages, scene, asked.track, asked.over, (asked.low, asked.high), options)
+    span, chosen = (asked.low, asked.high), _balanced(messages, asked)
+    return track.tracked(messages, scene, (asked.track, asked.over, span), execution, chosen)
 
 
-def _mode(messages: Messages, scene: Scene, asked: Asked, keep: Any) -> Response:
+def _mode(messages: Messages, scene: Scene, asked: Asked, execution: Execution) -> Response:
     assert asked.mode is not None and asked.level is not None  # --mode needs --level
-    chosen = {
-        "harmonics": asked.harmonics,
-        "accuracy": asked.accuracy,
-        "force_levels": asked.force_levels or (1.0,),
-        "progress": messages.progress,
-        "keep": keep,
-        "options": messages.settings.response,
-    }
-    response = nonlinear_mode.traced(scene, asked.mode, asked.level, chosen)
+    chosen = _balanced(messages, asked) | {"force_levels": asked.force_levels or (1.0,)}
+    response = nonlinear_mode.traced(scene, asked.mode, asked.level, execution, chosen)
     messages.clear()
     return response
 
 
-def _levels(messages: Messages, scene: Scene, asked: Asked, keep: Any) -> Response:
+def _levels(messages: Messages, scene: Scene, asked: Asked, execution: Execution) -> Response:
     from fcm.response.level import trace_levels
 
     assert asked.level is not None and asked.at is not None  # --level needs --at
-    chosen: dict[str, Any] = {"harmonics": asked.harmonics, "accuracy": asked.accuracy, "keep": keep}
-    chosen["options"] = messages.settings.response
-    response = trace_levels(scene, asked.at, asked.level, progress=messages.progress, **chosen)
+    response = trace_levels(scene, asked.at, asked.level, execution, **_balanced(messages, asked))
     messages.clear()
     return response
 
 
-def _traced(messages: Messages, scene: Scene, asked: Asked, options: dict[str, Any]) -> Response:
+def _traced(messages: Messages, scene: Scene, asked: Asked, execution: Execution) -> Response:
     from fcm.response import trace
-    from fcm.run.progress import part
 
-    table, share = _opened(asked.table), 0.5 if scene.schedule else 1.0
-    shown = part(messages.progress, 0.0, share)
-    response = trace(scene, method=asked.method, table=table, progress=shown, **options)
+    method = _method(asked)
+    response = trace(scene, method, execution, **_balanced(messages, asked))
     messages.clear()
-    _say_outside(messages, asked.table, table)
+    _say_outside(messages, asked.table, method)
     return response
+
+
+def _method(asked: Asked) -> Any:
+    """The method, or the table that is given for it."""
+    if asked.table is None:
+        return asked.method
+    from fcm.table import open_table
+
+    return open_table(asked.table)
 
 
 def _say_outside(messages: Messages, path: str | None, table: Any) -> None:
@@ -121,11 +131,3 @@ def _say_outside(messages: Messages, path: str | None, table: Any) -> None:
         messages.info(
             f"{path}: {outside} look-ups outside the part it holds were answered by the closed form"
         )
-
-
-def _opened(table: str | None) -> Any:
-    if table is None:
-        return None
-    from fcm.table import open_table
-
-    return open_table(table)

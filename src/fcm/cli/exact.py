@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from fcm.model.scene import Scene
     from fcm.response import Response
     from fcm.results.orbits import Orbits
+    from fcm.run import Execution
 
 FORMS = "give a frequency, as in 1.2, or a range FROM:TO:COUNT, as in 0.7:1.7:41"
 _DOES = {"E": "closed all through", "S": "open all through"}  # without slip; else its states are named
@@ -81,17 +82,16 @@ def check_options(
 
 
 def traced(
-    messages: Messages, scene: Scene, at: tuple[float, ...] | None, options: dict[str, Any]
+    messages: Messages,
+    scene: Scene,
+    at: tuple[float, ...] | None,
+    execution: Execution,
+    options: dict[str, Any],
 ) -> Response:
     """The exact curves of a scene, or its steady motions at frequencies."""
     from fcm.response.exact import trace_exact
-    from fcm.response.options import RESPONSE
-    from fcm.run.progress import part
 
-    chosen = messages.settings.response or RESPONSE
-    options = {**options, "shooting": chosen.shooting, "options": chosen.exact}
-    shown = part(messages.progress, 0.0, 0.5 if scene.schedule else 1.0)
-    response = trace_exact(scene, at, shown, **options)
+    response = trace_exact(scene, at, execution, **options)
     messages.clear()
     for remark in remarks(response):
         messages.info(remark)

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from fcm.cli.respond_options import Asked
     from fcm.model.scene import Scene
     from fcm.response import Response
+    from fcm.run import Execution
 
 
 def check_scene(scene: Scene, asked: Asked) -> None:
@@ -32,11 +33,13 @@ def check_scene(scene: Scene, asked: Asked) -> None:
             )
 
 
-def fitted(messages: Messages, scene: Scene, method: str, options: dict[str, Any]) -> Response:
+def fitted(
+    messages: Messages, scene: Scene, method: str, execution: Execution, options: dict[str, Any]
+) -> Response:
     """The fit of a scene, and the response with its numbers."""
     from fcm.response.fit import fit
 
-    response = fit(scene, method=method, progress=messages.progress, **options)
+    response = fit(scene, method, execution, **options)
     messages.clear()
     return response
 

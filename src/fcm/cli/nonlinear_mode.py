@@ -12,6 +12,7 @@ from fcm.cli.columns import aligned, number, ranges, short, swept
 if TYPE_CHECKING:
     from fcm.model.scene import Scene
     from fcm.response import Response
+    from fcm.run import Execution
 
 OF_NO_USE = {  # with --mode, and why
     "method": "modes are followed by the balance",
@@ -48,11 +49,13 @@ def check_options(
             raise click.UsageError(f"{option} is of no use with --mode: {why}.")
 
 
-def traced(scene: Scene, mode: int, level: tuple[float, float], chosen: dict[str, Any]) -> Response:
+def traced(
+    scene: Scene, mode: int, level: tuple[float, float], execution: Execution, chosen: dict[str, Any]
+) -> Response:
     """The nonlinear mode of every curve of a scene."""
     from fcm.response.mode import trace_modes
 
-    return trace_modes(scene, mode, level, **chosen)
+    return trace_modes(scene, mode, level, execution, **chosen)
 
 
 def as_table(summary: Mapping[str, Any], names: list[str], unit: str) -> str:

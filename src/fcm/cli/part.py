@@ -31,12 +31,13 @@ def reached(
         If it looks nothing up, as the contacts never slip or open part of a cycle.
     """
     from fcm.response import trace
+    from fcm.run import Execution
     from fcm.scene import load_scene
 
     reach = Reach(resolution)
     loaded = load_scene(scene)
     check_not_read({"-o": output}, loaded.files)
-    response = trace(loaded, "closed-form", progress=progress, harmonics=1)
+    response = trace(loaded, "closed-form", Execution(progress=progress), harmonics=1)
     if response.interrupted:
         raise KeyboardInterrupt
     messages.clear()

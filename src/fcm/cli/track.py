@@ -15,6 +15,7 @@ from fcm.cli.terminal import plain
 if TYPE_CHECKING:
     from fcm.model.scene import Scene
     from fcm.response import Response
+    from fcm.run import Execution
 
 WHAT = ("folds", "peaks", "slip", "separation", "closing")
 _SAID = {
@@ -91,24 +92,30 @@ def check_options(
 
 
 def tracked(
-    messages: Messages, scene: Scene, what: str, over: str, span: tuple[float, float], options: dict[str, Any]
+    messages: Messages,
+    scene: Scene,
+    wanted: tuple[str, str, tuple[float, float]],
+    execution: Execution,
+    options: dict[str, Any],
 ) -> Response:
     """The curves that were asked for."""
     from fcm.response.track import SpanError, track
 
     try:
-        response = track(scene, what, over, span, progress=messages.progress, **options)
+        response = track(scene, *wanted, execution, **options)
     except SpanError as error:
         raise error.named("--from", "--to") from None
     messages.clear()
     return response
 
 
-def optimised(messages: Messages, scene: Scene, method: str, options: dict[str, Any]) -> Response:
+def optimised(
+    messages: Messages, scene: Scene, method: Any, execution: Execution, options: dict[str, Any]
+) -> Response:
     """The optimum of a scene, and the response with it."""
     from fcm.response.optimum import optimise
 
-    response = optimise(scene, method=method, progress=messages.progress, **options)
+    response = optimise(scene, method, execution, **options)
     messages.clear()
     return response
 

@@ -13,6 +13,7 @@ from fcm.compare.options import COMPARE, CompareOptions
 from fcm.compare.startup import Startup, startup
 from fcm.model.scene import Scene
 from fcm.reduction.options import REDUCTION
+from fcm.response.options import leaving_out
 from fcm.response.ring_limits import refuse_in_time
 from fcm.response.sweep import trace
 from fcm.scene.errors import counted
@@ -123,7 +124,7 @@ def compare(
     scene: Scene,
     table: Path | None = None,
     progress: Progress | None = None,
-    tolerance: float = REDUCTION.tolerance,
+    tolerance: float | None = REDUCTION.tolerance,
     options: CompareOptions = COMPARE,
 ) -> Comparison:
     """Run a scene by every method and measure error against run time.
@@ -174,7 +175,7 @@ def compare(
     methods = [Method(name, open_table(path)) for name, path in tables.items()]
     out.seams = {one.name: float(seam(one.table).max()) for one in methods if one.table is not None}
     methods += [Method(CLOSED_FORM), Method(EXACT)]
-    first = trace(with_step(scene, max(options.steps)), tolerance=tolerance)
+    first = trace(with_step(scene, max(options.steps)), options=leaving_out(tolerance))
     if first.interrupted:
         raise KeyboardInterrupt
     if not any(curve.complete for curve in first.curves):
@@ -203,7 +204,7 @@ def _same(out: Comparison, method: Method, share: float) -> Run | None:
 
 
 def _jobs(
-    methods: list[Method], tolerance: float, options: CompareOptions
+    methods: list[Method], tolerance: float | None, options: CompareOptions
 ) -> Iterator[tuple[Method, float, float | None]]:
     """Method, share of the longest step, tolerance of what is left out; the most wanted first."""
     for method in methods:

@@ -11,8 +11,9 @@ from fcm.compare.lines import Line, amplitude, line_of
 from fcm.compare.options import COMPARE, ExactLineOptions
 from fcm.model.scene import Scene
 from fcm.response.exact import trace_exact
+from fcm.response.options import RESPONSE, ResponseOptions, leaving_out
 from fcm.results.result import Curve
-from fcm.run import Progress
+from fcm.run import Execution, Progress
 from fcm.run.progress import part
 from fcm.shooting import harmonic_state, periodic
 from fcm.time_domain import SimulationError, State
@@ -25,11 +26,18 @@ def exact_lines(
     scenes, lines = scene.each_curve(), []
     for number, one in enumerate(scenes):
         shown = part(progress, number / len(scenes), (number + 1) / len(scenes))
-        response = trace_exact(replace(one, curves=()), None, shown, limit=options.limit, tolerance=None)
+        response = trace_exact(
+            replace(one, curves=()), execution=Execution(progress=shown), options=_limited(options)
+        )
         if response.interrupted:
             raise KeyboardInterrupt
         lines.append(_line(one, response.curves[0], options))
     return lines
+
+
+def _limited(options: ExactLineOptions) -> ResponseOptions:
+    """Nothing left out, and so long for a curve."""
+    return leaving_out(None, replace(RESPONSE, exact=replace(RESPONSE.exact, max_seconds=options.limit)))
 
 
 def _line(scene: Scene, curve: Curve, options: ExactLineOptions) -> Line:

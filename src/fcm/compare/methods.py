@@ -10,6 +10,7 @@ from fcm.compare.lines import Line, line_of
 from fcm.compare.options import COMPARE, CompareOptions
 from fcm.model.scene import Scene
 from fcm.reduction.negligible_parts import leave_out
+from fcm.response.options import leaving_out
 from fcm.response.request import Request
 from fcm.response.sweep import trace
 from fcm.response.trace import traced_curve
@@ -89,8 +90,8 @@ def solve(
         wanted = Request(table=method.table, corrected=False)
         curves = [traced_curve(curve, wanted) for curve in lighter.each_curve()]
         return [line_of(curve, scene) for curve in curves]
-    kind = "closed-form" if method.table is None else "table"
-    response = trace(scene, kind, method.table, harmonics=1, tolerance=tolerance)
+    law = "closed-form" if method.table is None else method.table
+    response = trace(scene, law, harmonics=1, options=leaving_out(tolerance))
     if response.interrupted:
         raise KeyboardInterrupt
     return [line_of(curve, scene) for curve in response.curves]

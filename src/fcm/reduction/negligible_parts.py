@@ -45,7 +45,7 @@ def keep_all(curves: tuple[Scene, ...]) -> Lighter:
 
 def leave_out(
     curves: tuple[Scene, ...],
-    tolerance: float = REDUCTION.tolerance,
+    tolerance: float,
     highest: int = 1,
     options: ReductionOptions = REDUCTION,
 ) -> Lighter:

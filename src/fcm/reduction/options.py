@@ -18,7 +18,8 @@ class ReductionOptions:
     resonance_offset: float = 1e-7  # relative distance from a resonance, where nothing is infinite
     max_curves: int = 8  # of a sweep, of which points are looked at
     max_points: int = 4  # of a curve, those of its peaks first
-    tolerance: float = 1e-5  # of the response, for modes that are replaced
+    # relative change of the response by what is left out; 0: only what has no effect at all; None: nothing
+    tolerance: float | None = 1e-5
     rounding: float = 1e-14  # relative: a sum of products this small is zero
     max_checked: int = 200  # points at which the response is compared with that of all modes
     max_checked_of_curve: int = 8  # points of one curve, besides its peaks

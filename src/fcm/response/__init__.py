@@ -11,7 +11,7 @@ from fcm.response.request import ResponseError
 from fcm.response.sweep import trace
 from fcm.response.trace import METHODS
 from fcm.results.result import Curve, Response
-from fcm.run import Factory, place_of
+from fcm.run import Execution, place_of
 from fcm.scene.rules import step_fault
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ def respond(
         refuse_own_laws(scene, "the motion of a schedule")
     place = None if executor is None else place_of(executor)
     asked = {"harmonics": harmonics, "accuracy": accuracy, "options": options}
-    response = _curves(scene, method, at, asked, place)
+    response = _curves(scene, method, at, asked, Execution(place=place))
     if sensitivity:
         from fcm.response.sensitivity import add_sensitivities
 
@@ -129,7 +129,7 @@ def _curves(
     method: str,
     at: Sequence[float] | None,
     asked: dict[str, Any],
-    place: Factory | None,
+    execution: Execution,
 ) -> Response:
     if method not in (*METHODS, "exact"):
         raise ResponseError(f"method {method!r} is not one of {', '.join((*METHODS, 'exact'))}")
@@ -147,9 +147,8 @@ def _curves(
         from fcm.response.exact import trace_exact
         from fcm.response.options import RESPONSE
 
-        chosen = asked["options"] or RESPONSE
-        return trace_exact(scene, at, place=place, shooting=chosen.shooting, options=chosen.exact)
-    return trace(scene, method, place=place, **asked)
+        return trace_exact(scene, at, execution, options=asked["options"] or RESPONSE)
+    return trace(scene, method, execution, **asked)
 
 
 def _fit(scene: Scene, method: str, asked: dict[str, Any]) -> Response:
@@ -157,7 +156,7 @@ def _fit(scene: Scene, method: str, asked: dict[str, Any]) -> Response:
 
     if method == "exact":
         raise ResponseError("the method 'exact' is of no use with [fit]")
-    return fit(scene, method=method, **asked)
+    return fit(scene, method, **asked)
 
 
 def _optimum(scene: Scene, method: str, asked: dict[str, Any]) -> Response:
@@ -166,4 +165,4 @@ def _optimum(scene: Scene, method: str, asked: dict[str, Any]) -> Response:
     if method == "exact" or scene.schedule:
         what = "the method 'exact'" if method == "exact" else "[[schedule]]"
         raise ResponseError(f"{what} is of no use with [optimum]")
-    return optimise(scene, method=method, **asked)
+    return optimise(scene, method, **asked)

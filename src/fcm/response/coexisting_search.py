@@ -10,6 +10,7 @@ from fcm.model.scene import FloatArray
 from fcm.response.resumable_branches import TimeOver
 from fcm.results.orbits import Stuck
 from fcm.run import Report
+from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic_orbit import Poll, never_interrupt
 
 
@@ -40,10 +41,12 @@ class Search:
     A run that is resumed knows what was found before it was interrupted.
 
     poll : raises `TimeOver` where no more is to be found out.
+    options : of the motions that are sought.
     """
 
-    def __init__(self, poll: Poll, report: Report) -> None:
+    def __init__(self, poll: Poll, report: Report, options: ShootingOptions = SHOOTING) -> None:
         self._poll, self._report, self.over = poll, report, False
+        self.options = options
         self._known = {_key(one): one for one in report.saved if isinstance(one, CoexistingMotions)}
 
     @classmethod

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 
 from fcm.response.groups import KINDS, Group, anonymous, as_curve, fit
 from fcm.results.result import NOT_BEGUN, Curve
@@ -50,13 +48,3 @@ class CurveSweep:
             curves += [as_curve(scene, one, NOT_BEGUN) for scene, one in zip(batch, found, strict=True)]
             self.defects += [one.defect for one in found if isinstance(one, Lost) and one.defect]
         return curves
-
-
-@contextmanager
-def checkpoint_of(keep: Path | Checkpoint | None, resume: bool) -> Iterator[Checkpoint | None]:
-    """The checkpoint of a run: the caller's, who knows when it is not needed any more, or one of its own."""
-    if not isinstance(keep, Path):
-        yield keep
-        return
-    with Checkpoint(keep, resume) as own:
-        yield own

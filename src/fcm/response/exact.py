@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
@@ -14,21 +12,19 @@ from fcm.model.scene import Scene
 from fcm.reduction.constant_state_contacts import on_contacts
 from fcm.reduction.mode_effect import effect, expected_effect
 from fcm.reduction.negligible_parts import leave_out_modes
-from fcm.reduction.options import REDUCTION
 from fcm.reduction.sentences import on_modes
 from fcm.response.coexisting_orbits import CoexistingOrbits
 from fcm.response.coexisting_search import FOUND
-from fcm.response.curve_sweep import CurveSweep, checkpoint_of
+from fcm.response.curve_sweep import CurveSweep
 from fcm.response.exact_curve import ExactWork
-from fcm.response.options import EXACT_CURVES, INPUT_LIMITS, ExactOptions
+from fcm.response.options import INPUT_LIMITS, RESPONSE, ResponseOptions
 from fcm.response.request import ResponseError
 from fcm.response.resumable_branches import LEGS
 from fcm.response.ring_limits import refuse_in_time
 from fcm.response.stepped_sweep import STATES
 from fcm.results.at_rest import without_rounding
 from fcm.results.result import Response
-from fcm.run import Checkpoint, Factory, Progress, fingerprint
-from fcm.shooting.options import SHOOTING, ShootingOptions
+from fcm.run import IN_THIS_PROCESS, Execution, Progress, fingerprint
 from fcm.units import UNIT
 
 METHOD = "exact"
@@ -38,18 +34,11 @@ ONLY_PEAKS = "of the exact curves all points but their peaks, folds and jumps"
 def trace_exact(
     scene: Scene,
     at: Sequence[float] | None = None,
-    progress: Progress | None = None,
+    execution: Execution = IN_THIS_PROCESS,
     *,
-    jobs: int = 1,
-    place: Factory | None = None,
-    keep: Path | Checkpoint | None = None,
-    resume: bool = False,
-    limit: float | None = None,
-    tolerance: float | None = REDUCTION.tolerance,
     only: str | None = None,
     periods: int = 1,
-    shooting: ShootingOptions = SHOOTING,
-    options: ExactOptions = EXACT_CURVES,
+    options: ResponseOptions = RESPONSE,
 ) -> Response:
     """The curves of exact periodic solutions of a scene, in the layout of `fcm.response.trace`.
 
@@ -65,24 +54,16 @@ def trace_exact(
         Frequencies in the scene's unit. The steady motion is visited there by an upward and then by a
         downward sweep, each point continuing the last, and then whatever other stable motion the solutions
         of the balance lead to; without it the curve is followed through its range.
-    progress : optional
-        Called now and then with the finished fraction and a text.
-    jobs, place, keep, resume
+    execution : Execution, optional
         As in `fcm.response.trace`.
-    limit : float, optional
-        Processor time for each curve [s]; what there is of it then, is the result.
-    tolerance : float, optional
-        Greatest relative change of the amplitudes by modes that are left out; 0 leaves out only those that
-        have no effect, None nothing.
     only : {"peaks"}, optional
         Of the curves the peaks, folds and jumps alone, sought near those of the harmonic balance.
     periods : {1, 2, 4, 8}
         Follow also motions that repeat only after up to so many periods of the force, from where the period
         doubles; with `at` they are found by the sweeps, and this has no meaning.
-    shooting : ShootingOptions, optional
-        Tolerances and limits of the motions that are followed; with `at` the usual ones are taken.
-    options : ExactOptions, optional
-        Tolerances and limits of the curves.
+    options : ResponseOptions, optional
+        Tolerances and limits: `exact` of the curves, `shooting` of the motions (with `at` the usual ones are
+        taken), and of `reduction` the greatest change of the amplitudes by modes that are left out.
 
     Raises
     ------
@@ -98,12 +79,15 @@ def trace_exact(
     """
     refuse_in_time(scene, "the exact motion")
     begin, frequencies = time.perf_counter(), _checked(scene, at)
-    with checkpoint_of(keep, resume) as checkpoint:
-        work = ExactWork(frequencies, limit, only is not None, tolerance is None, periods, shooting, options)
-        run = _SweepRun(work, CurveSweep(jobs or os.cpu_count() or 1, checkpoint, place))
-        response = run.response(scene, tolerance, progress)
-        if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
-            checkpoint.done()
+    tolerance = options.reduction.tolerance
+    with execution.checkpoint() as checkpoint:
+        work = ExactWork(
+            frequencies, only is not None, tolerance is None, periods, options.shooting, options.exact
+        )
+        run = _SweepRun(work, CurveSweep(execution.processes, checkpoint, execution.place))
+        response = run.response(scene, tolerance, execution.progress)
+        if not response.interrupted:
+            execution.discard(checkpoint)
     response.defects = run.sweep.defects
     response.seconds = time.perf_counter() - begin
     return response
@@ -137,7 +121,7 @@ class _SweepRun:
         return response
 
     def _swept(self, scene: Scene, scenes: Sequence[Scene], progress: Progress | None) -> Response:
-        mark = fingerprint(METHOD, replace(self.work, limit=None))
+        mark = fingerprint(METHOD, replace(self.work, options=replace(self.work.options, max_seconds=None)))
         batches = [(one,) for one in scenes]
         curves = self.sweep.curves(
             self.work, batches, mark, progress, (*STATES, CoexistingOrbits, *LEGS, *FOUND)

@@ -42,7 +42,6 @@ class ExactWork:
     """How each curve is made: traced, or visited at frequencies."""
 
     at: tuple[float, ...] | None  # [rad/s]
-    limit: float | None = None  # [s] of processor time for a curve
     only_peaks: bool = False
     whole: bool = False  # nothing is to be left out
     periods: int = 1  # up to which motions are followed, from where the period doubles
@@ -66,8 +65,8 @@ class ExactWork:
 
     def _made(self, scene: Scene, report: Report) -> Curve:
         if self.at is not None:
-            return _visited(scene, self.at, report, self.limit, self.options, self.shooting)
-        stiff, limit = _too_stiff(scene, self.limit, self.options)
+            return _visited(scene, self.at, report, self.options, self.shooting)
+        stiff, limit = _too_stiff(scene, self.options)
         clock = CurveTimeLimit(limit, report)
         try:
             return self._in_time(scene, report, clock, stiff)
@@ -128,14 +127,14 @@ class _CurveFollower:
     def curve(self, scene: Scene) -> Curve:
         """The curve with all contacts that the scene computes."""
         groups, reason, cause = self.branches(scene)
-        search = Search(self.clock.poll, self.report)
+        search = Search(self.clock.poll, self.report, self.options)
         return _with_uncertain_frequencies(
             _finished(partial(orbit_curve, groups), reason, search, cause), self.doubts
         )
 
     def peaks(self, scene: Scene) -> Curve:
         """The peaks, folds and jumps alone."""
-        known, search = list[OrbitRecord](), Search(self.clock.poll, self.report)
+        known, search = list[OrbitRecord](), Search(self.clock.poll, self.report, self.options)
         try:
             alone = peaks_only(scene, known, self.report, self.clock.poll, self.options)
         except (KeyboardInterrupt, TimeOver) as stop:
@@ -237,12 +236,12 @@ def _cause(stop: BaseException) -> Cause:
     return Cause.CALCULATION if isinstance(stop, TimeOver) else Cause.INTERRUPTED
 
 
-def _too_stiff(scene: Scene, limit: float | None, options: ExactOptions) -> tuple[str, float | None]:
+def _too_stiff(scene: Scene, options: ExactOptions) -> tuple[str, float | None]:
     """Which contact is too stiff for its motion to be followed, and what to take instead; else ''.
 
     And the limit of time: where that never ends it is said after so long, if there is none of one's own.
     """
-    whole = scene.whole()
+    whole, limit = scene.whole(), options.max_seconds
     resists = whole.contacts and whole.modal.frequency.all()
     stiff = too_stiff(System(whole, (1,)), moves=True) if resists else ""
     return stiff, options.stiff_seconds if stiff and limit is None else limit
@@ -252,12 +251,11 @@ def _visited(
     scene: Scene,
     at: tuple[float, ...],
     report: Report,
-    limit: float | None,
     options: ExactOptions,
     shooting: ShootingOptions,
 ) -> Curve:
     around = replace(scene, frequency_range=(0.0, at[-1]))
-    stiff, limit = _too_stiff(replace(scene, frequency_range=(at[0], at[-1])), limit, options)
+    stiff, limit = _too_stiff(replace(scene, frequency_range=(at[0], at[-1])), options)
     poll = CurveTimeLimit(limit, report).poll
     visitor, others, reason, doubts = (
         SteppedSweep(around, poll),
@@ -276,5 +274,7 @@ def _visited(
         reason = str(error)
     reason = reason or visitor.reason
     reason = reason + stiff if reason else ""
-    found = _finished(partial(visited_curve, scene, visitor, others), reason, Search(poll, report), cause)
+    found = _finished(
+        partial(visited_curve, scene, visitor, others), reason, Search(poll, report, shooting), cause
+    )
     return _with_uncertain_frequencies(found, doubts)

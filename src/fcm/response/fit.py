@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,30 +18,28 @@ from fcm.fit.parameters import FitError, Parameters, parameters_of
 from fcm.fit.solve import Searches, SearchResult, Solved, solved
 from fcm.model.scene import FloatArray, Measured, Scene
 from fcm.nonlinear_modes.backbone import ModeError
-from fcm.response.curve_sweep import checkpoint_of
 from fcm.response.mode import check_free
-from fcm.response.options import FITTED_RESPONSE
+from fcm.response.options import FITTED_RESPONSE, ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.sweep import trace
 from fcm.results.fitted import Fitted, FittedData, FittedStart
 from fcm.results.result import Response
-from fcm.run import Checkpoint, Progress, Results, fingerprint
-from fcm.run.progress import part
+from fcm.run import IN_THIS_PROCESS, Checkpoint, Execution, Results, fingerprint
 from fcm.scene.draft import LEVEL, number_of
 from fcm.scene.errors import quoted
+from fcm.table import Table
 from fcm.units import EXCITED
 
 
 def fit(
     scene: Scene,
+    method: str | Table = "table",
+    execution: Execution = IN_THIS_PROCESS,
     *,
     harmonics: int | Sequence[int] | None = None,
     accuracy: float | None = None,
-    progress: Progress | None = None,
-    keep: Path | Checkpoint | None = None,
-    resume: bool = False,
-    **options: Any,
+    options: ResponseOptions | None = None,
 ) -> Response:
     """The numbers of a scene with a [fit], and its response with them, a curve for each level of the data.
 
@@ -51,12 +48,8 @@ def fit(
 
     Parameters
     ----------
-    harmonics, accuracy
-        As of `trace`.
-    keep, resume
+    method, execution, harmonics, accuracy, options
         As of `trace`: what is kept are the searches from each start, and how far one is that was interrupted.
-    options
-        What else `trace` takes, for the response.
 
     Raises
     ------
@@ -70,22 +63,16 @@ def fit(
     refuse_own_laws(scene, "a fit")
     if any(one.damping is not None for one in scene.fit.data):
         check_free(scene)
-    begin, wanted = time.perf_counter(), request_of(scene, harmonics, accuracy)
-    with checkpoint_of(keep, resume) as checkpoint:
-        response = _fit(scene, wanted, progress, checkpoint, options)
-        if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
-            checkpoint.done()
+    begin, wanted = time.perf_counter(), request_of(scene, harmonics, accuracy, options)
+    with execution.checkpoint() as checkpoint:
+        response = _fit(scene, method, wanted, replace(execution, keep=checkpoint))
+        if not response.interrupted:
+            execution.discard(checkpoint)
     response.seconds = time.perf_counter() - begin
     return response
 
 
-def _fit(
-    scene: Scene,
-    wanted: Request,
-    progress: Progress | None,
-    checkpoint: Checkpoint | None,
-    options: dict[str, Any],
-) -> Response:
+def _fit(scene: Scene, method: str | Table, wanted: Request, execution: Execution) -> Response:
     """With the harmonics that are asked for, or as many as the response at the numbers found takes."""
     assert scene.fit is not None
     plain = replace(scene, fit=None)
@@ -94,9 +81,8 @@ def _fit(
     for _ in range(FITTED_RESPONSE.max_rounds):
         near = None if fitted is None else fitted[1].values
         try:
-            found = _fitted_parameters(
-                plain, scene, chosen, part(progress, 0.0, FITTED_RESPONSE.fit_share), near, checkpoint
-            )
+            stage = execution.stage(0.0, FITTED_RESPONSE.fit_share)
+            found = _fitted_parameters(plain, scene, chosen, near, stage)
         except KeyboardInterrupt:
             if fitted is None:
                 raise
@@ -106,15 +92,10 @@ def _fit(
         if found[1].interrupted:
             break
         there = _at_levels(*found, scene.fit.data)
-        asked = {"harmonics": chosen} if wanted.harmonics else {"accuracy": wanted.accuracy}
+        given, accuracy = (chosen, None) if wanted.harmonics else (None, wanted.accuracy)
+        stage = execution.stage(FITTED_RESPONSE.fit_share, 1.0)
         try:
-            response = trace(
-                there,
-                progress=part(progress, FITTED_RESPONSE.fit_share, 1.0),
-                keep=checkpoint,
-                **asked,
-                **options,
-            )
+            response = trace(there, method, stage, harmonics=given, accuracy=accuracy, options=wanted.options)
         except KeyboardInterrupt:
             response = Response.without_curves(plain)
             response.fitted = _fitted(*fitted, advise=False, untraced=True)
@@ -132,18 +113,18 @@ def _fitted_parameters(
     plain: Scene,
     scene: Scene,
     harmonics: tuple[int, ...],
-    progress: Progress | None,
     near: FloatArray | None,
-    checkpoint: Checkpoint | None,
+    execution: Execution,
 ) -> tuple[Parameters, Solved]:
     """The numbers with the harmonics chosen; near: those with fewer."""
     assert scene.fit is not None
     try:
         parameters = parameters_of(plain, scene.fit.vary, scene.fit.bounds)
-        kept = None if checkpoint is None else _kept(scene, harmonics, near, checkpoint)
+        with execution.checkpoint() as checkpoint:
+            kept = None if checkpoint is None else _kept(scene, harmonics, near, checkpoint)
         options = replace(FIT, starts=scene.fit.starts or FIT.starts)
         data = scene.fit.data
-        searches = Searches(kept, progress)
+        searches = Searches(kept, execution.progress)
         return parameters, solved(parameters, data, harmonics, options, searches, begin=near)
     except FitError as error:
         raise ResponseError(f"{scene.name}: {error}") from None

@@ -15,7 +15,6 @@ from fcm.response.resumable_branches import TimeOver
 from fcm.results.orbits import Stuck
 from fcm.shooting.orbit_record import OrbitRecord
 from fcm.shooting.partly_sticking_orbits import partly_stuck_motions
-from fcm.shooting.periodic_orbit import Poll
 from fcm.shooting.traction_families import Family, family
 from fcm.time_domain.equations import has_friction
 from fcm.time_domain.errors import SimulationError
@@ -67,12 +66,12 @@ def _told(
             for one in families
             if np.allclose(amplitude[one], amplitude[k], rtol=COEXISTING.amplitude_tolerance, atol=0.0)
         ]
-        found = families[same[0]] if same else _family(scene, point, out.whole, k, search.poll)
+        found = families[same[0]] if same else _family(scene, point, out.whole, k, search)
         if found is not None:
             families[k] = found
     known = list(families.values())
     try:
-        others = partly_stuck_motions(scene, out.frequency, known, search.poll)
+        others = partly_stuck_motions(scene, out.frequency, known, search.poll, search.options)
     except TimeOver:
         others = []
     for k, found in families.items():
@@ -94,14 +93,14 @@ def _told(
     return out
 
 
-def _family(scene: Scene, point: OrbitRecord, whole: FloatArray, k: int, poll: Poll) -> Family | None:
+def _family(scene: Scene, point: OrbitRecord, whole: FloatArray, k: int, search: Search) -> Family | None:
     """The family of a point; None if it has none, or, with 0 for the whole, if it cannot be told."""
     alone = len(scene.contacts) == 1 and has_friction(scene.contacts[0])
     if "E" not in point.states or (alone and set(point.states) == {"E"}):  # of several another may slip
         return None
     try:
         if point.repeats:
-            return family(scene, point.frequency, point.state, point.repeats, poll)
+            return family(scene, point.frequency, point.state, point.repeats, search.poll, search.options)
         if point.steady is not None and (point.steady.shares[:, 0] == 1.0).any():
             whole[k] = 0.0
     except (SimulationError, TimeOver):  # its neighbourhood cannot be computed, or not any more

@@ -40,7 +40,7 @@ from fcm.results.cause import Cause
 from fcm.results.contact_maxima import greatest_of
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
-from fcm.run import Checkpoint, Progress, fingerprint
+from fcm.run import IN_THIS_PROCESS, Execution, fingerprint
 from fcm.scene.errors import counted
 from fcm.units import EXCITATION, UNIT, in_unit
 
@@ -49,11 +49,10 @@ def trace_levels(
     scene: Scene,
     at: Sequence[float],
     span: tuple[float, float],
+    execution: Execution = IN_THIS_PROCESS,
     *,
     harmonics: int | Sequence[int] | None = None,
     accuracy: float | None = None,
-    progress: Progress | None = None,
-    keep: Checkpoint | None = None,
     options: ResponseOptions | None = None,
 ) -> Response:
     """A curve for each curve of the scene and each frequency, in the scene's unit.
@@ -89,10 +88,9 @@ def trace_levels(
         )
         for curve, omega in ways
     ]
-    mark = (
-        b"" if keep is None else fingerprint("level", wanted, tuple(at), span, anonymous(scene.each_curve()))
-    )
-    curves = [without_rounding(one) for one in one_by_one(tasks, progress, keep, mark)]
+    of_curves = (wanted, tuple(at), span, anonymous(scene.each_curve()))
+    mark = b"" if execution.keep is None else fingerprint("level", *of_curves)
+    curves = [without_rounding(one) for one in one_by_one(tasks, execution, mark)]
     response = Response.of(scene, curves, "level of the forces")
     response.seconds = time.perf_counter() - begin
     return response

@@ -32,7 +32,7 @@ from fcm.results.cause import Cause
 from fcm.results.contact_maxima import greatest_of
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance
 from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
-from fcm.run import Checkpoint, Progress, fingerprint
+from fcm.run import IN_THIS_PROCESS, Execution, fingerprint
 from fcm.scene.errors import counted
 from fcm.units import in_unit
 
@@ -41,12 +41,11 @@ def trace_modes(
     scene: Scene,
     number: int,
     span: tuple[float, float],
+    execution: Execution = IN_THIS_PROCESS,
     *,
     harmonics: int | Sequence[int] | None = None,
     accuracy: float | None = None,
     force_levels: Sequence[float] = (1.0,),
-    progress: Progress | None = None,
-    keep: Checkpoint | None = None,
     options: ResponseOptions | None = None,
 ) -> Response:
     """The mode of each curve of the scene over a span of modal amplitudes.
@@ -77,7 +76,7 @@ def trace_modes(
     wanted = request_of(scene, harmonics, accuracy, options)
     levels = tuple(float(level) for level in force_levels)
     of_curves = (number, span, wanted, levels, anonymous(scene.each_curve()))
-    mark = b"" if keep is None else fingerprint("mode", *of_curves)
+    mark = b"" if execution.keep is None else fingerprint("mode", *of_curves)
     try:
         curves = one_by_one(
             [
@@ -87,8 +86,7 @@ def trace_modes(
                 )
                 for one in scene.each_curve()
             ],
-            progress,
-            keep,
+            execution,
             mark,
         )
     except ModeError as error:

@@ -5,13 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from fcm.model.scene import Optimum, Scene
-from fcm.response.curve_sweep import checkpoint_of
 from fcm.response.least_peak import Found, PeakTask, with_values
 from fcm.response.optima import optima
 from fcm.response.options import OPTIMUM, ResponseOptions
@@ -22,26 +19,24 @@ from fcm.results.condensed_curves import condense, without_points
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import INTERRUPTED, Curve, Response
 from fcm.results.tracked import Optimal, Tracking
-from fcm.run import Checkpoint, Progress
+from fcm.run import IN_THIS_PROCESS, Execution
 from fcm.run.progress import part
 from fcm.scene.address import replaced
 from fcm.scene.draft import Draft, Number, number_of
 from fcm.scene.errors import counted
+from fcm.table import Table
 from fcm.tracking.options import SEARCH
 from fcm.tracking.peak_envelope import INCOMPLETE
 
 
 def optimise(
     scene: Scene,
+    method: str | Table = "table",
+    execution: Execution = IN_THIS_PROCESS,
     *,
     harmonics: int | Sequence[int] | None = None,
     accuracy: float | None = None,
-    progress: Progress | None = None,
-    keep: Path | Checkpoint | None = None,
-    resume: bool = False,
-    peaks_only: bool = False,
     options: ResponseOptions | None = None,
-    **more: Any,
 ) -> Response:
     """The optima of a scene with an [optimum], one for each curve of its sweep, and the responses there.
 
@@ -49,14 +44,10 @@ def optimise(
     ----------
     harmonics, accuracy
         As of `trace`: with an accuracy, as many harmonics as the response at the optimum takes.
-    keep, resume
+    method, execution
         As of `trace`: what is kept are the optima that are found, and then the curves of the response.
-    peaks_only
-        Whether to keep of the curves no points, once they have told what the optima are.
     options : ResponseOptions, optional
-        Tolerances and limits.
-    more
-        What else `trace` takes, for the response.
+        Tolerances and limits; with `peaks_only` of the sweep, points go once they have told the optima.
 
     Raises
     ------
@@ -72,18 +63,19 @@ def optimise(
     numbers, free = _freed(scene, scene.optimum.vary)
     wanted = request_of(scene, harmonics, accuracy, options)
     tasks = [PeakTask(curve, numbers, wanted.accuracy, wanted.options) for curve in free.each_curve()]
-    with checkpoint_of(keep, resume) as checkpoint:
+    with execution.checkpoint() as checkpoint:
         found, stopped = optima(
-            tasks, wanted.harmonics, checkpoint, part(progress, 0.0, OPTIMUM.search_share)
+            tasks, wanted.harmonics, checkpoint, part(execution.progress, 0.0, OPTIMUM.search_share)
         )
         tracking = _tracking(scene.optimum, found)
         if stopped:
             return _unfinished(free, tracking, len(tasks), begin)
-        there, more = _at(free, numbers, tracking.optima), {**more, "keep": checkpoint, "options": options}
-        shown = part(progress, OPTIMUM.search_share, 1.0)
-        response = trace(there, progress=shown, harmonics=tracking.harmonics, **more)
-        if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
-            checkpoint.done()
+        there, chosen = _at(free, numbers, tracking.optima), wanted.options
+        all_points = replace(chosen, sweep=replace(chosen.sweep, peaks_only=False))
+        rest = replace(execution, keep=checkpoint).stage(OPTIMUM.search_share, 1.0)
+        response = trace(there, method, rest, harmonics=tracking.harmonics, options=all_points)
+        if not response.interrupted:
+            execution.discard(checkpoint)
     for one, curve in zip(tracking.optima, response.curves, strict=True):
         _check_moves(one, curve)
     tracking.optima = [_with_error(one, c) for one, c in zip(tracking.optima, response.curves, strict=True)]
@@ -91,7 +83,7 @@ def optimise(
     if wanted.harmonics is None:
         _say_what_is_short(tracking, response, wanted.accuracy)
     response.tracking = tracking
-    if peaks_only:
+    if chosen.sweep.peaks_only:
         response.curves, response.peaks_only = [without_points(one) for one in response.curves], True
     response.seconds = time.perf_counter() - begin
     return response

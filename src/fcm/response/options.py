@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from fcm.accuracy.options import REFINEMENT, RefinementOptions
 from fcm.harmonic_balance.options import HARMONIC_BALANCE, HarmonicBalanceOptions
@@ -85,6 +85,8 @@ class SweepOptions:
         Of more harmonics, after which what is left is said.
     save_interval : float
         [s] after which finished curves are saved before their group is, and no kill can lose them.
+    peaks_only : bool
+        Whether to keep peaks, folds and errors of each curve, and not its points.
     """
 
     batch: int = 10
@@ -92,6 +94,7 @@ class SweepOptions:
     traced_share: float = 0.9
     max_rounds: int = 4
     save_interval: float = 1.0
+    peaks_only: bool = False
 
 
 SWEEP = SweepOptions()
@@ -145,6 +148,8 @@ class ExactOptions:
         Harmonic up to which modes are kept as they are; what that does is measured.
     min_contacts : int
         Fewest of a scene of which some may be foreseen to keep their state.
+    max_seconds : float, optional
+        [s] of processor time for a curve; what there is of it then, is the result. None for no limit.
     stiff_seconds : float
         [s] of processor time for a curve that a stiff contact may keep from ever being finished.
     search_fraction : float
@@ -157,6 +162,7 @@ class ExactOptions:
 
     max_harmonic: int = 3
     min_contacts: int = 2
+    max_seconds: float | None = None
     stiff_seconds: float = 10.0
     search_fraction: float = 0.5
     peak_threshold: float = 0.9
@@ -316,3 +322,8 @@ class ResponseOptions:
 
 
 RESPONSE = ResponseOptions()
+
+
+def leaving_out(tolerance: float | None, options: ResponseOptions = RESPONSE) -> ResponseOptions:
+    """What changes the response by no more is left out; 0: what has no effect at all, None: nothing."""
+    return replace(options, reduction=replace(options.reduction, tolerance=tolerance))

@@ -9,17 +9,14 @@ from functools import partial
 from fcm.response.groups import KINDS, fits
 from fcm.results.cause import Cause
 from fcm.results.result import INTERRUPTED, Curve
-from fcm.run import Checkpoint, Progress, Results
+from fcm.run import IN_THIS_PROCESS, Execution, Progress, Results
 
 Tell = Callable[[str], None]  # how far a curve is; an interruption may come of it
 Task = tuple[Curve, Callable[[Tell], Curve]]  # the curve without points, and what follows it
 
 
 def one_by_one(
-    tasks: Sequence[Task],
-    progress: Progress | None,
-    keep: Checkpoint | None = None,
-    mark: bytes = b"",
+    tasks: Sequence[Task], execution: Execution = IN_THIS_PROCESS, mark: bytes = b""
 ) -> list[Curve]:
     """What each task follows; of those that an interruption leaves out, the curve without points beside it.
 
@@ -32,7 +29,17 @@ def one_by_one(
     KeyboardInterrupt
         If no curve is finished then.
     """
-    kept = Results() if keep is None else keep.results(mark, KINDS, lambda i, found: _fit(tasks, i, found))
+    with execution.checkpoint() as checkpoint:
+        kept = Results()
+        if checkpoint is not None:
+            kept = checkpoint.results(mark, KINDS, lambda i, found: _fit(tasks, i, found))
+        curves = _followed(tasks, execution.progress, kept)
+        if not _cut_off(curves[-1]):
+            execution.discard(checkpoint)
+    return curves
+
+
+def _followed(tasks: Sequence[Task], progress: Progress | None, kept: Results) -> list[Curve]:
     curves: list[Curve] = []
     for i, (none, followed) in enumerate(tasks):
         if curves and _cut_off(curves[-1]):

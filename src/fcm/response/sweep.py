@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 
 from fcm.harmonic_balance.sampled import check_own_laws
 from fcm.model.scene import Scene
@@ -16,7 +14,7 @@ from fcm.reduction.negligible_parts import Lighter, keep_all, leave_out
 from fcm.reduction.options import REDUCTION
 from fcm.reduction.restore import checked, restored
 from fcm.response.blades import with_blades
-from fcm.response.curve_sweep import CurveSweep, checkpoint_of
+from fcm.response.curve_sweep import CurveSweep
 from fcm.response.groups import Work
 from fcm.response.options import ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
@@ -24,7 +22,7 @@ from fcm.response.ring_limits import check_modes, unknown
 from fcm.response.trace import METHODS
 from fcm.results.at_rest import without_rounding
 from fcm.results.result import Response
-from fcm.run import Checkpoint, Factory, Progress, fingerprint
+from fcm.run import IN_THIS_PROCESS, Execution, Progress, fingerprint
 from fcm.run.progress import part
 from fcm.structure.loads import driven_harmonics
 from fcm.table import Table
@@ -38,18 +36,11 @@ NO_TABLE_IN_PLANE = "the table: forces of contacts in a plane are exact, with on
 
 def trace(
     scene: Scene,
-    method: str = "table",
-    table: Table | None = None,
-    progress: Progress | None = None,
+    method: str | Table = "table",
+    execution: Execution = IN_THIS_PROCESS,
     *,
     harmonics: int | Sequence[int] | None = None,
     accuracy: float | None = None,
-    jobs: int = 1,
-    place: Factory | None = None,
-    peaks_only: bool = False,
-    tolerance: float | None = REDUCTION.tolerance,
-    keep: Path | Checkpoint | None = None,
-    resume: bool = False,
     options: ResponseOptions | None = None,
 ) -> Response:
     """Trace the response curves of a scene.
@@ -58,34 +49,19 @@ def trace(
     ----------
     scene : Scene
         From `fcm.load_scene`; one curve for each combination of its swept values.
-    method : {"table", "closed-form"}
-        Coefficients of one harmonic. Either way the points are solutions with the closed form; with a table
-        it is looked up at each of them, and how far its own solution is from there is its `table_error`.
-    table : optional
-        An open table; the shipped one by default.
-    progress : optional
-        Called now and then with the finished fraction and a text.
+    method : {"table", "closed-form"} or an open table
+        Coefficients of one harmonic, "table" is the shipped one. Either way the points are solutions with the
+        closed form; with a table it is looked up at each of them, and how far its own solution is from there
+        is its `table_error`.
+    execution : Execution, optional
+        Where groups of curves are computed, and what is kept of them; here, and nothing, by default.
     harmonics : int or sequence of int, optional
         Harmonics of the balance: up to a number, or some that begin with 1; the scene's by default.
     accuracy : float, optional
         Instead, of the peaks and folds, relative: as many harmonics as that takes; the scene's, or 1e-2,
         where there are no harmonics given.
-    jobs : int
-        Processes for the groups of curves; 0 for one on each core.
-    place : optional
-        Where they are computed instead: `fcm.run.place_of` an executor, or `fcm.run.cluster.connected`.
-    peaks_only : bool
-        Keep peaks, folds and errors of each curve, and not its points.
-    tolerance : float, optional
-        Greatest relative change of the response by what is left out; 0 leaves out only what has no effect
-        at all, None nothing.
-    keep : Path or Checkpoint, optional
-        File for the finished groups of a sweep. Of a path it is there only while the sweep is not finished;
-        a checkpoint is the caller's, to be kept until the response is written.
-    resume : bool
-        Take from that file what is finished already.
     options : ResponseOptions, optional
-        Tolerances and limits.
+        Tolerances and limits; of `reduction` the tolerance says what is left out, `sweep` whether points are.
 
     Raises
     ------
@@ -98,7 +74,9 @@ def trace(
     PlaceClosed
         If that place takes nothing any more, and nothing is finished; else what is finished is returned.
     """
-    if method not in METHODS:
+    table = None if isinstance(method, str) else method
+    name = method if isinstance(method, str) else "table"
+    if name not in METHODS:
         raise ResponseError(f"method {method!r} is not one of {', '.join(METHODS)}")
     if not scene.has_range:
         raise ResponseError("the scene has no [response] with frequency = [from, to], so no curve to trace")
@@ -106,21 +84,14 @@ def trace(
     wanted = request_of(scene, harmonics, accuracy, options)
     check_own_laws(scene)
     check_modes(scene, wanted)
-    with checkpoint_of(keep, resume) as checkpoint:
-        curves = CurveSweep(jobs or os.cpu_count() or 1, checkpoint, place)
-        response = _traced(_Sweep(scene, method, table, wanted, peaks_only, curves), tolerance, progress)
-        if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
-            checkpoint.done()
+    progress = execution.progress
+    with execution.checkpoint() as checkpoint:
+        curves = CurveSweep(execution.processes, checkpoint, execution.place)
+        response = _traced(_Sweep(scene, name, table, wanted, curves), progress)
+        if not response.interrupted:
+            execution.discard(checkpoint)
     if scene.tuned is not None and not response.interrupted:
-        own = partial(
-            trace,
-            method=method,
-            table=table,
-            harmonics=harmonics,
-            accuracy=accuracy,
-            tolerance=tolerance,
-            options=options,
-        )
+        own = partial(trace, method=method, harmonics=harmonics, accuracy=accuracy, options=options)
         response = with_blades(response, scene, own)
     response.defects = curves.defects
     response.seconds = time.perf_counter() - begin
@@ -129,10 +100,10 @@ def trace(
     return response
 
 
-def _traced(sweep: _Sweep, tolerance: float | None, progress: Progress | None) -> Response:
+def _traced(sweep: _Sweep, progress: Progress | None) -> Response:
     """The curves without what they do not need; where that turns out to be needed, once more with it."""
     curves = sweep.scene.each_curve()
-    options = sweep.wanted.options.sweep
+    options, tolerance = sweep.wanted.options.sweep, sweep.wanted.options.reduction.tolerance
     asked = sweep.wanted.harmonics or (options.expected_harmonic,)
     highest = max((*asked, *driven_harmonics(sweep.scene)))
     if tolerance is None or sweep.scene.ring is not None or sweep.scene.with_own_laws:
@@ -166,14 +137,13 @@ class _Sweep:
         method: str,
         table: Table | None,
         wanted: Request,
-        peaks_only: bool,
         curves: CurveSweep,
     ) -> None:
         self.scene, self.method, self.table, self.curves = scene, method, table, curves
-        self.wanted, self.peaks_only = wanted, peaks_only
+        self.wanted, self.peaks_only = wanted, wanted.options.sweep.peaks_only
         self.table_idle = method == "table" and table is None  # until it is opened
         # of the table before it is used, for it counts its look-ups
-        options = (method, table, wanted.harmonics, wanted.accuracy, peaks_only, wanted.options)
+        options = (method, table, wanted.harmonics, wanted.accuracy, wanted.options)
         self.mark = b"" if curves.checkpoint is None else fingerprint(*options)
 
     def run(self, lighter: Lighter, progress: Progress | None) -> Response:

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import os
 import time
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from fcm.accuracy.refinement import refined_response
 from fcm.model.scene import Scene
-from fcm.response.curve_sweep import checkpoint_of
 from fcm.response.master_dofs import with_master_dofs
 from fcm.response.options import INPUT_LIMITS, ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
@@ -23,7 +20,9 @@ from fcm.response.tracked_work import KINDS, STATES, TrackedScene, TrackedWork
 from fcm.results.result import DEFECT, NOT_BEGUN, Response
 from fcm.results.tracked import Tracking
 from fcm.run import (
+    IN_THIS_PROCESS,
     Checkpoint,
+    Execution,
     Factory,
     Lost,
     Outcome,
@@ -59,14 +58,10 @@ def track(
     what: str,
     over: str,
     span: tuple[float, float],
+    execution: Execution = IN_THIS_PROCESS,
     *,
     harmonics: int | Sequence[int] | None = None,
     accuracy: float | None = None,
-    progress: Progress | None = None,
-    jobs: int = 1,
-    place: Factory | None = None,
-    keep: Path | Checkpoint | None = None,
-    resume: bool = False,
     options: ResponseOptions | None = None,
 ) -> Response:
     """Curves of special points of the response against a number of the scene.
@@ -79,8 +74,8 @@ def track(
     over : str
         The number as in [sweep], "contact.shroud.n_0", or "level" of the forces. A sweep of it is left out.
     span : (from, to)
-    jobs, place, keep, resume
-        As in `fcm.response.trace`: where the curves of a sweep are followed, and what is finished is kept.
+    execution : Execution, optional
+        As in `fcm.response.trace`: where the curves of a sweep are followed, and what is kept of them.
     options : ResponseOptions, optional
         Tolerances and limits.
 
@@ -109,20 +104,20 @@ def track(
     tracked = with_master_dofs(free)
     curves = tracked.each_curve()
     chosen = wanted.harmonics or needed(curves, number, span, wanted)
-    place = place or place_for((jobs or os.cpu_count() or 1) if len(curves) > 1 else 1)
+    place = execution.place or place_for(execution.processes if len(curves) > 1 else 1)
     response = Response.without_curves(tracked)
     response.tracking, response.method = Tracking(over, what, span, chosen, []), "tracked"
-    with checkpoint_of(keep, resume) as checkpoint:
+    with execution.checkpoint() as checkpoint:
         if what == "peaks":
             response.left_out = _untracked(len(free.modal.dofs), len(tracked.modal.dofs))
         work = TrackedWork(number, what, span, chosen, wanted.options)
-        outcome = _swept(work, curves, checkpoint, place, progress)
+        outcome = _swept(work, curves, checkpoint, place, execution.progress)
         for i, one in enumerate(curves):
             _add(response, one, next(iter(outcome.of(i)), None))
         if wanted.harmonics is None:
             response.tracking.short_of = _short_of(response.tracking, wanted.accuracy)
-        if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
-            checkpoint.done()
+        if not response.interrupted:
+            execution.discard(checkpoint)
     response.seconds = time.perf_counter() - begin
     return response
 

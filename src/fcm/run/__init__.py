@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from fcm.on_demand import on_demand
 from fcm.run.checkpoint import Checkpoint, Results
+from fcm.run.execution import IN_THIS_PROCESS, Execution
 from fcm.run.fingerprint import fingerprint
 from fcm.run.lock import CheckpointError
 from fcm.run.places import Factory, Gone, Place, PlaceClosed, SerialPlace, Threads
@@ -19,9 +20,11 @@ if TYPE_CHECKING:
     from fcm.run.processes import Processes
 
 __all__ = [
+    "IN_THIS_PROCESS",
     "Checkpoint",
     "CheckpointError",
     "Compute",
+    "Execution",
     "ExecutorPlace",
     "Factory",
     "Gone",

@@ -20,6 +20,7 @@ import numpy as np
 import fcm
 from fcm.model.scene import Scene
 from fcm.response import Curve, trace
+from fcm.run import Execution
 
 sys.path.append(str(Path(__file__).parents[2] / "response"))
 from random_scenes import random_scene
@@ -67,7 +68,7 @@ def traced(scene: Scene, harmonics: int) -> tuple[float, Curve]:
     best = np.inf
     for _ in range(REPEATS):
         begin = time.process_time()
-        (curve,) = trace(scene, table=TABLE, harmonics=harmonics, jobs=1).curves
+        (curve,) = trace(scene, method=TABLE, harmonics=harmonics, execution=Execution(jobs=1)).curves
         best = min(best, time.process_time() - begin)
     return float(best), curve
 
@@ -80,7 +81,10 @@ def compared(name: str, group: str, scene: Scene, harmonics: int, fine: bool) ->
     peak = folds = None
     if fine:
         (reference,) = trace(
-            replace(scene, max_step=FINEST * scene.max_step), "closed-form", harmonics=harmonics, jobs=1
+            replace(scene, max_step=FINEST * scene.max_step),
+            "closed-form",
+            harmonics=harmonics,
+            execution=Execution(jobs=1),
         ).curves
         peak, folds = reference.peaks[scene.modal.dofs[dof]].amplitude, len(reference.folds)
     own = {
