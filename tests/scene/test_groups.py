@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from fcm.harmonic_balance.system import System
 from fcm.scene import SceneError, scene_from_dict
+from fcm.scene.draft import number_of
+from fcm.sensitivity.parameter_derivatives import rates_of
 
 DOFS = [f"{node}{direction}" for node in (40, 41, 50, 51) for direction in "xyz"]
 PAIRS = {"name": "shroud", "nodes": [[40, 41], [50, 51]], "tangential": {"x": 0.6, "y": 0.8}, "normal": "z"}
@@ -147,6 +150,74 @@ def test_the_preload_of_all_is_one_swept_number(key):
     curves = read([PAIRS | NUMBERS | {"areas": [1.0, 2.0]}], sweep={key: [3.0, -9.0]}).curves
     assert [[contact.n_0 for contact in curve.contacts] for curve in curves] == [[1, 2], [-3, -6]]
     assert [curve.parameters for curve in curves] == [{key: 3.0}, {key: -9.0}]
+
+
+PATTERN = PAIRS | NUMBERS | {"areas": [1.0, 2.0], "n_0": [1.0, 4.0]}
+GROUP = ("contact.shroud.n_0", "contact.shroud_*.n_0", "contact.*.n_0")
+
+
+def _pattern(folder, form):
+    """The preloads 1 and 4 of two pairs, in each way that they can be given."""
+    (folder / "n_0.txt").write_text("40 1\n50 4\n")
+    (folder / "pairs.csv").write_text("node,other,area,n_0\n40,41,1,1\n50,51,2,4\n")
+    if form == "file":
+        return PATTERN | {"n_0": "n_0.txt"}
+    if form == "list":
+        return PATTERN
+    return {key: value for key, value in PATTERN.items() if key not in ("n_0", "areas")} | {
+        "nodes": "pairs.csv"
+    }
+
+
+@pytest.mark.parametrize("form", ["file", "list", "column"])
+@pytest.mark.parametrize("key", GROUP)
+def test_a_swept_total_scales_the_preloads_of_the_pairs(tmp_path, form, key):
+    contact = _pattern(tmp_path, form)
+    scene = read([contact], tmp_path, sweep={key: [10.0, -2.5, 5.0]})
+    assert [one.n_0 for one in scene.contacts] == [1.0, 4.0]
+    assert [[one.n_0 for one in curve.contacts] for curve in scene.curves] == [[2, 8], [-0.5, -2], [1, 4]]
+
+
+def test_a_swept_total_scales_stiffnesses_of_the_pairs_too():
+    own = PATTERN | {"k_u": [1.0, 3.0], "k_v": [1.0, 1.0]}
+    (curve,) = read([own], sweep={"contact.shroud.k_u": [8.0], "contact.shroud.k_v": [3.0]}).curves
+    assert [(one.k_u, one.k_v, one.n_0) for one in curve.contacts] == [(2.0, 1.5, 1.0), (6.0, 1.5, 4.0)]
+
+
+def test_every_way_to_another_preload_means_the_total_of_the_pairs():
+    scene = read([PATTERN], optimum={"vary": ["contact.shroud.n_0"], "minimise": "peak.40x"})
+    assert scene.optimum.bounds == ((0.0, 50.0),)
+    for key in GROUP:
+        number = number_of(scene, key)
+        assert number.value(scene) == 5.0
+        moved = number.put(scene, 10.0)
+        assert [one.n_0 for one in moved.contacts] == [2.0, 8.0]
+        fixed = moved.draft.fixed(moved, number.values(10.0)).curve(moved, {})
+        assert [one.n_0 for one in fixed.contacts] == [2.0, 8.0]
+        rates = rates_of(System(scene, (1,)), key)
+        assert rates.contact[:, 3].tolist() == [0.2, 0.8]
+
+
+def test_draws_of_a_preload_are_totals_of_the_pairs():
+    drawn = {"contact.shroud.n_0": {"uniform": [10.0, 20.0], "count": 3, "seed": 1}}
+    for curve in read([PATTERN], sweep=drawn).curves:
+        one, other = (contact.n_0 for contact in curve.contacts)
+        assert one + other == pytest.approx(curve.parameters["contact.shroud.n_0"], rel=1e-15)
+        assert other == pytest.approx(4.0 * one, rel=1e-15)
+
+
+def test_the_preload_of_one_pair_is_its_own():
+    (curve,) = read([PATTERN], sweep={"contact.shroud_2.n_0": [7.0]}).curves
+    assert [contact.n_0 for contact in curve.contacts] == [1.0, 7.0]
+    both = {"contact.shroud.n_0": [1.0], "contact.shroud_2.n_0": [7.0]}
+    assert "sets the same number" in refused([PATTERN], sweep=both)
+
+
+@pytest.mark.parametrize("key", GROUP)
+def test_preloads_that_add_up_to_nothing_have_no_other_total(key):
+    said = refused([PATTERN | {"n_0": [3.0, -3.0]}], sweep={key: [1.0]})
+    assert 'the n_0 of the pairs of contact "shroud" add up to 0, so they cannot be scaled' in said
+    assert said.count("add up to 0") == 1 and "no such number" not in said
 
 
 def test_one_pair_alone_is_swept_by_its_name():

@@ -24,7 +24,11 @@ def test_every_key_is_printed_with_its_rule():
     assert len(lines) == 1 + len(as_lines())
     text = "\n".join(lines)
     assert re.search(r"^contact\[\]\.mu +number at least 0 +required +friction coefficient$", text, re.M)
-    assert re.search(r"^contact\[\]\.areas .* also swept ones, are totals", text, re.M)
+    assert re.search(
+        r"^contact\[\]\.areas .* one k_u, k_v or n_0 is a total.* a swept one is the total of the pairs",
+        text,
+        re.M,
+    )
     assert re.search(r"^response\.max_step +number greater than 0 and at most 1 +0\.05 ", text, re.M)
 
 

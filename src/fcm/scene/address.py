@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from fnmatch import fnmatchcase
 from typing import Any
@@ -14,6 +15,7 @@ from fcm.scene.errors import Mistakes, quoted
 
 VECTORS = ("mass", "frequency", "damping")  # of the modal table
 SCALE = "cyclic.mistuning.scale"
+TOTAL = "total"  # of numbers that the pairs of a contact have each their own of, beside areas
 OF_SECTOR = re.compile(r"@\d+")  # in the name of a contact of a mistuned ring
 NUMBERS = {  # of each kind of table
     "contact": ("n_0", "gap", "mu", "k_u", "k_v"),
@@ -38,7 +40,7 @@ class Addresses:
         address = self.numbers.get(key) or self._element(key)
         if address is not None:
             return (address,)
-        if members := self._members(key):
+        if (members := self._members(key, path, mistakes)) is not None:
             return members
         if not self._excused(key, path, mistakes):
             mistakes.add(path, "there is no such number in the scene to sweep", key, self.numbers)
@@ -65,10 +67,17 @@ class Addresses:
                 hint = f"; it is given by {other}" if other in draft else ""
                 mistakes.add(path, f"{quoted(labels[kind, index])} has no {quoted(field)} to sweep{hint}")
                 return ()
-        return tuple((kind, index, field) for kind, index in matched)
+        contacts = self._together(
+            [index for kind, index in matched if kind == "contact"], field, path, mistakes
+        )
+        others = tuple((kind, index, field) for kind, index in matched if kind != "contact")
+        return (*contacts, *others)
 
-    def _members(self, key: str) -> tuple[Address, ...]:
-        """The numbers of all contacts of a group, which one [[contact]] has made of nodes, or of sectors."""
+    def _members(self, key: str, path: str, mistakes: Mistakes) -> tuple[Address, ...] | None:
+        """The numbers of all contacts of a group, which one [[contact]] has made of nodes, or of sectors.
+
+        None where there is no such group.
+        """
         prefix, _, field = key.rpartition(".")
         drafts = enumerate(self.parts["contact"])
         same = [
@@ -76,7 +85,32 @@ class Addresses:
             for i, draft in drafts
             if prefix in {f"contact.{draft.get(key, '')}" for key in ("group", "of")} and field in draft
         ]
-        return tuple(("contact", i, field) for i in same if field in NUMBERS["contact"])
+        if not same or field not in NUMBERS["contact"]:
+            return None
+        return self._together(same, field, path, mistakes)
+
+    def _together(self, indices: list[int], field: str, path: str, mistakes: Mistakes) -> tuple[Address, ...]:
+        """A number of several contacts: of all pairs of a [[contact]] with areas it is the total.
+
+        None of them after a mistake.
+        """
+        drafts, found = self.parts["contact"], list[Address]()
+        every = Counter(map(_of_one_table, drafts))
+        here = Counter(_of_one_table(drafts[i]) for i in indices)
+        for i in indices:
+            draft, table = drafts[i], _of_one_table(drafts[i])
+            if field not in draft.get(TOTAL, ()) or here[table] < every[table]:
+                found.append(("contact", i, field))
+            elif draft[TOTAL][field]:
+                found.append(("contact", i, TOTAL, field))
+            else:
+                mistakes.add(
+                    path,
+                    f"the {field} of the pairs of contact {quoted(draft['group'])} add up to 0, so they "
+                    f"cannot be scaled to another total; give one {field}, which is shared by areas",
+                )
+                return ()
+        return tuple(found)
 
     def _element(self, key: str) -> Address | None:
         """A number in an array: a dof's weight, or a mode's value at a dof."""
@@ -133,8 +167,15 @@ def replaced(tree: Any, address: Address, value: float) -> Any:
 
 
 def overlap(one: Address, other: Address) -> bool:
-    """Whether two addresses share a number: one is within the other."""
+    """Whether two addresses share a number: one is within the other; a total has those of its pairs."""
+    one, other = (tuple(step for step in address if step != TOTAL) for address in (one, other))
     return one[: len(other)] == other[: len(one)]
+
+
+def _of_one_table(draft: Mapping[str, Any]) -> tuple[str, str]:
+    """What the contacts of one [[contact]] have in common: its name, and the sector of a mistuned ring."""
+    name: str = draft["name"]
+    return draft.get("group", name), name.removeprefix(draft["of"]) if "of" in draft else ""
 
 
 def _numbers(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:

@@ -112,7 +112,8 @@ TABLES: dict[str, dict[str, Key]] = {
         "tangential": Key("the displacement u along which it slides; in a plane a list of two", _DIRECTION),
         "nodes": Key("pairs [[a, b], ...], a .csv file, or two sets; u and v are of a less b",
                      "list, file or table", "none: one contact"),
-        "areas": Key("of the pairs: k_u, k_v and n_0, also swept ones, are totals, shared by them",
+        "areas": Key("of the pairs: one k_u, k_v or n_0 is a total. That of a list, file or column is of "
+                     "each pair, and a swept one is the total of the pairs",
                      'list of numbers > 0, or "equal"', "the numbers are of each pair"),
         "normal": Key("the displacement v that loads it: n = max(n_0 + k_v v, 0)", _DIRECTION),
         "mu": Key("friction coefficient", RULES["mu"]),

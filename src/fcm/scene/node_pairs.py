@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from math import isnan, nan
+from math import fsum, isnan, nan
 from typing import Any
 
 import numpy as np
@@ -236,9 +236,24 @@ def shares(section: Section, table: PairTable) -> list[dict[str, float]]:
 
 def _shared(section: Section, table: PairTable, areas: list[float]) -> list[dict[str, float]]:
     """The same of areas that are known."""
-    own = {key for key in SHARED if key in table.numbers or not _is_one(section.data.get(key))}
+    own = _own(section, table)
     parts = np.asarray(areas) / np.sum(areas)
     return [{key: float(part) for key in SHARED if key not in own} for part in parts]
+
+
+def totals_of(section: Section, table: PairTable, numbers: Mapping[str, list[float]]) -> dict[str, float]:
+    """With areas, what those of k_u, k_v and n_0 add up to that are given of each pair.
+
+    Another total scales them.
+    """
+    if "areas" not in section.data and "area" not in table.numbers:
+        return {}
+    return {key: fsum(numbers[key]) for key in _own(section, table) if key in numbers}
+
+
+def _own(section: Section, table: PairTable) -> list[str]:
+    """Those of k_u, k_v and n_0 that are given of each pair: in a list, a file or a column."""
+    return [key for key in SHARED if key in table.numbers or not _is_one(section.data.get(key))]
 
 
 def _is_one(value: Any) -> bool:

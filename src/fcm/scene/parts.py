@@ -8,12 +8,14 @@ from math import nan
 from typing import Any
 
 from fcm.model.scene import NO_RANGE, Contact, Force
+from fcm.scene.address import TOTAL
 from fcm.scene.errors import nearest, quoted, shown
 from fcm.scene.files import Files
 from fcm.scene.keys import names
 from fcm.scene.modal import UNITS
 from fcm.scene.names import Names, same_names, unfit_name
 from fcm.scene.node_pairs import (
+    SHARED,
     along,
     check_nodes,
     direction_in,
@@ -22,6 +24,7 @@ from fcm.scene.node_pairs import (
     read_numbers,
     read_pairs,
     shares,
+    totals_of,
 )
 from fcm.scene.node_sets import with_fitted
 from fcm.scene.options import LIMITS
@@ -69,6 +72,7 @@ def _contacts(section: Section, dofs: Dofs, files: Files) -> list[dict[str, Any]
     table = read_pairs(section, files)
     section = with_fitted(section, table)
     numbers, parts = read_numbers(section, table, files), shares(section, table)
+    totals = totals_of(section, table, numbers)
     directions = read_directions(section, partial(read_direction, section), partial(direction_in, section))
     check_nodes(section, directions.values(), table.pairs, dofs)
     check_axes(section, directions)
@@ -77,7 +81,7 @@ def _contacts(section: Section, dofs: Dofs, files: Files) -> list[dict[str, Any]
         files.interfaces.append(table.interface)
     return [
         {key: values[i] for key, values in numbers.items()}
-        | {"name": f"{name}_{i + 1}", "group": name, "share": parts[i]}
+        | {"name": f"{name}_{i + 1}", "group": name, "share": parts[i], TOTAL: totals, "sum": totals}
         | {key: along(weights, pair, dofs) for key, weights in directions.items()}
         for i, pair in enumerate(table.pairs)
     ]
@@ -112,9 +116,9 @@ def contact_of(draft: dict[str, Any]) -> Contact:
     for key in ("tangential", "second", "normal"):
         if key in draft:
             draft[key].flags.writeable = False
-    share = draft.get("share", {})
-    shared: tuple[str, ...] = ("k_u", "k_v", "n_0")
-    numbers = {key: draft[key] * share.get(key, 1.0) for key in shared if key in draft}
+    share, total = draft.get("share", {}), draft.get(TOTAL, {})
+    factor = {key: total[key] / draft["sum"][key] for key in total if draft["sum"][key]} | share
+    numbers = {key: draft[key] * factor.get(key, 1.0) for key in SHARED if key in draft}
     n_0 = numbers.pop("n_0") if "n_0" in numbers else -numbers["k_v"] * draft["gap"]
     numbers |= {key: draft[key] for key in ("name", "tangential", "second", "normal", "mu") if key in draft}
     return Contact(n_0=n_0 + 0.0, **numbers)  # + 0.0: a zero without its sign
