@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from fcm.response import trace
+from fcm.response.level import trace_levels
 from fcm.scene import scene_from_dict
 from fcm.shooting import periodic
+from fcm.time_domain import simulate
 
 CONTACT = {"name": "c", "tangential": "x", "normal": "y", "mu": 0.4, "k_u": 1.0, "k_v": 1.0, "n_0": 5.0}
 BODY = {  # free along x and along y, but for its contact
@@ -96,6 +98,54 @@ def test_friction_that_pushes_one_way_has_no_steady_state():
         JENKINS, {"n_0": 500.0}, (("x", 0.01), ("y", 3.0)), response={"frequency": [0.3, 0.9], "harmonics": 1}
     )
     assert stuck.complete and set(stuck.regime.ravel()) == {"E"}
+
+
+THREE = {  # free along x, held along y and z
+    "dofs": ["x", "y", "z"],
+    "mass": [1.0, 1.0, 1.0],
+    "frequency": [0.0, 3.0, 9.0],
+    "damping": [0.0, 0.02, 0.02],
+    "shapes": np.eye(3).tolist(),
+}
+
+
+def gripped(n_0, grip):
+    """A contact of varying load, which pushes along x on average, and one of constant load that holds."""
+    contacts = [CONTACT | {"n_0": n_0}, CONTACT | {"name": "grip", "normal": "z", "n_0": grip}]
+    forces = [{"dof": dof, "amplitude": amplitude} for dof, amplitude in (("x", 1.0), ("y", 3.0))]
+    response = {"frequency": [0.3, 0.8], "max_step": 0.2, "harmonics": 1}
+    data = {"modal": THREE, "contact": contacts, "force": forces, "response": response}
+    scene = scene_from_dict(data)
+    return scene, trace(scene, "closed-form").curves[0]
+
+
+def test_contacts_that_stick_hold_a_mode_against_friction_that_pushes_one_way():
+    scene, found = gripped(1.0, 100.0)
+    assert found.complete, found.reason
+    assert "EPEN" in found.regime[:, 0] and set(found.regime[:, 1]) == {"E"}
+    assert (found.stable == 1.0).all()
+    motion = simulate(scene, 0.75, 300)
+    before, last = (motion.measures(last=100)[i].mean[0] for i in (0, -1))
+    assert motion.cycles[-1].states == ("EPEN", "E")
+    assert last == pytest.approx(before, abs=1e-6) != 0.0  # in time it does not creep
+
+
+def test_stability_is_unknown_where_contacts_that_stick_may_not_hold_alone():
+    """Where all slip nothing holds; before that, it is not known."""
+    _, found = gripped(2.0, 1.2)
+    slip = (found.regime != "E").all(axis=1)
+    assert not found.complete and 0 < slip.sum() < slip.size
+    assert (found.stable[slip] == 0.0).all() and not (found.stable[~slip] == 0.0).any()
+    unknown = np.isnan(found.stable)
+    assert unknown.any() and found.frequency[unknown].min() > found.frequency[found.stable == 1.0].max()
+
+
+def test_stability_by_levels_is_unknown_where_contacts_may_not_hold():
+    scene, _ = gripped(2.0, 1.2)
+    found = trace_levels(scene, [0.65], (0.2, 1.5)).curves[0]
+    slip = (found.regime != "E").all(axis=1)
+    assert np.isnan(found.stable[~slip]).any() and not (found.stable[~slip] == 0.0).any()
+    assert slip.any() and (found.stable[slip] == 0.0).all()
 
 
 def test_what_would_hold_a_body_is_said_by_the_keys_that_the_scene_has():

@@ -1,7 +1,9 @@
 """Points that are no steady states, or not determined, because of a rigid-body mode.
 
-Friction does not depend on where a mode adrift is, so nothing can balance its mean: the structure creeps
-on. And while no closed contact carries any load along the other rigid-body modes, it floats in its gaps.
+Friction does not depend on where a mode adrift is, so that the balance leaves its mean out. Where all
+contacts slip, nothing balances that: the structure creeps on. Contacts that stick hold it by residual
+friction, as long as their share does not make them slip. And while no closed contact carries any load along
+the other rigid-body modes, the structure floats in its gaps.
 """
 
 from __future__ import annotations
@@ -9,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from fcm.harmonic_balance.response_quantities import cycles, loops
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.structure.options import RIGID_BODY
@@ -29,22 +32,81 @@ def undetermined(system: System, z: FloatArray, force: FloatArray) -> dict[str, 
     if system.linear.natural.size == 0 or system.linear.natural.min() > 0.0:
         return {}
     blocks, forces = system.layout.blocks(z), system.layout.blocks(force)
-    return {"pushed": _pushed(system, forces), "floating": _floating(system, blocks, forces)}
+    pushed, _ = _pushed(system, z, blocks, forces)
+    return {"pushed": pushed, "floating": _floating(system, blocks, forces)}
 
 
-def _pushed(system: System, force: FloatArray) -> BoolArray:
-    """Whether the mean friction on a mode adrift is not 0; force (point, contact, width)."""
-    layout = system.layout
+def hold_unknown(system: System, z: FloatArray, force: FloatArray) -> BoolArray:
+    """Whether contacts that stick may hold the structure at points, or slip: z, force as of `undetermined`.
+
+    Their stability is not known.
+    """
+    if not system.linear.adrift.any():
+        return np.zeros(len(z), dtype=np.bool_)
+    return _pushed(system, z, system.layout.blocks(z), system.layout.blocks(force))[1]
+
+
+def _pushed(system: System, z: FloatArray, x: FloatArray, force: FloatArray) -> tuple[BoolArray, BoolArray]:
+    """Whether the mean friction on a mode adrift is not 0 and nothing holds it; and whether something may.
+
+    x, force (point, contact, width) at points z (point, unknown + 1).
+    """
+    layout, linear = system.layout, system.linear
     d, first = layout.directions, layout.directions + layout.stride * system.harmonics.index(1)
-    mean, size = np.zeros((2, len(force), system.linear.natural.size))
+    mean, size = np.zeros((2, len(force), linear.natural.size))
     for along in range(d - 1):
-        ports, at = system.linear.ports[:, along::d], first + 2 * along
+        ports, at = linear.ports[:, along::d], first + 2 * along
         mean += force[:, :, along] @ ports.T
         size += np.hypot(force[:, :, at], force[:, :, at + 1]) @ np.abs(ports).T
-    pushed: BoolArray = np.any(
-        system.linear.adrift & (np.abs(mean) > system.options.rigid.friction_tolerance * size), axis=1
-    )
-    return pushed
+    least = system.options.rigid.friction_tolerance * size
+    pushed: BoolArray = np.any(linear.adrift & (np.abs(mean) > least), axis=1)
+    unknown, rows = np.zeros_like(pushed), np.flatnonzero(pushed)
+    if rows.size:
+        stuck = _sticking(system, z[rows])
+        margin = np.where(stuck, _friction_margin(system, x[rows], force[rows]), 0.0)
+        ports = linear.ports[linear.adrift].reshape(-1, layout.contacts, d)[:, :, :-1]
+        for k, i in enumerate(rows):
+            push, small = mean[i, linear.adrift], least[i, linear.adrift]
+            free, _ = _balanced(ports, push, stuck[k].astype(float))
+            pushed[i] = bool((np.abs(free) > small).any())
+            left, share = _balanced(ports, push, margin[k])
+            unknown[i] = not pushed[i] and bool((np.abs(left) > small).any() or share > 1.0)
+    return pushed, unknown
+
+
+def _sticking(system: System, z: FloatArray) -> BoolArray:
+    """Contacts with friction that stick over the whole cycle (point, contact)."""
+    rough = np.array([c.mu * c.k_u > 0.0 and c.law is None for c in system.scene.contacts], dtype=np.bool_)
+    z = np.ascontiguousarray(z)
+    words, _ = cycles(system, z, loops(system, z))
+    sticking: BoolArray = (words == "E") & rough
+    return sticking
+
+
+def _friction_margin(system: System, x: FloatArray, force: FloatArray) -> FloatArray:
+    """Least distance of friction from its limit over the cycle (point, contact); 0 if it is beyond."""
+    layout, contacts = system.layout, system.scene.contacts
+    d, harmonics = layout.directions, np.array(system.harmonics)
+    samples = system.options.extremes.samples * int(harmonics.max())
+    turn = np.exp(1j * np.outer(harmonics, 2.0 * np.pi * np.arange(samples) / samples))
+    waves = force[:, :, d:].reshape(*force.shape[:2], harmonics.size, d, 2)
+    complex_waves = waves[..., 0] + 1j * waves[..., 1]
+    in_time = force[:, :, :d, None] + np.einsum("pchd,hs->pcds", complex_waves, turn).real
+    mu, n_0 = np.array([c.mu for c in contacts]), np.array([c.n_0 for c in contacts])
+    still = system.linear.counted * x[:, :, d - 1] + np.maximum(n_0, 0.0)
+    load = in_time[:, :, d - 1] + still[:, :, None]
+    distance = mu[:, None] * load - np.linalg.norm(in_time[:, :, :-1], axis=2)
+    margin: FloatArray = np.maximum(distance.min(axis=2), 0.0)
+    return margin
+
+
+def _balanced(ports: FloatArray, push: FloatArray, weight: FloatArray) -> tuple[FloatArray, float]:
+    """What is left of a push (mode,) once contacts take it, by their weights (contact,) and ports
+    (mode, contact, direction); and the greatest friction that one of them takes, over its weight."""
+    ways = (ports * weight[:, None]).reshape(len(push), -1)
+    taken = np.linalg.lstsq(ways, push, rcond=None)[0]
+    share = np.linalg.norm(taken.reshape(len(weight), -1), axis=1)
+    return push - ways @ taken, float(share.max(initial=0.0))
 
 
 def _floating(system: System, x: FloatArray, force: FloatArray) -> BoolArray:

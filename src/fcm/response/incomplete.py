@@ -11,7 +11,7 @@ from fcm.harmonic_balance.residual import PointQuantities
 from fcm.harmonic_balance.response_quantities import PointRecord
 from fcm.harmonic_balance.stiff_contacts import too_stiff
 from fcm.harmonic_balance.system import System
-from fcm.harmonic_balance.well_posedness import REASONS, undetermined
+from fcm.harmonic_balance.well_posedness import REASONS, hold_unknown, undetermined
 from fcm.model.scene import FloatArray
 from fcm.response.options import SENTENCES
 from fcm.units import in_unit
@@ -61,10 +61,22 @@ def no_steady_states(system: System, z: FloatArray, level: FloatArray) -> dict[s
     """
     if system.linear.natural.all():
         return {}
+    found = undetermined(system, z, _forces(system, z, level))
+    return {why: which & (level > 0.0) for why, which in found.items()}
+
+
+def holds_unknown(system: System, z: FloatArray, level: FloatArray) -> npt.NDArray[np.bool_]:
+    """Whether it is not known that contacts which stick hold points at levels, see `hold_unknown`."""
+    if system.linear.natural.all():
+        return np.zeros(len(z), dtype=np.bool_)
+    return hold_unknown(system, z, _forces(system, z, level))
+
+
+def _forces(system: System, z: FloatArray, level: FloatArray) -> FloatArray:
+    """Of the contacts, laid out as the unknowns (point, unknown)."""
     points = PointQuantities(system.shared_balance, len(z))
     points.evaluate(np.ascontiguousarray(z), np.zeros_like(z), np.ascontiguousarray(level))
-    found = undetermined(system, z, np.asarray(points.force))
-    return {why: which & (level > 0.0) for why, which in found.items()}
+    return np.asarray(points.force)
 
 
 def _resonant(system: System, omega: float) -> str:

@@ -28,7 +28,7 @@ from fcm.harmonic_balance.static_equilibrium import RestError
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.groups import anonymous, lost_curve
-from fcm.response.incomplete import no_steady_states, reason_for
+from fcm.response.incomplete import holds_unknown, no_steady_states, reason_for
 from fcm.response.options import INPUT_LIMITS, ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_modes
@@ -199,8 +199,9 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     stable = stable_at_levels(system, z, even)
     # with more harmonics there may be no solution where it is not
     known = truncation <= system.option(VALIDITY).max_error
-    stable[~known & (stable == 1.0)] = np.nan
     lost = no_steady_states(system, z, level)
+    known &= ~holds_unknown(system, z, level)
+    stable[~known & (stable == 1.0)] = np.nan
     for which in lost.values():
         stable[which] = 0.0  # what creeps away, or floats, is no steady state
     of_points = {

@@ -23,6 +23,7 @@ from fcm.harmonic_balance.rounding import with_precise_fundamental
 from fcm.harmonic_balance.static_equilibrium import RestError
 from fcm.harmonic_balance.stiff_contacts import too_stiff
 from fcm.harmonic_balance.system import System
+from fcm.harmonic_balance.well_posedness import hold_unknown
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.accuracy_shortfall import shortfall
 from fcm.response.best_so_far import BestSoFar, Tell
@@ -161,6 +162,7 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
     if not quick:  # with more harmonics the branch turns back before
         ended = np.concatenate([one.ends_before for one in found.errors])
         stable[np.isnan(stable) & ended] = 0.0
+    stable[hold_unknown(system, points.z, points.force) & (stable == 1.0)] = np.nan
     peak = np.full_like(found.peak, np.nan) if response.exceeded else found.peak
     error = np.maximum(np.concatenate([one.amplitude for one in found.errors]), rounding)
     open_to_past = undetermined(scene, words)
