@@ -5,7 +5,7 @@ The names below are imported when first used, so that a command pays only for wh
 
 from __future__ import annotations
 
-from fcm.on_demand import on_demand
+from fcm.lazy_import import on_demand
 
 TYPE_CHECKING = False  # typing alone would take as long as all the rest
 if TYPE_CHECKING:

@@ -38,7 +38,7 @@ async def main():
 asyncio.run(main())
 """
 SLOW = """
-import time, fcm.response, fcm.response.groups as groups
+import time, fcm.response, fcm.response.curve_batches as groups
 real = groups.traced_curve
 def slow(*args, **more):
     time.sleep(0.1)
@@ -104,7 +104,7 @@ def test_a_worker_dies_another_is_refused_and_at_last_the_scheduler_is_lost(prog
     assert "what is finished is kept in a.nc.unfinished: continue with --resume" in said[2]
     assert re.fullmatch(r"fcm: error: \d+ of 20 curves stopped early; .*", said[3]) and len(said) == 4
     counted = FEW + (
-        "import fcm.response.groups as groups\nreal = groups.traced_curve\n"
+        "import fcm.response.curve_batches as groups\nreal = groups.traced_curve\n"
         "def one(*args, **more):\n    print('traced')\n    return real(*args, **more)\n"
         "groups.traced_curve = one\n"
     )

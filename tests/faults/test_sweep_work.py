@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.response import groups, trace
+from fcm.response import curve_batches, trace
 from fcm.run import Checkpoint, CheckpointError, Execution, ExecutorPlace, Lost, fingerprint, place_for, sweep
 from fcm.run.fingerprint import installed
 from fcm.run.fingerprint import program as of_program
@@ -29,12 +29,12 @@ ALONE = FEW.replace("batch=2", "batch=1")
 SLOW = (
     ALONE
     + """
-import fcm.response.groups as groups, time
-real = groups.traced_curve
+import fcm.response.curve_batches as curve_batches, time
+real = curve_batches.traced_curve
 def slow(*args, **more):
     time.sleep(0.2)
     return real(*args, **more)
-groups.traced_curve = slow
+curve_batches.traced_curve = slow
 """
 )
 
@@ -138,10 +138,10 @@ def test_a_fingerprint_is_of_what_decides_the_curves():
         replace(scene, parameters={"n_0": 5.0}),
         replace(scene, frequency_range=(0.7, 1.6)),
     ]
-    marks = {fingerprint(groups.anonymous([one])) for one in (scene, *others)}
+    marks = {fingerprint(curve_batches.anonymous([one])) for one in (scene, *others)}
     assert len(marks) == 6
     moved = replace(scene, name="elsewhere/scene.toml", title="renamed")
-    assert fingerprint(groups.anonymous([scene])) == fingerprint(groups.anonymous([moved]))
+    assert fingerprint(curve_batches.anonymous([scene])) == fingerprint(curve_batches.anonymous([moved]))
 
 
 # An end while the result is written, or none
@@ -158,7 +158,7 @@ output.write_netcdf = lambda *_: os.kill(os.getpid(), 9)
     )
     args = ("respond", "sweep.toml", "-o", "a.nc", "--jobs", "1")
     assert program(*args, before=deadly).returncode == -signal.SIGKILL
-    nothing = FEW + "import fcm.response.groups as groups\ngroups.traced_curve = None\n"
+    nothing = FEW + "import fcm.response.curve_batches as curve_batches\ncurve_batches.traced_curve = None\n"
     done = program(*args, "--resume", before=nothing)
     assert done.returncode == 0 and program.files == ["a.nc", "one.toml", "sweep.toml"]
     assert program(*args[:3], "b.nc", before=FEW).returncode == 0
@@ -376,7 +376,7 @@ def test_partial_files_of_the_dead_are_removed_and_of_the_living_not(program):
 
 def test_a_table_that_is_killed_while_it_is_written_leaves_nothing_for_ever(program):
     args = ("tabulate", "--nodes", 9, 9, 9, 9, "--points", 10000, "-o", "t.nc")
-    deadly = "import fcm.table.seal as seal, os\nseal.attach = lambda _: os.kill(os.getpid(), 9)\n"
+    deadly = "import fcm.table.file_checksum as seal, os\nseal.attach = lambda _: os.kill(os.getpid(), 9)\n"
     assert program(*args, before=deadly).returncode == -signal.SIGKILL
     assert program(*args).returncode == 0
     assert program.files == ["one.toml", "sweep.toml", "t.nc"]
@@ -413,8 +413,8 @@ def test_there_is_one_bar_and_it_never_goes_back():
 
 @pytest.mark.slow
 def test_verbose_shows_where_a_curve_was_lost(program):
-    lost = "import fcm.response.groups as groups\n" + (
-        "def broken(*_, **more):\n    raise ZeroDivisionError('of zero')\ngroups.traced_curve = broken\n"
+    lost = "import fcm.response.curve_batches as curve_batches\n" + (
+        "def broken(*_, **more):\n    raise ZeroDivisionError('of zero')\ncurve_batches.traced_curve = broken\n"
     )
     quiet = program("respond", "one.toml", before=lost)
     loud = program("respond", "one.toml", "-v", before=lost)
@@ -440,7 +440,9 @@ fcm.response.scheduled.histories = stop
     done = program("respond", "one.toml", "--csv", "a.csv", before=stopped)
     assert done.returncode == 3 and former.read_text() == "former"
     assert "kept in a.csv.unfinished: continue with --resume" in done.err
-    nothing = ALONE + "import fcm.response.groups as groups\ngroups.traced_curve = None\n"
+    nothing = (
+        ALONE + "import fcm.response.curve_batches as curve_batches\ncurve_batches.traced_curve = None\n"
+    )
     assert program("respond", "one.toml", "--csv", "a.csv", "--resume", before=nothing).returncode == 0
     assert former.read_text().startswith("curve,") and program.files == ["a.csv", "one.toml", "sweep.toml"]
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fcm.fit.estimate import estimated
-from fcm.fit.rows import Rows
+from fcm.fit.least_squares_rows import Rows
 
 POINTS = 40
 

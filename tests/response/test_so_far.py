@@ -7,7 +7,7 @@ import pytest
 
 from fcm import load_scene
 from fcm.response import trace
-from fcm.response.groups import Work, fits
+from fcm.response.curve_batches import Work, fits
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.run import Interrupted

@@ -12,8 +12,8 @@ import pytest
 
 import fcm as package
 from fcm.response import trace
+from fcm.response.curve_batches import KINDS
 from fcm.response.exact import trace_exact
-from fcm.response.groups import KINDS
 from fcm.results.condensed_curves import without_points
 from fcm.results.curve_summary import curve_summary
 from fcm.results.jumps import swept

@@ -7,7 +7,7 @@ import tomllib
 import pytest
 
 from fcm.scene import SceneError, load_scene
-from fcm.scene.toml_slips import slips
+from fcm.scene.toml_mistakes import slips
 
 SLIPS = [
     ("mu = .3", "mu = 0.3"),

@@ -12,7 +12,7 @@ import pytest
 
 import fcm
 from fcm.response import exact_curve, resumable_branches
-from fcm.response.groups import KINDS
+from fcm.response.curve_batches import KINDS
 from fcm.response.options import RESPONSE
 from fcm.response.orbit_curve import orbit_curve
 from fcm.results.orbits import Stuck

@@ -5,10 +5,10 @@ import pytest
 
 from fcm import fourier_coefficients
 from fcm.table import atlas, build_table, open_table, spline
+from fcm.table.constant_load_limit import vanishing_variation
 from fcm.table.nodes import PRESETS, all_nodes
-from fcm.table.part import Part
+from fcm.table.partial_table import Part
 from fcm.table.tabulated import Cubic, locate
-from fcm.table.vanishing import vanishing_variation
 
 
 def coordinates(n0, b, phi):

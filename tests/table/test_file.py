@@ -11,7 +11,7 @@ import pytest
 import xarray
 
 import fcm
-from fcm.table import TableError, build_table, open_table, seal, shipped, store
+from fcm.table import TableError, build_table, file_checksum, open_table, shipped, store
 from fcm.table.arrays import encode
 
 from ..interrupted import interrupted_beyond
@@ -108,7 +108,7 @@ def test_pipe_and_loop_of_links(tmp_path):
     refused(tmp_path / "loop.nc", "is a loop of symbolic links")
 
 
-@pytest.mark.parametrize("content", [b"", b"x", b"plain text\n" * 50, seal.START + b"00000000\n"])
+@pytest.mark.parametrize("content", [b"", b"x", b"plain text\n" * 50, file_checksum.START + b"00000000\n"])
 def test_not_netcdf(tmp_path, content):
     path = tmp_path / "other.nc"
     path.write_bytes(content)
@@ -125,14 +125,14 @@ def test_another_layout(copy):
     with netCDF4.Dataset(copy, "r+") as file:
         file.layout = np.int32(99)
     refused(copy, "damaged, it was changed or cut off after it was written")
-    seal.attach(copy)
+    file_checksum.attach(copy)
     refused(copy, "layout 99")
 
 
 def test_values_that_are_not_finite(copy):
     with netCDF4.Dataset(copy, "r+") as file:
         file["F_c"][1, 1, 1] = np.nan
-    seal.attach(copy)
+    file_checksum.attach(copy)
     refused(copy, "F_c holds values that are not finite")
 
 
@@ -148,7 +148,7 @@ def test_values_that_were_changed(copy):
     with netCDF4.Dataset(copy, "r+") as file:
         file["F_s"][1, 1, 1] = 0.123
     refused(copy, "damaged, it was changed or cut off after it was written")
-    seal.attach(copy)
+    file_checksum.attach(copy)
     refused(copy, "checksum")
 
 
@@ -158,7 +158,7 @@ def test_the_library_never_sees_a_file_that_is_not_whole(tmp_path, tiny_file, mo
     content = tiny_file.read_bytes()
     rng = random.Random(0)
     for number in range(60):
-        damaged = bytearray(content if number % 2 else content[: -seal.LENGTH])
+        damaged = bytearray(content if number % 2 else content[: -file_checksum.LENGTH])
         for _ in range(2 ** rng.randrange(8)):
             damaged[rng.randrange(min(len(damaged), 10 ** rng.randrange(2, 7)))] ^= 0x55
         if number % 3 == 0:
@@ -179,7 +179,7 @@ def test_every_cut_is_refused(tmp_path, tiny_file):
 
 def test_every_flipped_byte_is_refused(tmp_path, tiny_file):
     content = tiny_file.read_bytes()
-    for position in range(0, len(content) - seal.LENGTH, 301):
+    for position in range(0, len(content) - file_checksum.LENGTH, 301):
         flipped = bytearray(content)
         flipped[position] ^= 0x10
         path = tmp_path / f"flip{position}.nc"

@@ -14,7 +14,7 @@ from fcm.scene import load_scene
 from fcm.table import TableError, build_table, open_table, spline
 from fcm.table.nodes import PRESETS
 from fcm.table.options import NODE_OPTIONS
-from fcm.table.part import Part, Reach
+from fcm.table.partial_table import Part, Reach
 
 from ..oscillator import oscillator
 

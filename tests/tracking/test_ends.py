@@ -16,7 +16,7 @@ from fcm.tracking.curves import tracked_curves
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.options import TRACKING
 from fcm.tracking.parameter_line import along
-from fcm.tracking.starts import for_scene
+from fcm.tracking.start_points import for_scene
 from fcm.tracking.tracked_point import Ending, TrackingRun
 
 SPAN, RANGE = (0.5, 0.7), (1.45, 1.65)  # in which the peak of x0 turns back where steps are short

@@ -23,7 +23,7 @@ from fcm.tracking.curves import tracked_curves
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.options import SearchOptions
 from fcm.tracking.parameter_line import along
-from fcm.tracking.starts import for_scene
+from fcm.tracking.start_points import for_scene
 from fcm.tracking.tracked_point import TrackingRun
 
 from ..harmonic_balance.scenes import gap5

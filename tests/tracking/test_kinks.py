@@ -16,7 +16,7 @@ from fcm.tracking.nonsmooth_continuation import Pieces, land
 from fcm.tracking.options import TRACKING
 from fcm.tracking.parameter_line import along
 from fcm.tracking.peak_check import is_top
-from fcm.tracking.starts import for_scene, special_points
+from fcm.tracking.start_points import for_scene, special_points
 from fcm.tracking.tracked_point import TrackedPoint, TrackingRun
 
 RADIUS = 1e-4

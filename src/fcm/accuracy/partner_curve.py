@@ -24,12 +24,12 @@ from fcm.accuracy.partner_pieces import CurvePiece, distinct, nearest, piece_of,
 from fcm.accuracy.partner_stretch import PartnerPiece, StretchFollower
 from fcm.accuracy.residual import changes_left_out
 from fcm.continuation import Mark, Path
+from fcm.harmonic_balance.consecutive_points import runs
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.harmonic_balance.response_quantities import contact_loads_along
-from fcm.harmonic_balance.runs import runs
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 

@@ -8,7 +8,7 @@ from fcm.accuracy.curve_distance import rises
 from fcm.accuracy.options import PAIR
 from fcm.accuracy.partner_curve import FollowedStretch, Indices, PartnerCurve
 from fcm.continuation import Mark
-from fcm.harmonic_balance.runs import runs
+from fcm.harmonic_balance.consecutive_points import runs
 from fcm.model.scene import FloatArray
 
 

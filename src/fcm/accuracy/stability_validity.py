@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.options import VALIDITY, ValidityOptions
-from fcm.harmonic_balance.runs import runs
+from fcm.harmonic_balance.consecutive_points import runs
 from fcm.model.scene import FloatArray
 
 Mask = npt.NDArray[np.bool_]

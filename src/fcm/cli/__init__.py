@@ -5,7 +5,7 @@ Not even click is imported before it is needed: an interruption in the first mom
 
 from __future__ import annotations
 
-from fcm.on_demand import on_demand
+from fcm.lazy_import import on_demand
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import Any
 from fcm.cli.columns import UNKNOWN, UNSTABLE, aligned, number, ranges, share_of, short, stopped_early, swept
 from fcm.cli.jump_table import jump_table, stable_table, untold_table
 from fcm.cli.limits import SENTENCES
-from fcm.rotation import MOST_DOFS, greatest_first, is_rotation, unit_of
+from fcm.rotational_dofs import MOST_DOFS, greatest_first, is_rotation, unit_of
 
 Curve = Mapping[str, Any]  # one of the summary's "curves"
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import click
 
 from fcm.cli.settings import SETTINGS, Settings
-from fcm.room import duration
+from fcm.resources import duration
 
 
 @dataclass

@@ -14,7 +14,7 @@ from fcm.cli.messages import Messages
 from fcm.run import Progress
 from fcm.table import TableError, open_table
 from fcm.table.build import charts
-from fcm.table.part import Part, Reach
+from fcm.table.partial_table import Part, Reach
 from fcm.table.tabulated import Resolution
 
 

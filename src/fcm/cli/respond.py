@@ -14,8 +14,8 @@ from fcm.cli.files import alone, check_different, check_not_read
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.outputs import Outputs
 from fcm.cli.remarks import announce, close
+from fcm.cli.resources_needed import check_room
 from fcm.cli.respond_options import Asked, respond_options
-from fcm.cli.room_needed import check_room
 from fcm.cli.scene_name import scene_argument
 from fcm.cli.time_limit import TimeLimit
 
@@ -117,7 +117,7 @@ def _loaded(messages: Messages, name: str, asked: Asked) -> tuple[Scene, export.
     from fcm.response.visible_dofs import check_solvable
     from fcm.scene import load_scene
     from fcm.scene.options import MESSAGES
-    from fcm.scene.told import Told
+    from fcm.scene.size_notices import Told
 
     def before(scene: Scene, count: int) -> None:
         if not asked.compare:

@@ -12,7 +12,7 @@ from click.core import ParameterSource
 from fcm.cli.columns import aligned, number, stopped_early, swept
 from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages
-from fcm.rotation import MOST_DOFS
+from fcm.rotational_dofs import MOST_DOFS
 
 if TYPE_CHECKING:
     from fcm.model.scene import Scene

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fcm import room
+from fcm import resources
 from fcm.cli.limits import SENTENCES, RemarkOptions
 
 if TYPE_CHECKING:
@@ -52,8 +52,8 @@ class Settings:
     compare: CompareOptions | None = None
     run: RunOptions | None = None
     place: Factory | None = None
-    memory: Callable[[], float] = room.memory
-    disk: Callable[[Path], float] = room.disk
+    memory: Callable[[], float] = resources.memory
+    disk: Callable[[Path], float] = resources.disk
     clock: Callable[[], float] = time.monotonic
 
 

@@ -7,7 +7,7 @@ import warnings
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from fcm.on_demand import on_demand
+from fcm.lazy_import import on_demand
 
 if TYPE_CHECKING:
     from fcm.contact.contact_law import ContactLaw, ContactLawError

@@ -20,7 +20,7 @@ from fcm.reduction.restore import unknowns
 from fcm.response.request import ResponseError
 from fcm.results.motions import ComplexArray, Motion
 from fcm.results.result import Curve, Response
-from fcm.rotation import greatest_first
+from fcm.rotational_dofs import greatest_first
 from fcm.units import UNIT
 
 

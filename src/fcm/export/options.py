@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fcm.rotation import MOST_DOFS
+from fcm.rotational_dofs import MOST_DOFS
 
 
 @dataclass(frozen=True)

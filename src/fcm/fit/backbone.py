@@ -13,8 +13,8 @@ import numpy as np
 
 from fcm.continuation.corrector import Newton
 from fcm.fit.forced import NoMotionError
+from fcm.fit.least_squares_rows import Rows
 from fcm.fit.options import BACKBONE, FitOptions
-from fcm.fit.rows import Rows
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Measured, Scene
 from fcm.nonlinear_modes.backbone import Mode, linear_modes, nonlinear_mode

@@ -17,9 +17,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import t as student
 
+from fcm.fit.least_squares_rows import Rows
 from fcm.fit.options import FIT, FitOptions
 from fcm.fit.parameters import Parameters
-from fcm.fit.rows import Rows
 from fcm.model.scene import FloatArray
 
 

@@ -22,8 +22,8 @@ import numpy.typing as npt
 
 from fcm.branches.trace import traced
 from fcm.continuation.corrector import Newton
+from fcm.fit.least_squares_rows import Rows
 from fcm.fit.options import NEAREST, FitOptions, NearestOptions
-from fcm.fit.rows import Rows
 from fcm.harmonic_balance.dense_jacobian import jacobian_of
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.response_quantities import recorded

@@ -17,9 +17,9 @@ from scipy.optimize import least_squares
 
 from fcm.fit.backbone import backbone_rows
 from fcm.fit.forced import NoMotionError, errors_of, forced_rows
+from fcm.fit.least_squares_rows import Rows, joined
 from fcm.fit.options import FIT, FitOptions
 from fcm.fit.parameters import FitError, Parameters
-from fcm.fit.rows import Rows, joined
 from fcm.fit.weights import reweighted
 from fcm.model.scene import FloatArray, Measured
 

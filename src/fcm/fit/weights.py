@@ -19,8 +19,8 @@ from scipy.optimize import minimize
 
 from fcm.fit.backbone import backbone_errors
 from fcm.fit.forced import errors_of
+from fcm.fit.least_squares_rows import Rows
 from fcm.fit.options import FitOptions
-from fcm.fit.rows import Rows
 from fcm.model.scene import FloatArray, Measured
 
 

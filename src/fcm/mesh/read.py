@@ -10,7 +10,7 @@ import numpy as np
 from fcm.mesh.abaqus import read_abaqus
 from fcm.mesh.coordinates import read_coordinates
 from fcm.mesh.mesh import Mesh, MeshError
-from fcm.mesh.numbered import read_gmsh, read_nastran
+from fcm.mesh.nastran_gmsh import read_gmsh, read_nastran
 
 _READERS: dict[str, Callable[[Path], Mesh]] = {
     ".inp": read_abaqus,

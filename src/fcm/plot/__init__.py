@@ -5,7 +5,7 @@ The names below are imported when first used: a command that only shortens names
 
 from typing import TYPE_CHECKING
 
-from fcm.on_demand import on_demand
+from fcm.lazy_import import on_demand
 from fcm.plot.errors import PlotError
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label, with_unit
 from fcm.plot.read import LEVEL, DrawnResponse, wide
 from fcm.plot.style import LAYOUT, has_decades, house_style, logarithmic_axis, new_figure, sequence_colours
-from fcm.rotation import unit_of
+from fcm.rotational_dofs import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

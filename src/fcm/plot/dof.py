@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from fcm.plot.errors import PlotError
 from fcm.plot.options import READ
-from fcm.rotation import MOST_DOFS, greatest_first
+from fcm.rotational_dofs import MOST_DOFS, greatest_first
 
 
 def column_of(dofs: Sequence[str], dof: str | None, whose: str = "the file has") -> int:

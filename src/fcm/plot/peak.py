@@ -16,7 +16,7 @@ from fcm.plot.labels import curve_label, frequency_label, staying, symbols, with
 from fcm.plot.read import BoolArray, FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
 from fcm.plot.style import LAYOUT, house_style, logarithmic_axis, new_figure, sequence_colours, swept_axis
-from fcm.rotation import unit_of
+from fcm.rotational_dofs import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -16,7 +16,7 @@ from fcm.plot.measured import draw_measured, name_measured
 from fcm.plot.points import DrawnPoints, draw_points, name_points
 from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, FloatArray, wide
 from fcm.plot.style import LAYOUT, has_decades, house_style, logarithmic_axis, new_figure, sequence_colours
-from fcm.rotation import unit_of
+from fcm.rotational_dofs import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

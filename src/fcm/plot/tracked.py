@@ -23,7 +23,7 @@ from fcm.plot.style import (
     sequence_colours,
     swept_axis,
 )
-from fcm.rotation import unit_of
+from fcm.rotational_dofs import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

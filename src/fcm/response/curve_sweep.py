@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from fcm.response.groups import KINDS, Group, anonymous, as_curve, fit
+from fcm.response.curve_batches import KINDS, Group, anonymous, as_curve, fit
 from fcm.results.result import NOT_BEGUN, Curve
 from fcm.run import Checkpoint, Compute, Factory, Lost, Progress, Results, fingerprint, place_for, sweep
 

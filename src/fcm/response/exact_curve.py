@@ -13,7 +13,7 @@ from fcm.model.scene import FloatArray, Held, Scene
 from fcm.reduction.constant_state_contacts import NotKeptError, check, expected_constant
 from fcm.response.coexisting_orbits import coexisting_orbits
 from fcm.response.coexisting_search import Search
-from fcm.response.groups import Group, lost_curve
+from fcm.response.curve_batches import Group, lost_curve
 from fcm.response.only_peaks import PeaksOnly, peaks_curve, peaks_of, peaks_only
 from fcm.response.options import EXACT_CURVES, ExactOptions
 from fcm.response.orbit_branches import OrbitBranches

@@ -27,7 +27,7 @@ from fcm.harmonic_balance.response_quantities import cycles, loops, recorded_at_
 from fcm.harmonic_balance.static_equilibrium import RestError
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
-from fcm.response.groups import anonymous, lost_curve
+from fcm.response.curve_batches import anonymous, lost_curve
 from fcm.response.incomplete import holds_unknown, no_steady_states, reason_for
 from fcm.response.options import INPUT_LIMITS, ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of

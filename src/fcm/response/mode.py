@@ -19,7 +19,7 @@ from fcm.harmonic_balance.wave_extremes import half_peak_to_peak
 from fcm.model.scene import FloatArray, Scene
 from fcm.nonlinear_modes.backbone import Mode, ModeError, nonlinear_mode, truncation
 from fcm.nonlinear_modes.forced_response import flanks, modal_force, resonances, resonant_level
-from fcm.response.groups import anonymous, lost_curve
+from fcm.response.curve_batches import anonymous, lost_curve
 from fcm.response.incomplete import no_steady_states, reason_for
 from fcm.response.options import INPUT_LIMITS, ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of

@@ -20,8 +20,8 @@ from fcm.reduction.constant_state_contacts import (
 )
 from fcm.response.coexisting_search import Search
 from fcm.response.coexisting_stuck import coexisting_stuck
+from fcm.response.curve_batches import lost_curve
 from fcm.response.friction_extent import FrictionExtent, friction_extent
-from fcm.response.groups import lost_curve
 from fcm.response.options import SENTENCES
 from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.stepped_sweep import SteppedSweep

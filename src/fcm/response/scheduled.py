@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from fcm.model.scene import Scene
-from fcm.response.groups import anonymous
+from fcm.response.curve_batches import anonymous
 from fcm.run import Checkpoint, Progress, fingerprint
 from fcm.time_domain import Energy, Histories, State, histories
 from fcm.time_domain.schedule_record import CompletedPhase, PhaseResult, Record

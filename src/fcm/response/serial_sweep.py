@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 
-from fcm.response.groups import KINDS, fits
+from fcm.response.curve_batches import KINDS, fits
 from fcm.results.cause import Cause
 from fcm.results.result import INTERRUPTED, Curve
 from fcm.run import IN_THIS_PROCESS, Execution, Progress, Results

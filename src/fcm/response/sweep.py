@@ -14,8 +14,8 @@ from fcm.reduction.negligible_parts import Lighter, keep_all, leave_out
 from fcm.reduction.options import REDUCTION
 from fcm.reduction.restore import checked, restored
 from fcm.response.blades import with_blades
+from fcm.response.curve_batches import Work
 from fcm.response.curve_sweep import CurveSweep
-from fcm.response.groups import Work
 from fcm.response.options import ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_modes, unknown

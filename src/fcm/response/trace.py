@@ -60,7 +60,7 @@ def traced_curve(
     fcm.run.Interrupted
         With the best curve that there is, or as much as there is of the first.
     """
-    from fcm.response.groups import lost_curve
+    from fcm.response.curve_batches import lost_curve
 
     begin, so_far = time.perf_counter(), BestSoFar(tell)
     try:
@@ -95,7 +95,7 @@ def _unfinished(so_far: BestSoFar, scene: Scene) -> Curve:
 
 
 def _traced_curve(scene: Scene, wanted: Request, poll: Callable[[], None] | None, so_far: BestSoFar) -> Curve:
-    from fcm.response.groups import lost_curve
+    from fcm.response.curve_batches import lost_curve
 
     system = System(
         with_master_dofs(scene),

@@ -35,7 +35,7 @@ from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.onset_functions import KINDS as ONSETS
 from fcm.tracking.parameter_line import along
 from fcm.tracking.stability import stability_along
-from fcm.tracking.starts import SpecialPoints, for_scene
+from fcm.tracking.start_points import SpecialPoints, for_scene
 from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingRun
 from fcm.units import in_unit
 

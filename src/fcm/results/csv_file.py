@@ -11,10 +11,10 @@ import numpy as np
 
 from fcm.files import replacing
 from fcm.results.in_plane import csv_columns, csv_values
-from fcm.results.meanings import CYCLE, ORBIT_KINDS
 from fcm.results.orbits import Orbits
 from fcm.results.result import Curve, Response
-from fcm.rotation import unit_of
+from fcm.results.variable_meanings import CYCLE, ORBIT_KINDS
+from fcm.rotational_dofs import unit_of
 from fcm.units import headed, in_unit
 
 LAST_COLUMNS = ("stable", "table_error", "truncation_error")

@@ -10,9 +10,9 @@ import numpy as np
 from fcm.results.condensed_curves import CondensedCurve, condense, worst
 from fcm.results.contact_maxima import Greatest
 from fcm.results.jumps import Jump, UnknownStability
-from fcm.results.meanings import CYCLE
 from fcm.results.orbits import Orbits, Stuck
 from fcm.results.peak import Peak
+from fcm.results.variable_meanings import CYCLE
 from fcm.stability.unstable_ranges import without_frequencies
 from fcm.units import in_unit
 

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy.typing as npt
 
-from fcm.results.padded import Padded
+from fcm.results.padded_arrays import Padded
 
 
 class Field(NamedTuple):

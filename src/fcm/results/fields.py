@@ -14,7 +14,10 @@ from fcm.results.blades import blade_fields
 from fcm.results.curve_fields import condensed_fields, curve_fields, scatter_fields, sensitivity_fields
 from fcm.results.field import Field
 from fcm.results.in_plane import plane_fields
-from fcm.results.meanings import (
+from fcm.results.padded_arrays import Padded, by_point
+from fcm.results.result import Curve, Response
+from fcm.results.scatter import scatter
+from fcm.results.variable_meanings import (
     CYCLE,
     CYCLE_ERROR,
     ENERGIES,
@@ -25,11 +28,8 @@ from fcm.results.meanings import (
     ORBIT_KINDS,
     ORBITS,
 )
-from fcm.results.padded import Padded, by_point
-from fcm.results.result import Curve, Response
-from fcm.results.scatter import scatter
 from fcm.results.variable_names import variable_names
-from fcm.rotation import is_rotation
+from fcm.rotational_dofs import is_rotation
 from fcm.units import CF_UNIT, in_unit, unit_of_number
 
 

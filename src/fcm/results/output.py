@@ -17,7 +17,7 @@ from fcm.results.field import Field
 from fcm.results.fields import fields_of, swept_names
 from fcm.results.in_plane import DIRECTIONS
 from fcm.results.options import RESULTS, FileOptions
-from fcm.results.padded import Padded
+from fcm.results.padded_arrays import Padded
 from fcm.results.result import Response
 from fcm.results.scatter import scatter, summary_of
 from fcm.results.tracked_fields import tracked_names

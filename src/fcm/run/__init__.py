@@ -6,7 +6,7 @@ keeps what is finished; `fingerprint` says of what the results depend.
 
 from typing import TYPE_CHECKING
 
-from fcm.on_demand import on_demand
+from fcm.lazy_import import on_demand
 from fcm.run.checkpoint import Checkpoint, Results
 from fcm.run.execution import IN_THIS_PROCESS, Execution
 from fcm.run.fingerprint import fingerprint

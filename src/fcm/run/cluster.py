@@ -16,11 +16,11 @@ from concurrent.futures import CancelledError, Future
 from contextlib import contextmanager, suppress
 from typing import Any
 
-from fcm.run.address import LATE, answering
-from fcm.run.address import within as _within
 from fcm.run.executor_place import ExecutorPlace, Refused, identity, other_fcm, there
 from fcm.run.options import RUN, RunOptions
 from fcm.run.places import Factory, NotComputed, PlaceClosed
+from fcm.run.scheduler_address import LATE, answering
+from fcm.run.scheduler_address import within as _within
 from fcm.run.work import Attempt, Compute
 from fcm.signals import undisturbed
 

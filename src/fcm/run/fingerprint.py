@@ -23,7 +23,7 @@ import numpy as np
 import fcm
 
 PROGRAM = (".py", ".so", ".pyd")  # endings of files that decide what is computed
-TABLE, LAST = ".nc", 64  # a table ends in a checksum of all its bytes (`fcm.table.seal`)
+TABLE, LAST = ".nc", 64  # a table ends in a checksum of all its bytes (`fcm.table.file_checksum`)
 
 
 def fingerprint(*parts: Any) -> bytes:

@@ -17,7 +17,7 @@ from contextlib import suppress
 from typing import BinaryIO, cast
 
 from fcm import signals
-from fcm.run.frames import BATCH, PROGRESS, SHARE, STATE, STOP, WORK, receive, send
+from fcm.run.message_frames import BATCH, PROGRESS, SHARE, STATE, STOP, WORK, receive, send
 from fcm.run.places import Place, WorkerDied
 from fcm.run.work import Attempt, Batch, Compute, Report
 from fcm.threads import one_each

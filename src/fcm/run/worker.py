@@ -14,7 +14,7 @@ import time
 from queue import SimpleQueue
 from typing import BinaryIO
 
-from fcm.run.frames import BATCH, PROGRESS, RESULT, SHARE, STATE, STOP, WORK, receive, send
+from fcm.run.message_frames import BATCH, PROGRESS, RESULT, SHARE, STATE, STOP, WORK, receive, send
 from fcm.run.options import RUN
 from fcm.run.places import until
 from fcm.run.work import Lost, Report, attempt

@@ -16,7 +16,7 @@ from zlib import crc32
 
 import numpy as np
 
-from fcm import room
+from fcm import resources
 from fcm.model.scene import FloatArray
 from fcm.scene.errors import counted, kind, quoted
 from fcm.scene.keys import names
@@ -97,7 +97,7 @@ def read_draws(table: Section, form: str, key: str, integer: Callable[..., int |
         return None
     found = Draws(key, form, pair, quantile, count, seed)
     seconds = found.seconds()
-    long = f"{count} draws of this distribution take about {room.duration(seconds)}"
+    long = f"{count} draws of this distribution take about {resources.duration(seconds)}"
     if seconds > LIMITS.draws_seconds:
         table.wrong(
             "count",

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Sequence
 
 from fcm.scene.options import MESSAGES
-from fcm.scene.told import Told
+from fcm.scene.size_notices import Told
 
 _NUMBER = re.compile(r"[0-9]{1,18}")  # of a node, at the beginning of a name
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fcm import room
+from fcm import resources
 from fcm.model.ring import NEXT
 from fcm.model.scene import FloatArray
 from fcm.scene.cyclic import own_name, ring_names
@@ -83,12 +83,13 @@ def _room_for(top: Section, directions: int, rows: int) -> bool:
     if taken > (free := told.memory()):
         top.wrong(
             "structure",
-            f"{said} {room.size(taken)} of memory, and {room.size(free)} are free: reduce it to the rows of "
-            "the contacts and forces first, as by Craig and Bampton, or give fewer contacts",
+            f"{said} {resources.size(taken)} of memory, "
+            f"and {resources.size(free)} are free: reduce it to the rows of the contacts and forces "
+            "first, as by Craig and Bampton, or give fewer contacts",
         )
         return False
     if taken > told.options.memory:
-        told.say(f"structure: {said} about {room.size(taken)} of memory")
+        told.say(f"structure: {said} about {resources.size(taken)} of memory")
     return True
 
 

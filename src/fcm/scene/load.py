@@ -52,9 +52,9 @@ from fcm.scene.questionable_values import questions
 from fcm.scene.schedule import read_schedule, read_start, with_schedule
 from fcm.scene.section import Parts, Section
 from fcm.scene.shared_normal import note_of_own_normal, note_of_shared_normals
+from fcm.scene.size_notices import Told
 from fcm.scene.start_note import note_of_start
 from fcm.scene.sweep import combinations, curves_of, read_sweep
-from fcm.scene.told import Told
 from fcm.scene.toml import read_toml
 
 NOT_IN_PLANE = (

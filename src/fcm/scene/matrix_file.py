@@ -15,7 +15,6 @@ import numpy as np
 import scipy.sparse
 
 from fcm.model.scene import FloatArray
-from fcm.scene.archive import Arrays, read_npz
 from fcm.scene.errors import choices, quoted
 from fcm.scene.files import DataFileError, Files, UnreadableError
 from fcm.scene.formats.abaqus import is_abaqus, read_abaqus
@@ -24,6 +23,7 @@ from fcm.scene.formats.dmig import read_dmig
 from fcm.scene.formats.harwell_boeing import read_harwell_boeing
 from fcm.scene.formats.labelled import Labelled
 from fcm.scene.matrix_market import read_matrix_market
+from fcm.scene.npz_file import Arrays, read_npz
 from fcm.scene.reader_process import NAMES, read_apart
 from fcm.scene.readers import matrix_and_rows, own_endings, own_reader, read_own
 

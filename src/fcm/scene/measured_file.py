@@ -14,9 +14,9 @@ import numpy as np
 
 from fcm.files import MEASURED
 from fcm.model.scene import FloatArray
-from fcm.scene.archive import names_in_npz, read_npz
 from fcm.scene.errors import choices, quoted
 from fcm.scene.files import DataFileError, Files
+from fcm.scene.npz_file import names_in_npz, read_npz
 from fcm.scene.number_text import fault_of_number, number_in
 from fcm.scene.options import MESSAGES
 from fcm.scene.reader_process import NAMES, read_apart

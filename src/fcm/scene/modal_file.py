@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from fcm.scene.archive import names_in_npz, read_npz
 from fcm.scene.errors import counted, quoted
 from fcm.scene.files import DataFileError, Files
+from fcm.scene.npz_file import names_in_npz, read_npz
 from fcm.scene.options import TOLERANCES
 from fcm.scene.reader_process import NAMES, read_apart
 from fcm.scene.readers import own_endings, own_reader, read_own

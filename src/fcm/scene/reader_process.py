@@ -19,10 +19,10 @@ from typing import Any
 import numpy as np
 
 import fcm
-from fcm.scene.archive import Arrays
 from fcm.scene.errors import quoted
 from fcm.scene.files import DataFileError, Files, UnreadableError, megabytes, reason_of
 from fcm.scene.mat_tags import check_tags, of_struct
+from fcm.scene.npz_file import Arrays
 from fcm.scene.options import FILES
 
 REFUSED = 3  # exit code of the child when it says why

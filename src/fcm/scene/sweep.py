@@ -25,7 +25,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm import room
+from fcm import resources
 from fcm.model.scene import Address
 from fcm.scene.address import Addresses, overlap
 from fcm.scene.draws import FORMS as DRAWN
@@ -85,8 +85,9 @@ def read_sweep(top: Section, parts: Mapping[str, Any], others: Sequence[Swept] =
     elif count * LIMITS.bytes_of_curve > (free := section.mistakes.told.memory()):
         section.wrong(
             "",
-            f"asks for {count} curves, which take {room.size(count * LIMITS.bytes_of_curve)} of memory "
-            f"before they are traced, and {room.size(free)} are free: sweep or draw fewer values at a time",
+            f"asks for {count} curves, which take {resources.size(count * LIMITS.bytes_of_curve)} of memory "
+            f"before they are traced, and {resources.size(free)} are free: "
+            "sweep or draw fewer values at a time",
         )
     return swept
 

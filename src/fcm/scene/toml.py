@@ -13,7 +13,7 @@ from typing import Any
 from fcm.files import no_file
 from fcm.scene.errors import SceneError
 from fcm.scene.options import TOML, TomlOptions
-from fcm.scene.toml_slips import slips
+from fcm.scene.toml_mistakes import slips
 
 _PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
 

@@ -5,7 +5,7 @@ The names below are imported when first used: its options are those of every res
 
 from typing import TYPE_CHECKING
 
-from fcm.on_demand import on_demand
+from fcm.lazy_import import on_demand
 
 if TYPE_CHECKING:
     from fcm.shooting.harmonic_balance_state import harmonic_state

@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from fcm.continuation import Path
 from fcm.continuation.events import SignChange
-from fcm.harmonic_balance.runs import runs
+from fcm.harmonic_balance.consecutive_points import runs
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.along_branch import PathVerdicts

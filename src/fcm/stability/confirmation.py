@@ -17,7 +17,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic_balance.runs import runs
+from fcm.harmonic_balance.consecutive_points import runs
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.floquet import multipliers_of

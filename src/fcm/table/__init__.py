@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fcm.on_demand import on_demand
+from fcm.lazy_import import on_demand
 
 if TYPE_CHECKING:
     from fcm.table.build import build_table

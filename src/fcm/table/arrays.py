@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.table.atlas import FloatArray
-from fcm.table.part import Part
+from fcm.table.partial_table import Part
 
 Arrays = dict[str, npt.NDArray[Any]]
 

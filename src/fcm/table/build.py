@@ -10,13 +10,13 @@ import numpy as np
 from fcm.contact import fourier_coefficients
 from fcm.table import arrays, atlas, store
 from fcm.table.atlas import FloatArray
+from fcm.table.constant_load_limit import vanishing_variation
 from fcm.table.error import error_of, sample
 from fcm.table.lookup import Table
 from fcm.table.nodes import PRESETS, Nodes, axes, problem, separation_nodes, slip_nodes
 from fcm.table.options import ERROR_OPTIONS
-from fcm.table.part import Part
+from fcm.table.partial_table import Part
 from fcm.table.tabulated import Resolution
-from fcm.table.vanishing import vanishing_variation
 
 BUILT, MEASURED = 0.25, 0.95  # shares of the work done, for the progress
 

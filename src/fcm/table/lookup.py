@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from fcm.table import spline
 from fcm.table.atlas import FloatArray
-from fcm.table.part import Part, frame
+from fcm.table.partial_table import Part, frame
 from fcm.table.tabulated import Cubic, Resolution, Tabulated
 
 Coefficients = npt.NDArray[np.float32]

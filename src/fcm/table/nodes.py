@@ -9,7 +9,7 @@ import numpy as np
 from fcm.table import atlas
 from fcm.table.atlas import FloatArray
 from fcm.table.options import NODE_OPTIONS
-from fcm.table.part import Part
+from fcm.table.partial_table import Part
 from fcm.table.tabulated import Resolution
 
 PRESETS: dict[str, Resolution] = {"default": (65, 17, 81, 71), "fast": (25, 9, 37, 29)}

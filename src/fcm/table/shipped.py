@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from fcm.files import replacing
-from fcm.table import seal
+from fcm.table import file_checksum
 from fcm.table.lookup import Coefficients, Table
-from fcm.table.part import Part
+from fcm.table.partial_table import Part
 
 DEFAULT = Path(__file__).parent.parent / "tables" / "default.nc"
 SPLINES = ".splines"  # ending of the name
@@ -27,7 +27,7 @@ HEADER, CHECK = 4096, 8  # bytes before the numbers; of them those of the checks
 def write(table: Table, path: Path) -> None:
     """Write the splines of the table that was opened from a path."""
     about = {
-        "table": seal.of(path),
+        "table": file_checksum.of(path),
         "shape": table.coefficients.shape,
         "resolution": table.resolution,
         "measured_error": table.error,
@@ -47,7 +47,7 @@ def read(path: Path) -> Table | None:
                 return None
             about: dict[str, Any] = json.loads(text)
             found = np.fromfile(file, dtype=np.float32)
-        if about["table"] != seal.of(path) or about["sum"] != _sum(found):
+        if about["table"] != file_checksum.of(path) or about["sum"] != _sum(found):
             return None
     except OSError:
         return None

@@ -14,10 +14,10 @@ import numpy as np
 
 import fcm
 from fcm.files import NOT_THERE, no_file, real, replacing
-from fcm.table import TableError, seal
+from fcm.table import TableError, file_checksum
 from fcm.table.arrays import VARIABLES, Arrays, decode, expected
 from fcm.table.atlas import FloatArray
-from fcm.table.part import Part
+from fcm.table.partial_table import Part
 
 LAYOUT = 1  # to be raised whenever `decode` or `atlas` changes
 PART_LAYOUT = 2  # of a file with a part of the nodes, which fcm before it would have taken for all
@@ -53,7 +53,7 @@ def write(
     attributes = _attributes(arrays, error, history, part)
     with replacing(path) as partial:
         _write(partial, arrays, attributes)
-        seal.attach(partial)
+        file_checksum.attach(partial)
 
 
 def _attributes(arrays: Arrays, error: Mapping[str, Any], history: str, part: Part | None) -> dict[str, Any]:
@@ -124,13 +124,13 @@ def load(path: str | Path) -> tuple[FloatArray, FloatArray, dict[str, Any], Part
     if what := no_file(name):
         raise TableError(f"{name}: {'no such file' if what == NOT_THERE else what}")
     try:
-        content = seal.check(name)
+        content = file_checksum.check(name)
         if content is None:
             raise TableError(f"{name}: {_unsealed(name)}")
         attributes, arrays = _read(name, content)
     except (TableError, MemoryError, ImportError):
         raise
-    except seal.BrokenSealError as reason:
+    except file_checksum.BrokenSealError as reason:
         raise TableError(f"{name}: damaged, {reason}; {REMEDY}") from None
     except Exception as reason:
         if getattr(reason, "errno", 0) == errno.ENOMEM:

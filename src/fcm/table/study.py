@@ -22,7 +22,7 @@ from fcm.table.error import sample
 from fcm.table.lookup import Table
 from fcm.table.nodes import PRESETS
 from fcm.table.options import STUDY_OPTIONS, StudyOptions
-from fcm.table.part import Part
+from fcm.table.partial_table import Part
 from fcm.table.tabulated import NODES_BETWEEN, Cubic, Resolution, locate
 
 Coefficients = Callable[[FloatArray, FloatArray, FloatArray], Any]

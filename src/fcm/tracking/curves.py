@@ -16,7 +16,7 @@ from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.known_curves import passes
 from fcm.tracking.nonsmooth_continuation import land
 from fcm.tracking.peak_check import is_top
-from fcm.tracking.starts import for_scene, special_points
+from fcm.tracking.start_points import for_scene, special_points
 from fcm.tracking.tracked_point import TrackedPoint, TrackingRun
 
 T = TypeVar("T")

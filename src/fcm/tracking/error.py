@@ -20,7 +20,7 @@ from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.nonsmooth_continuation import follow_special_point, land
 from fcm.tracking.options import TRACKING, TrackingOptions
 from fcm.tracking.peak_check import is_top
-from fcm.tracking.starts import for_scene
+from fcm.tracking.start_points import for_scene
 from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingRun
 
 

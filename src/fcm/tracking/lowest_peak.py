@@ -35,7 +35,7 @@ from fcm.tracking.peak_envelope import (
     pieces_of,
     uncovered_values,
 )
-from fcm.tracking.starts import for_scene, special_points
+from fcm.tracking.start_points import for_scene, special_points
 from fcm.tracking.tracked_point import TrackedPoint, TrackingRun
 
 MIN_HEIGHT = PieceHeight(0.0, 0.0, np.zeros(0), -1)

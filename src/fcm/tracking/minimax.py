@@ -32,7 +32,7 @@ from fcm.tracking.nonsmooth_continuation import follow_special_point, land
 from fcm.tracking.options import DESCENT, DescentOptions
 from fcm.tracking.parameter_line import ParameterLine
 from fcm.tracking.peak_envelope import INCOMPLETE, EnvelopeMinimum, PieceHeight, Target
-from fcm.tracking.starts import for_scene, special_points
+from fcm.tracking.start_points import for_scene, special_points
 from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingRun
 from fcm.tracking.trials import by_trials
 

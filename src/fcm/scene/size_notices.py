@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fcm import room
+from fcm import resources
 from fcm.scene.options import MESSAGES, MessageOptions
 
 if TYPE_CHECKING:
@@ -35,5 +35,5 @@ class Told:
 
     say: Callable[[str], None] = _ignored
     curves: Callable[[Scene, int], None] = _ignored
-    memory: Callable[[], float] = room.memory
+    memory: Callable[[], float] = resources.memory
     options: MessageOptions = MESSAGES

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fcm import room
+from fcm import resources
 from fcm.cli.limits import REQUESTS
 from fcm.cli.messages import Messages
 from fcm.cli.respond_options import Asked
@@ -37,21 +37,22 @@ def check_room(messages: Messages, scene: Scene, count: int, asked: Asked) -> No
     take = "take" if count > 1 else "takes"
     if results + matrices > (free := settings.memory()):
         raise ResponseError(
-            f"{said} {take} at least {room.size(results + matrices)} of memory, and {room.size(free)} are "
-            f"free: {_remedy(matrices > results, asked)}"
+            f"{said} {take} at least {resources.size(results + matrices)} of memory, "
+            f"and {resources.size(free)} are free: {_remedy(matrices > results, asked)}"
         )
     if results + matrices > settings.remarks.memory:
-        messages.info(f"{said} {take} at least {room.size(results + matrices)} of memory")
+        messages.info(f"{said} {take} at least {resources.size(results + matrices)} of memory")
     if (seconds := _seconds_of_curve(scene, len(harmonics), asked)) > settings.remarks.long_curve:
         messages.info(
-            f"{'each of ' * (count > 1)}{said} takes at least about {room.duration(seconds)} of processor "
-            f"time: less with {_lighter(harmonics, asked)}; --time-limit ends it"
+            f"{'each of ' * (count > 1)}{said} takes at least about {resources.duration(seconds)} of "
+            f"processor time: less with {_lighter(harmonics, asked)}; --time-limit ends it"
         )
     for path, times in ((asked.output, 1.0), (asked.csv, REQUESTS.csv_size)):
         if path is not None and times * results > (left := settings.disk(_folder(path))):
             raise ResponseError(
-                f"{path} takes at least {room.size(times * results)}, and {room.size(left)} are free on its "
-                f"disk: {_remedy(False, asked)}, or write to another disk"
+                f"{path} takes at least {resources.size(times * results)}, "
+                f"and {resources.size(left)} are free on its disk: {_remedy(False, asked)}, "
+                "or write to another disk"
             )
 
 
