@@ -414,7 +414,8 @@ def test_there_is_one_bar_and_it_never_goes_back():
 @pytest.mark.slow
 def test_verbose_shows_where_a_curve_was_lost(program):
     lost = "import fcm.response.curve_batches as curve_batches\n" + (
-        "def broken(*_, **more):\n    raise ZeroDivisionError('of zero')\ncurve_batches.traced_curve = broken\n"
+        "def broken(*_, **more):\n    raise ZeroDivisionError('of zero')\n"
+        "curve_batches.traced_curve = broken\n"
     )
     quiet = program("respond", "one.toml", before=lost)
     loud = program("respond", "one.toml", "-v", before=lost)

@@ -45,10 +45,14 @@ def test_the_derivative_by_the_level_is_that_of_differences_of_the_forces(scene,
     assert np.abs(quotient / shot.scale).max() > 0.1
 
 
+def unbounded(poll=never_interrupt):
+    return BranchBudget(poll, np.inf)
+
+
 def test_every_passing_of_the_level_1_is_a_motion():
     """Ten modes, hardly damped, above a contact: simulated, each of the three repeats after a period."""
     scene, omega = random_scene(3), 2.1490306
-    found = level_motions_at(scene, Balanced(scene, (1,)), omega, (), never_interrupt)
+    found = level_motions_at(scene, Balanced(scene, (1,)), omega, (), unbounded())
     m, free = scene.modal.mass.size, OrbitProblem(scene).free
     starts = np.zeros((len(found.motions), 2 * m + 1))
     starts[:, free] = [z[:-1] for z in found.motions]
@@ -61,14 +65,14 @@ def test_every_passing_of_the_level_1_is_a_motion():
 def test_what_a_level_passed_is_kept_when_its_time_is_over():
     scene, omega = random_scene(3), 2.1490306
     one, looks = Balanced(scene, (1,)), []
-    whole = level_motions_at(scene, one, omega, (), lambda: looks.append(0))
+    whole = level_motions_at(scene, one, omega, (), unbounded(lambda: looks.append(0)))
     left = iter(looks[: -len(looks) // 4])
 
     def poll():
         if next(left, None) is None:
             raise WorkLimitError
 
-    part = level_motions_at(scene, one, omega, (), poll)
+    part = level_motions_at(scene, one, omega, (), unbounded(poll))
     assert part.out_of_time and not part.complete and 0 < len(part.motions) <= len(whole.motions)
     for z in part.motions:
         assert min(np.abs(z - other).max() for other in whole.motions) < 1e-9 * np.abs(z).max()
@@ -78,14 +82,14 @@ def test_where_the_level_from_rest_stalls_it_is_followed_from_what_is_known():
     """Once is enough from rest: other steps end there, too."""
     scene, omega, begun = load_scene("yang1998-n5"), 1.22, []
     one = Balanced(scene, (1,))
-    whole = level_motions_at(scene, one, omega, (), never_interrupt)
+    whole = level_motions_at(scene, one, omega, (), unbounded())
 
     def stalls(problem, start, *rest, **options):
         begun.append(start[-1])
         path = follow(problem, start, *rest, **options)
         return replace(path, z=path.z[:2], status=Status.STALLED) if start[-1] == begun[0] else path
 
-    found = level_motions_at(scene, one, omega, whole.motions[:1], never_interrupt, along=stalls)
+    found = level_motions_at(scene, one, omega, whole.motions[:1], unbounded(), along=stalls)
     assert not found.complete and begun.count(begun[0]) == 1 and begun[0] != 1.0
     assert len(whole.motions) == 3
     for z in whole.motions:
@@ -99,12 +103,12 @@ def test_levels_have_equal_shares_of_the_time_and_what_others_leave():
     frequencies = level_frequencies(Balanced(scene, (1,)))
     count = len(frequencies)
 
-    def at(scene, one, omega, known, poll, options):
+    def at(scene, one, omega, known, bounded):
         begin, end = now[0], now[0] + (30.0 if omega == frequencies[0] else 5.0)
         while now[0] < end:
             now[0] += 0.5
             try:
-                poll()
+                bounded.poll()
             except WorkLimitError:
                 came.append((omega, now[0] - begin))
                 return LevelMotions(omega, (), False, out_of_time=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -53,7 +53,7 @@ def advice(
     for dof in dofs:
         for level in tried:
             try:
-                imagined = sampled(scene, model, dof, level, ADVICE.points, harmonics, options)
+                imagined = sampled(scene, replace(model, dof=dof), level, ADVICE.points, harmonics, options)
                 errors = errors_of(imagined, False, options)
                 found = forced_rows(scene, parameters.keys, harmonics, imagined, errors, options)
             except (NoMotionError, np.linalg.LinAlgError):

@@ -313,13 +313,12 @@ class Nearest:
 def sampled(
     scene: Scene,
     like: Measured,
-    dof: str,
     level: float,
     count: int,
     harmonics: tuple[int, ...],
     options: FitOptions,
 ) -> Measured:
-    """Points of the model's response as if they had been measured in the range of a data set.
+    """Points of the response as if they had been measured, over the range of a data set and where that was.
 
     Raises
     ------
@@ -330,7 +329,7 @@ def sampled(
     error = like.amplitude_error
     if like.estimated is not None:
         error = float(np.sqrt((like.estimated[:, 0] ** 2).mean())) / float(like.amplitude.max())
-    measured = replace(like, dof=dof, phase=None, estimated=None, amplitude_error=error)
+    measured = replace(like, phase=None, estimated=None, amplitude_error=error)
     observed = Observed(measured, System(scene, harmonics))
     c = _curve(scene, level, harmonics, observed).begin
     c = c[(c[:, 0] >= like.frequency.min()) & (c[:, 0] <= like.frequency.max())]

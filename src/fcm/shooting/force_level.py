@@ -65,7 +65,7 @@ def level_motions(
     while waiting:
         (omega, before), *waiting = waiting
         if (share := bounded.share(1 + len(waiting))) > before:
-            found = (find or level_motions_at)(scene, one, omega, known(omega), bounded.poll, bounded.options)
+            found = (find or level_motions_at)(scene, one, omega, known(omega), bounded)
             waiting += [(omega, share)] * found.out_of_time
             yield found
 
@@ -75,8 +75,7 @@ def level_motions_at(
     one: System,
     omega: float,
     known: Sequence[FloatArray],
-    poll: Poll,
-    options: ShootingOptions = SHOOTING,
+    bounded: BranchBudget,
     along: Follow = follow,
 ) -> LevelMotions:
     """The same at one frequency; one is the balance of one harmonic. What was found is there, too, where look
@@ -85,7 +84,9 @@ def level_motions_at(
 
     found = list[FloatArray]()
     try:
-        complete = _followed(LevelProblem(scene, omega, options), one, known, poll, found, along)
+        complete = _followed(
+            LevelProblem(scene, omega, bounded.options), one, known, bounded.poll, found, along
+        )
     except WorkLimitError:
         return LevelMotions(omega, tuple(found), False, out_of_time=True)
     return LevelMotions(omega, tuple(found), complete)

@@ -145,7 +145,7 @@ def test_a_million_draws_without_room_for_them_are_refused_when_read(fcm):
 
 
 def test_a_limit_on_addresses_is_one_on_memory(program):
-    code = "from fcm import room; print(room.memory())"
+    code = "from fcm import resources; print(resources.memory())"
     done = program.python("-c", f"import resource as r; r.setrlimit(r.RLIMIT_AS, (2 << 30,) * 2); {code}")
     out, _ = done.communicate()
     assert 0.0 < float(out) < 2 << 30
