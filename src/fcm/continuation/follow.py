@@ -26,6 +26,7 @@ from fcm.continuation.options import FOLLOW, FollowOptions, StepOptions, Switchi
 from fcm.continuation.path import FloatArray, Mark, Path, PathInterrupted, Status
 from fcm.continuation.problem import Point, PointStore, Problem
 from fcm.continuation.recorder import NonsmoothPoints, Recorder, step_back
+from fcm.continuation.root_corner import is_met
 from fcm.continuation.step_control import Stepper
 
 if cython.compiled:
@@ -178,6 +179,8 @@ class Follower:
             self.steps_over_corners(step) or self.steps_over_corners(control.retry_fraction * step)
         ):
             return self.accept_step()
+        if self.problem.rooted and is_met(stepper):
+            return self.leave_corner(stepper.here, 0.0)
         while step > control.min_step:
             known: cython.bint = (
                 step <= stepper.known_length
@@ -321,7 +324,8 @@ class Follower:
     @cython.ccall
     def leave_corner(self, point: Point, at: cython.double, past: cython.double = 0.0) -> object:
         """Go on from a corner, a point at a length from here; past: where to look if it is labelled."""
-        self.nonsmooth.pass_corner(point, at, past or self.options.switching.departure_length)
+        if self.nonsmooth.pass_corner(point, at, past or self.options.switching.departure_length):
+            return self.recorder.end_status()
         if self.labelled is None and self.recorder.revisits_corner():
             self.recorder.came_around = True
             return self.recorder.end_status()

@@ -282,6 +282,13 @@ class SwitchingOptions(Options):
         A corner this near is met: less than `departure_length`.
     reached_distance_root : float
         The same where a margin is the root of the distance, which rounding hides.
+    root_distance : float
+        A corner where the equations begin as a root is met within this length of its surface, and is left as
+        far on the other side; see `root_corner`.
+    root_difference : float
+        Length over which the square of such a root has its slopes.
+    max_root_margin : float
+        A root that is larger is not at its corner.
     approach_distance, approach_fraction : float
         A corner further away is gone to by steps, each this part of the way.
     departure_length : float
@@ -305,6 +312,9 @@ class SwitchingOptions(Options):
     smooth_fraction: cython.double = 1e-6
     reached_distance: cython.double = 5e-8
     reached_distance_root: cython.double = 1e-4
+    root_distance: cython.double = 1e-9
+    root_difference: cython.double = 1e-6
+    max_root_margin: cython.double = 1e-2
     approach_distance: cython.double = 1e-4
     approach_fraction: cython.double = 0.9
     departure_length: cython.double = 1e-7

@@ -24,6 +24,7 @@ cdef class Problem:
     cpdef int probe(self, double[::1] z) except -1
     cpdef int measure(self, double[::1] z) except -1
     cpdef int bound(self, double[::1] z) except -1
+    cpdef double square(self, int kind, double[::1] z) except? -1.0
     cpdef int report(self, double[::1] z, double[::1] direction) except -1
     cpdef double factor(self, double[::1] row, double[::1] scale) except -2.0
     cpdef int solve(self, double[::1] right) except -1

@@ -20,6 +20,7 @@ from fcm.continuation.path import FloatArray, Path, Status
 
 NONE = cython.declare(cython.int, -1)  # kind of a margin that is none
 PI = cython.declare(cython.double, 3.141592653589793)
+NAN = cython.declare(cython.double, float("nan"))
 ROOM = 256  # points of a store for which there is room at first
 
 
@@ -93,6 +94,13 @@ class Problem:
         NONE where there is none. Margins may come and go, and stand in any order.
         """
         return 0
+
+    @cython.ccall
+    @cython.exceptval(-1.0, check=True)
+    def square(self, kind: cython.int, z: cython.double[::1]) -> cython.double:
+        """The function of z, smooth and of the sign of the margin of a kind, whose root that margin is, and
+        the equations have; NaN if it is no root."""
+        return NAN
 
     @cython.ccall
     @cython.exceptval(-1, check=False)

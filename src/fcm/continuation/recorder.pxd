@@ -28,10 +28,11 @@ cdef class NonsmoothPoints:
     cdef Recorder recorder
     cdef bint labelled
     cdef double[::1] growth_before
-    cdef int pass_corner(self, Point point, double length, double past) except -1
+    cdef bint pass_corner(self, Point point, double length, double past) except -1
     cdef bint is_peak(self) noexcept
 
 cpdef int go_to_corner(Stepper stepper, Point point, double pass_corner) except -1
+cdef int turn_beyond(Stepper stepper, double length) except -1
 cpdef bint cross_corner(Stepper stepper, double[::1] stops) except -1
 cpdef bint cross_label(Stepper stepper, double past) except -1
 cdef void predict_past_label(Stepper stepper, double past) noexcept

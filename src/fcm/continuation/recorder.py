@@ -20,6 +20,7 @@ from fcm.continuation.checkpoint import Checkpoint
 from fcm.continuation.events import Events
 from fcm.continuation.path import Mark, Path, Status
 from fcm.continuation.problem import Point, PointStore
+from fcm.continuation.root_corner import find_beyond
 from fcm.continuation.step_control import Stepper
 
 if cython.compiled:
@@ -127,18 +128,23 @@ class Recorder:
     @cython.exceptval(-1, check=False)
     def revisits_station(self) -> cython.bint:
         """Whether the last point, at a station, was passed before in its direction, or the curve began there,
-        with folds in between: a step that ends there may keep it, and the next one once more."""
+        with folds in between and elsewhere: a step that ends there may keep it, and the next one once more,
+        and a curve may turn twice next to it."""
         store: PointStore = self.store
         n: cython.Py_ssize_t = self.n
         last: cython.Py_ssize_t = store.count - 1
         fold: cython.Py_ssize_t = last - 1  # the last point that another direction led to
+        elsewhere: cython.bint = False
         i: cython.Py_ssize_t
         rise: cython.double = store.direction[last, n]
         while fold >= 0 and store.direction[fold, n] * rise > 0.0:
             fold -= 1
-        for i in range(fold):
+        for i in range(last - 1, -1, -1):
+            if not elsewhere:
+                elsewhere = not store.same(i, last, self.far)
+                continue
             stopped: cython.bint = i == 0 or store.mark[i] & STATION
-            again: cython.bint = stopped and store.z[i, n] == store.z[last, n]
+            again: cython.bint = i < fold and stopped and store.z[i, n] == store.z[last, n]
             if again and store.direction[i, n] * rise > 0.0 and store.same(i, last, self.same):
                 return True
         return False
@@ -275,14 +281,17 @@ class NonsmoothPoints:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def pass_corner(self, point: Point, length: cython.double, past: cython.double) -> cython.int:
-        """Keep the corner, a point at a length from here, and take the direction beyond it.
+    def pass_corner(self, point: Point, length: cython.double, past: cython.double) -> cython.bint:
+        """Keep the corner, a point at a length from here, and take the direction beyond it; whether the curve
+        ends there.
 
         past: the length at which that is looked for where the corner is a change of label.
         """
         recorder: Recorder = self.recorder
         stepper: Stepper = recorder.stepper
         recorder.add_corner(point)
+        before: Point = stepper.here if point is stepper.here else stepper.there
+        beyond: cython.double = 0.0
         if point is not stepper.here:
             go_to_corner(stepper, point, length)
         rise: cython.double = stepper.here.tangent[recorder.n]
@@ -290,11 +299,19 @@ class NonsmoothPoints:
         if self.labelled:
             cross_label(stepper, past)
         else:
-            cross_corner(stepper, recorder.stops)
+            beyond = find_beyond(stepper, before) if stepper.problem.rooted else 0.0
+            if beyond > 0.0:
+                turn_beyond(stepper, beyond)
+            else:
+                cross_corner(stepper, recorder.stops)
         fold: cython.long = FOLD if rise * stepper.here.tangent[recorder.n] < 0.0 else 0
         recorder.store.mark_last(fold | (PEAK if self.is_peak() else 0))
         recorder.update_greatest()
-        return 0
+        if not beyond > 0.0:
+            return False
+        ends: cython.bint = recorder.keep_events(beyond)
+        stepper.accept(stepper.there, 0.0)
+        return ends
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -316,6 +333,19 @@ def go_to_corner(stepper: Stepper, point: Point, at: cython.double) -> cython.in
     point.growth[:] = stepper.there.growth
     point.orientation = stepper.there.orientation
     stepper.accept(point, at)
+    return 0
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def turn_beyond(stepper: Stepper, length: cython.double) -> cython.int:
+    """Make where the corrector is, a length beyond the corner that is here, a step in the direction there."""
+    there: Point = stepper.there
+    stepper.record(there, True, True)
+    there.differentiate_margins(stepper.problem, stepper.newton.scale, stepper.guess)
+    stepper.step, stepper.cosine = length, 1.0
+    stepper.here.tangent[:] = there.tangent
+    stepper.here.growth[:] = there.growth
     return 0
 
 

@@ -27,6 +27,7 @@ cdef class Law:
     cpdef int evaluate(self, double[::1] x, Py_ssize_t first) except -1
     cpdef int probe(self, double[::1] x, Py_ssize_t first) except -1
     cpdef int bound(self, double[::1] x, Py_ssize_t first) except -1
+    cpdef double square(self, int kind, double[::1] x, Py_ssize_t first) except? -1.0
     cpdef int compute_resistance(self) except -1
     cpdef int cycle(self, double[::1] x, Py_ssize_t first) except -1
 

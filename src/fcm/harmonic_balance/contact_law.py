@@ -47,6 +47,7 @@ KINDS = cython.declare(cython.int, 9)  # of margins, at most
 
 
 MIN_AMPLITUDE = cython.declare(cython.double, options.MIN_AMPLITUDE)
+NAN = cython.declare(cython.double, float("nan"))
 
 
 @cython.cclass
@@ -114,6 +115,12 @@ class Law:
     def bound(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
         """Functions of the unknowns that change sign where the forces are not smooth."""
         return 0
+
+    @cython.ccall
+    @cython.exceptval(-1.0, check=True)
+    def square(self, kind: cython.int, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.double:
+        """The smooth function of the unknowns whose root the margin of a kind is; NaN if that is none."""
+        return NAN
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -296,6 +303,15 @@ class PlanarLaw(KernelLaw):
     def bound(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
         self.bounds.find(x, first, self.mu, self.k_u, self.k_v, self.n_0)
         return self.take_margins(self.bounds.count, self.bounds.kind, self.bounds.value, self.bounds.angle)
+
+    @cython.ccall
+    @cython.exceptval(-1.0, check=True)
+    def square(self, kind: cython.int, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.double:
+        if kind != SLIPS:
+            return NAN
+        own: cython.double[::1] = x[first : first + self.width]
+        grown: cython.double = self.bounds.overlap(own, self.mu, self.k_u, self.k_v, self.n_0, False)
+        return grown if self.bounds.resting.brief() else NAN
 
     @cython.ccall
     @cython.exceptval(-1, check=False)

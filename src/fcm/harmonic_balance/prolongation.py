@@ -89,6 +89,12 @@ class ForceLevelProblem(Problem):
         self.place(z)
         return self.balance.bound(self.z)
 
+    @cython.ccall
+    @cython.exceptval(-1.0, check=True)
+    def square(self, kind: cython.int, z: cython.double[::1]) -> cython.double:
+        self.place(z)
+        return self.balance.square(kind, self.z)
+
     @cython.cfunc
     @cython.exceptval(check=False)
     def place(self, z: cython.double[::1]) -> cython.void:

@@ -346,6 +346,13 @@ class Balance(Problem):
         return 0
 
     @cython.ccall
+    @cython.exceptval(-1.0, check=True)
+    def square(self, kind: cython.int, z: cython.double[::1]) -> cython.double:
+        """That of the margin by which a contact in a plane begins to slip."""
+        law: Law = self.laws[kind // KINDS]
+        return law.square(kind % KINDS, z, kind // KINDS * self.width)
+
+    @cython.ccall
     @cython.exceptval(-1, check=False)
     def report(self, z: cython.double[::1], direction: cython.double[::1]) -> cython.int:
         """Amplitudes of the degrees of freedom shown, and their growth."""

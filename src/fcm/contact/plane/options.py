@@ -57,6 +57,7 @@ class PlanarOptions:
     max_exchanges : of the discs that hold it.
     max_halvings : of a step between two nodes, after which its cubic is exact.
     disc_tolerance : half of what is between two discs that are one.
+    min_bend : of the distance by which it is within a disc, over the radius: less, and no angle is its own.
     samples_per_radian : to a radian of the highest harmonic, between which an extreme is sought.
     min_state_length : a state that is shorter is rounding.
     smooth_radius : of a disc beside the motion, which is then as none.
@@ -94,6 +95,7 @@ class PlanarOptions:
     max_exchanges: int = 100
     max_halvings: int = 20
     disc_tolerance: float = 1e-6
+    min_bend: float = 1e-3
     samples_per_radian: float = 12.0
     min_state_length: float = 1e-12
     smooth_radius: float = 1e-14

@@ -1,7 +1,7 @@
 from fcm.contact.plane.panel cimport PlaneMotion
 
 cdef class Resting:
-    cdef double same
+    cdef double same, least_bend
     cdef int exchanges, max_halvings
     cdef readonly PlaneMotion motion
     cdef readonly int nodes, held
@@ -14,6 +14,7 @@ cdef class Resting:
     cdef bint found, sampled
     cdef bint stays(self, double s_x, double s_y) noexcept nogil
     cdef bint encloses(self, bint exact) noexcept nogil
+    cdef bint brief(self) noexcept nogil
     cdef void nearest(self, double s_x, double s_y) noexcept nogil
     cdef void sharpen(self, double s_x, double s_y) noexcept nogil
     cdef void sharpen_one(self, int i, double w_x, double w_y) noexcept nogil

@@ -65,6 +65,7 @@ class Resting:
         given = motion.options
         self.exchanges, self.same = given.max_exchanges, given.disc_tolerance
         self.max_halvings = given.max_halvings
+        self.least_bend = given.min_bend
         self.motion = motion
         self.nodes = 12 * max(motion.highest, 1) + 3
         self.step = TWO_PI / self.nodes
@@ -114,6 +115,27 @@ class Resting:
             if not self.found or (self.overlap > rounding and not exact):
                 break
         return self.overlap <= rounding
+
+    def brief(self) -> bool:
+        """Whether the discs that hold the place asked for by `encloses` do so for an instant each.
+
+        A slip there is then as short as the root of what is missing; on a circle all discs hold it.
+        """
+        i: cython.int
+        for i in range(self.held):
+            self.motion.place(SCAN, self.basis[i, 3])
+            self.motion.bend(SCAN)
+            d_x: float = self.motion.value[SCAN, 0] - self.w_x
+            d_y: float = self.motion.value[SCAN, 1] - self.w_y
+            d: float = hypot(d_x, d_y)
+            if not d > 0.0:
+                return False
+            across: float = (d_x * self.motion.value[SCAN, 4] - d_y * self.motion.value[SCAN, 3]) / d
+            bend: float = (d_x * self.motion.value[SCAN, 6] + d_y * self.motion.value[SCAN, 7]) / d
+            bend += across * across / d - self.motion.value[SCAN, 8]
+            if not bend < -self.least_bend * self.motion.reach:
+                return False
+        return self.held > 1
 
     def nearest(self, s_x: float, s_y: float) -> None:
         """The place of rest nearest to one that is not."""

@@ -1,0 +1,79 @@
+"""Corners at which the equations begin as the root of a smooth function of the unknowns, its `square`.
+
+Where discs that hold a slider come to have no place in common, their common places shrink to a point as the
+root of what is left. The forces do likewise: their derivatives have no limit, and the direction of the
+curve lies in the surface where the square vanishes. On either side there is one curve. It may leave in the
+direction that it came from, a cusp, so that nothing is found ahead. Where the square keeps a small value of
+the other sign its root hardly changes, and there Newton's method finds the curve from the corner itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from fcm.continuation.path import FloatArray
+from fcm.continuation.problem import Point
+from fcm.continuation.step_control import Stepper
+
+
+class RootCorner(NamedTuple):
+    """A surface where the square of a kind vanishes, next to a point.
+
+    Lengths are scaled; the unit normal leads to where the square is positive.
+    """
+
+    kind: int
+    side: float  # sign of the margin on the side that the curve comes from
+    off: float  # length from the surface to the point, along the normal
+    slope: float  # of the square along it
+    normal: FloatArray
+
+
+def is_met(stepper: Stepper) -> bool:
+    """Whether the curve has come to such a corner."""
+    tangent = np.asarray(stepper.here.tangent)
+    return any(one.side * float(one.normal @ tangent) < 0.0 for one in _corners_near(stepper, stepper.here))
+
+
+def find_beyond(stepper: Stepper, before: Point) -> float:
+    """Take the corrector to the curve beyond a corner that is here, to which `before` led; how far that is.
+
+    0 where there is no such corner, or no curve with the orientation of here.
+    """
+    newton, options = stepper.newton, stepper.options
+    z, scale = np.array(stepper.here.z), np.array(newton.scale)
+    for one in _corners_near(stepper, before):
+        wanted = -one.side * options.switching.root_distance
+        newton.row[:] = -one.side * one.normal
+        at = z
+        for _ in range(options.newton.max_iterations):
+            off = stepper.problem.square(one.kind, at) / one.slope
+            newton.z[:] = last = at + scale * one.normal * (wanted - off)
+            if not newton.single_step():
+                return 0.0
+            at = np.array(newton.z)
+            if np.linalg.norm((at - last) / scale) < options.newton.negligible_step:
+                break
+        if newton.take_tangent() and newton.orientation == stepper.here.orientation:
+            return float(np.linalg.norm((at - z) / scale))
+    return 0.0
+
+
+def _corners_near(stepper: Stepper, before: Point) -> Iterator[RootCorner]:
+    """Those that are here, the sides that of a point before them."""
+    options, z, scale = stepper.options.switching, np.array(stepper.here.z), np.array(stepper.newton.scale)
+    margins, kinds = np.asarray(before.margin), np.asarray(before.kind)
+    for k in np.flatnonzero((margins != 0.0) & (np.abs(margins) < options.max_root_margin) & (kinds >= 0)):
+        kind = int(kinds[k])
+        value = stepper.problem.square(kind, z)
+        if not np.isfinite(value):
+            continue
+        ahead = z + np.diag(options.root_difference * scale)
+        slopes = np.array([stepper.problem.square(kind, one) - value for one in ahead])
+        slopes /= options.root_difference
+        slope = float(np.linalg.norm(slopes))
+        if abs(value) < options.root_distance * slope:
+            yield RootCorner(kind, float(np.sign(margins[k])), value / slope, slope, slopes / slope)
