@@ -35,7 +35,7 @@ cdef (double, double, double) arc(double y) noexcept nogil
 
 cdef class Sequence(Cycle):
     cdef int count
-    cdef double min_change, side_shown, last_slip, state, since
+    cdef double min_change, last_slip, state, since
     cdef double[:, ::1] regions
     cdef void of(self, double n0_bar, double b_bar, double phi) noexcept nogil
     cdef void take(self) noexcept nogil
