@@ -175,6 +175,9 @@ class Follower:
             return self.labelled.advance(self, step)
         step = self.landing.limit_step(stepper, step)
         many: cython.bint = self.problem.unknowns >= switching.many_unknowns
+        reached: cython.double = (
+            switching.reached_distance_rooted if self.problem.rooted else switching.reached_distance
+        )
         if self.problem.costly and (
             self.steps_over_corners(step) or self.steps_over_corners(control.retry_fraction * step)
         ):
@@ -188,7 +191,7 @@ class Follower:
             reach: cython.double = next_corner(stepper, step)
             if reach < step and step > self.approach_distance and many and self.steps_over_corners(step):
                 return self.accept_step()
-            if reach < min(step, switching.reached_distance):
+            if reach < min(step, reached):
                 stepper.move_short(reach)
                 return self.leave_corner(stepper.here, 0.0)
             # curves bend more and more towards a corner, and may hide a pair of folds there
