@@ -12,7 +12,7 @@ import numpy as np
 
 from fcm.branches.fold_continuation import folds_from
 from fcm.branches.force_level import level_frequencies, solutions
-from fcm.branches.options import FOLDS
+from fcm.branches.options import FOLDS, LevelCurveOptions
 from fcm.branches.search import every_branch
 from fcm.branches.surface import Surface
 from fcm.continuation import Status
@@ -44,7 +44,8 @@ class Picture:
 
 def calculated():
     """What the picture shows."""
-    system = System(load_scene(SCENE).each_curve()[0], HARMONICS)
+    far = (LevelCurveOptions(max_gap=np.inf),)  # no level is followed where the closed branch is
+    system = System(load_scene(SCENE).each_curve()[0], HARMONICS, other_options=far)
     folds, turns = [], []
     for omega in level_frequencies(system):
         for turn in solutions(system, omega, np.inf).folds:

@@ -1,16 +1,18 @@
 r"""Solutions from which the branches of a response are traced, by raising the level of the forces from rest.
 
 At both ends of the range, at the resonances inside it that the structure has with its contacts all stuck, as
-at rest, and all open, and in the middle of the widest interval between these, the level is followed from
-nearly nothing until it is well beyond every level at which a contact can change what it does. Every passing
+at rest, and all open, in the middle of the widest interval between these, and in wide gaps through which a
+resonance moves, the level is followed from nearly nothing until it is well beyond every level at which a contact can change what it does. Every passing
 of the level 1 is a solution.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
@@ -356,7 +358,36 @@ def level_frequencies(system: System) -> tuple[float, ...]:
     span, inside = system.scene.frequency_range, resonances(system)
     known = np.array([span[0], *inside, span[1]])
     widest = int(np.diff(known).argmax())
-    return *span, *inside, float(known[widest : widest + 2].mean())
+    found = (*span, *inside, float(known[widest : widest + 2].mean()))
+    return *found, *_between_resonances(system, found)
+
+
+def _between_resonances(system: System, known: Sequence[float]) -> Iterator[float]:
+    """Frequencies between those that are known, where these are far apart and a mode may resonate.
+
+    With its amplitude a resonance moves from where the contacts stick to where they are open. Where the level
+    is 1 on its way may be a closed branch. Levels that are followed far away from it tell nothing of it.
+    """
+    if len(system.scene.contacts) >= system.option(LEVEL_REACH).min_contacts:
+        return
+    stuck, most = system.springs(stuck=True), system.option(LEVEL_CURVE).max_gap
+    moved = [
+        band
+        for harmonic in system.linear.driven
+        for band in zip(
+            system.linear.stiffened(0.0 * stuck, harmonic) / harmonic,
+            system.linear.stiffened(stuck, harmonic) / harmonic,
+            strict=True,
+        )
+    ]
+    for low, high in pairwise(sorted(known)):
+        inner = [(max(low, a), min(high, b)) for a, b in moved if a < high and b > low]
+        if low <= 0.0 or not inner:
+            continue
+        count = math.ceil(math.log(high / low) / math.log1p(most))
+        for omega in np.geomspace(low, high, count + 1)[1:-1].tolist():
+            if any(a < omega < b for a, b in inner):
+                yield omega
 
 
 def with_low_harmonics(system: System, found: Sequence[LevelSolutions]) -> tuple[int, ...]:

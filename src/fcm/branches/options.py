@@ -147,6 +147,9 @@ class LevelCurveOptions:
         Relative difference by which two ways to one level may differ.
     resonance_offset : float
         Relative distance from a resonance, which an undamped structure has no response at.
+    max_gap : float
+        Relative distance of two frequencies between which a mode may resonate, from where it is open to
+        where it is stuck: in wider gaps the level is followed, too.
     step : StepOptions
         How its steps are chosen.
     """
@@ -164,6 +167,7 @@ class LevelCurveOptions:
     reach_factor: float = 2.0
     level_tolerance: float = 1e-9
     resonance_offset: float = 1e-4
+    max_gap: float = 0.25
     step: StepOptions = field(default_factory=StepOptions)
 
 
