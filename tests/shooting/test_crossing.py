@@ -73,7 +73,7 @@ def test_stability_changes_at_the_place(crossed):
             place is not None
             and greatest(problem, place.z) <= 1.0 + SHOOTING.floquet.verdict.growth_tolerance
         )
-        aside = max(1e-5, 2e-8 / between.length)
+        aside = max(1e-5, 2.0 * FollowOptions().switching.reached_distance / between.length)
         part = place.part + (aside if stable[k] else -aside)
         assert (
             between.find(part)

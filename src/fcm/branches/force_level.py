@@ -2,8 +2,8 @@ r"""Solutions from which the branches of a response are traced, by raising the l
 
 At both ends of the range, at the resonances inside it that the structure has with its contacts all stuck, as
 at rest, and all open, in the middle of the widest interval between these, and in wide gaps through which a
-resonance moves, the level is followed from nearly nothing until it is well beyond every level at which a contact can change what it does. Every passing
-of the level 1 is a solution.
+resonance moves, the level is followed. It goes from nearly nothing until it is well beyond every level at
+which a contact can change what it does. Every passing of the level 1 is a solution.
 """
 
 from __future__ import annotations
