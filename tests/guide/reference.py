@@ -75,20 +75,22 @@ def each_command(command, name, above):
             yield from each_command(command.get_command(context, one), f"{name} {one}", context)
 
 
-OWN_UNITS = ("mm", "N", "hertz")  # of the scene that has a contact in a plane
-RUNS = {  # what writes the files whose variables are listed
-    "curves": ("yang1998-n5", "--harmonics", "3", "--sensitivity"),
-    "exact curves": ("yang1998-n5", "--method", "exact"),
-    "visited frequencies": ("yang1998-n5", "--method", "exact", "--at", "1.19", "--at", "1.2"),
-    "schedules": ("yang1998-jump",),
-    "contacts in a plane": ("platform-damper", "--harmonics", "1"),
-    "levels": ("yang1998-n5", "--level", "0:2", "--at", "1.2"),
-    "modes": ("beam", "--mode", "1", "--level", "1e-6:1e-4", "--harmonics", "1"),
-    "tracked points": ("yang1998-n5", "--track", "folds", "--over", "contact.shroud.n_0", "--from", "4",
-                       "--to", "6"),
-    "mistuned rings": ("mistuned-ring",),
-    "peaks only": ("yang1998-n5", "--peaks-only"),
-    "single motions": ("yang1998-n5", "--contact-forces", "FORCES", "--modal-amplitudes"),
+OWN_UNITS = ("mm", "N", "Hz", "rad s-1")  # of the scenes: these have such
+RUNS = {  # what writes the files whose variables are listed: what it is, and how it is called
+    "curves": ("by harmonic balance", ("yang1998-n5", "--harmonics", "3", "--sensitivity")),
+    "exact curves": ("`--method exact`", ("yang1998-n5", "--method", "exact")),
+    "visited frequencies": ("`--method exact --at F`", ("yang1998-n5", "--method", "exact", "--at", "1.19",
+                                                        "--at", "1.2")),
+    "schedules": ("`[[schedule]]`", ("yang1998-jump",)),
+    "contacts in a plane": ("curves of such contacts", ("platform-damper", "--harmonics", "1")),
+    "levels": ("`--level`", ("yang1998-n5", "--level", "0:2", "--at", "1.2")),
+    "modes": ("`--mode`", ("beam", "--mode", "1", "--level", "1e-6:1e-4", "--harmonics", "1")),
+    "tracked points": ("`--track`, `[optimum]`", ("yang1998-n5", "--track", "folds", "--over",
+                                                  "contact.shroud.n_0", "--from", "4", "--to", "6")),
+    "mistuned rings": ("`[cyclic.mistuning]`", ("mistuned-ring",)),
+    "peaks only": ("`--peaks-only`: of curves without their points", ("yang1998-n5", "--peaks-only")),
+    "single motions": ("`--contact-forces` or `--modal-amplitudes`: motions at peaks, or at `--motion-at`",
+                       ("yang1998-n5", "--contact-forces", "FORCES", "--modal-amplitudes")),
 }  # fmt: skip
 
 
@@ -96,7 +98,7 @@ def files() -> str:
     """Every variable of a file of results, with the runs that write it."""
     found: dict[str, tuple[str, str, str, list[str]]] = {}
     with tempfile.TemporaryDirectory() as folder:
-        for kind, arguments in RUNS.items():
+        for kind, (_, arguments) in RUNS.items():
             path = Path(folder, "out.nc")
             words = [str(Path(folder, "forces.csv")) if word == "FORCES" else word for word in arguments]
             done = called("respond", *words, "-o", path)
@@ -111,8 +113,13 @@ def files() -> str:
     parts = [
         "# Variables of files\n",
         f"{MADE}`fcm respond -o FILE.nc` writes netCDF. Curves are filled up with NaN to the longest.\n\n"
-        "Without a unit here a variable has that of the scene. The last column says which runs write it.\n"
-        f"Those are {', '.join(list(RUNS)[:5])}.\nThere are also {', '.join(list(RUNS)[5:])}.\n",
+        "Without a unit here a variable has that of the scene, frequencies its `frequency_unit`. Letters of\n"
+        "states are E stick, P and N positive and negative slip, S separation; in a plane P is any slip.\n\n"
+        "*The loop* of a contact is that of the fundamental alone, without dimensions: preload `n0_bar`,\n"
+        "load variation `b_bar`, phase `phi` "
+        "([three numbers](../theory/contact-on-a-line.md#three-numbers)).\n\n"
+        "The last column says which runs write it:\n",
+        table(("run", "is"), [(kind, is_) for kind, (is_, _) in RUNS.items()]),
     ]
     rows = []
     for name, (of, unit, said, kinds) in sorted(found.items()):

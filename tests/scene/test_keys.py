@@ -23,7 +23,9 @@ def test_every_key_is_printed_with_its_rule():
     lines = printed("--keys").splitlines()
     assert len(lines) == 1 + len(as_lines())
     text = "\n".join(lines)
-    assert re.search(r"^contact\[\]\.mu +number at least 0 +required +friction coefficient$", text, re.M)
+    assert re.search(
+        r"^contact\[\]\.mu +number at least 0 +required +friction coefficient; of pairs ", text, re.M
+    )
     assert re.search(
         r"^contact\[\]\.areas .* one k_u, k_v or n_0 is a total.* a swept one is the total of the pairs",
         text,

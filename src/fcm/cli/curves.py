@@ -229,7 +229,7 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
         if (closure := _worst(curves, "closure_error")) is not None:
             errors.append(f"{closure:.1e} by which a period does not close")
     if summary.get("method") == "table" and table and not summary.get("directions"):
-        errors.append(f"{table:.1e} by the table, corrected at every point")
+        errors.append(f"{table:.1e} by the table, which the points do not have")
     if harmonic is not None:
         untold = any(_untold(curve, dof) for curve in curves for dof in curve["peak"])
         told = [

@@ -24,7 +24,7 @@ HEAD = ("contact", "state", "energy", "of all", "slip path", "normal force")
 )  # fmt: skip
 @click.option(
     "--curve", "curves", type=click.IntRange(min=0), multiple=True, metavar="K", default=(0,),
-    show_default="0", help="Of a sweep, counted from 0; several make a film strip.",
+    help="Of a sweep, counted from 0; several make a film strip.  [default: 0]",
 )  # fmt: skip
 @click.option(
     "--places", type=click.Path(exists=True, dir_okay=False, readable=True, path_type=Path), metavar="PLACES",

@@ -36,7 +36,8 @@ OPTIONS: list[Callable[[Any], Any]] = [  # in the order of the help
     click.option("--json", "to_json", is_flag=True, help="Print the summary as JSON instead of a table."),
     click.option(
         "--method", type=click.Choice(["table", "closed-form", "exact"]), default="table", show_default=True,
-        help="Harmonic balance with coefficients of a table or in closed form, or exact periodic solutions.",
+        help="Harmonic balance in closed form, with the errors of a table told or without; or exact periodic "
+        "solutions.",
     ),
     click.option(
         "--harmonics", metavar="H", callback=balance.harmonics,
@@ -66,8 +67,9 @@ OPTIONS: list[Callable[[Any], Any]] = [  # in the order of the help
     ),
     click.option(
         "--at", multiple=True, metavar="F", callback=exact.frequencies,
-        help="Visit these frequencies by an upward and a downward sweep; a number or FROM:TO:COUNT, again "
-        "for more. With --method exact.",
+        help="With --method exact: visit these frequencies by an upward and a downward sweep; a number or "
+        "FROM:TO:COUNT, again for more. With --level: follow the levels at these. They may lie beyond "
+        "the scene's range.",
     ),
     track_options,
     click.option(

@@ -58,7 +58,7 @@ def name_errors(
     names |= notes
     if (_largest(curves)[1] > 0.0).any():
         of_all = " (largest of all)" if len(curves) > 1 else ""
-        names[f"error: table, before correction{of_all}"] = Patch(color=_GREY)
+        names[f"error: table alone{of_all}"] = Patch(color=_GREY)
     figure.legend(names.values(), names.keys(), loc="outside lower center", ncols=2)
 
 

@@ -43,8 +43,8 @@ def respond(
     scene : Scene
         From `fcm.load_scene`.
     method : {"table", "closed-form", "exact"}
-        Harmonic balance with the Fourier coefficients of a table or in closed form while the curve is
-        followed (its points are the same either way); or the exact periodic solutions, by shooting.
+        Harmonic balance in closed form, of which "table" also tells how far the solutions of a table are
+        from there; or the exact periodic solutions, by shooting.
     at : sequence of float, optional
         With "exact": frequencies in the scene's unit, visited by an upward and then a downward sweep.
     harmonics : int or sequence of int, optional

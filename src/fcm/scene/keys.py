@@ -24,15 +24,24 @@ class Key:
     @property
     def kind(self) -> str:
         """What it may be, in words."""
-        return (
-            self.value
-            if isinstance(self.value, str)
-            else f"number {self.value.text}".replace("number a ", "")
-        )
+        return self.value if isinstance(self.value, str) else _in_words(self.value)
+
+
+def _in_words(rule: Rule) -> str:
+    return f"number {rule.text}".replace("number a ", "")
+
+
+def _rule(key: str, more: str) -> str:
+    """What a number may be, and that there may be several of it."""
+    return f"{_in_words(RULES[key])}{more}"
 
 
 _DIRECTION = "a degree of freedom, or a table of weights"
-_MATRIX = ".npz, .mat, .mtx or .op4 file, or a list of rows"
+_WITH_NODES = '; with nodes x, y, z, a table of these, or "fitted"'
+_MATRIX = "a file, or a list of rows"
+_FILES = "; files are .npz, .mat, .h5, .mtx, .op4, .sti, .mas, .pch, .matrix and .hb"
+_EACH_MODE = "; one for all modes, or a list"
+_OF_PAIRS = "; of pairs also a list, a text file, or a column of their file"
 _GIVEN = "file"
 
 TABLES: dict[str, dict[str, Key]] = {
@@ -57,13 +66,15 @@ TABLES: dict[str, dict[str, Key]] = {
     "modal": {
         "file": Key("of modes; keys beside it go before its own", ".npz, .mat, .uff or .unv", "none"),
         "dofs": Key("names of the degrees of freedom", "list of names", _GIVEN),
-        "mass": Key("modal masses", RULES["mass"], "1: shapes are mass-normalised"),
-        "frequency": Key("undamped natural frequencies; 0 for rigid-body modes", RULES["frequency"], _GIVEN),
-        "damping": Key("damping ratios", RULES["damping"], _GIVEN),
+        "mass": Key("modal masses", _rule("mass", _EACH_MODE), "1: shapes are mass-normalised"),
+        "frequency": Key("undamped natural frequencies; 0 for rigid-body modes",
+                         _rule("frequency", "; a list, one for each mode"), _GIVEN),
+        "damping": Key("damping ratios", _rule("damping", _EACH_MODE), _GIVEN),
         "shapes": Key("shapes[i][j]: mode i at dofs[j]", "list of lists", _GIVEN),
-        "participation": Key("phi^T M d, d the direction of [base]", RULES["participation"], "none"),
+        "participation": Key("phi^T M d, d the direction of [base]", _rule("participation", _EACH_MODE),
+                             "none"),
         "nodal_diameter": Key("of each mode, with [cyclic]; shapes may have pairs [re, im]",
-                              RULES["nodal_diameter"], "none"),
+                              _rule("nodal_diameter", _EACH_MODE), "none"),
         "pairs": Key("whether modes are pairs c, s of the whole ring. Where c is this sector's, the next "
                      "has c cos a - s sin a, a = 2 pi nodal_diameter / sectors",
                      "true or false", "false, of different frequencies"),
@@ -72,7 +83,7 @@ TABLES: dict[str, dict[str, Key]] = {
         "dofs": Key("names of the rows", "list of names, or a text file", "file"),
         "file": Key("of the names of the rows, one on each line", "text file", "dofs"),
         "mass": Key("mass matrix; a list of numbers is its diagonal", _MATRIX),
-        "stiffness": Key("stiffness matrix", _MATRIX),
+        "stiffness": Key(f"stiffness matrix{_FILES}", _MATRIX),
         "damping": Key("of every mode, in proportion, or a matrix", "ratio, table, or matrix as above"),
         "modes": Key(
             "how many are kept", "whole number", "all up to 3 times the highest frequency, at least 10"
@@ -109,18 +120,19 @@ TABLES: dict[str, dict[str, Key]] = {
     },
     "contact": {
         "name": Key("of the contact", "string"),
-        "tangential": Key("the displacement u along which it slides; in a plane a list of two", _DIRECTION),
+        "tangential": Key("the displacement u along which it slides; in a plane a list of two"
+                          f"{_WITH_NODES}", _DIRECTION),
         "nodes": Key("pairs [[a, b], ...], a .csv file, or two sets; u and v are of a less b",
                      "list, file or table", "none: one contact"),
         "areas": Key("of the pairs: one k_u, k_v or n_0 is a total. That of a list, file or column is of "
                      "each pair, and a swept one is the total of the pairs",
                      'list of numbers > 0, or "equal"', "the numbers are of each pair"),
-        "normal": Key("the displacement v that loads it: n = max(n_0 + k_v v, 0)", _DIRECTION),
-        "mu": Key("friction coefficient", RULES["mu"]),
-        "k_u": Key("tangential contact stiffness", RULES["k_u"]),
-        "k_v": Key("normal contact stiffness", RULES["k_v"]),
-        "n_0": Key("preload", RULES["n_0"], "gap"),
-        "gap": Key("instead of a preload: n_0 = -k_v * gap", RULES["gap"], "n_0"),
+        "normal": Key(f"the displacement v that loads it: n = max(n_0 + k_v v, 0){_WITH_NODES}", _DIRECTION),
+        "mu": Key(f"friction coefficient{_OF_PAIRS}", RULES["mu"]),
+        "k_u": Key(f"tangential contact stiffness{_OF_PAIRS}", RULES["k_u"]),
+        "k_v": Key(f"normal contact stiffness{_OF_PAIRS}", RULES["k_v"]),
+        "n_0": Key(f"preload{_OF_PAIRS}", RULES["n_0"], "gap"),
+        "gap": Key(f"instead of a preload: n_0 = -k_v * gap{_OF_PAIRS}", RULES["gap"], "n_0"),
     },
     "contact.nodes": {
         "sets": Key("of two sides, or one that touches the ground: sets of the mesh, or files of nodes",

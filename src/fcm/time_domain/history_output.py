@@ -20,6 +20,7 @@ from fcm.time_domain.system import LETTERS
 from fcm.units import CF_UNIT, in_unit
 
 Variable = tuple[tuple[str, ...], npt.NDArray[Any], dict[str, Any]]  # dimensions, values, attributes
+_NUMBERS = "0 separation, 1 stick, 2 positive and 3 negative slip; -1 not reached"
 MEANINGS = "not_reached separation stick positive_slip negative_slip"  # of -1 and the indices of LETTERS
 
 
@@ -65,7 +66,9 @@ def _of_records(found: Histories) -> dict[str, Variable]:
     exact = "in the cycle, exact"
     return {
         "displacement": each("instant dof", lambda r: r.displacement, f"displacement, {found.plan.sentence}"),
-        "contact_state": each("instant contact", lambda r: r.state, "state of the contact", **flags),
+        "contact_state": each(
+            "instant contact", lambda r: r.state, f"state of the contact: {_NUMBERS}", **flags
+        ),
         "cycle_amplitude": each("cycle dof", lambda r: r.amplitude, f"half the peak-to-peak {exact}"),
         "cycle_mean": each("cycle dof", lambda r: r.mean, "mean displacement in the cycle"),
         "cycle_greatest": each("cycle dof", lambda r: r.greatest, f"greatest displacement {exact}"),
