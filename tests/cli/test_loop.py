@@ -121,17 +121,57 @@ def test_all_solutions_of_a_folded_curve(fcm, folded):
             assert regime[np.argmin(np.abs(frequency - one["frequency"]))] == one["sequence"]
 
 
-def test_of_several_harmonics_the_loop_is_said_to_be_the_fundamentals(fcm, tmp_path):
-    """The states with all of them are others, and stand in the file."""
-    scene = replace(load_scene("yang1998-n5"), harmonics=(1, 2, 3))
-    write_netcdf(trace(scene), tmp_path / "three.nc")
-    done = fcm("plot", "loop", tmp_path / "three.nc", "--at", 1.16, "--json")
+@pytest.fixture(scope="module")
+def three(tmp_path_factory):
+    path = tmp_path_factory.mktemp("three") / "three.nc"
+    write_netcdf(trace(replace(load_scene("yang1998-n5"), harmonics=(1, 2, 3))), path)
+    return path
+
+
+def _turned(word):
+    return {word[i:] + word[:i] for i in range(len(word))}
+
+
+@pytest.mark.parametrize("at", [1.1, 1.16, 1.25])
+def test_the_loop_of_several_harmonics_is_that_of_the_whole_motion(fcm, three, at):
+    """Its states are those of the file, and its force has the harmonics of the one that marching finds."""
+    done = fcm("plot", "loop", three, "--at", at, "--json", "-o", three.with_name("a.png"))
+    found = loops(done)
+    assert "fundamental alone" not in done.err and "events located exactly" in done.err
+    with netCDF4.Dataset(three) as data:
+        for one in found:
+            k = np.nanargmin(np.abs(data["frequency"][0].filled(np.nan) - one["frequency"]))
+            assert one["states"] == data["regime"][0, k, 0]
+            assert one["sequence"] in _turned(one["states"])
+            mu, k_u, k_v, n_0 = (float(data[f"contact_{name}"][0, 0]) for name in ("mu", "k_u", "k_v", "n_0"))
+            scale, phase = (data[f"contact_{name}"][0, k, 0] for name in ("amplitude", "phase"))
+            v_0 = float(data["contact_mean"][0, k, 0, 1])
+            theta = np.arange(4 * 20000) * 2.0 * np.pi / 20000
+            u, v = (
+                sum(scale[d, h] * np.sin((h + 1) * theta + phase[d, h]) for h in range(3)) for d in (0, 1)
+            )
+            limit, w, force = mu * np.maximum(n_0 + k_v * (v_0 + v), 0.0), 0.0, []
+            for displacement, most in zip(u.tolist(), limit.tolist(), strict=True):
+                w = min(max(w, displacement - most / k_u), displacement + most / k_u)
+                force.append(k_u * (displacement - w))
+            by_sine = 2.0 * np.mean(np.array(force[-20000:]) * np.sin(theta[-20000:] + phase[0, 0]))
+            assert one["F_s"] * one["k_u a"] == pytest.approx(by_sine, rel=1e-2, abs=1e-3 * one["k_u a"])
+
+
+def test_a_file_without_the_harmonics_of_contacts_has_the_loop_of_the_fundamental(fcm, three, tmp_path):
+    """As files of before have; it is said."""
+    old = tmp_path / "old.nc"
+    with netCDF4.Dataset(three) as data, netCDF4.Dataset(old, "w") as copy:
+        copy.setncatts({name: data.getncattr(name) for name in data.ncattrs()})
+        for name, dimension in data.dimensions.items():
+            copy.createDimension(name, dimension.size)
+        for name, one in data.variables.items():
+            if not name.startswith("contact_"):
+                copy.createVariable(name, one.dtype, one.dimensions)[:] = one[:]
+    done = fcm("plot", "loop", old, "--at", 1.16, "--json")
     (one,) = loops(done)
-    assert "fundamental alone of harmonics 1-3" in done.err
-    with netCDF4.Dataset(tmp_path / "three.nc") as data:
-        nearest = np.argmin(np.abs(data["frequency"][0] - 1.16))
-        assert one["states"] == data["regime"][0, nearest, 0] != ""
-    assert one["harmonics"] == [1, 2, 3]
+    assert "fundamental alone of harmonics 1-3" in done.err and "from the closed form" in done.err
+    assert one["harmonics"] == [1, 2, 3] and one["states"] != ""
 
 
 def test_one_of_them(fcm, folded):

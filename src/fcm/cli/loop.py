@@ -156,6 +156,7 @@ def loop(
     Below each loop are its force and the slip limits over a cycle. Transitions are marked with their angles.
     """
     from fcm.cli.loop_cases import PlanarCase
+    from fcm.contact import Loop
 
     begin = time.perf_counter()
     options["phases"] = tuple(dict.fromkeys(options["phases"]))
@@ -183,7 +184,7 @@ def loop(
     for case in cases:
         messages.info(_sentence(case, cosine))
     seconds = time.perf_counter() - begin
-    located = options["harmonics"] or isinstance(cases[0], PlanarCase)
+    located = any(not isinstance(case.loop, Loop) for case in cases)
     how = "from events located exactly" if located else "from the closed form"
     messages.info(f"wrote {output}: {how}, in {seconds:.2f} s")
 

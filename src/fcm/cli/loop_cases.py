@@ -19,7 +19,7 @@ from fcm.cli.loop_names import Harmonic, Name, named, phase_of, unit_of
 if TYPE_CHECKING:
     from fcm.contact import Loop, PeriodicLoop
     from fcm.contact.plane.loop import PlanarLoop
-    from fcm.plot.loop_file import LoopFile, LoopPoint, PlanePoint
+    from fcm.plot.loop_file import LinePoint, LoopFile, LoopPoint, PlanePoint
 
 
 @dataclass(frozen=True)
@@ -178,7 +178,7 @@ def of_file(
     solution: int | None,
 ) -> list[Case] | list[PlanarCase]:
     """The loops of a contact on curves of a response file, at frequencies."""
-    from fcm.plot.loop_file import points_at, read_loops
+    from fcm.plot.loop_file import PlanePoint, points_at, read_loops
     from fcm.plot.read import read
 
     file = read_loops(path)
@@ -190,10 +190,10 @@ def of_file(
             raise click.UsageError(f"--solution {solution}: there are {len(points)} at this frequency.")
         for point in points if solution is None else points[solution - 1 : solution]:
             with read(path, "its loops cannot be drawn"):
-                if point.plane is None:
-                    cases.append(_at_point(point, file))
+                if isinstance(point.motion, PlanePoint):
+                    planar.append(_in_plane(point, point.motion, file))
                 else:
-                    planar.append(_in_plane(point, point.plane, file))
+                    cases.append(_on_a_line(point, point.motion, file))
     return planar or cases
 
 
@@ -212,7 +212,7 @@ def _said(point: LoopPoint, file: LoopFile) -> tuple[tuple[Name, ...], str, dict
         Name(curve_label(point.parameters, units=file.units), swept),
         Name(f"{symbol} = {at}", at),
     )
-    if len(point.harmonics) > 1 and point.plane is None:
+    if point.fundamental:
         names += (Name("fundamental alone", f"fundamental alone of harmonics {ranges(point.harmonics)}"),)
     several = f"{point.solution} of {point.solutions}, " if point.solutions > 1 else ""
     stable = {True: "stable", False: "unstable", None: ""}[point.stable]
@@ -235,18 +235,16 @@ def _in_plane(point: LoopPoint, plane: PlanePoint, file: LoopFile) -> PlanarCase
     return PlanarCase(loop, plane.directions, names, note, facts, file.dimensions)
 
 
-def _at_point(point: LoopPoint, file: LoopFile) -> Case:
-    from fcm.contact import hysteresis_loop
+def _on_a_line(point: LoopPoint, motion: LinePoint | None, file: LoopFile) -> Case:
+    from fcm.contact import hysteresis_loop, periodic_loop
 
     names, note, facts = _said(point, file)
-    ratios = point.n0_bar, point.b_bar, point.phi
-    return Case(
-        hysteresis_loop(*ratios),
-        ratios,
-        names,
-        note,
-        point.amplitude,
-        point.force,
-        facts,
-        file.dimensions,
-    )
+    ratios, a, force = (point.n0_bar, point.b_bar, point.phi), point.amplitude, point.force
+    loop: Loop | PeriodicLoop
+    if motion is None or not force > 0.0:
+        loop = hysteresis_loop(*ratios)
+    else:
+        mu, k_u, k_v, n_0 = motion.law
+        u, v = motion.motion / a
+        loop = periodic_loop(u, v, mu, 1.0, k_v / k_u, n_0 / force)
+    return Case(loop, ratios, names, note, a, force, facts, file.dimensions)

@@ -18,7 +18,7 @@ from fcm.plot.reader_process import apart
 
 _ENERGY = "dissipated_energy"
 _ALSO = ("contact", "frequency", "stable", _ENERGY, "harmonic", "regime")
-_PLANE = (
+_MOTION = (
     "contact_harmonic", "contact_mean", "contact_amplitude", "contact_phase",
     "contact_mu", "contact_k_u", "contact_k_v", "contact_n_0",
 )  # fmt: skip
@@ -35,27 +35,46 @@ class PlanePoint:
 
 
 @dataclass(frozen=True)
-class PlaneFile:
-    """What a response file has on contacts that slide in a plane."""
+class LinePoint:
+    """What `fcm.periodic_loop` takes of a contact on a line; u counts from its mean.
+
+    Angles count from where its fundamental is a sine.
+    """
+
+    motion: npt.NDArray[np.complex128]  # (u and v, harmonic), the mean first
+    law: tuple[float, float, float, float]  # mu, k_u, k_v, n_0
+
+
+@dataclass(frozen=True)
+class MotionFile:
+    """What a response file has on the motions across contacts, in a plane or in several harmonics."""
 
     mean: FloatArray  # (curve, point, contact, direction)
     amplitude: FloatArray  # (curve, point, contact, direction, harmonic)
     phase: FloatArray
     harmonics: tuple[int, ...]
     law: FloatArray  # (4, curve, contact)
-    directions: dict[str, Any]  # of each contact, by x, y and normal
+    directions: dict[str, Any]  # of each contact in a plane, by x, y and normal
 
-    def at(self, row: int, k: int, column: int, contact: str) -> PlanePoint | None:
-        """Of a point; None of a contact on a line."""
+    def at(self, row: int, k: int, column: int, contact: str) -> PlanePoint | LinePoint | None:
+        """Of a point; None of a contact on a line that moves in one harmonic alone."""
         names = self.directions.get(contact)
-        if not isinstance(names, dict):
-            return None
-        motion = np.zeros((3, 1 + max(self.harmonics)), dtype=np.complex128)
-        motion[:, 0] = self.mean[row, k, column]
+        mean = self.mean[row, k, column]
+        motion = np.zeros((mean.size, 1 + max(self.harmonics)), dtype=np.complex128)
+        motion[:, 0] = mean
         waves = self.amplitude[row, k, column] * np.exp(1j * self.phase[row, k, column]) / 1j
         motion[:, list(self.harmonics)] = np.nan_to_num(waves)
-        mu, k_u, k_v, n_0 = self.law[:, row, column].tolist()
-        return PlanePoint(motion, (mu, k_u, k_v, n_0), (str(names.get("x", "x")), str(names.get("y", "y"))))
+        mu, k_u, k_v, n_0 = law = self.law[:, row, column].tolist()
+        if isinstance(names, dict):
+            axes = str(names.get("x", "x")), str(names.get("y", "y"))
+            return PlanePoint(motion, (mu, k_u, k_v, n_0), axes)
+        if np.isnan(mean).any() or self.harmonics == (1,):
+            return None
+        if not np.isfinite(law).all():
+            raise ValueError(f"the numbers of contact {contact} are not finite")
+        turned = np.exp(-1j * np.arange(motion.shape[1]) * (np.angle(motion[0, 1]) + 0.5 * np.pi))
+        motion[0, 0] = 0.0
+        return LinePoint(motion[[0, -1]] * turned, (mu, k_u, k_v, n_0))
 
 
 @dataclass(frozen=True)
@@ -74,9 +93,10 @@ class LoopPoint:
     phi: float  # [rad]
     amplitude: float  # a, of the tangential motion
     force: float  # k_u a
-    harmonics: tuple[int, ...]  # of the motion, of which the loop is that of the first
+    harmonics: tuple[int, ...]  # of the motion
     states: str  # with all of them
-    plane: PlanePoint | None = None  # of a contact that slides in a plane, which has no such loop
+    fundamental: bool  # whether the loop is that of the first of them, as the file has not the others
+    motion: PlanePoint | LinePoint | None = None  # in a plane, or in several harmonics
 
 
 @dataclass(frozen=True)
@@ -95,14 +115,14 @@ class LoopFile:
     states: npt.NDArray[np.str_]  # (curve, point, contact)
     units: Mapping[str, str]  # of swept keys, if the file says them
     dimensions: tuple[str, str] | None  # units of length and force, if it says both
-    plane: PlaneFile | None = None
+    motions: MotionFile | None = None
 
 
 @apart
 def read_loops(path: Path) -> LoopFile:
     """Read what ``fcm respond -o`` has written; PlotError if the file holds no loops."""
     response = read_response(path)
-    with opened(path, "a response file", (), (*_PARTS, *_ALSO, *_PLANE)) as data:
+    with opened(path, "a response file", (), (*_PARTS, *_ALSO, *_MOTION)) as data:
         missing = [name for name in (*_PARTS, "contact") if name not in data.variables]
         if missing:
             raise PlotError(f"{path}: holds no loops: it has no variable {', '.join(missing)}")
@@ -116,7 +136,7 @@ def read_loops(path: Path) -> LoopFile:
         if not orders.size or orders[0] != 1.0 or not (np.diff(orders) > 0.0).all() or (orders % 1.0).any():
             raise ValueError("its harmonics are not 1 and others above, one after the other")
         states = np.asarray(data["regime"][:]).astype(str) if "regime" in data.variables else None
-        plane = _plane(data)
+        motions = _motions(data)
     shape = (*frequency.shape, len(contacts))
     swept = tuple(curve.parameters for curve in response.curves)
     if states is None:
@@ -125,23 +145,23 @@ def read_loops(path: Path) -> LoopFile:
         path, response.frequency_unit, contacts, swept, frequency, stable, np.stack(parts),
         _greatest(energy, len(contacts)),
         tuple(int(h) for h in orders), states, response.units, (length, force) if length and force else None,
-        plane,
+        motions,
     )  # fmt: skip
 
 
-def _plane(data: Any) -> PlaneFile | None:
-    """Of contacts that slide in a plane, where there are some."""
-    if not all(name in data.variables for name in _PLANE):
+def _motions(data: Any) -> MotionFile | None:
+    """Of contacts in a plane or in several harmonics, where there are some."""
+    if not all(name in data.variables for name in _MOTION):
         return None
     orders = floats(data["contact_harmonic"])
     if not orders.size or (orders < 1.0).any() or (orders % 1.0).any() or not (np.diff(orders) > 0.0).all():
         raise ValueError("contact_harmonic is not of numbers from 1 on, one after the other")
     said = json.loads(str(getattr(data, "summary", "{}")))
     names = said.get("directions", {}) if isinstance(said, dict) else {}
-    law = np.stack([floats(data[name]) for name in _PLANE[4:]])
-    mean, amplitude, phase = (floats(data[name]) for name in _PLANE[1:4])
+    law = np.stack([floats(data[name]) for name in _MOTION[4:]])
+    mean, amplitude, phase = (floats(data[name]) for name in _MOTION[1:4])
     harmonics = tuple(int(h) for h in orders)
-    return PlaneFile(mean, amplitude, phase, harmonics, law, names if isinstance(names, dict) else {})
+    return MotionFile(mean, amplitude, phase, harmonics, law, names if isinstance(names, dict) else {})
 
 
 def points_at(file: LoopFile, curve: int | None, contact: str | None, at: float | None) -> list[LoopPoint]:
@@ -191,13 +211,14 @@ def _point(file: LoopFile, row: int, column: int, k: int, solution: int, solutio
         raise PlotError(
             f"{file.path}: {name} has no tangential motion at {frequency:.6g} {file.unit}, and so no loop"
         )
-    plane = None if file.plane is None else file.plane.at(row, k, column, name)
+    motion = None if file.motions is None else file.motions.at(row, k, column, name)
     if n0_bar == b_bar == 0.0:
         raise PlotError(f"{file.path}: {name} has no friction, and so no loop")
     return LoopPoint(
         row, file.parameters[row], name, frequency, solution, solutions,
         None if np.isnan(stable) else stable != 0.0, n0_bar, b_bar, phi, amplitude, force,
-        file.harmonics, str(file.states[row, k, column]), plane,
+        file.harmonics, str(file.states[row, k, column]),
+        file.motions is None and len(file.harmonics) > 1, motion,
     )  # fmt: skip
 
 

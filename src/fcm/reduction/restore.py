@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation.corrector import Newton
-from fcm.harmonic_balance.planar_quantities import planar_quantities
+from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.response_quantities import amplitudes_at, cycles, loops
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
@@ -54,13 +54,11 @@ def _put_back(curve: Curve, scene: Scene, traced: list[int]) -> None:
     z = unknowns(curve, scene, at, system.harmonics)
     cycle = np.full((*regime.shape, curve.cycle.shape[-1]), np.nan)
     loop[at] = loops(system, z)
-    if scene.planar:
-        plane = planar_quantities(
-            System(scene, curve.harmonics or (1,)), unknowns(curve, scene, at, curve.harmonics or (1,))
-        )
-        rows = np.full(curve.frequency.size, -1)
-        rows[at] = np.arange(at.size)
-        curve.in_plane = None if plane is None else plane.at(rows)
+    harmonics = curve.harmonics or (1,)
+    motions = contact_motions(System(scene, harmonics), unknowns(curve, scene, at, harmonics))
+    rows = np.full(curve.frequency.size, -1)
+    rows[at] = np.arange(at.size)
+    curve.across = None if motions is None else motions.at(rows)
     regime[at], cycle[at] = cycles(system, z, loop[at])
     loop[:, traced], regime[:, traced], cycle[:, traced] = curve.loop, curve.regime, curve.cycle
     error, of_greatest = np.full(cycle.shape, np.nan), np.full(cycle.shape[1:], np.nan)

@@ -21,8 +21,8 @@ from fcm.branches.force_level import LevelRange, level_curve
 from fcm.branches.linear_limits import highest_linear_limit
 from fcm.continuation import Mark, Status
 from fcm.continuation.path import Path
+from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.cost_model import with_twice_as_many
-from fcm.harmonic_balance.planar_quantities import planar_quantities
 from fcm.harmonic_balance.response_quantities import cycles, loops, recorded_at_levels
 from fcm.harmonic_balance.static_equilibrium import RestError
 from fcm.harmonic_balance.system import System
@@ -222,7 +222,7 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     }
     if len(system.harmonics) > 1:
         of_points["harmonic"] = X
-    plane, tops = planar_quantities(system, z), amplitude.argmax(axis=0)
+    plane, tops = contact_motions(system, z), amplitude.argmax(axis=0)
     residual = residual_changes_at_levels(system, z, level, amplitude, words).tolist()
     at_top = stability_at_top(amplitude, stable).tolist()
     folds = level[(path.mark[inside] & Mark.FOLD) > 0]
@@ -234,7 +234,7 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
         "level_folds": folds.tolist(),
         "undetermined": int(undetermined(system.scene, words).sum()),
         "reason": _unsteady_ranges(system, level, lost),
-        "in_plane": None if plane is None else plane.at(rows),
+        "across": None if plane is None else plane.at(rows),
     }
     return {name: pick(values, rows) for name, values in of_points.items()} | of_curve
 

@@ -12,8 +12,8 @@ import numpy as np
 from fcm.accuracy.contact_load_errors import relative
 from fcm.accuracy.options import PAIR
 from fcm.continuation import Mark, Status
+from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.cost_model import with_twice_as_many
-from fcm.harmonic_balance.planar_quantities import planar_quantities
 from fcm.harmonic_balance.response_quantities import cycles, loops
 from fcm.harmonic_balance.wave_extremes import half_peak_to_peak
 from fcm.model.scene import FloatArray, Scene
@@ -189,7 +189,7 @@ def _recorded(
         harmonics=system.harmonics,
         harmonic=X if len(system.harmonics) > 1 else None,
         mode=_along(mode, number, levels),
-        in_plane=planar_quantities(system, mode.contacts),
+        across=contact_motions(system, mode.contacts),
     )
     curve.greatest = greatest_of(curve)
     return curve

@@ -17,7 +17,7 @@ from fcm.accuracy.unchecked_response import ResponseInterrupted
 from fcm.branches.options import FOLDS
 from fcm.contact.contact_law import ContactLawError
 from fcm.continuation import Mark
-from fcm.harmonic_balance.planar_quantities import planar_quantities
+from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.response_quantities import ContactRecord, PointRecord, recorded, table_errors
 from fcm.harmonic_balance.rounding import with_precise_fundamental
 from fcm.harmonic_balance.static_equilibrium import RestError
@@ -143,7 +143,7 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
     ends, rows = np.flatnonzero(np.diff(points.path)) + 1, np.arange(points.path.size)
     rows = np.insert(rows, ends, -1) if ends.size else rows
     contacts = ContactRecord.joined([one.contacts for one in found.errors])
-    words, contact_loads, plane = contacts.words, contacts.contact_loads, planar_quantities(system, points.z)
+    words, contact_loads, plane = contacts.words, contacts.contact_loads, contact_motions(system, points.z)
     X = 1j * points.X  # from Re(X exp(i theta)) to Im(X exp(i theta))
     reason, nowhere = incomplete(found, points)
     stable = np.where(nowhere, 0.0, np.concatenate(parts))  # what creeps away, or floats, is no steady state
@@ -191,7 +191,7 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
         evaluations=sum(path.evaluations for path in paths),
         harmonics=system.harmonics,
         harmonic=pick(X, rows) if len(system.harmonics) > 1 else None,
-        in_plane=None if plane is None else plane.at(rows),
+        across=None if plane is None else plane.at(rows),
         undetermined=int(open_to_past.sum()),
         unsure=[one.omega for one in found.traced.found if not one.complete],
         folds_unsure=list(found.traced.folds_lost),

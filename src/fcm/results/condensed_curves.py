@@ -61,7 +61,7 @@ def without_points(curve: Curve, most: int = 0) -> Curve:
         at = np.unique(at[curve.amplitude[at].argmax(axis=0)])[:most]
     values = {field.name: getattr(curve, field.name) for field in fields(curve)}
     kept: dict[str, Any] = {name: x[at] for name, x in values.items() if isinstance(x, np.ndarray)}
-    return replace(curve, **kept, condensed=condense(curve))
+    return replace(curve, **kept, across=None, condensed=condense(curve))
 
 
 def worst(errors: FloatArray) -> float | None:

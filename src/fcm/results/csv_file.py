@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from fcm.files import replacing
-from fcm.results.in_plane import csv_columns, csv_values
+from fcm.results.contact_motions import csv_columns, csv_values
 from fcm.results.orbits import Orbits
 from fcm.results.result import Curve, Response
 from fcm.results.variable_meanings import CYCLE, ORBIT_KINDS

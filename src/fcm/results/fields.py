@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
 from fcm.results.blades import blade_fields
+from fcm.results.contact_motions import motions_across
 from fcm.results.curve_fields import condensed_fields, curve_fields, scatter_fields, sensitivity_fields
 from fcm.results.field import Field
-from fcm.results.in_plane import plane_fields
 from fcm.results.padded_arrays import Padded, by_point
 from fcm.results.result import Curve, Response
 from fcm.results.scatter import scatter
@@ -137,8 +137,8 @@ def _point_fields(response: Response) -> dict[str, Field]:
         _add_mode(found)
     _add_motion(found)
     _add_contacts(found)
-    if any(c.in_plane is not None for c in found.curves):
-        found.out |= plane_fields(found.curves)
+    if any(c.across is not None for c in found.curves):
+        found.out |= motions_across(found.curves)
     _add_trust(found)
     if any(c.harmonic is not None for c in found.curves):
         found.out |= _harmonic_fields(found.curves)

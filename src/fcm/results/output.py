@@ -13,9 +13,9 @@ import numpy.typing as npt
 import fcm
 from fcm.files import replacing
 from fcm.results.blades import add_to_summary
+from fcm.results.contact_motions import DIRECTIONS
 from fcm.results.field import Field
 from fcm.results.fields import fields_of, swept_names
-from fcm.results.in_plane import DIRECTIONS
 from fcm.results.options import RESULTS, FileOptions
 from fcm.results.padded_arrays import Padded
 from fcm.results.result import Response

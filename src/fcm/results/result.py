@@ -23,7 +23,7 @@ from fcm.results.jumps import Jump, Swept, swept
 from fcm.results.peak import Peak
 
 if TYPE_CHECKING:
-    from fcm.harmonic_balance.planar_quantities import PlanarQuantities
+    from fcm.harmonic_balance.contact_motions import ContactMotions
     from fcm.results.fitted import Fitted
     from fcm.results.motions import Motions
     from fcm.results.nonlinear_mode import NonlinearMode
@@ -89,7 +89,7 @@ class Curve:
     mode: NonlinearMode | None = None
     digits: bool = False  # whether displacements far below the greatest have digits, as contacts are stiff
     sensitivity: Sensitivities | None = None  # of the peaks
-    in_plane: PlanarQuantities | None = None  # of contacts that slide in a plane, where there is one
+    across: ContactMotions | None = None  # motions of the contacts, in a plane or in several harmonics
     cause: Cause = Cause.CALCULATION  # why it is not complete, if it is not
 
     def __setstate__(self, state: dict[str, Any]) -> None:

@@ -1,8 +1,9 @@
-"""The variables of contacts that slide in a plane in files, and the names of their directions."""
+"""The variables of motions across contacts in files, and the names of their directions."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,43 +14,46 @@ from fcm.results.field import Field
 from fcm.results.padded_arrays import by_point
 from fcm.results.result import Curve
 
-DIRECTIONS = ("x", "y", "normal")
+DIRECTIONS = ("x", "y", "normal")  # in a plane,
+ON_A_LINE = ("tangential", "normal")
 LAW = ("mu", "k_u", "k_v", "n_0")
 
 
-def plane_fields(curves: Sequence[Curve]) -> dict[str, Field]:
-    """Variables of the contacts in a plane."""
-    known = next(one.in_plane for one in curves if one.in_plane is not None)
-    contacts = known.motion.shape[1]
-    numbers = sorted({h for curve in curves for h in curve.harmonics})
+def motions_across(curves: Sequence[Curve]) -> dict[str, Field]:
+    """Variables of the motions across contacts; of contacts in a plane their friction, too."""
+    known = next(one.across for one in curves if one.across is not None)
+    _, contacts, directions, _ = known.motion.shape
+    numbers = sorted({h for curve in curves if curve.across is not None for h in curve.harmonics})
 
     def friction(curve: Curve, i: int) -> FloatArray:
-        nothing = np.full((curve.frequency.size, contacts), np.nan)
-        return nothing if curve.in_plane is None else curve.in_plane.friction[..., i]
+        known = None if curve.across is None else curve.across.friction
+        return np.full((curve.frequency.size, contacts), np.nan) if known is None else known[..., i]
 
     def waves(curve: Curve) -> npt.NDArray[np.complex128]:
-        found = np.full((curve.frequency.size, contacts, 3, len(numbers)), np.nan, dtype=np.complex128)
-        if curve.in_plane is not None:
-            found[..., [numbers.index(h) for h in curve.harmonics]] = 1j * curve.in_plane.motion[..., 1:]
+        shape = (curve.frequency.size, contacts, directions, len(numbers))
+        found = np.full(shape, np.nan, dtype=np.complex128)
+        if curve.across is not None:
+            found[..., [numbers.index(h) for h in curve.harmonics]] = 1j * curve.across.motion[..., 1:]
         return found
 
     def means(curve: Curve) -> FloatArray:
-        nothing = np.full((curve.frequency.size, contacts, 3), np.nan)
-        return nothing if curve.in_plane is None else curve.in_plane.motion[..., 0].real
+        nothing = np.full((curve.frequency.size, contacts, directions), np.nan)
+        return nothing if curve.across is None else curve.across.motion[..., 0].real
 
-    law = np.array([known.law if one.in_plane is None else one.in_plane.law for one in curves])
+    law = np.array([known.law if one.across is None else one.across.law for one in curves])
     at, of = ("curve", "point", "contact"), ("curve", "point", "contact", "direction", "contact_harmonic")
     about = "amplitude of the fundamental of the friction force along the {} direction of a contact"
     sine = "as contact_amplitude * sin(harmonic omega t + contact_phase)"
+    names = DIRECTIONS if directions == len(DIRECTIONS) else ON_A_LINE
+    in_plane = {
+        name: Field(at, by_point(curves, partial(friction, i=i)), {"long_name": about.format(which)})
+        for i, (name, which) in enumerate((("friction_x", "first"), ("friction_y", "second")))
+        if known.friction is not None
+    }
     return {
-        "direction": Field(("direction",), np.array(DIRECTIONS), {"long_name": "direction of a contact"}),
+        "direction": Field(("direction",), np.array(names), {"long_name": "direction of a contact"}),
         "contact_harmonic": Field(("contact_harmonic",), np.array(numbers), {"long_name": "harmonic"}),
-        "friction_x": Field(
-            at, by_point(curves, lambda c: friction(c, 0)), {"long_name": about.format("first")}
-        ),
-        "friction_y": Field(
-            at, by_point(curves, lambda c: friction(c, 1)), {"long_name": about.format("second")}
-        ),
+        **in_plane,
         "contact_mean": Field(
             of[:4], by_point(curves, means), {"long_name": "mean displacement across the contact"}
         ),
@@ -90,9 +94,9 @@ def csv_columns(contacts: Sequence[str], planar: Sequence[str], units: tuple[str
 
 def csv_values(curve: Curve, point: int, which: Sequence[int]) -> list[str]:
     """Of a point the amplitudes of friction, way of the slip and energy of some contacts."""
-    if curve.in_plane is None:
+    if curve.across is None or curve.across.friction is None:
         return ["nan"] * (4 * len(which))
     found: list[Any] = []
     for i in which:
-        found += [*curve.in_plane.friction[point, i].tolist(), *curve.cycle[point, i, 2:].tolist()]
+        found += [*curve.across.friction[point, i].tolist(), *curve.cycle[point, i, 2:].tolist()]
     return [repr(float(value)) for value in found]

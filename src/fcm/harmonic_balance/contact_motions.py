@@ -1,0 +1,54 @@
+"""Motions across contacts at points of a balance, from which their loops follow, and friction in a plane."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray
+
+
+@dataclass(frozen=True)
+class ContactMotions:
+    """Of every point; x(theta) = Re sum_h X_h exp(i h theta), the mean first."""
+
+    motion: npt.NDArray[np.complex128]  # (point, contact, direction, 1 + harmonic) across the contacts
+    friction: FloatArray | None  # (point, contact, 2) amplitude of the fundamental of that in a plane
+    law: FloatArray  # (contact, 4) mu, k_u, k_v, n_0
+
+    def at(self, rows: npt.NDArray[np.intp]) -> ContactMotions:
+        """Of some points, with a gap where an index is -1."""
+        motion, friction = self.motion[rows], None if self.friction is None else self.friction[rows]
+        motion[rows < 0] = np.nan
+        if friction is not None:
+            friction[rows < 0] = np.nan
+        return ContactMotions(motion, friction, self.law)
+
+
+def contact_motions(system: System, z: FloatArray) -> ContactMotions | None:
+    """Motions across contacts at points z (point, unknown + 1), and their friction in a plane.
+
+    None where each moves on a line in one harmonic, of which its loop says all.
+    """
+    scene, layout, z = system.scene, system.layout, np.ascontiguousarray(z)
+    if not scene.contacts or not (scene.planar or len(system.harmonics) > 1):
+        return None
+    shape = (len(z), layout.contacts, layout.directions, -1)
+    motion = np.stack([layout.complex_ports(one) for one in z]).reshape(shape)
+    law = np.array([(c.mu, c.k_u, c.k_v, c.n_0) for c in scene.contacts])
+    return ContactMotions(motion, _friction(system, z) if scene.planar else None, law)
+
+
+def _friction(system: System, z: FloatArray) -> FloatArray:
+    """Amplitudes (point, contact, 2) of the fundamental of friction forces in a plane."""
+    layout = system.layout
+    friction, j = np.zeros((len(z), layout.contacts, 2)), 1 + system.harmonics.index(1)
+    for i, law in enumerate(system.exact_laws(system.harmonics)):
+        for k, one in enumerate(z):
+            law.probe(one, i * layout.width)
+            force = np.asarray(law.force)[3 * (2 * j - 1) :][:4]
+            friction[k, i] = np.hypot(force[::2], force[1::2])
+    return friction
