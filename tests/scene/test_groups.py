@@ -86,7 +86,7 @@ def test_pairs_and_their_numbers_in_a_file(tmp_path):
     assert (one.k_u, other.k_u, other.k_v) == (0.25, 0.75, 1.5)
 
 
-@pytest.mark.parametrize("text", ["3.5\n-1\n", "51 -1  # by its other node\n40, 3.5\n7 8\n"])
+@pytest.mark.parametrize("text", ["3.5\n-1\n", "51 -1  # by its other node\n40, 3.5\n41 8\n"])
 def test_preloads_in_a_file(tmp_path, text):
     (tmp_path / "n_0.txt").write_text(text)
     contacts = of_file(tmp_path, PAIRS | NUMBERS | {"n_0": "n_0.txt"}).contacts
@@ -133,6 +133,8 @@ def test_wrong_files_of_pairs(tmp_path, text, words):
         ("1\n2\n3\n", "has 3 numbers for 2 pairs"),
         ("40 1\n40 2\n50 3\n", "has two numbers for one node"),
         ("40 1\n", 'has no number for the pair of node "50"'),
+        ("40 1\n50 2\n7 3\n", '"n_0.txt" has 1 row of nodes that are in no pair, the first of node "7"'),
+        ("40 1\n60 2\n61 2\n50 3\n", 'has 2 rows of nodes that are in no pair, the first of node "60"'),
         ("40 1\n2\n", "line 2: must be a number, or a node and a number"),
         ("1kN\n2\n", 'line 1: "1kN" has "kN" behind the number'),
         ("40,5\n50,5\n", '"40,5" may be a number with a decimal comma, or a node and its number'),
