@@ -195,7 +195,9 @@ def _matching(section: Section, key: str, pattern: object, dofs: Names | None) -
     matching = {name for name in dofs if fnmatchcase(name, pattern)} | ({dofs.find(pattern)} - {""})
     if not matching:
         of_all = "" if dofs.find(pattern.partition("@")[0]) == "" or "@" not in pattern else OF_ALL_SECTORS
-        section.wrong(key, f"no degree of freedom matches {quoted(pattern)}{of_all}", pattern, dofs)
+        hint = dofs.of_node(pattern)
+        said = f"no degree of freedom matches {quoted(pattern)}{of_all}{hint}"
+        section.wrong(key, said, "" if hint else pattern, dofs)
     return matching
 
 

@@ -34,10 +34,21 @@ class Names(tuple[str, ...]):
 
         >>> Names(("40x", "tip")).find("40:1"), Names(("40x", "tip")).find("tip")
         ('40x', 'tip')
-        >>> Names(("11", "tip")).find("1x")  # "11" may be the eleventh row
-        ''
+        >>> Names(("11", "tip")).find("1x"), Names(("1x", "tip")).find("11")  # "11" may be the eleventh row
+        ('', '')
         """
-        return name if name in self.place else self._at_nodes.get(at_node(name), "")
+        return name if name in self.place else self._at_nodes.get(motion_of(name), "")
+
+    def of_node(self, number: str) -> str:
+        """What to write in the place of a number that is no name, but that of a node; empty if it is none.
+
+        >>> Names(("36x", "36z", "tip")).of_node("36"), Names(("36x", "tip")).of_node("3")
+        ('; a number alone is no name: write "36x" or "36z"', '')
+        """
+        if not number.isdecimal() or number in self.place:
+            return ""
+        own = [name for name in self if name.startswith(number) and not name[len(number)].isdecimal()]
+        return f"; a number alone is no name: write {' or '.join(map(quoted, own[:6]))}" if own else ""
 
 
 class RowNames(Names):
@@ -47,7 +58,7 @@ class RowNames(Names):
 
 
 def motion_of(name: str) -> str:
-    """As `at_node`, of a name that a structure's file gives: a number alone is that of a row."""
+    """As `at_node`; a number alone is that of a row."""
     return "" if name.isdecimal() else at_node(name)
 
 

@@ -185,8 +185,11 @@ class Section:
     def _known(self, key: str, terms: Iterable[str], dofs: Names) -> bool:
         unknown = [dof for dof in terms if not dofs.find(dof)]
         for dof in unknown:
-            what = f"unknown degree of freedom {quoted(dof)}; {dofs.key} are {choices(dofs)}"
-            self.wrong(key, what, dof, dofs)
+            what = f"unknown degree of freedom {quoted(dof)}"
+            if of_node := dofs.of_node(dof):
+                self.wrong(key, f"{what}{of_node}")
+            else:
+                self.wrong(key, f"{what}; {dofs.key} are {choices(dofs)}", dof, dofs)
         return not unknown
 
 
