@@ -134,9 +134,9 @@ def read_numbers_of_pairs(path: Path, pairs: Sequence[tuple[str, ...]]) -> list[
     known = {node for pair in pairs for node in pair}
     stray = [node for node in of_node if node not in known] if pairs else []
     if stray:
-        rows = "1 row" if len(stray) == 1 else f"{len(stray)} rows"
+        how_many = "1 row" if len(stray) == 1 else f"{len(stray)} rows"
         raise DataFileError(
-            f"{quoted(path.name)} has {rows} of nodes that are in no pair, "
+            f"{quoted(path.name)} has {how_many} of nodes that are in no pair, "
             f"the first of node {quoted(stray[0])}"
         )
     found = [next((node for node in pair if node in of_node), None) for pair in pairs]
