@@ -8,6 +8,7 @@ import pytest
 from fcm import load_scene
 from fcm.response import trace
 from fcm.response.curve_batches import Work, fits
+from fcm.response.options import RESPONSE, InterruptedOptions
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.run import Interrupted
@@ -120,6 +121,29 @@ def test_before_the_errors_the_curve_of_given_harmonics_is_kept():
     assert stops.told == ["1 harmonic, error not told yet; now its errors"]
     assert curve.harmonics == (1,) and "before it was judged" in curve.reason
     assert curve.peaks["u"].amplitude == pytest.approx(15.831, abs=1e-3)
+
+
+def _interrupted(request, **where):
+    with pytest.raises(Interrupted) as stopped:
+        traced_curve(scene("yang1998", 5), request, **where)
+    (curve,) = stopped.value.results
+    return curve
+
+
+@pytest.mark.parametrize("at", [1, 2])
+def test_of_many_points_an_interrupted_curve_has_those_that_are_special_and_some_between(at):
+    """Before its errors are told, and when they are: then they stay."""
+    limits = InterruptedOptions(max_states=40, min_points=10)
+    requests = Request((1,), options=replace(RESPONSE, interrupted=limits)), Request((1,))
+    thin, whole = (_interrupted(one, tell=_Stops(at)) for one in requests)
+    assert thin.harmonics == whole.harmonics and 10 < len(thin.frequency) < len(whole.frequency) / 2
+    known = set(zip(*_points(whole), strict=True))
+    assert known.issuperset(zip(*_points(thin), strict=True))
+    for dof, peak in whole.peaks.items():
+        assert thin.peaks[dof].amplitude == pytest.approx(peak.amplitude, rel=1e-9)
+        assert thin.peaks[dof].frequency == pytest.approx(peak.frequency, rel=1e-9)
+        assert np.isnan(thin.peaks[dof].error) if at == 1 else thin.peaks[dof].error == peak.error
+    assert thin.folds == whole.folds
 
 
 def test_before_the_first_curve_there_is_nothing():

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -72,6 +73,12 @@ class Errors:
     greatest: FloatArray
     contacts: ContactRecord
     pieces: tuple[CurvePiece, ...] = field(default=(), repr=False)
+
+    def part(self, rows: npt.NDArray[np.intp]) -> Errors:
+        """Those of some points of the path."""
+        names = ("amplitude", "truncation", "is_same_curve", "ends_before", "contact_loads")
+        arrays: dict[str, Any] = {name: getattr(self, name)[rows] for name in names}
+        return replace(self, **arrays, contacts=self.contacts.part(rows))
 
     @property
     def on_same_branch(self) -> FloatArray:
@@ -176,6 +183,19 @@ def errors_along(
         contacts=contacts,
         pieces=partner.pieces(compared, followed),
     )
+
+
+def unknown_errors(system: System, path: Path, shown: ReportedQuantities) -> Errors:
+    """Errors of a path of which none is told; shown is what is reported along it."""
+    contacts, nan = ContactRecord.at(system, path.z), np.nan
+    none, unseen = np.full_like(shown.amplitude, nan), np.zeros(len(path.z), dtype=np.bool_)
+    contact_loads = np.full_like(contacts.contact_loads, nan)
+    dofs, folds = np.full(none.shape[1], nan), np.full(len(path.where(Mark.FOLD)), nan)
+    share = np.zeros(max(system.harmonics))
+    return Errors(
+        none, none[:, 0], unseen, unseen, dofs, dofs, folds, share, system.harmonics, contact_loads,
+        np.full(contact_loads.shape[1:], nan), contacts,
+    )  # fmt: skip
 
 
 def with_nearest(

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fcm.accuracy.budget import Budget, share_of
-from fcm.accuracy.embedded_pair import Errors, errors_along, with_nearest
+from fcm.accuracy.embedded_pair import Errors, errors_along, unknown_errors, with_nearest
 from fcm.accuracy.options import OF_GIVEN, PAIR, REFINEMENT, PairOptions, RefinementOptions
 from fcm.accuracy.required_harmonics import needed, required_harmonics
 from fcm.accuracy.unchecked_response import (
@@ -51,6 +51,15 @@ class RefinedResponse(UncheckedResponse):
     def folds(self) -> FloatArray:
         """Errors of all folds, branch after branch."""
         return np.concatenate([np.empty(0), *(one.fold for one in self.errors)])
+
+    def thinned(self, most: int) -> UncheckedResponse:
+        """With the errors that are told."""
+        few = super().thinned(most)
+        if few is self:
+            return self
+        errors = [one.part(rows) for one, rows in zip(self.errors, self._rows(most), strict=True)]
+        own = few.system, few.traced, few.shown, few.seconds, tuple(errors)
+        return RefinedResponse(*own, self.peak, self.max_error, self.max_known_error, self.accuracy)
 
     @property
     def agrees(self) -> bool:
@@ -183,6 +192,15 @@ def with_errors(
     each = np.concatenate((matter, *(one.fold for one in errors)))
     worst, told = float(each.max(initial=0.0)), float(each[np.isfinite(each)].max(initial=0.0))
     return RefinedResponse(*own, peak, worst, told, accuracy)
+
+
+def without_errors(outline: UncheckedResponse) -> RefinedResponse:
+    """A response of whose errors none is told."""
+    system, response, shown = outline.system, outline.traced, outline.shown
+    every = zip(response.branches.paths, shown, strict=True)
+    errors = tuple(unknown_errors(system, *one) for one in every)
+    none = np.full(len(system.scene.modal.dofs), np.nan)
+    return RefinedResponse(system, response, shown, outline.seconds, errors, none, np.nan, np.nan, np.inf)
 
 
 def with_estimated_errors(

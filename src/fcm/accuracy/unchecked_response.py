@@ -6,10 +6,12 @@ which take about as long as these, are followed at last, with the harmonics that
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from fcm.accuracy.options import REFINEMENT, RefinementOptions
 from fcm.branches.force_level import LevelSolutions
@@ -82,6 +84,21 @@ class UncheckedResponse:
             system, response, _shown(system, response.branches.paths), seconds, before=self
         )
 
+    def thinned(self, most: int) -> UncheckedResponse:
+        """The response with about so many points, and what is shown of them; itself if it has no more."""
+        paths = self.traced.branches.paths
+        if points_of(self) <= most and len(self.shown) == len(paths):
+            return self
+        few = [path.part(rows) for path, rows in zip(paths, self._rows(most), strict=True)]
+        response = replace(self.traced, branches=replace(self.traced.branches, paths=tuple(few)))
+        return UncheckedResponse(self.system, response, _shown(self.system, few), self.seconds)
+
+    def _rows(self, most: int) -> list[npt.NDArray[np.intp]]:
+        """About so many points of all paths, of each path its share."""
+        count = max(points_of(self), 1)
+        paths = self.traced.branches.paths
+        return [path.representative(math.ceil(len(path.z) * most / count)) for path in paths]
+
     def with_levels(self, most: float | None = None) -> UncheckedResponse:
         """With the branches that the level of the forces leads to and those of fewer harmonics do not.
 
@@ -104,7 +121,7 @@ class UncheckedResponse:
 
 
 class ResponseInterrupted(KeyboardInterrupt):
-    """Tracing a response was interrupted; response: the branches up to there."""
+    """Tracing a response was interrupted; response: the branches up to there, of which nothing is shown."""
 
     def __init__(self, response: UncheckedResponse) -> None:
         super().__init__()
@@ -131,11 +148,16 @@ def unchecked_response(
         paths = tuple(path for path in stopped.branches.paths if len(path.z) > 1)
         if not paths:
             raise
-        shown, partial = _shown(system, paths), Traced(Branches(paths), ())
-        begun = UncheckedResponse(system, partial, shown, system.work.seconds - before)
+        partial = Traced(Branches(paths), ())
+        begun = UncheckedResponse(system, partial, (), system.work.seconds - before)
         raise ResponseInterrupted(begun) from None
     shown = _shown(system, response.branches.paths)
     return UncheckedResponse(system, response, shown, system.work.seconds - before)
+
+
+def points_of(response: UncheckedResponse) -> int:
+    """How many points its branches have."""
+    return sum(len(path.z) for path in response.traced.branches.paths)
 
 
 def _shown(system: System, paths: Sequence[Path]) -> tuple[ReportedQuantities, ...]:

@@ -46,6 +46,9 @@ class Mark:
     CROSSING = 64  # stability changes between folds
 
 
+SPECIAL = Mark.END | Mark.FOLD | Mark.PEAK | Mark.STATION | Mark.BRANCH | Mark.CROSSING
+
+
 @dataclass(frozen=True)
 class Path:
     """Points of one curve in the order in which they were followed."""
@@ -66,6 +69,17 @@ class Path:
     def where(self, mark: int) -> npt.NDArray[np.intp]:
         """The points that have a mark."""
         return np.flatnonzero(self.mark & mark)
+
+    def representative(self, most: int) -> npt.NDArray[np.intp]:
+        """About so many of the points, in equal numbers apart, and those that are special."""
+        count = len(self.z)
+        even = np.linspace(0, count - 1, min(max(most, 2), count)).round().astype(np.intp)
+        return np.union1d(even, self.where(SPECIAL))
+
+    def part(self, rows: npt.NDArray[np.intp]) -> Path:
+        """The path with some of its points."""
+        arrays = {name: getattr(self, name)[rows] for name in ("z", "direction", "mark", "orientation")}
+        return replace(self, **arrays)
 
     def backwards(self) -> Path:
         """The same points in the other order."""

@@ -64,6 +64,10 @@ class ContactRecord:
             *(_joined([getattr(one, name) for one in parts]) for name in ("loop", "words", "contact_loads"))
         )
 
+    def part(self, rows: IntArray) -> ContactRecord:
+        """Of some points."""
+        return ContactRecord(self.loop[rows], self.words[rows], self.contact_loads[rows])
+
     def with_rows(self, after: IntArray, other: ContactRecord) -> ContactRecord:
         """With the points of another inserted after some points."""
         at, words = after + 1, self.words.astype(np.result_type(self.words, other.words))

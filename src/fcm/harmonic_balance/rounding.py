@@ -43,12 +43,15 @@ class PreciseFundamental(NamedTuple):
     dofs: FloatArray
 
 
-def with_precise_fundamental(system: System, points: PointRecord) -> tuple[PointRecord, FloatArray]:
+def with_precise_fundamental(
+    system: System, points: PointRecord, quick: bool = False
+) -> tuple[PointRecord, FloatArray]:
     """Points with the digits that can be kept, and the relative rounding of the amplitudes (point, dof).
 
     Points of a structure whose contacts are not stiff stay as they are; their rounding is not looked at: 0.
     Of a sector of a ring it is told what digits are lost. Many contacts are looked at in some points; those
-    between two of these have the greater rounding of both.
+    between two of these have the greater rounding of both. quick: the points stay as they are, and are looked
+    at like those of many contacts.
     """
     options, rounding = system.options.digits, np.zeros_like(points.amplitude)
     springs = system.springs(stuck=True)
@@ -63,10 +66,10 @@ def with_precise_fundamental(system: System, points: PointRecord) -> tuple[Point
     shown, forces = balance.shown, _Forces(system)
     apart = np.asarray(shown.without_modes) != 0
     looked = stiff
-    if balance.rank and stiff.size > options.max_points:
+    if (quick or balance.rank) and stiff.size > options.max_points:
         looked = stiff[np.linspace(0, stiff.size - 1, options.max_points).round().astype(np.intp)]
     for i in looked:
-        found = _point(balance, made.z[i].copy(), points.tangent[i], springs, forces, options)
+        found = _point(balance, made.z[i].copy(), points.tangent[i], springs, forces, options, quick)
         made.z[i] = found.z
         balance.evaluate(found.z)
         balance.report(found.z, np.zeros(found.z.size))
@@ -161,14 +164,16 @@ def _point(
     springs: FloatArray,
     forces: _Forces,
     options: DigitOptions,
+    as_balanced: bool,
 ) -> PreciseFundamental:
-    """A point with the digits that can be kept."""
+    """A point with the digits that can be kept, or as it is."""
     balance.evaluate(z)
     G, held = _receptance(balance), _port_stiffness(balance, springs)
     seen, linear, at, omega = balance.seen, forces.linear, _fundamental_positions(balance), float(z[-1])
     other = len(linear.driven) > 1  # whose answer is no fundamental
     if (
-        held is None
+        as_balanced
+        or held is None
         or other
         or isinstance(linear, RingLinear)
         or not np.linalg.cond(G) < options.max_condition

@@ -46,10 +46,15 @@ def _modes(linear: Linear) -> tuple[FloatArray, FloatArray]:
 
 def with_all_dofs(found: RefinedResponse, scene: Scene, accuracy: float) -> RefinedResponse:
     """What was found of a scene that leads, of all degrees of freedom of another."""
+    every = with_errors(of_all_dofs(found, scene), accuracy)
+    return replace(every, further=found.further, begun=found.begun)
+
+
+def of_all_dofs(found: UncheckedResponse, scene: Scene) -> UncheckedResponse:
+    """The same without errors."""
     system = found.system.of(scene)
     shown = tuple(reported_quantities(system, path) for path in found.traced.branches.paths)
-    every = with_errors(UncheckedResponse(system, found.traced, shown, found.seconds), accuracy)
-    return replace(every, further=found.further, begun=found.begun)
+    return UncheckedResponse(system, found.traced, shown, found.seconds)
 
 
 def with_tops(peaks: Mapping[str, Peak], found: RefinedResponse) -> dict[str, Peak]:

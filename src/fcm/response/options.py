@@ -101,6 +101,33 @@ SWEEP = SweepOptions()
 
 
 @dataclass(frozen=True)
+class InterruptedOptions:
+    """What is calculated of a curve once it is interrupted, which is to take a second or so.
+
+    Attributes
+    ----------
+    max_states : int
+        Points times contacts: a curve with more is written with fewer points, and no more errors.
+    min_points : int
+        However many contacts there are.
+    """
+
+    max_states: int = 20_000
+    min_points: int = 200
+
+    def max_points(self, contacts: int) -> int:
+        """Of a curve with so many contacts.
+
+        >>> InterruptedOptions().max_points(25), InterruptedOptions().max_points(300)
+        (800, 200)
+        """
+        return max(self.max_states // max(contacts, 1), self.min_points)
+
+
+INTERRUPTED_CURVES = InterruptedOptions()
+
+
+@dataclass(frozen=True)
 class SteppedOptions:
     """How a sweep by steps of the frequency follows one motion.
 
@@ -299,6 +326,8 @@ class ResponseOptions:
         How the least peak is found.
     sweep : SweepOptions
         How the curves of a sweep are traced.
+    interrupted : InterruptedOptions
+        What is calculated of a curve once it is interrupted.
     reduction : ReductionOptions
         What curves do not need: modes that are replaced by static ones.
     exact : ExactOptions
@@ -315,6 +344,7 @@ class ResponseOptions:
     refinement: RefinementOptions = REFINEMENT
     optimum: OptimumOptions = OPTIMUM
     sweep: SweepOptions = SWEEP
+    interrupted: InterruptedOptions = INTERRUPTED_CURVES
     reduction: ReductionOptions = REDUCTION
     exact: ExactOptions = EXACT_CURVES
     shooting: ShootingOptions = SHOOTING

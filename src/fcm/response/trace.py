@@ -11,9 +11,15 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.options import PAIR, VALIDITY
-from fcm.accuracy.refinement import RefinedResponse, refined_response, with_errors, with_given_harmonics
+from fcm.accuracy.refinement import (
+    RefinedResponse,
+    refined_response,
+    with_errors,
+    with_given_harmonics,
+    without_errors,
+)
 from fcm.accuracy.stability_validity import unreliable_points
-from fcm.accuracy.unchecked_response import ResponseInterrupted
+from fcm.accuracy.unchecked_response import ResponseInterrupted, points_of
 from fcm.branches.options import FOLDS
 from fcm.contact.contact_law import ContactLawError
 from fcm.continuation import Mark
@@ -28,7 +34,8 @@ from fcm.model.scene import FloatArray, Scene
 from fcm.response.accuracy_shortfall import shortfall
 from fcm.response.best_so_far import BestSoFar, Tell
 from fcm.response.incomplete import FLOATING, incomplete
-from fcm.response.master_dofs import with_all_dofs, with_master_dofs, with_tops
+from fcm.response.master_dofs import of_all_dofs, with_master_dofs, with_tops
+from fcm.response.options import InterruptedOptions
 from fcm.response.refined import Refined, refined
 from fcm.response.request import ONE_HARMONIC, Request
 from fcm.response.undetermined_traction import residual_changes, undetermined
@@ -42,7 +49,7 @@ from fcm.stability.options import STABILITY
 
 METHODS = ("table", "closed-form")
 NO_CHECKS = replace(
-    PAIR, max_seconds=0.0, max_point_seconds=0.05, max_second_unknowns=0
+    PAIR, max_seconds=0.0, max_point_seconds=0.05, max_second_unknowns=0, max_seconds_elsewhere=0.0
 )  # where nobody waits any more
 Rows = npt.NDArray[np.intp]
 
@@ -72,23 +79,28 @@ def traced_curve(
             so_far.take_part(stopped.response)
         if so_far.found is None:
             raise
-        curve = _unfinished(so_far, scene)
+        curve = _unfinished(so_far, scene, wanted.options.interrupted)
         curve.seconds = time.perf_counter() - begin
         raise Interrupted([curve]) from None
     curve.seconds = time.perf_counter() - begin
     return curve
 
 
-def _unfinished(so_far: BestSoFar, scene: Scene) -> Curve:
+def _unfinished(so_far: BestSoFar, scene: Scene, options: InterruptedOptions) -> Curve:
     """The best curve that there is, with its errors as far as they are told quickly."""
     assert so_far.found is not None
-    found = so_far.found
-    found.system.work.poll = int  # which interrupts no more
-    if not isinstance(found, RefinedResponse):
-        found = with_errors(found, np.inf, options=NO_CHECKS)
+    whole = so_far.found
+    whole.system.work.poll = int  # which interrupts no more
+    few = whole.thinned(options.max_points(len(scene.contacts)))
+    if isinstance(few, RefinedResponse):
+        found = few
+    elif points_of(few) < points_of(whole):
+        found = without_errors(few)
+    else:
+        found = with_errors(few, np.inf, options=NO_CHECKS)
         so_far.error = found.max_error
     stable = [np.full(len(path.z), np.nan) for path in found.traced.branches.paths]
-    every = found if found.system.scene is scene else with_all_dofs(found, scene, np.inf)
+    every = found if found.system.scene is scene else without_errors(of_all_dofs(found, scene))
     curve = _curve(Refined(found, stable, every=every), quick=True)
     curve.complete, curve.reason, curve.cause = False, so_far.reason(), Cause.INTERRUPTED
     return curve
@@ -138,7 +150,7 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
     quick: without what takes further motions to tell."""
     found, parts = _reported(response), response.stable
     system, paths = found.system, found.traced.branches.paths
-    points, rounding = with_precise_fundamental(system, recorded(system, paths, found.shown))
+    points, rounding = with_precise_fundamental(system, recorded(system, paths, found.shown), quick)
     scene, first = system.scene, system.harmonics.index(1)
     ends, rows = np.flatnonzero(np.diff(points.path)) + 1, np.arange(points.path.size)
     rows = np.insert(rows, ends, -1) if ends.size else rows
