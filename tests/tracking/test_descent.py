@@ -1,5 +1,6 @@
 """The least peak over a number, and the way down over several, of peaks that are known functions."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -94,3 +95,15 @@ def test_least_peaks_of_several_numbers_by_trials_say_so():
     )  # fmt: skip
     shown = as_table({"optimum": [found.summary("rad/s")], "tracked": {"what": "optimum"}}, "rad/s")
     assert "contact.c.k_u = 2; along each number known by trials alone" in shown
+
+
+def test_a_least_peak_that_the_response_exceeds_is_not_told_as_the_least():
+    found = Optimal(
+        {}, {"n": 1.0}, ("peak.u",), 0.3, (("u", 2.0),), "smooth", (1,), 1e-3, stable=(1.0,), residual=(0.0,)
+    )
+    shown = as_table({"optimum": [found.summary("rad/s")], "tracked": {"what": "optimum"}}, "rad/s")
+    assert "NOT THE LEAST" not in shown and found.summary("rad/s")["higher"] is None
+    summary = replace(found, higher=("peak.u", 5.88)).summary("rad/s")
+    shown = as_table({"optimum": [summary], "tracked": {"what": "optimum"}}, "rad/s")
+    assert "NOT THE LEAST: the response there has a higher peak.u, 5.88" in shown.splitlines()[0]
+    assert summary["higher"] == {"what": "peak.u", "value": 5.88}

@@ -164,7 +164,7 @@ def _optimum(one: Mapping[str, Any], unit: str) -> str:
         f"least {' and '.join(map(plain, one['minimise']))}: {one['value']:.6g}{_stays(one)} "
         f"({_error(one)}{_ranges(one)})"
     )
-    return f"{least} with {where}{kind}{_flat(one)}\n{at}{f'; {swept}' if swept else ''}{said}"
+    return f"{least} with {where}{kind}{_flat(one)}{_higher(one)}\n{at}{f'; {swept}' if swept else ''}{said}"
 
 
 def _error(one: Mapping[str, Any]) -> str:
@@ -172,6 +172,13 @@ def _error(one: Mapping[str, Any]) -> str:
     count = len(one["at"])
     of = f", the greatest of {count} equal peaks" if count > 1 and one["error"] else ""
     return f"error {short(one['error'])}{of}"
+
+
+def _higher(one: Mapping[str, Any]) -> str:
+    """That it is none, where the response there has a higher peak that was not followed."""
+    if (higher := one["higher"]) is None:
+        return ""
+    return f" - NOT THE LEAST: the response there has a higher {plain(higher['what'])}, {higher['value']:.6g}"
 
 
 def _flat(one: Mapping[str, Any]) -> str:

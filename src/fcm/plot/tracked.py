@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 _NEEDED = ("tracked_number", "tracked_frequency", "tracked_amplitude", "tracked_turn", "track_what", "dof")
 _ALSO = ("tracked_trough", "tracked_stable")
-_OPTIMUM = ("optimum_number", "optimum_peak", "optimum_frequency", "optimum_stable")
+_OPTIMUM = ("optimum_number", "optimum_peak", "optimum_frequency", "optimum_stable", "optimum_higher_peak")
 _MARK, _SHADE = "#c03020", "#c0d4ea"
 
 
@@ -85,6 +85,9 @@ def read_tracked(path: Path) -> DrawnTracking | None:
                 raise ValueError("its optimum has no number")
             optimum = (float(number_at[0, 0]), float(peak[0]))
             stays = _stays(variables)
+            if "optimum_higher_peak" in variables:
+                higher = float(floats(variables["optimum_higher_peak"])[0])
+                stays += f" (and one of {higher:.4g} that was not followed)"
         return DrawnTracking(
             str(getattr(variables["tracked_number"], "key", "")),
             tuple(str(name) for name in np.atleast_1d(variables["dof"][:])),

@@ -78,8 +78,15 @@ def optimise(
             execution.discard(checkpoint)
     for one, curve in zip(tracking.optima, response.curves, strict=True):
         _check_moves(one, curve)
-    tracking.optima = [_with_error(one, c) for one, c in zip(tracking.optima, response.curves, strict=True)]
-    tracking.problems += _missed_peaks(tracking, response)
+    tracking.optima = [
+        replace(_with_error(one, curve), higher=_missed_peak(one, curve))
+        for one, curve in zip(tracking.optima, response.curves, strict=True)
+    ]
+    tracking.problems += [
+        f"at the optimum there is a higher {one.higher[0]}, {one.higher[1]:.6g}, than was followed"
+        for one in tracking.optima
+        if one.higher is not None
+    ]
     if wanted.harmonics is None:
         _say_what_is_short(tracking, response, wanted.accuracy)
     response.tracking = tracking
@@ -195,17 +202,16 @@ def _with(harmonics: tuple[int, ...]) -> str:
     return f"with {counted(len(harmonics), 'harmonic')}"
 
 
-def _missed_peaks(tracking: Tracking, response: Response) -> list[str]:
-    """What is wrong where a response has a higher peak than the ones that were followed."""
-    said = []
-    for found, curve in zip(tracking.optima, response.curves, strict=True):
-        ends = (curve.condensed or condense(curve)).ends
-        for name in found.minimised:
-            what, _, dof = name.partition(".")
-            peak = curve.peaks[dof]
-            inside = what == "greatest" or peak.frequency not in ends
-            if inside and peak.amplitude > found.value * (1.0 + 10.0 * SEARCH.height_tolerance):
-                said.append(
-                    f"at the optimum there is a higher {name}, {peak.amplitude:.6g}, than was followed"
-                )
-    return said
+def _missed_peak(found: Optimal, curve: Curve) -> tuple[str, float] | None:
+    """The highest of what is minimised that the response has there and that was not followed."""
+    ends, higher = (curve.condensed or condense(curve)).ends, list[tuple[float, str]]()
+    for name in found.minimised:
+        what, _, dof = name.partition(".")
+        peak = curve.peaks[dof]
+        inside = what == "greatest" or peak.frequency not in ends
+        if inside and peak.amplitude > found.value * (1.0 + 10.0 * SEARCH.height_tolerance):
+            higher.append((peak.amplitude, name))
+    if not higher:
+        return None
+    value, name = max(higher)
+    return name, float(value)

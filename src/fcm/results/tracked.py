@@ -114,6 +114,9 @@ class Optimal:
     flat: dict[str, tuple[float, float]] = field(
         default_factory=dict
     )  # between which the peaks do not depend
+    higher: tuple[str, float] | None = (
+        None  # what of the minimised the response there has higher, not followed
+    )
 
     def summary(self, unit: str) -> dict[str, Any]:
         """For JSON."""
@@ -138,6 +141,7 @@ class Optimal:
             "error": self.error,
             "between": None if self.between is None else list(self.between),
             "flat": {key: list(ends) for key, ends in self.flat.items()},
+            "higher": None if self.higher is None else dict(zip(("what", "value"), self.higher, strict=True)),
         }
 
 

@@ -118,6 +118,14 @@ def _optima(response: Response, tracking: Tracking) -> dict[str, Field]:
             "values of the number between which that peak does not depend on it",
         )
     add("peak", (), np.array([one.value for one in optima]), f"the greatest of {minimised} with it")
+    if any(one.higher for one in optima):
+        higher = np.array([np.nan if one.higher is None else one.higher[1] for one in optima])
+        add(
+            "higher_peak",
+            (),
+            higher,
+            "of the response there, where it has a higher one that was not followed",
+        )
     errors = np.array([one.error for one in optima])
     add("error", (), errors, "estimated relative error of that peak", units="1")
     places = in_unit(padded([np.array([omega for _, omega in one.active]) for one in optima]), unit)
