@@ -215,7 +215,9 @@ def test_transposed_shapes_are_recognised(data, mistakes):
 def test_forces_that_move_nothing(data, mistakes):
     del data["sweep"]
     data["force"] = [{"dof": "u", "amplitude": 0.0}]
-    assert mistakes(data) == "test.toml: the forces move no mode, so the response is zero"
+    assert mistakes(data) == "test.toml: force[0].amplitude is 0, so the response is zero"
+    data["force"] *= 4
+    assert mistakes(data) == "test.toml: the amplitudes of all 4 forces are 0, so the response is zero"
     data["force"] = [{"dof": "u", "amplitude": 1.0}]
     data["modal"]["shapes"] = [[0, 1, 1], [0, 2, 2]]
     assert "the forces move no mode" in mistakes(data)

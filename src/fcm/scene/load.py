@@ -35,7 +35,7 @@ from fcm.scene.mistuning import MistuningError, drawn_rings, read_blade, tuned_s
 from fcm.scene.modal import UNITS
 from fcm.scene.node_pairs import notes_of_shares
 from fcm.scene.optimum import read_optimum
-from fcm.scene.options import FILES, TOLERANCES
+from fcm.scene.options import FILES, MESSAGES, TOLERANCES
 from fcm.scene.parts import (
     contact_of,
     note_of_harmonics,
@@ -310,7 +310,7 @@ def _check_curves(scene: Scene, mistakes: Mistakes) -> None:
 
 def _faults_of_curve(curve: Scene) -> Iterator[str]:
     if curve.has_range and not _moved(curve):
-        yield "the forces move no mode, so the response is zero"
+        yield f"{_unmoved(curve)}, so the response is zero"
     masses = curve.modal.mass
     if masses.size and masses.max() > TOLERANCES.mass_ratio * masses.min():
         low, high = masses.min(), masses.max()
@@ -319,6 +319,18 @@ def _faults_of_curve(curve: Scene) -> Iterator[str]:
     for contact in curve.contacts:
         if not all(direction.any() for direction in contact.directions[:-1]):
             yield f"contact {quoted(contact.name)} has only zero tangential weights"
+
+
+def _unmoved(curve: Scene) -> str:
+    """Why the forces of a curve move nothing."""
+    if any(force.amplitude for force in curve.forces) or curve.draft is None:
+        return "the forces move no mode"
+    parts = curve.draft.parts
+    zeros = [f"force[{i}].amplitude" for i in range(len(parts["force"]))]
+    zeros += ["base.acceleration"] * len(parts["base"])
+    if len(zeros) > MESSAGES.groups:
+        return f"the amplitudes of all {len(zeros)} forces are 0"
+    return f"{' and '.join(zeros)} {'is' if len(zeros) == 1 else 'are'} 0"
 
 
 def _moved(curve: Scene) -> bool:
