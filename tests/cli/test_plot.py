@@ -98,3 +98,13 @@ def test_reading_gives_what_was_written(fcm, tmp_path):
     assert first.amplitude.shape == (len(first.frequency), 2) and first.frequency[0] == pytest.approx(0.7)
     with netCDF4.Dataset(tmp_path / "a.nc") as data:
         assert max(len(curve.frequency) for curve in response.curves) == data.dimensions["point"].size
+
+
+@pytest.mark.parametrize("command", ["response", "peak"])
+def test_a_picture_in_the_place_of_a_file_of_results_is_told(fcm, tmp_path, command):
+    ending = {"response": ".png", "peak": "-peak.png"}[command]
+    picture = tmp_path / f"fit{ending}"
+    picture.write_bytes(b"\x89PNG")
+    done = fcm("plot", command, picture)
+    assert done.code != 0 and "a netCDF file" in done.err and "fcm respond SCENE -o" in done.err
+    assert "overwrite" not in done.err and picture.read_bytes() == b"\x89PNG"

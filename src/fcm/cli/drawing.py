@@ -35,6 +35,10 @@ def draws_file(ending: str, page: bool = False) -> Callable[[Any], Any]:
 
 def picture_of(file: Path, output: Path | None, ending: str, *read: Path | None, page: bool = False) -> Path:
     """Where the picture of a file of results goes, which is none of those that are read."""
+    if output is None and file.suffix == ending:
+        raise click.UsageError(
+            f"{str(file)!r} is not a netCDF file of results; fcm respond SCENE -o {file.stem}.nc writes one."
+        )
     output = output or file.with_name(file.stem + ending)
     check_output(output, (*ENDINGS, PAGE) if page else ENDINGS)
     check_not_read({"-o": output}, [file, *read])
