@@ -14,6 +14,7 @@ from fcm.model.scene import Measured
 from fcm.response import trace
 from fcm.response.optimum import optimise
 from fcm.scene import scene_from_dict
+from fcm.table import open_table
 
 from .test_plane import ELLIPSE, OBLIQUE, rotating, single, with_still
 
@@ -119,7 +120,11 @@ def test_a_ring_whose_second_direction_never_moves_is_that_of_a_line():
     assert peaks[1] == pytest.approx(peaks[0], rel=1e-9)
 
 
-def test_a_table_is_said_once_to_be_of_no_use():
+@pytest.mark.parametrize(
+    "given, harmonics, times", [(False, 1, 1), (False, 2, 0), (True, 1, 1), (True, 2, 1)]
+)
+def test_a_table_is_said_once_to_be_of_no_use_where_it_would_be_used(given, harmonics, times):
     scene = ELLIPSE.scene((0.95, 1.05))
-    said = trace(scene, method="table", harmonics=(1,)).left_out
-    assert sum("the table: forces of contacts in a plane are exact" in one for one in said) == 1
+    method = open_table() if given else "table"
+    said = trace(scene, method=method, harmonics=tuple(range(1, harmonics + 1))).left_out
+    assert sum("the table: forces of contacts in a plane are exact" in one for one in said) == times

@@ -120,7 +120,9 @@ def _traced(sweep: _Sweep, progress: Progress | None) -> Response:
             response = sweep.run(lighter, part(progress, options.traced_share, 1.0))
     response = restored(response, lighter)
     response.curves = [without_rounding(one) for one in response.curves]
-    if sweep.table_idle:
+    if sweep.table is not None and sweep.scene.planar:
+        said.append(NO_TABLE_IN_PLANE)
+    elif sweep.table_idle and any(one.harmonics == (1,) for one in response.curves):  # others never use it
         said.append(NO_TABLE_IN_PLANE if sweep.scene.planar else "the table: no contact needs it (no effect)")
     if sweep.scene.with_own_laws:
         said.append(HILL)
