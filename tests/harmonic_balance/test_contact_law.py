@@ -7,6 +7,7 @@ from scipy.integrate import solve_ivp
 import fcm
 from fcm.branches.force_level import solutions
 from fcm.contact import ContactLawError
+from fcm.harmonic_balance.sampled import check_own_laws
 from fcm.harmonic_balance.system import System
 from fcm.response import ResponseError
 from fcm.scene import scene_from_dict
@@ -194,6 +195,25 @@ class Wrong(fcm.ContactLaw):
 def test_a_law_of_no_use_is_told(law, said):
     with pytest.raises(ContactLawError, match=said), np.errstate(all="ignore"):
         fcm.respond(scene_of(law), "closed-form")
+
+
+class Doubled(Cubic):
+    """The changes are twice what they should be."""
+
+    def forces(self, x, dx):
+        force, change = super().forces(x, dx)
+        return force, 2.0 * change
+
+
+@pytest.mark.parametrize("numbers", [{}, {"n_0": 0.0}, {"n_0": 2e-6}, {"k_u": 0.0}])
+def test_changes_that_are_not_those_of_the_forces_are_told_before_anything_is_solved(numbers):
+    contact = DATA["contact"][0] | numbers
+    scene = scene_from_dict(DATA | {"contact": [contact]}, "own.toml").with_laws({"joint": Doubled(1.0, 0.1)})
+    said = r"the law Doubled of the contact 'joint': its changes are off by 1 from central differences"
+    with pytest.raises(ContactLawError, match=said):
+        fcm.respond(scene, "closed-form")
+    for law in (Cubic(1.0, 0.1), Friction(0.4, 1.0, 0.5, 2.0), Friction(0.4, 1.0, 0.5, 2.0, 0.3)):
+        check_own_laws(scene.with_laws({"joint": law}))
 
 
 def test_contacts_that_cannot_have_it():

@@ -321,6 +321,8 @@ class HarmonicBalanceOptions:
         Of the parts, each of a class of its own.
     samples : int
         Of a cycle for each period of the highest harmonic, at least, where a contact's own law is sampled.
+    own_law_changes : float
+        How far the changes of a contact's own law may be from central differences, relative to the greatest.
     """
 
     extremes: ExtremeOptions = field(default_factory=ExtremeOptions)
@@ -334,6 +336,7 @@ class HarmonicBalanceOptions:
     workspace: WorkspaceOptions = field(default_factory=WorkspaceOptions)
     units: UnitOptions = field(default_factory=UnitOptions)
     samples: int = 8
+    own_law_changes: float = 1e-3
 
 
 HARMONIC_BALANCE = HarmonicBalanceOptions()  # where nothing else is said

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fcm.contact.contact_law import ContactLawError
+from fcm.contact.contact_law import ContactLaw, ContactLawError
 from fcm.harmonic_balance.contact_law import Law
 from fcm.harmonic_balance.options import HARMONIC_BALANCE
 from fcm.model.scene import Contact, FloatArray, Scene
@@ -97,24 +97,48 @@ class SampledLaw(Law):
         force, change = (np.asarray(one, dtype=np.float64) for one in self.own.forces(motion, variation))
         if force.shape != motion.shape or change.shape != variation.shape:
             raise ContactLawError(
-                f"{self._description}: forces of shape {force.shape} and changes of shape {change.shape}; "
+                f"{self.description}: forces of shape {force.shape} and changes of shape {change.shape}; "
                 f"they are to have the shapes of x and dx, {motion.shape} and {variation.shape}"
             )
         if not (np.isfinite(force).all() and np.isfinite(change).all()):
-            raise ContactLawError(f"{self._description}: a force or its change is not a finite number")
+            raise ContactLawError(f"{self.description}: a force or its change is not a finite number")
         return force - self.rest, change
 
     @property
-    def _description(self) -> str:
+    def description(self) -> str:
+        """Which law it is, in a sentence."""
         return f"the law {type(self.own).__name__} of the contact {self.name!r}"
 
 
-def check_own_laws(scene: Scene) -> None:
-    """Raise ContactLawError where a contact's own law gives no forces of a motion, or no changes."""
+def check_own_laws(scene: Scene, most: float = HARMONIC_BALANCE.own_law_changes) -> None:
+    """Raise ContactLawError where a contact's own law gives no forces of a motion, or not their changes.
+
+    `ContactLaw.off_by` is taken at motions as large as those at which the contact may slip, and larger ones.
+    """
     for contact in scene.contacts:
         if contact.law is not None:
             law = SampledLaw(contact, (1,), (1,), scene.directions_of_contact, 1)
             law.evaluate(np.ones(law.width), 0)
+            off = _off_by(contact, contact.law, scene.directions_of_contact)
+            if off > most:
+                raise ContactLawError(
+                    f"{law.description}: its changes are off by {off:.2g} from central differences of its "
+                    f"forces, relative to the greatest, and may be by {most:g}: no solution would be found"
+                )
+
+
+def _off_by(contact: Contact, law: ContactLaw, directions: int) -> float:
+    """The greatest error of its changes at motions of two sizes.
+
+    Of each the least of two motions: one may have a sample where the forces have a corner.
+    """
+    slip = contact.mu * abs(contact.n_0) / contact.k_u if contact.k_u > 0.0 else 0.0
+    motions = np.random.default_rng(1).normal(size=(2, 2, directions, 8)) * (slip or 1.0)
+    with np.errstate(all="ignore"):
+        each = [
+            [law.off_by(size * one) for one in two] for size, two in zip((1.0, 10.0), motions, strict=True)
+        ]
+    return max((min(two) for two in each if np.isfinite(two).all()), default=0.0)
 
 
 def _waves(layout: Layout, harmonics: Sequence[int], angle: FloatArray) -> FloatArray:

@@ -24,6 +24,7 @@ from fcm.continuation.path import Path
 from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.cost_model import with_twice_as_many
 from fcm.harmonic_balance.response_quantities import cycles, loops, recorded_at_levels
+from fcm.harmonic_balance.sampled import check_own_laws
 from fcm.harmonic_balance.static_equilibrium import RestError
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
@@ -77,6 +78,7 @@ def trace_levels(
         raise ResponseError("a frequency must be finite and greater than 0")
     begin = time.perf_counter()
     wanted = request_of(scene, harmonics, accuracy, options)
+    check_own_laws(scene)
     check_modes(scene, wanted)
     ways = [
         (curve, frequency * UNIT[scene.frequency_unit]) for curve in scene.each_curve() for frequency in at
