@@ -1,6 +1,7 @@
 """Pictures of nonlinear modes: how many lines are named, and where the greatest damping is marked."""
 
 import numpy as np
+import pytest
 
 from fcm.plot.mode import DrawnMode, DrawnModes, draw_modes
 
@@ -44,3 +45,29 @@ def test_the_greatest_damping_is_named_inside_the_axes():
         (named,) = figure.axes[1].texts
         box, axes = named.get_window_extent(), figure.axes[1].get_window_extent()
         assert axes.x0 < box.x0 and box.x1 < axes.x1
+
+
+def test_a_line_through_few_points_is_smooth_and_passes_them():
+    """Of the exact curve 1 / (1 + a^2), of nine points; straight lines between these are farther off."""
+    few = np.geomspace(0.1, 10.0, 9)
+    mode = DrawnMode({}, 1.0 / (1.0 + few**2), few, np.zeros(9))
+    amplitude, frequency = mode.smooth(mode.frequency)
+    assert np.interp(few, amplitude, frequency) == pytest.approx(mode.frequency)
+    exact = 1.0 / (1.0 + amplitude**2)
+    straight = np.interp(np.log(amplitude), np.log(few), mode.frequency)
+    assert np.abs(frequency - exact).max() < 0.5 * np.abs(straight - exact).max()
+    assert frequency.min() >= mode.frequency.min() and frequency.max() <= mode.frequency.max()
+
+
+def test_resonances_of_the_forces_are_marked_and_errors_drawn():
+    """The level grows as the amplitude, so that the level 2 is at the amplitude 2."""
+    damping, error = np.full(41, 0.3), np.full(41, np.nan)
+    error[5] = 0.02
+    one = DrawnMode({}, np.full(41, 10.0), AMPLITUDE, damping, error, AMPLITUDE)
+    upper, lower, below = draw_modes(DrawnModes("", "Hz", (one,), levels=(2.0, 50.0))).axes
+    (diamond,) = (line for line in upper.lines if line.get_marker() == "D")
+    assert diamond.get_xdata()[0] == pytest.approx(2.0, rel=2e-2)
+    assert diamond.get_ydata()[0] == pytest.approx(10.0 * np.sqrt(1.0 - 2.0 * 0.3**2))
+    (diamond,) = (line for line in lower.lines if line.get_marker() == "D")
+    assert diamond.get_ydata()[0] == pytest.approx(30.0)
+    assert np.nansum(below.lines[0].get_ydata()) == 0.02

@@ -107,3 +107,16 @@ def test_a_direction_in_which_there_is_rounding_alone_is_drawn_as_at_rest():
         fcm.planar_loop([0.1, 1.0], [1e-19, 3e-18j], [0.0, 0.2j], mu=0.5, k_u=2.0, k_v=1.0, n_0=0.7)
     )
     assert np.ptp(path.f[:, 0]) > 0.5 and not path.f[:, 1].any() and not path.u[:, 1].any()
+
+
+def test_powers_of_ten_are_in_the_labels_and_not_on_them():
+    """Of displacements in m that are some micrometres: labels and numbers together say where a tick is."""
+    small = fcm.planar_loop([1e-7, 2e-6], [0.0, -1.5e-6j], [0.0, 8e-7j], mu=0.5, k_u=2.0, k_v=1.0, n_0=7e-7)
+    figure = draw_planar_loop(DrawnPlanarLoop(small, "pad", ("x", "y"), ("m", "N")))
+    figure.draw_without_rendering()
+    plane = figure.axes[0]
+    assert plane.get_xlabel() == "Displacement $u_x$ = x ($10^{-6}$ m)"
+    assert not plane.xaxis.get_offset_text().get_visible()
+    numbers = [float(text.get_text().strip("$").replace("−", "-").removeprefix("\\mathdefault{").rstrip("}"))
+               for text in plane.get_xticklabels()]  # fmt: skip
+    assert numbers == pytest.approx((1e6 * plane.get_xticks()).tolist())

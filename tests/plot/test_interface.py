@@ -105,6 +105,28 @@ def test_a_column_for_each_frequency_and_marks_at_the_places(file):
         assert axes.get_xlim()[0] < 0.0 and axes.get_ylim()[1] > 2.0
 
 
+def test_columns_of_unlike_size_are_told_by_a_logarithm_and_bars_are_in_line(file):
+    """Values of the second column a hundredth: on a linear scale they would all be of one colour."""
+    read = read_interface(file[0])
+    (one,) = points_of(read, (1.2,))
+    loads = np.tile(np.arange(12.0), (3, 1))
+    places = np.array([(i % 4, i // 4) for i in range(12)], dtype=float)
+    points = [replace(one, contact_loads=loads), replace(one, contact_loads=0.01 * loads)]
+    figure = draw_interface(read, points, places)
+    figure.draw_without_rendering()
+    marks = [axes.collections for axes in figure.axes[2:8]]
+    assert [len(none.get_offsets()) for none, _ in marks] == [1] * 6  # what is 0 is white
+    for _, small in marks[1::2]:
+        assert len(np.unique(small.get_facecolors(), axis=0)) == 11
+    bars = [axes.child_axes[0].get_window_extent() for axes in figure.axes[3:8:2]]
+    for bar, axes in zip(bars, figure.axes[3:8:2], strict=True):
+        assert bar.x0 == pytest.approx(bars[0].x0) and bar.width == pytest.approx(bars[0].width)
+        assert bar.height == pytest.approx(axes.get_window_extent().height)
+    alike = draw_interface(read, points[:1], places)
+    (_, linear) = alike.axes[1].collections
+    assert (linear.norm.vmin, linear.norm.vmax) == (0.0, 11.0)
+
+
 def test_places_that_do_not_fit_are_all_said_at_once(tmp_path):
     file = tmp_path / "places.txt"
     file.write_text("a 0 0\nb, 1.5, 2e-3  # a remark\n\n")

@@ -43,6 +43,18 @@ def test_a_line_of_nodes_is_drawn_as_well():
     assert draw_pairs([interface]).axes
 
 
+def test_partners_that_touch_have_no_bar_and_axes_go_forward():
+    first, _ = places(0.0)
+    interface = Interface("lap", first, first.copy(), ("A", "B"))
+    along, _ = view_of(interface)
+    assert (along[np.arange(2), np.abs(along).argmax(axis=1)] > 0.0).all()
+    figure = draw_pairs([interface])
+    assert len(figure.axes) == 1 and figure.axes[0].get_title() == "lap: 12 pairs, which touch"
+    apart = Interface("lap", first, first + np.array([0.0, 0.0, 0.02]), ("A", "B"))
+    _, bar = draw_pairs([apart]).axes
+    assert bar.get_ylim() == pytest.approx((0.0, 0.02))
+
+
 def test_contacts_without_places_are_refused():
     with pytest.raises(PlotError, match="no contact has pairs with places"):
         draw_pairs([])

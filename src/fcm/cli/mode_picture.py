@@ -16,7 +16,8 @@ from fcm.cli.messages import Messages, pass_messages
 def mode(messages: Messages, file: Path, output: Path | None) -> None:
     """Draw the nonlinear modes of FILE, the netCDF file of `fcm respond --mode N --level FROM:TO -o FILE`.
 
-    Frequency and damping ratio against the modal amplitude; where a mode is damped most is marked.
+    Frequency, damping ratio and error against the modal amplitude. Marked are where a mode is damped most,
+    and where the forces of each --force-level are in resonance.
     """
     from fcm.plot.mode import draw_modes, read_modes
 

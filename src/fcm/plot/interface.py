@@ -19,6 +19,7 @@ from fcm.plot.style import LAYOUT, TWO_COLUMNS, house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
 
 _NEEDED = ("frequency", "amplitude", "contact", "regime", "dissipated_energy")
@@ -33,6 +34,9 @@ STATES_OF_CONTACTS = (  # word, colour and mark: told apart without colours, too
 _SIZE = (4.0, 60.0)  # [point^2] of a mark, for many contacts and for few
 _SHARE = 0.7  # of the distance of two marks is filled by them
 _BAR, _ABOVE = 1.2, 0.35  # [inch] beside the panels for a bar of colours, and above each
+_BAR_WIDTH = 7.0  # [point] of a bar of colours, and of the way to it
+_LINEAR = 0.1  # of the greatest value of all columns: one whose own is less would be dark on a linear scale
+_LEAST = 1e-4  # of the greatest value: less has no colour on a logarithmic scale
 _HEIGHTS = (3.5, 11.0)  # [inch] of a figure
 
 
@@ -226,9 +230,6 @@ def draw_interface(
 
     places (contact, 2): where each contact is; None: in a row, in their order.
     """
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
-
     count, titles = len(points), [f"{name}" for _, name in CONTACT_LOADS]
     with house_style():
         width = TWO_COLUMNS if count > 1 else LAYOUT.width
@@ -250,6 +251,7 @@ def draw_interface(
         for row, (title, unit) in enumerate(zip(titles, file.units, strict=True)):
             values = np.array([point.contact_loads[row] for point in points])
             top = float(np.nanmax(values, initial=0.0)) or 1.0
+            scale = _scale(values)
             label = f"{title} [{unit}]" if unit else title
             for column in range(count):
                 axes = grid[1 + row, column]
@@ -257,23 +259,48 @@ def draw_interface(
                     axes.bar(np.arange(1, len(file.contacts) + 1), values[column], width=0.8, color="#404040")
                     axes.set_ylim(0.0, 1.05 * top)
                 else:
-                    axes.scatter(
-                        *places.T, c=values[column], s=size, cmap="viridis", vmin=0.0, vmax=top,
-                        edgecolors="#808080", linewidths=0.3,
-                    )  # fmt: skip
+                    _valued(axes, places, values[column], scale, size)
             if places is None:
                 grid[1 + row, 0].set_ylabel(label, parse_math=False)
             else:
-                bar = ScalarMappable(Normalize(0.0, top), "viridis")
-                figure.colorbar(bar, ax=grid[1 + row].tolist(), pad=0.02)
+                _bar(figure, grid[1 + row, -1], scale)
                 grid[1 + row, 0].set_title(label, loc="left", fontsize=8, parse_math=False)
         _finish(figure, grid, points, places)
-        if places is not None:  # the states stand above what has a bar of colours beside it
-            figure.colorbar(ScalarMappable(), ax=grid[0].tolist(), pad=0.02).ax.set_visible(False)
         if places is not None and places is file.places:
             where = with_unit("Distance from the middle of the contacts, in their plane", file.units[1])
             figure.supxlabel(where, fontsize=8)
     return figure
+
+
+def _scale(values: FloatArray) -> Normalize:
+    """Colours of the values of all columns: by their logarithm where a column would be dark beside another.
+
+    Of a logarithmic scale what is 0 or far below the greatest value has no place.
+    """
+    from matplotlib.colors import LogNorm, Normalize
+
+    top = float(np.nanmax(values, initial=0.0))
+    if np.nanmax(values, axis=1, initial=0.0).min() >= _LINEAR * top:  # also where all are 0
+        return Normalize(0.0, top or 1.0)
+    least = float(np.nanmin(values, where=values > _LEAST * top, initial=top))
+    return LogNorm(min(least, 0.1 * top), top)
+
+
+def _valued(axes: Axes, places: FloatArray, values: FloatArray, scale: Normalize, size: float) -> None:
+    """Marks coloured by their values; those below the scale are white."""
+    seen = values >= (scale.vmin or 0.0)
+    edge: dict[str, Any] = {"edgecolors": "#808080", "linewidths": 0.3, "s": size}
+    x, y = places.T
+    axes.scatter(x[~seen], y[~seen], c="white", **edge)
+    axes.scatter(x[seen], y[seen], c=values[seen], cmap="viridis", norm=scale, **edge)
+
+
+def _bar(figure: Figure, beside: Axes, scale: Normalize) -> None:
+    """The bar of colours as high as the panel that it stands beside."""
+    from matplotlib.cm import ScalarMappable
+
+    width = _BAR_WIDTH / (72.0 * beside.get_position().width * figure.get_size_inches()[0])
+    figure.colorbar(ScalarMappable(scale, "viridis"), cax=beside.inset_axes((1.0 + width, 0.0, width, 1.0)))
 
 
 def _limits(places: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
 
+if TYPE_CHECKING:
+    from matplotlib.axis import Axis
+
+_POWER = re.compile(r"10\^\{(-?\d+)\}")  # in what an axis is multiplied by
 _SYMBOLS = {"n_0": "$n_{0}$", "k_u": "$k_{u}$", "k_v": "$k_{v}$", "mu": "$\\mu$"}
 _WORDS = {*_SYMBOLS, "gap", "amplitude", "phase", "mass", "frequency", "damping", "level"}
 
@@ -64,6 +70,29 @@ def with_unit(text: str, unit: str) -> str:
     ('Amplitude of u (mm)', 'Amplitude of u')
     """
     return f"{text} ({unit})" if unit else text
+
+
+def with_power(text: str, power: int) -> str:
+    """A label whose unit is multiplied by a power of ten.
+
+    >>> with_power("Amplitude (mm)", -3), with_power("Amplitude", -3), with_power("Amplitude (mm)", 0)
+    ('Amplitude ($10^{-3}$ mm)', 'Amplitude ($10^{-3}$)', 'Amplitude (mm)')
+    """
+    if not power:
+        return text
+    factor = f"$10^{{{power}}}$"
+    head, opened, unit = text.rpartition(" (")
+    return f"{head} ({factor} {unit}" if opened and text.endswith(")") else f"{text} ({factor})"
+
+
+def power_to_label(axis: Axis) -> None:
+    """The power of ten of an axis that was drawn goes to its label: beside the axis it would be on that."""
+    formatter = axis.get_major_formatter()
+    if found := _POWER.search(formatter.get_offset().replace("−", "-")):
+        power = int(found[1])
+        formatter.set_powerlimits((power, power))  # type: ignore[attr-defined]  # of a ScalarFormatter
+        axis.get_offset_text().set_visible(False)
+        axis.set_label_text(with_power(axis.get_label_text(), power))
 
 
 def staying(stable: float) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 from fcm.contact.loop import Loop
 from fcm.contact.periodic.loop import PeriodicLoop
 from fcm.contact.sampled import Part, parts, shown_degrees, transitions
+from fcm.plot.labels import power_to_label
 from fcm.plot.loop_marks import name_marks
 from fcm.plot.read import FloatArray
 from fcm.plot.style import COLUMN, LAYOUT, TWO_COLUMNS, house_style, new_figure
@@ -87,6 +88,9 @@ def draw_loops(loops: Sequence[DrawnLoop], axes: LoopAxes | None = None, title: 
             above.set_title(drawn.title, fontsize=8)
         _legend(figure, loops, names, any(_limits_seen(*one) for one in zip(loops, panels, strict=True)))
         figure.suptitle(title, fontsize=8)
+        figure.draw_without_rendering()
+        for above, _ in panels:
+            power_to_label(above.xaxis)
         figure.draw_without_rendering()  # the panels take their places
         for drawn, (above, _) in zip(loops, panels, strict=True):
             _mark_transitions(above, drawn, names)
@@ -174,7 +178,6 @@ def _label(above: Axes, below: Axes, names: LoopAxes, left: bool, numbers: bool)
     below.set_xlabel(r"Angle $\theta$ (°)", fontsize=8)
     for axes, force in ((above, names.force), (below, names.over_angle)):
         axes.tick_params(labelsize=LAYOUT.small_text, labelleft=numbers)
-        axes.xaxis.get_offset_text().set_fontsize(LAYOUT.small_text)
         axes.yaxis.get_offset_text().set(
             fontsize=LAYOUT.small_text, ha="right"
         )  # not among the letters of the states

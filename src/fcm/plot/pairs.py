@@ -19,15 +19,22 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _ALONE = ("#D55E00", "#0072B2")  # of the first set, of the second
+_ROUNDINGS = 8.0  # of a coordinate, by which partners at one place are apart at most
 _SIZE = (4.0, 60.0)  # [point^2] of a mark, for many pairs and for few
 
 
 def view_of(interface: Interface) -> tuple[FloatArray, FloatArray]:
     """Two directions (2, 3) in the plane of an interface, and its centre; see `plane_view`."""
     if interface.plane is not None:
-        return np.stack((interface.plane.first, interface.plane.second)), interface.plane.centre
+        return _forward(interface.plane.first, interface.plane.second), interface.plane.centre
     places = (interface.first, interface.second, interface.alone, interface.other_alone)
-    return plane_view(np.concatenate(places))
+    along, centre = plane_view(np.concatenate(places))
+    return _forward(*along), centre
+
+
+def _forward(*directions: FloatArray) -> FloatArray:
+    """Directions along the axes of the mesh and not against them, by their greatest component."""
+    return np.stack([one * np.sign(one[np.abs(one).argmax()]) for one in directions])
 
 
 def plane_view(places: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -84,17 +91,23 @@ def _draw(figure: Figure, axes: Any, one: Interface, length: str) -> None:
     size = float(np.clip(1500.0 / max(len(apart), 1), *_SIZE))
     for start, end in zip(*seen, strict=True):
         axes.plot(*np.stack((start, end)).T, color="#808080", linewidth=0.6, zorder=1)
-    marks = axes.scatter(*seen[0].T, c=apart, s=size, cmap="viridis", edgecolors="black", linewidths=0.3)
+    rounding = _ROUNDINGS * np.finfo(np.float64).eps * max(np.abs(one.first).max(), np.abs(one.second).max())
+    touch = bool(apart.max() <= rounding)
+    marks = axes.scatter(
+        *seen[0].T, c=np.zeros_like(apart) if touch else apart, s=size, cmap="viridis", vmin=0.0,
+        edgecolors="black", linewidths=0.3,
+    )  # fmt: skip
     for side, colour, name in zip((one.alone, one.other_alone), _ALONE, one.sets[:2], strict=False):
         if len(side):
             label = f"{name}, alone ({len(side)})".replace("$", r"\$")
             axes.scatter(*((side - centre) @ along.T).T, c=colour, marker="x", s=size, label=label)
     if axes.get_legend_handles_labels()[0]:
         axes.legend()
-    if len(one.sets) == 2:
+    if len(one.sets) == 2 and not touch:
         figure.colorbar(marks, ax=axes, label=with_unit("Distance of partners", length))
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_title(f"{one.name}: {len(apart)} {'pairs' if len(one.sets) != 1 else 'nodes'}", parse_math=False)
+    what = "nodes" if len(one.sets) == 1 else "pairs, which touch" if touch else "pairs"
+    axes.set_title(f"{one.name}: {len(apart)} {what}", parse_math=False)
     for direction, name in zip(along, ("x", "y"), strict=True):
         getattr(axes, f"set_{name}label")(with_unit(_named(direction), length))
 

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from fcm.at_rest import at_rest
 from fcm.contact.plane.loop import PlanarLoop
+from fcm.plot.labels import power_to_label
 from fcm.plot.loop import STATES
 from fcm.plot.loop_marks import name_marks
 from fcm.plot.read import FloatArray
@@ -89,6 +90,9 @@ def draw_planar_loop(drawn: DrawnPlanarLoop) -> Figure:
         handles, labels = plane.get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), fontsize=7)
         figure.suptitle(drawn.title, fontsize=8)
+        figure.draw_without_rendering()
+        for axis in (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)):
+            power_to_label(axis)
         figure.draw_without_rendering()  # so that the plane has its final size
         instants = _instants(path, drawn.instants)
         points = [(float(x), float(y)) for x, y in path.u[instants]]
