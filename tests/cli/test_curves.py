@@ -36,6 +36,14 @@ def test_the_greatest_peaks_of_all_curves_are_shown_in_the_order_of_the_file():
     assert rows[-1] == "shown: the 4 of 6 degrees of freedom with the greatest peaks"
 
 
+def test_curves_that_an_interruption_left_out_are_counted():
+    left = curve({"a": None}) | {"complete": False, "points": 0, "reason": "interrupted before it was traced"}
+    broken = curve({"a": 1.0}) | {"complete": False, "reason": "interrupted at 3 rad/s"}
+    _, *rows = as_table({"curves": [curve({"a": 1.0}), broken, left, left]}, "Hz").splitlines()
+    assert len(rows) == 3 and rows[1].endswith("NOT COMPLETE: interrupted at 3 rad/s")
+    assert rows[2] == "2 more curves NOT COMPLETE: interrupted before it was traced"
+
+
 def test_what_is_minimised_is_shown_however_small():
     one = curve({"a": 1.0, "b": 5.0, "c": 3.0, "d": 2.0, "e": 4.0, "f": 0.5})
     header, *rows = as_table({"curves": [one], "optimum": [{"minimise": ["peak.f"]}]}, "Hz").splitlines()

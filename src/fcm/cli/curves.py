@@ -120,6 +120,8 @@ def _curves(
     curves: Sequence[Curve], names: list[str], dofs: list[str], unit: str, length: str, minimised: bool
 ) -> str:
     """What was swept, the peaks, the points, the time, the folds, whether it is whole."""
+    from fcm.results.result import NOT_BEGUN
+
     ranges_of = [dof for dof in dofs if any(_residual(curve, dof) != "0" for curve in curves)]
     peaks = []
     for dof in dofs:
@@ -128,8 +130,11 @@ def _curves(
     balanced = ["harmonics"] if any("harmonics" in curve for curve in curves) else []
     folds = "folds at level" if "level_folds" in curves[0] else f"folds at {unit}"
     header = [*names, *peaks, *balanced, "points", "time [s]", folds, ""]
-    rows = [_curve_row(curve, dofs, ranges_of, bool(balanced)) for curve in curves]
+    begun = [curve for curve in curves if curve.get("reason") != NOT_BEGUN]
+    rows = [_curve_row(curve, dofs, ranges_of, bool(balanced)) for curve in begun]
     lines = [aligned([header, *rows], left=2)]
+    if left := len(curves) - len(begun):
+        lines.append(f"{left} more curve{'s' * (left > 1)} NOT COMPLETE: {NOT_BEGUN}")
     if (count := len(curves[0]["peak"])) > len(dofs):
         turning = ", displacements before rotations" if any(map(is_rotation, curves[0]["peak"])) else ""
         least = ", and what is minimised" if minimised else ""
