@@ -58,6 +58,24 @@ def test_the_response_is_predicted_at_any_level_of_the_forces(fcm):
         assert data["force_level"][:].tolist() == [0.5, 2.0]
 
 
+def test_a_level_whose_resonance_is_not_among_the_amplitudes_is_told(fcm):
+    """The response has them: of the level 1 at the amplitude 15.8 of u, and more beyond, less below."""
+    levels = [x for level in (1e-3, 1, 20) for x in ("--force-level", level)]
+    done = fcm(*MODE[:4], "--level", "5:30", "--harmonics", 1, *levels)
+    assert done.code == 0
+    assert done.out.splitlines()[2:] == [
+        "force level 0.001: its resonance lies below amplitude 5",
+        "force level 20: its resonance lies beyond amplitude 30",
+    ]
+    assert done.out.splitlines()[1].count("(level ") == 1 and "(level 1)" in done.out
+    several = ("respond", "yang1998", *MODE[2:4], "--level", "5:30", "--harmonics", 1, "--force-level", 20)
+    told = "force level 20: its resonance lies beyond amplitude 30, in 10 of 10 curves"
+    assert fcm(*several).out.splitlines()[11:] == [told]
+    mode = json.loads(fcm(*MODE[:4], "--level", "5:30", "--harmonics", 1, *levels, "--json").out)["curves"][0]
+    assert [one["level"] for one in mode["mode"]["not_met"]] == [0.001, 20.0]
+    assert [one["level"] for one in mode["mode"]["resonances"]] == [1.0]
+
+
 def test_as_many_harmonics_as_an_accuracy_takes(fcm):
     done = fcm("respond", "two-contacts", "--mode", 1, "--level", "1e-5:1e-3", "--accuracy", 1e-3, "--json")
     curve = json.loads(done.out)["curves"][0]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -82,8 +83,16 @@ def as_table(summary: Mapping[str, Any], names: list[str], unit: str) -> str:
                 short(curve["truncation_error"]),
                 str(curve["points"]),
                 f"{curve['seconds']:.3f}",
-                "  ".join(number(one["frequency"]) for one in mode["resonances"]) or "none",
+                "  ".join(
+                    f"{number(one['frequency'])} (level {one['level']:g})" for one in mode["resonances"]
+                )
+                or "none",
                 state,
             ]
         )
-    return aligned([header, *rows], left=2)
+    curves = summary["curves"]
+    every = ((curve.get("mode") or {}).get("not_met", ()) for curve in curves)
+    unmet = Counter(f"force level {one['level']:g}: {one['why']}" for found in every for one in found)
+    of = f" of {len(curves)} curves" if len(curves) > 1 else ""
+    told = [f"{what}, in {count}{of}" if of else what for what, count in unmet.items()]
+    return "\n".join([aligned([header, *rows], left=2), *told])

@@ -56,4 +56,16 @@ class NonlinearMode:
                 }
                 for one in self.resonances
             ],
+            "not_met": [{"level": level, "why": why} for level in self.levels if (why := self._unmet(level))],
         }
+
+    def _unmet(self, level: float) -> str:
+        """Why the mode has no resonance at a level of the forces, or not the greatest; empty if it has it."""
+        if not self.force.any():
+            return "the forces do nothing on the mode"
+        least, most = int(self.amplitude.argmin()), int(self.amplitude.argmax())
+        if self.resonant_level[most] < level:
+            return f"its resonance lies beyond amplitude {self.amplitude[most]:.4g}"
+        if self.resonant_level[least] > level and all(one.level != level for one in self.resonances):
+            return f"its resonance lies below amplitude {self.amplitude[least]:.4g}"
+        return ""
