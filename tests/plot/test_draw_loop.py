@@ -99,7 +99,8 @@ def test_axes_without_dimension_and_with_units():
     assert (below.get_xlabel(), below.get_ylabel()) == (r"Angle $\theta$ (°)", "Force (–)")
     figure = drawn(FIGURE_8[:1], LoopAxes.with_units(("mm", "N"), False), amplitude=2e-3, force=50.0)
     ((above, below),) = panels(figure)
-    assert (above.get_xlabel(), above.get_ylabel()) == ("Displacement $u$ (mm)", "Friction force $f$ (N)")
+    assert above.get_xlabel() == "Displacement $u$ ($10^{-3}$ mm)"  # of 2e-3 mm
+    assert above.get_ylabel() == "Friction force $f$ (N)"
     assert below.get_ylabel() == "Force (N)"
     line = above.lines[3]  # after the two axes through zero and the separation
     np.testing.assert_allclose(line.get_ydata(), 50.0 * FIGURE_8[0].force(np.arcsin(line.get_xdata() / 2e-3)))
