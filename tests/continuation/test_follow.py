@@ -237,6 +237,29 @@ def test_a_peak_in_a_corner(step):
     assert path.where(Mark.PEAK).tolist() == [corner] and path.where(Mark.FOLD).size == 0
 
 
+class OnSymmetry(Planar):
+    """Reported is also what would be 0 but for rounding, which turns back all the time."""
+
+    def __init__(self, f, rounding):
+        Problem.__init__(self, 2, 0, 2)
+        self.f, self.of_margin, self.rounding = f, None, rounding
+
+    def report(self, z, direction):
+        Planar.report(self, z, direction)
+        self.output[1] = self.rounding * (1.0 + 0.5 * np.sin(1e7 * z[0]))
+        self.growth[1] = self.rounding * abs(np.cos(1e7 * z[0])) * direction[0]
+        return 0
+
+
+@pytest.mark.parametrize("step", [0.2, 0.05])
+def test_outputs_that_are_rounding_make_no_steps_shorter(step):
+    smooth, noisy = (
+        follow(OnSymmetry(cubic().f, size), start(-1.32, 1.0), (1.0, 3.0), options=FollowOptions(step))
+        for size in (0.0, 1e-13)
+    )
+    assert np.array_equal(noisy.z, smooth.z)
+
+
 @pytest.mark.parametrize("step", STEPS)
 def test_a_curve_that_leaves_its_range_where_it_entered(step):
     path = follow(circle(), start(3.0 - np.sqrt(3.0), 1.0), (1.0, 5.0), options=FollowOptions(step))

@@ -226,7 +226,7 @@ class EventOptions(Options):
         A step this short tells more of rounding than of a way back.
     peak_tolerance, peak_tolerance_of_many : float
         Part of an output, to which a peak is known where points are costly; and where each of many outputs
-        has its own, at a point each.
+        has its own, at a point each. A smaller part of the greatest output is rounding, and has no peak.
     many_outputs : int
         So many are many.
     point_tolerance : float

@@ -192,10 +192,17 @@ class Recorder:
     @cython.cfunc
     @cython.exceptval(check=False)
     def update_greatest(self) -> cython.void:
-        """The greatest outputs so far."""
+        """The greatest outputs so far, each at least what is rounding of the greatest of all.
+
+        On a plane of symmetry an output is 0 but for rounding, which turns back all the time.
+        """
         k: cython.Py_ssize_t
+        least: cython.double = 0.0
         for k in range(self.most.shape[0]):
-            self.most[k] = max(self.most[k], self.stepper.here.output[k])
+            least = max(least, self.stepper.here.output[k])
+        least *= self.stepper.options.events.peak_tolerance
+        for k in range(self.most.shape[0]):
+            self.most[k] = max(self.most[k], max(self.stepper.here.output[k], least))
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)

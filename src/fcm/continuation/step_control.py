@@ -611,13 +611,17 @@ def next_step(stepper: Stepper) -> cython.double:
 @cython.exceptval(-1, check=False)
 def output_error(stepper: Stepper) -> cython.double:
     """Greatest change of the growth of an output over the step, as a change of the output over its
-    size."""
+    size; of outputs that are no rounding of the greatest."""
     k: cython.Py_ssize_t
     worst: cython.double = 0.0
+    least: cython.double = 0.0
     size: cython.double
     for k in range(stepper.problem.outputs):
+        least = max(least, stepper.there.output[k])
+    least *= stepper.options.events.peak_tolerance
+    for k in range(stepper.problem.outputs):
         size = max(stepper.here.output[k], stepper.there.output[k])
-        if size > 0.0:
+        if size > least:
             worst = max(worst, fabs(stepper.there.growth[k] - stepper.here.growth[k]) * stepper.step / size)
     return worst
 
