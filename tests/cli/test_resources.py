@@ -44,6 +44,14 @@ def test_results_take_no_less_than_is_told(harmonics):
     assert least_points(scene, peaks_only=False) <= curve.points
 
 
+def test_the_motions_of_many_contacts_in_many_harmonics_are_counted():
+    scene, harmonics = replace(load_scene(SCENE), max_step=0.2, curves=()), tuple(range(1, 8))
+    (curve,) = trace(scene, harmonics=harmonics).curves
+    waves = curve.across.motion[0, :, :, 1:].nbytes  # of a point
+    many = replace(scene, contacts=scene.contacts * 100)
+    assert bytes_of_results(many, harmonics, peaks_only=False) > least_points(many, False) * 100 * waves
+
+
 def test_more_of_anything_takes_more():
     scene = load_scene(SCENE)
     one = bytes_of_results(scene, (1,), False)

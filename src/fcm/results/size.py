@@ -61,7 +61,8 @@ def bytes_of_results(
     dofs, contacts = len(scene.modal.dofs), len(scene.contacts)
     curves = len(scene.each_curve()) if curves is None else curves
     many = 2 * len(harmonics) if len(harmonics) > 1 else 0  # amplitude and phase of each
-    point = options.of_point + dofs * (options.of_dof + many) + contacts * options.of_contact
+    motions = 2 * len(harmonics) * scene.directions_of_contact if many or scene.planar else 0
+    point = options.of_point + dofs * (options.of_dof + many) + contacts * (options.of_contact + motions)
     cycles = sum(phase.cycles for phase in scene.schedule)
     moved = curves * cycles * options.of_cycle * (1 + dofs)
     return float(
