@@ -1,6 +1,7 @@
 """``fcm plot loop``: loops of given parameters and of a response file, or one message and exit code 2."""
 
 import json
+import re
 from dataclasses import replace
 
 import click
@@ -119,6 +120,17 @@ def test_all_solutions_of_a_folded_curve(fcm, folded):
         frequency, regime = data["frequency"][1], data["regime"][1, :, 0]
         for one in found:
             assert regime[np.argmin(np.abs(frequency - one["frequency"]))] == one["sequence"]
+
+
+def test_loops_of_levels_are_named_by_their_level(fcm, tmp_path):
+    """Between the folds, at the levels 0.90 and 1.39, there are three; at the peak the level is the last."""
+    path = tmp_path / "level.nc"
+    given = ("yang1998-n5", "--level", "0:2", "--at", "1.2", "--harmonics", "1")
+    assert fcm("respond", *given, "-o", path).code == 0
+    found = loops(fcm("plot", "loop", path, "--at", "1.2", "--json"))
+    assert [one["level"] for one in found] == pytest.approx([1.2] * 3, rel=0.05)
+    done = fcm("plot", "loop", path, "-o", tmp_path / "b.png")
+    assert re.findall(r" level ([\d.]+),", done.err) == ["2"]
 
 
 @pytest.fixture(scope="module")

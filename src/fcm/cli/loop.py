@@ -121,7 +121,8 @@ def _parameters(command: Any) -> Any:
 )  # fmt: skip
 @click.option(
     "--at", type=float, multiple=True, metavar="FREQUENCY", callback=_number(0.0),
-    help="Of FILE: the frequency; the nearest points are drawn, on a folded curve all.  [default: the peak]",
+    help="Of FILE: the frequency, or the level; the nearest points are drawn, on a folded curve all.  "
+    "[default: the peak]",
 )  # fmt: skip
 @click.option("--contact", metavar="NAME", help="Of FILE: the contact.  [default: the only one]")
 @click.option(

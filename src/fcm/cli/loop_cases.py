@@ -202,15 +202,15 @@ def _said(point: LoopPoint, file: LoopFile) -> tuple[tuple[Name, ...], str, dict
     from fcm.plot.labels import curve_label
 
     unit = file.unit
-    symbol = "$f$" if unit == "Hz" else r"$\omega$"
-    at = f"{point.frequency:.5g} {unit}"
+    symbol = {"Hz": "$f$", "level": "level"}.get(unit, r"$\omega$")
+    at = f"{point.frequency:.5g}" if unit == "level" else f"{point.frequency:.5g} {unit}"
     swept = ", ".join(
         f"{key} = {value:g} {file.units.get(key, '')}".rstrip() for key, value in point.parameters.items()
     )
     names: tuple[Name, ...] = (
         Name(shorten(point.contact, SENTENCES.contact_name).replace("$", r"\$"), point.contact),
         Name(curve_label(point.parameters, units=file.units), swept),
-        Name(f"{symbol} = {at}", at),
+        Name(f"{symbol} = {at}", f"level {at}" if unit == "level" else at),
     )
     if point.fundamental:
         names += (Name("fundamental alone", f"fundamental alone of harmonics {ranges(point.harmonics)}"),)
@@ -218,7 +218,8 @@ def _said(point: LoopPoint, file: LoopFile) -> tuple[tuple[Name, ...], str, dict
     stable = {True: "stable", False: "unstable", None: ""}[point.stable]
     facts = {
         "curve": point.curve, "parameters": point.parameters, "contact": point.contact,
-        "frequency": point.frequency, "solution": point.solution, "solutions": point.solutions,
+        ("level" if unit == "level" else "frequency"): point.frequency,
+        "solution": point.solution, "solutions": point.solutions,
         "stable": point.stable, "a": point.amplitude, "k_u a": point.force,
         "harmonics": point.harmonics, "states": point.states,
     }  # fmt: skip

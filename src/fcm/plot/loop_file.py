@@ -17,7 +17,7 @@ from fcm.plot.read import FloatArray, floats, opened, read_response
 from fcm.plot.reader_process import apart
 
 _ENERGY = "dissipated_energy"
-_ALSO = ("contact", "frequency", "stable", _ENERGY, "harmonic", "regime")
+_ALSO = ("contact", "frequency", "level", "stable", _ENERGY, "harmonic", "regime")
 _MOTION = (
     "contact_harmonic", "contact_mean", "contact_amplitude", "contact_phase",
     "contact_mu", "contact_k_u", "contact_k_v", "contact_n_0",
@@ -127,7 +127,7 @@ def read_loops(path: Path) -> LoopFile:
         if missing:
             raise PlotError(f"{path}: holds no loops: it has no variable {', '.join(missing)}")
         contacts = tuple(str(name) for name in np.atleast_1d(data["contact"][:]))
-        frequency = floats(data["frequency"])
+        frequency = floats(data["level" if response.frequency_unit == "level" else "frequency"])
         stable = floats(data["stable"]) if "stable" in data.variables else np.full(frequency.shape, np.nan)
         parts = [floats(data[name]) for name in _PARTS]
         length, force = (str(getattr(data[name], "units", "")) for name in _PARTS[3:])
