@@ -38,6 +38,7 @@ class _Program:
         self.works, self.last = False, -self.min_interval
         self.shields, self.waits = 0, False  # what must not be disturbed, and whether an interruption waits
         self.imports = 0  # that were under way when the work began
+        self.notice = b""  # said at once, as what follows may take a moment
         self.before: dict[int, Any] = {}
 
     def interrupted(self, _number: int, _frame: FrameType | None) -> None:
@@ -46,6 +47,10 @@ class _Program:
         now = time.monotonic()
         if now - self.last >= self.min_interval:
             self.last = now
+            try:
+                os.write(2, self.notice)
+            except OSError:  # be standard error closed
+                self.notice = b""
             self.again(_number, _frame)
 
     def leave(self) -> None:
@@ -135,6 +140,12 @@ def works() -> None:
     if _program is not None:
         _program.imports = _imports(sys._getframe())
         _program.works = True
+
+
+def announce(notice: str) -> None:
+    """From now on this line is said on standard error as soon as an interruption comes; "" for none."""
+    if _program is not None:
+        _program.notice = f"{notice}\n".encode() if notice else b""
 
 
 def ends() -> None:

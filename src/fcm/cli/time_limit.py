@@ -10,6 +10,8 @@ import click
 from fcm import signals
 from fcm.cli.messages import Messages
 
+ENDING = "fcm: ending: what is finished so far is kept"
+
 
 def seconds(_ctx: click.Context, _param: click.Parameter, value: float | None) -> float | None:
     """The time of the option, which must be positive."""
@@ -19,7 +21,10 @@ def seconds(_ctx: click.Context, _param: click.Parameter, value: float | None) -
 
 
 class TimeLimit:
-    """``with TimeLimit(messages, 60.0):`` what is interrupted after so many seconds; None for no limit."""
+    """``with TimeLimit(messages, 60.0):`` what is interrupted after so many seconds; None for no limit.
+
+    An interruption, by the limit or not, is said at once.
+    """
 
     def __init__(self, messages: Messages, limit: float | None) -> None:
         self.messages, self.limit, self.over = messages, limit, False
@@ -27,6 +32,8 @@ class TimeLimit:
         self._timer = None if limit is None else threading.Timer(limit, self._end)
 
     def __enter__(self) -> TimeLimit:
+        if self.messages.verbosity >= 0:
+            signals.announce(ENDING)
         if self._timer is not None:
             self._timer.daemon = True
             self._timer.start()
@@ -37,6 +44,7 @@ class TimeLimit:
     ) -> None:
         with self._lock:
             self._works = False
+        signals.announce("")
         if self._timer is not None:
             self._timer.cancel()
         if self.over:
