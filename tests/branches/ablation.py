@@ -14,6 +14,7 @@ from unittest.mock import patch
 import numpy as np
 
 from fcm.accuracy import refinement, unchecked_response
+from fcm.branches import force_level
 from fcm.branches import trace as branch_trace
 from fcm.response import refined
 from fcm.response.request import Request
@@ -36,6 +37,7 @@ OFF = {
         (unchecked_response, "prolongated_solutions", lambda before, harmonics: []),
         (refinement, "prolongated_solutions", lambda before, harmonics: []),
     ],
+    "levels in gaps": [(force_level, "frequencies_in_gaps", lambda system, known: ())],
     "levels below peaks": [(refined, "with_levels_below_peaks", lambda found, accuracy: found)],
     "levels where nothing is stable": [
         (refined, "with_levels_where_unstable", lambda found, stable, accuracy: (found, False))

@@ -23,9 +23,10 @@ def one(folder, name, span=None):
 
 
 LOST = [
-    ("folds followed", one(SCENES, "closed_impact"), 4, "branches 3 -> 2"),
+    ("folds followed", one(KNOWN, "far_isola"), 5, "branches 2 -> 1"),
     ("branch points", one(SCENES, "equal_stops"), 3, "peak x1"),
     ("prolongation", random_scene(1), 10, "peak d0"),
+    ("levels in gaps", one(KNOWN, "between_resonances"), 3, "peak 30y"),
     ("levels below peaks", scene_from_dict(ONE_MODE).each_curve()[0], 5, "branches 4 -> 3"),
     ("levels where nothing is stable", one(KNOWN, "chaos", (1.23, 1.6)), 7, "peak x0"),
     ("narrow resonances", replace(around(with_mode(-60.0, 1.31, 1e-5, 0.005)), max_step=0.1), 3, "peak u"),

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from fcm.accuracy.refinement import refined_response, with_given_harmonics
+from fcm.branches.options import LevelCurveOptions
 from fcm.branches.prolongation import at_its_frequency
 from fcm.branches.trace import traced
 from fcm.harmonic_balance.system import System
@@ -35,9 +36,11 @@ def amplitudes_at(found, omega):
 
 @pytest.mark.slow
 def test_a_closed_branch_is_not_lost_with_more_harmonics():
-    """Whose highest peak is stable, and which no level of the forces leads to: that of few harmonics hangs
-    together with the others, and leads to that of ten only where it is about to leave it."""
-    system = System(random_scene(1), up_to(10))
+    """Whose highest peak is stable, and which no level of the forces leads to that is followed at resonances:
+    that of few harmonics hangs together with the others, and leads to that of ten only where it is about to
+    leave it."""
+    at_resonances = (LevelCurveOptions(max_gap=np.inf),)
+    system = System(random_scene(1), up_to(10), other_options=at_resonances)
     alone = [path.z[:, -1] for path in traced(system).branches.paths]
     found = with_given_harmonics(system)
     closed = [i for i, path in enumerate(found.traced.branches.paths) if path.status.name == "CLOSED"]

@@ -163,7 +163,8 @@ def errors_along(
     at_tops = (np.abs(height - now) / unit[tops, d])[told]
     left = np.abs(beyond[which, d[told]]) / unit[tops[told], d[told]]
     error[tops[told], d[told]] = np.maximum(at_tops, left)
-    error *= unit / np.where(shown.amplitude > 0.0, shown.amplitude, unit)
+    at_rest = shown.amplitude <= np.finfo(float).eps * unit  # but for rounding
+    error *= unit / np.where(at_rest, unit, shown.amplitude)
     comes: Mask = ~np.any(np.isnan(error), axis=1)
     system.work.add(partner.seconds())
     of_folds = _of_folds(partner, folds, change, followed)

@@ -359,10 +359,10 @@ def level_frequencies(system: System) -> tuple[float, ...]:
     known = np.array([span[0], *inside, span[1]])
     widest = int(np.diff(known).argmax())
     found = (*span, *inside, float(known[widest : widest + 2].mean()))
-    return *found, *_between_resonances(system, found)
+    return *found, *frequencies_in_gaps(system, found)
 
 
-def _between_resonances(system: System, known: Sequence[float]) -> Iterator[float]:
+def frequencies_in_gaps(system: System, known: Sequence[float]) -> Iterator[float]:
     """Frequencies between those that are known, where these are far apart and a mode may resonate.
 
     With its amplitude a resonance moves from where the contacts stick to where they are open. Where the level
