@@ -82,7 +82,6 @@ def made(tmp_path_factory):
         ("respond", "matrices.toml", "--level", "0.1:1", "--at", "1.2", "-o", "M.nc"),
         ("tabulate", "--for", "matrices.toml", "-o", "M.nc"),
         ("tabulate", "--for", "scene.nc", "-o", "scene.nc"),
-        ("plot", "response", "result.png"),
         ("plot", "response", "result.nc", "--points", "exact.png", "-o", "exact.png"),
         ("plot", "response", "result.svg", "-o", "result.svg"),
         ("plot", "loop", "result.pdf", "-o", "result.pdf"),

@@ -116,6 +116,14 @@ def test_of_peaks_alone_a_loss_of_stability_is_where_the_whole_curve_has_it(scen
     assert jumps[0] == jumps[1] and {sweep for sweep, _ in jumps[0]} == {"up", "down"}
 
 
+@pytest.mark.parametrize(("name", "harmonics"), [("yang1998-n5", 3), ("platform-damper", 1)])
+def test_motions_across_contacts_are_read_again(name, harmonics):
+    """In several harmonics, and in a plane: else a resumed run begins anew."""
+    (one,) = trace(package.load_scene(name), harmonics=harmonics).curves
+    (kept,) = unpacked(pickle.dumps([one]), KINDS)
+    assert np.array_equal(kept.across.motion, one.across.motion, equal_nan=True)
+
+
 def test_what_is_kept_of_an_interrupted_run_is_read_again(scene, curve):
     """Of a curve without its points, and of exact peaks alone: what sweeps meet is kept with them."""
     (alone,) = trace_exact(package.load_scene(scene), only="peaks").curves

@@ -68,7 +68,7 @@ def _options(messages: Messages, asked: Asked) -> ResponseOptions:
 
     options = messages.settings.response or RESPONSE
     options = leaving_out(None if asked.keep_all else asked.tolerance, options)
-    if asked.time_limit is not None:  # that of the run is enough
+    if asked.time_limit is not None and asked.method == "exact":  # that of the run is enough
         options = replace(options, exact=replace(options.exact, max_seconds=math.inf))
     return replace(options, sweep=replace(options.sweep, peaks_only=asked.peaks_only))
 

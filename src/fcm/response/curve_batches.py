@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from fcm.branches.shared_levels import clear
+from fcm.harmonic_balance.contact_motions import ContactMotions
 from fcm.model.scene import Scene
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
@@ -29,6 +30,7 @@ KINDS = (
     Cause,
     Curve,
     CondensedCurve,
+    ContactMotions,
     Orbits,
     Stuck,
     Swept,
