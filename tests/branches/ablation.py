@@ -3,7 +3,8 @@
 usage: python -m tests.branches.ablation [HARMONICS] SCENE...   (files, or numbers of random scenes; HARMONICS
 is a number, or 0 for as many as the accuracy takes)
 
-Each mechanism is switched off in turn, and what changes is printed: peaks, branches, folds, completeness.
+Each mechanism is switched off in turn, and what changes is printed: peaks, whether their errors are told,
+branches, folds, completeness.
 """
 
 import sys
@@ -65,6 +66,7 @@ def answer(scene, harmonics):
     given = tuple(range(1, harmonics + 1)) if harmonics else None
     curve = traced_curve(scene, Request(given, ACCURACY))
     answers = {f"peak {dof}": peak.amplitude for dof, peak in curve.peaks.items()}
+    answers["peaks of unknown error"] = sum(bool(np.isnan(peak.error)) for peak in curve.peaks.values())
     answers["branches"] = int(np.isnan(curve.frequency).sum()) + 1
     return answers | {"folds": len(curve.folds), "complete": curve.complete}
 
