@@ -133,7 +133,7 @@ def test_a_step_with_the_jacobian_from_before_leaves_little_of_a_displacement(bl
     path, lifted = blade
     exact = Prolongation(lifted.balance, [1], [1, 2, 3, 4, 5, 6], 1e-9)
     moved = taken = needed = corners = 0
-    for i in range(0, len(path.z), 8):
+    for i in range(0, len(path.z), 2):
         before = lifted.newton.evaluations, exact.newton.evaluations
         if not lifted.find_normal(path.z[i], path.direction[i]):
             continue
@@ -148,8 +148,8 @@ def test_a_step_with_the_jacobian_from_before_leaves_little_of_a_displacement(bl
             assert np.linalg.norm((found - true) / unit) < 0.05 * way
             taken += lifted.newton.evaluations - before[0]
             needed += exact.newton.evaluations - before[1]
-    assert moved > 5 and corners < 0.1 * len(path.z[::8])
-    assert taken < 0.6 * needed
+    assert moved > 5 and corners < 0.1 * len(path.z[::2])
+    assert 3 * taken < 2 * needed
 
 
 def test_a_jacobian_is_kept_as_long_as_its_steps_shrink(blade):
@@ -160,7 +160,7 @@ def test_a_jacobian_is_kept_as_long_as_its_steps_shrink(blade):
     path, lifted = blade
     exact = Prolongation(lifted.balance, [1], [1, 2, 3, 4, 5, 6], 1e-9)
     taken, corners = list[int](), 0
-    for z, direction in zip(path.z[::8], path.direction[::8], strict=True):
+    for z, direction in zip(path.z[::2], path.direction[::2], strict=True):
         before = lifted.newton.evaluations
         if lifted.find_normal(z, direction):
             now = lifted.newton.evaluations - before
@@ -168,7 +168,7 @@ def test_a_jacobian_is_kept_as_long_as_its_steps_shrink(blade):
                 corners += 1
                 continue
             taken += [now] if exact.newton.moved > 1e-6 else []
-    assert len(taken) > 5 and corners < 0.1 * len(path.z[::8])
+    assert len(taken) > 5 and corners < 0.1 * len(path.z[::2])
     assert taken.count(1) > 0.75 * len(taken)
 
 
@@ -187,7 +187,7 @@ def test_a_balance_is_left_as_it_was_made():
     used.find_normal(longer.z[top], longer.direction[top])
     used.reset([1], of_one)
     compared = 0
-    for i in range(0, len(path.z), 8):
+    for i in range(0, len(path.z), 2):
         found = [lifted.find_normal(path.z[i], path.direction[i]) for lifted in (used, new)]
         assert found[0] == found[1]
         assert not found[0] or np.array_equal(used.found, new.found)
