@@ -153,7 +153,7 @@ def _curves(
     if ranges_of:
         unknown = any(_residual(curve, dof) == "-" for curve in curves for dof in ranges_of)
         lines.append(_OF_RESIDUAL + (", - unknown" if unknown else ""))
-    if any(_untold(curve, dof) for curve in curves for dof in dofs):
+    if any(_untold(curve, dof) for curve in curves for dof in dofs if curve.get("cause") != "interrupted"):
         lines.append(_OF_LEVELS if "level_folds" in curves[0] else _UNTOLD)
     return "\n".join(lines)
 
