@@ -186,10 +186,11 @@ record.measure = measure"""
     done = program("respond", "scene.toml", "-o", "a.nc", "--json", before=code)
     assert done.returncode == 3 and "Traceback" not in done.err
     if not (left or finished):
-        nothing = "fcm: warning: nothing is finished, so nothing is kept\n"
-        assert (
-            done.err == nothing + "fcm: interrupted: the calculation was not completed\n" and done.out == ""
-        )
+        assert done.out == "" and done.err.splitlines() == [
+            "fcm: ending: what is finished so far is kept",
+            "fcm: warning: nothing is finished, so nothing is kept",
+            "fcm: interrupted: the calculation was not completed",
+        ]
         assert [path.name for path in tmp_path.iterdir()] == ["scene.toml"]
         return
     (history,) = json.loads(done.out)["histories"]
