@@ -237,7 +237,7 @@ def test_an_interrupted_run_says_so_and_leaves_nothing(program, scene, tmp_path)
     )
     done = program("respond", "scene.toml", "-o", "a.nc", before=code)
     assert done.returncode == 3
-    said = ["fcm: ending: what is finished so far is kept"]
+    said = ["fcm: ending, which may take some seconds"]
     said += ["fcm: warning: nothing is finished, so nothing is kept"]
     assert done.err.splitlines() == [*said, "fcm: interrupted: the calculation was not completed"]
     assert files(tmp_path) == ["scene.toml"]

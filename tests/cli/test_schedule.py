@@ -187,7 +187,7 @@ record.measure = measure"""
     assert done.returncode == 3 and "Traceback" not in done.err
     if not (left or finished):
         assert done.out == "" and done.err.splitlines() == [
-            "fcm: ending: what is finished so far is kept",
+            "fcm: ending, which may take some seconds",
             "fcm: warning: nothing is finished, so nothing is kept",
             "fcm: interrupted: the calculation was not completed",
         ]

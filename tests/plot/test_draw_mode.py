@@ -60,14 +60,15 @@ def test_a_line_through_few_points_is_smooth_and_passes_them():
 
 
 def test_resonances_of_the_forces_are_marked_and_errors_drawn():
-    """The level grows as the amplitude, so that the level 2 is at the amplitude 2."""
+    """Each where it is told, and its damping on the line below it."""
     damping, error = np.full(41, 0.3), np.full(41, np.nan)
     error[5] = 0.02
-    one = DrawnMode({}, np.full(41, 10.0), AMPLITUDE, damping, error, AMPLITUDE)
-    upper, lower, below = draw_modes(DrawnModes("", "Hz", (one,), levels=(2.0, 50.0))).axes
+    one = DrawnMode({}, np.full(41, 10.0), AMPLITUDE, damping, error, ((4.0, 2.0, 9.06),))
+    upper, lower, below = draw_modes(DrawnModes("", "Hz", (one,))).axes
     (diamond,) = (line for line in upper.lines if line.get_marker() == "D")
-    assert diamond.get_xdata()[0] == pytest.approx(2.0, rel=2e-2)
-    assert diamond.get_ydata()[0] == pytest.approx(10.0 * np.sqrt(1.0 - 2.0 * 0.3**2))
+    assert (diamond.get_xdata()[0], diamond.get_ydata()[0]) == (2.0, 9.06)
+    assert [text.get_text() for text in upper.texts] == ["resonance, forces × 4"]
     (diamond,) = (line for line in lower.lines if line.get_marker() == "D")
+    assert diamond.get_xdata()[0] == pytest.approx(2.0, rel=1e-2)
     assert diamond.get_ydata()[0] == pytest.approx(30.0)
     assert np.nansum(below.lines[0].get_ydata()) == 0.02

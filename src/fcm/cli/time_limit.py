@@ -10,7 +10,7 @@ import click
 from fcm import signals
 from fcm.cli.messages import Messages
 
-ENDING = "fcm: ending: what is finished so far is kept"
+ENDING = "fcm: ending, which may take some seconds"
 
 
 def seconds(_ctx: click.Context, _param: click.Parameter, value: float | None) -> float | None:

@@ -175,9 +175,7 @@ class Follower:
             return self.labelled.advance(self, step)
         step = self.landing.limit_step(stepper, step)
         many: cython.bint = self.problem.unknowns >= switching.many_unknowns
-        reached: cython.double = (
-            switching.reached_distance_rooted if self.problem.rooted else switching.reached_distance
-        )
+        reached: cython.double = switching.reached_distance
         if self.problem.costly and (
             self.steps_over_corners(step) or self.steps_over_corners(control.retry_fraction * step)
         ):

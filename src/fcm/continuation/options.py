@@ -280,8 +280,6 @@ class SwitchingOptions(Options):
         Part of the way to a corner: up to here the curve is smooth.
     reached_distance : float
         A corner this near is met: less than `departure_length`.
-    reached_distance_rooted : float
-        The same where the curve may come there as a root, and ever shorter steps are soon those of rounding.
     reached_distance_root : float
         The same where a margin is the root of the distance, which rounding hides.
     root_distance : float
@@ -313,7 +311,6 @@ class SwitchingOptions(Options):
     root_fraction: cython.double = 0.75
     smooth_fraction: cython.double = 1e-6
     reached_distance: cython.double = 1e-8
-    reached_distance_rooted: cython.double = 5e-8
     reached_distance_root: cython.double = 1e-4
     root_distance: cython.double = 1e-9
     root_difference: cython.double = 1e-6

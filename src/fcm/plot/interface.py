@@ -34,9 +34,6 @@ STATES_OF_CONTACTS = (  # word, colour and mark: told apart without colours, too
 _SIZE = (4.0, 60.0)  # [point^2] of a mark, for many contacts and for few
 _SHARE = 0.7  # of the distance of two marks is filled by them
 _BAR, _ABOVE = 1.2, 0.35  # [inch] beside the panels for a bar of colours, and above each
-_BAR_WIDTH = 7.0  # [point] of a bar of colours, and of the way to it
-_LINEAR = 0.1  # of the greatest value of all columns: one whose own is less would be dark on a linear scale
-_LEAST = 1e-4  # of the greatest value: less has no colour on a logarithmic scale
 _HEIGHTS = (3.5, 11.0)  # [inch] of a figure
 
 
@@ -280,9 +277,9 @@ def _scale(values: FloatArray) -> Normalize:
     from matplotlib.colors import LogNorm, Normalize
 
     top = float(np.nanmax(values, initial=0.0))
-    if np.nanmax(values, axis=1, initial=0.0).min() >= _LINEAR * top:  # also where all are 0
+    if np.nanmax(values, axis=1, initial=0.0).min() >= LAYOUT.dark * top:  # also where all are 0
         return Normalize(0.0, top or 1.0)
-    least = float(np.nanmin(values, where=values > _LEAST * top, initial=top))
+    least = float(np.nanmin(values, where=values > LAYOUT.least_colour * top, initial=top))
     return LogNorm(min(least, 0.1 * top), top)
 
 
@@ -299,7 +296,7 @@ def _bar(figure: Figure, beside: Axes, scale: Normalize) -> None:
     """The bar of colours as high as the panel that it stands beside."""
     from matplotlib.cm import ScalarMappable
 
-    width = _BAR_WIDTH / (72.0 * beside.get_position().width * figure.get_size_inches()[0])
+    width = LAYOUT.bar_width / (72.0 * beside.get_position().width * figure.get_size_inches()[0])
     figure.colorbar(ScalarMappable(scale, "viridis"), cax=beside.inset_axes((1.0 + width, 0.0, width, 1.0)))
 
 

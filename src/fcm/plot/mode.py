@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import json
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,9 +24,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _NEEDED = ("frequency", "modal_amplitude", "damping_ratio")
-_ALSO = ("truncation_error", "resonant_level")
+_ERROR = "truncation_error"
 _PERCENT = 100.0
-_BETWEEN = 16  # places of a line between two points of a mode
 _NOTHING: FloatArray = np.zeros(0)
 
 
@@ -40,9 +40,7 @@ class DrawnMode:
     error: FloatArray = field(
         default_factory=lambda: _NOTHING
     )  # (point,) relative, NaN where unknown; or (0,)
-    level: FloatArray = field(
-        default_factory=lambda: _NOTHING
-    )  # (point,) of the forces in resonance; or (0,)
+    resonances: tuple[tuple[float, float, float], ...] = ()  # level of the forces, amplitude, frequency
 
     def smooth(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Amplitudes and a line through values of the points, which does not exceed them between two points.
@@ -56,21 +54,9 @@ class DrawnMode:
         from scipy.interpolate import PchipInterpolator
 
         way = np.log(amplitude)
-        places = np.arange((way.size - 1) * _BETWEEN + 1) / _BETWEEN
+        places = np.arange((way.size - 1) * LAYOUT.line_places + 1) / LAYOUT.line_places
         fine = np.interp(places, np.arange(way.size), way)
         return np.exp(fine), PchipInterpolator(way, values)(fine)
-
-    def at_level(self, level: float, values: FloatArray) -> list[tuple[float, float]]:
-        """Amplitudes and values where the forces times a level are in resonance."""
-        if not self.level.size:
-            return []
-        beyond = self.level - level
-        found = []
-        for k in np.flatnonzero(beyond[:-1] * beyond[1:] < 0.0):
-            part = beyond[k] / (beyond[k] - beyond[k + 1])
-            amplitude = self.amplitude[k] ** (1.0 - part) * self.amplitude[k + 1] ** part
-            found.append((float(amplitude), float(values[k] + part * (values[k + 1] - values[k]))))
-        return found
 
 
 @dataclass(frozen=True)
@@ -79,23 +65,28 @@ class DrawnModes:
     frequency_unit: str
     modes: tuple[DrawnMode, ...]
     units: Mapping[str, str] = field(default_factory=dict)  # of swept keys, if the file says them
-    levels: tuple[float, ...] = ()  # of the forces, at which the response was predicted
 
 
 @apart
 def read_modes(path: Path) -> DrawnModes:
     """Read what ``fcm respond --mode -o`` has written; PlotError if the file is something else."""
     what = "a file of nonlinear modes (fcm respond --mode)"
-    with opened(path, what, _NEEDED, (*_ALSO, "force_level")) as data:
+    with opened(path, what, _NEEDED, (_ERROR,)) as data:
         frequency, amplitude, damping = (floats(data.variables[name]) for name in _NEEDED)
-        unknown = np.full(frequency.shape, np.nan)
-        error, level = (floats(data.variables[name]) if name in data.variables else unknown for name in _ALSO)
-        levels = floats(data.variables["force_level"]) if "force_level" in data.variables else _NOTHING
-        swept = swept_values(data.variables)
+        told = _ERROR in data.variables
+        error = floats(data.variables[_ERROR]) if told else np.full(frequency.shape, np.nan)
+        swept, resonances = swept_values(data.variables), _resonances(data)
         found = [
-            DrawnMode({key: float(values[i]) for key, values in swept.items()}, *(x[known] for x in one))
-            for i, one in enumerate(zip(frequency, amplitude, damping, error, level, strict=True))
-            if (known := np.isfinite(one[0])).any()
+            DrawnMode(
+                {key: float(values[i]) for key, values in swept.items()},
+                frequency[i][known],
+                amplitude[i][known],
+                damping[i][known],
+                error[i][known],
+                resonances[i] if i < len(resonances) else (),
+            )
+            for i, one in enumerate(frequency)
+            if (known := np.isfinite(one)).any()
         ]
         if not found:
             raise PlotError(f"{path}: the file holds no point of any mode")
@@ -105,8 +96,20 @@ def read_modes(path: Path) -> DrawnModes:
             unit,
             tuple(found),
             swept_units(data.variables, swept),
-            tuple(levels.tolist()),
         )
+
+
+def _resonances(data: Any) -> list[tuple[tuple[float, float, float], ...]]:
+    """Level, amplitude and frequency of those of each curve, as the file's summary has them."""
+    curves = json.loads(str(getattr(data, "summary", "{}"))).get("curves", ())
+    keys = "level", "modal_amplitude", "frequency"
+    return [
+        tuple(
+            (float(one[keys[0]]), float(one[keys[1]]), float(one[keys[2]]))
+            for one in curve.get("mode", {}).get("resonances", ())
+        )
+        for curve in curves
+    ]
 
 
 def draw_modes(drawn: DrawnModes) -> Figure:
@@ -135,7 +138,7 @@ def draw_modes(drawn: DrawnModes) -> Figure:
             axes.margins(x=0.0)
         lower.set_ylim(top=1.12 * lower.get_ylim()[1])
         if len(modes) == 1:
-            _mark_levels(upper, lower, modes[0], drawn.levels)
+            _mark_resonances(upper, lower, modes[0])
         name_at_side(figure, upper.get_lines(), [one.parameters for one in modes], drawn.units)
     return figure
 
@@ -149,22 +152,21 @@ def _draw_error(axes: Axes, mode: DrawnMode, colour: str) -> None:
     axes.set_ylabel("Relative error")
 
 
-def _mark_levels(upper: Axes, lower: Axes, mode: DrawnMode, levels: Sequence[float]) -> None:
-    """A diamond where the forces times each level are in resonance: at omega sqrt(1 - 2 D^2), which is below
-    the frequency of the mode."""
-    resonance = mode.frequency * np.sqrt(np.maximum(1.0 - 2.0 * mode.damping**2, 0.0))
-    for level in levels:
-        for amplitude, frequency in mode.at_level(level, resonance):
-            upper.plot([amplitude], [frequency], "D", color="black", markersize=4.0)
-            upper.annotate(
-                f"resonance, forces × {level:g}",
-                (amplitude, frequency),
-                xytext=(6, 4),
-                textcoords="offset points",
-                fontsize=LAYOUT.small_text,
-            )
-        for amplitude, damping in mode.at_level(level, _PERCENT * mode.damping):
-            lower.plot([amplitude], [damping], "D", color="black", markersize=4.0)
+def _mark_resonances(upper: Axes, lower: Axes, mode: DrawnMode) -> None:
+    """A diamond at each resonance of the forces, below the frequency of the mode, and on its damping."""
+    along, frequency = mode.smooth(mode.frequency)
+    _, damping = mode.smooth(_PERCENT * mode.damping)
+    for level, amplitude, resonance in mode.resonances:
+        upper.plot([amplitude], [resonance], "D", color="black", markersize=4.0)
+        upper.annotate(
+            f"resonance, forces × {level:g}",
+            (amplitude, resonance),
+            xytext=(6, 4),
+            textcoords="offset points",
+            fontsize=LAYOUT.small_text,
+        )
+        k = int(np.argmin(np.abs(np.log(along / amplitude)) + np.abs(frequency / resonance - 1.0)))
+        lower.plot([along[k]], [damping[k]], "D", color="black", markersize=4.0)
 
 
 def _mark_greatest(axes: Axes, mode: DrawnMode, colour: str, unit: str) -> None:

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _ALONE = ("#D55E00", "#0072B2")  # of the first set, of the second
-_ROUNDINGS = 8.0  # of a coordinate, by which partners at one place are apart at most
 _SIZE = (4.0, 60.0)  # [point^2] of a mark, for many pairs and for few
 
 
@@ -91,7 +90,11 @@ def _draw(figure: Figure, axes: Any, one: Interface, length: str) -> None:
     size = float(np.clip(1500.0 / max(len(apart), 1), *_SIZE))
     for start, end in zip(*seen, strict=True):
         axes.plot(*np.stack((start, end)).T, color="#808080", linewidth=0.6, zorder=1)
-    rounding = _ROUNDINGS * np.finfo(np.float64).eps * max(np.abs(one.first).max(), np.abs(one.second).max())
+    rounding = (
+        LAYOUT.touch_roundings
+        * np.finfo(np.float64).eps
+        * max(np.abs(one.first).max(), np.abs(one.second).max())
+    )
     touch = bool(apart.max() <= rounding)
     marks = axes.scatter(
         *seen[0].T, c=np.zeros_like(apart) if touch else apart, s=size, cmap="viridis", vmin=0.0,

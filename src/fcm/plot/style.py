@@ -50,6 +50,11 @@ class Layout:
     halo: float = 2.0  # [point] of white around a mark that stands on lines
     bar_names: int = 20  # of more lines than this, a colour bar names some
     bar_ticks: int = 9  # of a colour bar, at most
+    bar_width: float = 7.0  # [point] of one beside maps, and of the way to it
+    dark: float = 0.1  # of the greatest value of all columns: one of less would be dark on a linear scale
+    least_colour: float = 1e-4  # of the greatest value: less has no colour on a logarithmic scale
+    line_places: int = 16  # of a smooth line, between two points
+    touch_roundings: float = 8.0  # of a coordinate, by which partners at one place are apart at most
     name_leader: int = 10  # [point] a name this far from its peak has a thin line to it
     name_margin: float = 2.0  # [pixel] around a name, at 100 to the inch
     name_points: int = 12  # points between two of a curve at which a touch is looked for

@@ -62,9 +62,11 @@ def resonance_doubt(scene: Scene) -> str:
     """
     if not scene.has_range:
         return ""
-    opened, stuck = _modes_open_and_stuck(scene)
     ends, room = scene.frequency_range, MESSAGES.range_near
-    near = ends[0] / room, ends[1] * room
+    near, alone = (ends[0] / room, ends[1] * room), _modes_alone(scene)
+    if _resonance_within(alone, alone, near):  # the contacts need not be asked
+        return ""
+    opened, stuck = _modes_open_and_stuck(scene)
     if not opened.size or _resonance_within(opened, stuck, near):
         return ""
     unit = scene.frequency_unit
@@ -80,15 +82,22 @@ def resonance_doubt(scene: Scene) -> str:
     return f"no resonance is near the range of frequencies: {places}; {slip}"
 
 
+def _modes_alone(scene: Scene) -> FloatArray:
+    """Natural frequencies [rad/s] of the structure without contacts, but those that stand for flexibility."""
+    modal, ring = scene.modal, scene.ring
+    return (
+        modal.frequency[: modal.frequency.size - modal.added] if ring is None else ring.frequency[~ring.added]
+    )
+
+
 def _modes_open_and_stuck(scene: Scene) -> tuple[FloatArray, FloatArray]:
     """Natural frequencies (mode,) [rad/s] of elastic modes, without contacts and with all of them stuck."""
     if scene.ring is not None:
         every = nodal_diameters(scene)
         opened, stuck = (np.concatenate([getattr(one, of) for one in every]) for of in ("opened", "stuck"))
     else:
-        own = scene.modal.frequency.size - scene.modal.added
-        opened = np.sort(scene.modal.frequency[:own])
-        stuck = _stuck(scene)[:own] if scene.contacts else opened
+        opened = np.sort(_modes_alone(scene))
+        stuck = _stuck(scene)[: opened.size] if scene.contacts else opened
     elastic = stuck > 0.0
     return opened[elastic], stuck[elastic]
 
