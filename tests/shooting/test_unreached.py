@@ -13,6 +13,7 @@ from fcm import load_scene
 from fcm.cli.exact import remarks
 from fcm.response.coexisting_orbits import coexisting_orbits
 from fcm.response.exact import trace_exact
+from fcm.response.resumable_branches import CurveTimeLimit
 from fcm.run import Report
 from fcm.shooting.work_budget import UncertainFrequencies
 from fcm.time_domain import simulate
@@ -47,9 +48,8 @@ def test_single_frequencies_have_what_sweeps_from_far_come_to():
 
 def test_they_go_on_as_they_are():
     scene = load_scene(HARMONIC / "isola.toml")
-    _, found = coexisting_orbits(
-        scene, [1.22], [], Report(lambda *_: None), lambda: None, UncertainFrequencies()
-    )
+    limit = CurveTimeLimit(None, Report(lambda *_: None))
+    _, found = coexisting_orbits(scene, [1.22], [], limit, UncertainFrequencies())
     last = simulate(scene, 1.22, 200, found.state).measures(last=1)[0]
     assert last.amplitude == pytest.approx(found.measure.amplitude, rel=1e-9)
 

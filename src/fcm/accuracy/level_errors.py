@@ -7,6 +7,8 @@ them too, at the same frequency and level.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 
@@ -19,6 +21,17 @@ from fcm.harmonic_balance.response_quantities import contact_loads_along, record
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.floquet import multipliers_of
+
+
+class LevelPoints(NamedTuple):
+    """Points of a curve of levels: z (point, unknown + 1) and level (point,), amplitudes (point, dof),
+    what its contacts bear (point, contact, 4), and even (point,) of `evenness`."""
+
+    z: FloatArray
+    level: FloatArray
+    amplitude: FloatArray
+    contact_loads: FloatArray
+    even: npt.NDArray[np.bool_]
 
 
 def stable_at_levels(system: System, z: FloatArray, even: npt.NDArray[np.bool_]) -> FloatArray:
@@ -39,19 +52,14 @@ def evenness(path: Path) -> npt.NDArray[np.bool_]:
 
 
 def errors_at_levels(
-    system: System,
-    z: FloatArray,
-    level: FloatArray,
-    amplitude: FloatArray,
-    contact_loads: FloatArray,
-    even: npt.NDArray[np.bool_],
-    options: PairOptions = PAIR,
+    system: System, points: LevelPoints, options: PairOptions = PAIR
 ) -> tuple[FloatArray, FloatArray]:
-    """By how much the partner's amplitudes differ from amplitude (point, dof), and what its contacts bear
-    from contact_loads (point, contact, 4), at the same levels, relative.
+    """By how much the partner's amplitudes and what its contacts bear differ from those of points at the same
+    levels, relative.
 
     NaN where that is not found, as beside folds, where the curve with them has no such solution.
     """
+    z, level, amplitude, contact_loads, even = points
     further = FurtherHarmonics(system)
     error, contact_load_errors = np.zeros_like(amplitude), np.zeros_like(contact_loads)
     bent = np.flatnonzero(~further.linear(z))

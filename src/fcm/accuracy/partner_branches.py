@@ -50,10 +50,7 @@ def further_partner_pieces(
     smallest motions before the others: there the partner has fewest. Where no motion of such a path leads to
     one of its partner, the level of the forces may; then points between those that were tried.
     """
-    part = share_of([path.evaluations for path in paths], first)
-    search = _Search(
-        system, paths, shown, errors, first, options, Budget.elsewhere(system.work, options, part)
-    )
+    search = _Search(system, paths, shown, errors, first, options)
     interval = options.point_interval
     while interval and search.is_open and search.leads(interval):
         interval //= options.interval_factor
@@ -104,10 +101,11 @@ class _Search:
         errors: Sequence[Errors],
         first: int,
         options: PairOptions,
-        budget: Budget,
     ) -> None:
         self.system, self.paths, self.errors, self.first = system, paths, errors, first
-        self.options, self.budget, self.each = options, budget, budget.seconds * options.piece_fraction
+        part = share_of([path.evaluations for path in paths], first)
+        self.options, self.budget = options, Budget.elsewhere(system.work, options, part)
+        self.each = self.budget.seconds * options.piece_fraction
         self.found: list[list[CurvePiece]] = [[] for _ in paths]
         self.known = [piece for one in errors for piece in one.pieces]
         self.untold = [

@@ -67,13 +67,13 @@ class LinearContacts:
     def __init__(
         self,
         answer: ModalCompliance,
-        flexibility: FloatArray,
         springs: FloatArray,
         counted: FloatArray,
         options: LinearContactOptions = LINEAR_CONTACTS,
     ) -> None:
         self.seen: Receptance = answer.seen
-        self.place, self.flexibility, self.options = answer.place, flexibility, options
+        self.place, self.options = answer.place, options
+        self.flexibility = np.ascontiguousarray(np.asarray(answer.flexibility).T)
         self.contacts, self.parts = counted.size, answer.place.shape[0]
         self.each = springs.size // counted.size
         self.order = answer.place[:, : self.each].ravel()  # of a contact's unknowns: part by part

@@ -28,7 +28,6 @@ import numpy as np
 from fcm.harmonic_balance.held_contacts import LinearContacts
 from fcm.harmonic_balance.modal_equations import ModalCompliance, ModalEquations
 from fcm.model.scene import FloatArray
-from fcm.structure.receptance import Receptance
 
 
 @dataclass(frozen=True)
@@ -118,19 +117,18 @@ class CondensedSystem:
 
     def __init__(
         self,
-        seen: Receptance,
-        flexibility: FloatArray,
+        answer: ModalCompliance,
         tangent: FloatArray,
         yields: FloatArray,
         springs: FloatArray,
         counted: FloatArray,
         options: CondensationOptions = CONDENSATION,
     ) -> None:
-        self.answer, self.tangent, self.options = ModalCompliance(seen, flexibility), tangent, options
+        self.answer, self.tangent, self.options = answer, tangent, options
         self.equations = ModalEquations(self.answer, tangent, options.max_corrections)
         self.ranking = np.argsort(-yields, kind="stable")
-        self.choose_modes(retained_modes(yields, seen.ports, options))
-        self.linear_contacts = LinearContacts(self.answer, flexibility, springs, counted)
+        self.choose_modes(retained_modes(yields, answer.seen.ports, options))
+        self.linear_contacts = LinearContacts(answer, springs, counted)
         self.row, self.scale = np.zeros((2, tangent.shape[0] * tangent.shape[1] + 1))
 
     @property

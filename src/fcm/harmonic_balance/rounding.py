@@ -69,7 +69,11 @@ def with_precise_fundamental(
     if (quick or balance.rank) and stiff.size > options.max_points:
         looked = stiff[np.linspace(0, stiff.size - 1, options.max_points).round().astype(np.intp)]
     for i in looked:
-        found = _point(balance, made.z[i].copy(), points.tangent[i], springs, forces, options, quick)
+        z, tangent = made.z[i].copy(), points.tangent[i]
+        balance.evaluate(z)
+        found = None if quick else _precise(balance, z, springs, forces, options)
+        if found is None:
+            found = _as_balanced(balance, system.linear, springs, tangent, options)
         made.z[i] = found.z
         balance.evaluate(found.z)
         balance.report(found.z, np.zeros(found.z.size))
@@ -157,28 +161,20 @@ def _share(direction: FloatArray, port: FloatArray) -> float:
     return float(direction[most] / port[most]) if same else 0.0
 
 
-def _point(
-    balance: Balance,
-    z: FloatArray,
-    tangent: FloatArray,
-    springs: FloatArray,
-    forces: _Forces,
-    options: DigitOptions,
-    as_balanced: bool,
-) -> PreciseFundamental:
-    """A point with the digits that can be kept, or as it is."""
-    balance.evaluate(z)
+def _precise(
+    balance: Balance, z: FloatArray, springs: FloatArray, forces: _Forces, options: DigitOptions
+) -> PreciseFundamental | None:
+    """The point evaluated last with the digits that can be kept; None where that is as it is."""
     G, held = _receptance(balance), _port_stiffness(balance, springs)
     seen, linear, at, omega = balance.seen, forces.linear, _fundamental_positions(balance), float(z[-1])
     other = len(linear.driven) > 1  # whose answer is no fundamental
     if (
-        as_balanced
-        or held is None
+        held is None
         or other
         or isinstance(linear, RingLinear)
         or not np.linalg.cond(G) < options.max_condition
     ):
-        return _as_balanced(balance, linear, G, springs, tangent, options)
+        return None
     compliance = np.asarray(seen.c_re)[seen.first] + 1j * np.asarray(seen.c_im)[seen.first]
     H, others = np.linalg.inv(G), forces.on_modes(omega)
     computed = H @ (linear.ports.T @ (compliance * others))
@@ -199,19 +195,14 @@ def _point(
 
 
 def _as_balanced(
-    balance: Balance,
-    linear: Linear,
-    G: ComplexArray,
-    springs: FloatArray,
-    tangent: FloatArray,
-    options: DigitOptions,
+    balance: Balance, linear: Linear, springs: FloatArray, tangent: FloatArray, options: DigitOptions
 ) -> PreciseFundamental:
     """The point evaluated last as it is; its rounding from what its equations are summed of."""
     seen, n, at = balance.seen, balance.unknowns, _fundamental_positions(balance)
     force, x = np.asarray(balance.force), np.asarray(balance.evaluated)
     size, on_ports = np.hypot(x[at], x[at + 1]), np.hypot(force[at], force[at + 1])
     terms = np.zeros(n)
-    terms[at] = np.abs(G) @ on_ports + np.hypot(seen.X_re[0], seen.X_im[0]) + size
+    terms[at] = np.abs(_receptance(balance)) @ on_ports + np.hypot(seen.X_re[0], seen.X_im[0]) + size
     terms[at + 1] = terms[at]
     rounding = options.summed_roundings * options.last_digit
     off = moved_across_curve(balance, x, tangent, rounding * terms, options)

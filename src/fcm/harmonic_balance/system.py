@@ -24,6 +24,7 @@ from fcm.harmonic_balance.modal_condensation import (
     condensed_size,
     modal_compliance,
 )
+from fcm.harmonic_balance.modal_equations import ModalCompliance
 from fcm.harmonic_balance.options import HARMONIC_BALANCE, ExtremeOptions, HarmonicBalanceOptions
 from fcm.harmonic_balance.prolongation import ForceLevelProblem
 from fcm.harmonic_balance.residual import Balance
@@ -215,10 +216,9 @@ class System:
         )
         if rank:
             tangent, options = np.asarray(balance.tangent), self.condensation
+            answer = ModalCompliance(seen, linear.flexibility)
             stuck, yields, counted = self.springs(stuck=True), self.modal_compliance, linear.counted
-            balance.condense(
-                CondensedSystem(seen, linear.flexibility, tangent, yields, stuck, counted, options)
-            )
+            balance.condense(CondensedSystem(answer, tangent, yields, stuck, counted, options))
         if self.scene.loads:
             balance.rest[:] = linear.ports.T @ linear.flexibility @ linear.load
             shown.rest[:] = linear.dofs.T @ linear.flexibility @ linear.load

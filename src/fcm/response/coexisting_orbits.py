@@ -15,7 +15,7 @@ import numpy as np
 
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.options import COEXISTING
-from fcm.run import Report
+from fcm.response.resumable_branches import CurveTimeLimit
 from fcm.shooting.harmonic_balance_branches import states_across
 from fcm.shooting.harmonic_balance_state import balance_solutions
 from fcm.shooting.initial_orbits import first_point
@@ -45,17 +45,15 @@ def coexisting_orbits(
     scene: Scene,
     frequencies: Sequence[float],
     visited: Sequence[OrbitRecord],
-    report: Report,
-    poll: Poll,
+    limit: CurveTimeLimit,
     doubts: UncertainFrequencies,
     options: ShootingOptions = SHOOTING,
 ) -> Iterator[OrbitRecord]:
     """The stable motions at each of some frequencies [rad/s] that are none of those visited; each saved.
 
-    doubts take the frequencies at which there may be more.
-
-    poll is called now and then.
+    doubts take the frequencies at which there may be more. The limit of time is asked now and then.
     """
+    report, poll = limit.report, limit.poll
     saved = {one.frequency: one for one in report.saved if isinstance(one, CoexistingOrbits)}
     problem = OrbitProblem(replace(scene, frequency_range=(0.0, frequencies[-1])))
     left = [omega for omega in frequencies if omega not in saved]

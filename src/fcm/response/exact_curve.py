@@ -256,7 +256,8 @@ def _visited(
 ) -> Curve:
     around = replace(scene, frequency_range=(0.0, at[-1]))
     stiff, limit = _too_stiff(replace(scene, frequency_range=(at[0], at[-1])), options)
-    poll = CurveTimeLimit(limit, report).poll
+    looks = CurveTimeLimit(limit, report)
+    poll = looks.poll
     visitor, others, reason, doubts = (
         SteppedSweep(around, poll),
         list[OrbitRecord](),
@@ -266,7 +267,7 @@ def _visited(
     cause = Cause.CALCULATION
     try:
         visitor.run(at, report)
-        others.extend(coexisting_orbits(scene, at, visitor.points, report, poll, doubts, shooting))
+        others.extend(coexisting_orbits(scene, at, visitor.points, looks, doubts, shooting))
     except (KeyboardInterrupt, TimeOver) as stop:
         where = with_unit(scene, visitor.points[-1].frequency) if visitor.points else "the start"
         reason, cause = _stop_prefix(stop, limit) + where, _cause(stop)

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fcm.accuracy.level_errors import errors_at_levels, evenness, stable_at_levels
+from fcm.accuracy.level_errors import LevelPoints, errors_at_levels, evenness, stable_at_levels
 from fcm.accuracy.options import REFINEMENT, VALIDITY
 from fcm.branches.force_level import LevelRange, level_curve
 from fcm.branches.linear_limits import highest_linear_limit
@@ -196,7 +196,8 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     first, even = X[:, system.harmonics.index(1)], evenness(path)[inside]
     loop = loops(system, z)
     words, contact_loads = cycles(system, z, loop)
-    error, contact_load_errors = errors_at_levels(system, z, level, amplitude, contact_loads, even)
+    points = LevelPoints(z, level, amplitude, contact_loads, even)
+    error, contact_load_errors = errors_at_levels(system, points)
     truncation = (error * amplitude).max(axis=1) / np.where(size := amplitude.max(axis=1), size, 1.0)
     stable = stable_at_levels(system, z, even)
     # with more harmonics there may be no solution where it is not

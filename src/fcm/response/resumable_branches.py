@@ -121,7 +121,8 @@ class Legs:
         saved = self._known.get(_key(self._leg(problem))) or self._taken(problem, start, forward)
         if saved is None or saved.path is None:
             checkpoint = None if saved is None else saved.checkpoint
-            path = self._followed(problem, start, span, forward, wanted, options, checkpoint)
+            whole = partial(follow, problem, start, span, wanted, options, forward=forward)
+            path = self._followed(problem, start, partial(whole, checkpoint=checkpoint))
             saved = self._leg(problem, path)
             self._save(saved)
         self._begun = None
@@ -129,25 +130,14 @@ class Legs:
         assert saved.path is not None
         return saved.path
 
-    def _followed(
-        self,
-        problem: OrbitProblem,
-        start: FloatArray,
-        span: tuple[float, float],
-        forward: bool,
-        wanted: Events,
-        options: FollowOptions,
-        checkpoint: Checkpoint | None,
-    ) -> Path:
-        """The curve from its start, or from a checkpoint of it on."""
+    def _followed(self, problem: OrbitProblem, start: FloatArray, whole: Callable[..., Path]) -> Path:
+        """The curve by `follow` with a watch; of motions of twice the periods up to those of one."""
         self._recorded = 0
         watch = partial(self._watch, problem, float(start[-1]))
         if isinstance(problem, DoubledPeriodProblem):
             problem.reset_flips()
         try:
-            return follow(
-                problem, start, span, wanted, options, forward=forward, watch=watch, checkpoint=checkpoint
-            )
+            return whole(watch=watch)
         except _Ended:
             assert self._begun is not None
             return self._begun[1].path(Status.COMPLETE)
