@@ -24,7 +24,7 @@ from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.partner import partner_of
 from fcm.accuracy.partner_branches import affordable_partner, further_partner_pieces
 from fcm.accuracy.partner_curve import FollowedStretch, Indices, PartnerCurve
-from fcm.accuracy.partner_pieces import CurvePiece, distinct, lengths, nearest, piece_of
+from fcm.accuracy.partner_pieces import CurvePiece, ReportedPath, distinct, lengths, nearest, piece_of
 from fcm.accuracy.peaks import heights, rise_between_points
 from fcm.continuation import Mark, Path
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
@@ -99,6 +99,7 @@ def errors_along(
     """
     shown = shown or reported_quantities(system, path)
     contacts = ContactRecord.at(system, path.z)
+    reported = ReportedPath(path, shown, _flat(contacts.contact_loads))
     tops, d = shown.amplitude.argmax(axis=0), np.arange(shown.amplitude.shape[1])
     folds, size = path.where(Mark.FOLD), shown.amplitude.max(axis=0)
     special = np.unique(np.concatenate((folds, path.where(Mark.PEAK), tops)))
@@ -110,9 +111,7 @@ def errors_along(
         of_folds = np.full(len(folds), none[0, 0])
         contact_loads = np.full((len(path.z), len(system.scene.contacts), 4), none[0, 0])
         known: Mask = np.isfinite(none[:, 0])  # then the partner's curve is this one
-        own = (
-            (piece_of(path, shown, _flat(contacts.contact_loads)),) if known.all() and len(path.z) > 1 else ()
-        )
+        own = (piece_of(reported),) if known.all() and len(path.z) > 1 else ()
         more = system.harmonics
         told = (
             none,
@@ -129,7 +128,7 @@ def errors_along(
         )
         return Errors(*told, contacts, own)
     seconds = budget or Budget(options.max_seconds)
-    partner = PartnerCurve(system, path, shown, _flat(contacts.contact_loads), more, options, seconds)
+    partner = PartnerCurve(system, reported, more, options, seconds)
     elsewhere = more
     if not partner.is_same_curve():
         elsewhere = affordable_partner(system, path, share, options)

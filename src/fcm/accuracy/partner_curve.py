@@ -20,14 +20,21 @@ from fcm.accuracy.curve_distance import (
 )
 from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.partner import give_back, partner_of, prolongation_to
-from fcm.accuracy.partner_pieces import CurvePiece, distinct, nearest, piece_of, piece_through, rates
+from fcm.accuracy.partner_pieces import (
+    CurvePiece,
+    ReportedPath,
+    distinct,
+    nearest,
+    piece_of,
+    piece_through,
+    rates,
+)
 from fcm.accuracy.partner_stretch import PartnerPiece, StretchFollower
 from fcm.accuracy.residual import changes_left_out
 from fcm.continuation import Mark, Path
 from fcm.harmonic_balance.consecutive_points import runs
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.prolongation import Prolongation
-from fcm.harmonic_balance.reported_quantities import ReportedQuantities
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.harmonic_balance.response_quantities import contact_loads_along
 from fcm.harmonic_balance.system import System
@@ -98,15 +105,14 @@ class PartnerCurve:
     def __init__(
         self,
         system: System,
-        path: Path,
-        shown: ReportedQuantities,
-        contact_loads: FloatArray,
+        reported: ReportedPath,
         more: tuple[int, ...],
         options: PairOptions,
         budget: Budget,
     ) -> None:
+        path, shown = reported.path, reported.shown
         self.path, self.shown, self.options, self.fewer = path, shown, options, system.harmonics
-        self.contact_loads = contact_loads
+        self.contact_loads = reported.contact_loads
         self.amplitude, self.linear = shown.amplitude, _with_ends(path, shown.linear)
         least = system.options.spectrum.least_amplitude * self.amplitude.max(axis=1, keepdims=True)
         self.unit = np.maximum(self.amplitude, least)
@@ -491,7 +497,7 @@ class PartnerCurve:
 def curve_piece(finer: System, piece: PartnerPiece) -> CurvePiece:
     """A piece of the partner that was followed, with what the contacts bear."""
     contact_loads = contact_loads_along(finer, piece.path.z).reshape(len(piece.path.z), -1)
-    return piece_of(piece.path, piece.shown, contact_loads)
+    return piece_of(ReportedPath(piece.path, piece.shown, contact_loads))
 
 
 def _passes(parameter: FloatArray, omega: FloatArray) -> Mask:

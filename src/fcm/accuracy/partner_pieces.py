@@ -58,8 +58,18 @@ class CurvePiece:
         return found
 
 
-def piece_of(path: Path, shown: ReportedQuantities, contact_loads: FloatArray) -> CurvePiece:
-    """A path that has been followed, with what the contacts bear (point, 4 contact)."""
+@dataclass(frozen=True)
+class ReportedPath:
+    """A path that was followed, what is reported of it, and what its contacts bear (point, 4 contact)."""
+
+    path: Path
+    shown: ReportedQuantities
+    contact_loads: FloatArray
+
+
+def piece_of(reported: ReportedPath) -> CurvePiece:
+    """A path that has been followed, as a piece of a curve."""
+    path, shown, contact_loads = reported.path, reported.shown, reported.contact_loads
     parameter, rate = (np.ascontiguousarray(one[:, -1]) for one in (path.z, path.direction))
     place = lengths(path)
     return CurvePiece(
