@@ -69,10 +69,11 @@ class Traced(NamedTuple):
     rests: FloatArray  # (contact,), 1 of one that never slips
 
 
-def random_plane(seed: int) -> Scene:
-    """Contacts between the ground and three degrees of freedom each. Without them the lowest mode is at 1."""
+def random_plane(seed: int, contacts: int = CONTACTS) -> Scene:
+    """At most so many contacts between the ground and three degrees of freedom each; without them the lowest
+    mode is at 1."""
     rng = np.random.default_rng(seed)
-    contacts, modes = int(rng.integers(1, CONTACTS + 1)), int(rng.integers(2, MODES + 1))
+    contacts, modes = int(rng.integers(1, contacts + 1)), int(rng.integers(2, MODES + 1))
     dofs = [f"{axis}{c}" for c in range(contacts) for axis in "xyz"]
     dofs += [f"e{i}" for i in range(modes - len(dofs))]  # so that displacements tell how all modes move
     shapes = 0.6 * rng.normal(size=(modes, len(dofs)))

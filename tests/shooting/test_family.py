@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.response import friction_extent
 from fcm.response.exact import trace_exact
 from fcm.response.resumable_branches import TimeOver
+from fcm.run import Execution
 from fcm.shooting import periodic
 from fcm.shooting.initial_orbits import near_balance
 from fcm.shooting.periodic_orbit import converged
@@ -103,16 +103,15 @@ def test_a_curve_tells_the_extent_at_its_peak(scene):
     assert (low, high) == (curve.orbits.family_least[k, 1], curve.orbits.family_greatest[k, 1])
 
 
-def test_where_there_is_no_time_for_the_extent_it_is_said_to_be_unknown(scene, monkeypatch):
+def test_where_there_is_no_time_for_the_extent_it_is_said_to_be_unknown(scene):
     """The search asks for the time; the curve is complete without it."""
 
-    def over(*_):
-        raise TimeOver
+    def over(_share, text):
+        if "looking for other motions" in text:
+            raise TimeOver
 
-    with pytest.raises(TimeOver):
-        family(scene, OMEGA, periodic(scene, OMEGA, settled(scene, 0.0).end).state, poll=over)
-    monkeypatch.setattr(friction_extent, "family", over)
-    (curve,) = trace_exact(replace(scene, frequency_range=(1.4, OMEGA), max_step=0.2)).curves
+    near = replace(scene, frequency_range=(1.4, OMEGA), max_step=0.2)
+    (curve,) = trace_exact(near, execution=Execution(progress=over)).curves
     k = int(np.argmax(curve.amplitude[:, 1]))
     assert curve.complete and curve.orbits.family_complete[k] == 0.0
     assert np.isnan(curve.orbits.family_greatest).all()

@@ -11,11 +11,11 @@ import pytest
 
 import fcm
 from fcm.model.scene import Start
-from fcm.response import friction_extent
 from fcm.response.exact import trace_exact
+from fcm.response.options import RESPONSE
 from fcm.response.undetermined_traction import undetermined
 from fcm.shooting.linear_orbits import linear_motions
-from fcm.shooting.traction_families import Family
+from fcm.shooting.options import SHOOTING
 from fcm.time_domain import State, simulate
 
 from ..program import called
@@ -111,11 +111,12 @@ def test_a_motion_with_one_contact_wedged_and_another_that_slips_is_told_with_it
     assert ["E", "EPEN"] in chosen[1].regime.tolist()
 
 
-def test_an_extent_that_was_not_sought_to_its_end_is_told(monkeypatch, scenes=WEDGE.parent):
-    """Even where all motions that were found are alike."""
-    alike = Family((0,), np.zeros((1, 2)), np.ones(2), np.ones(2), complete=False)
-    monkeypatch.setattr(friction_extent, "family", lambda *_: alike)
-    (curve,) = trace_exact(fcm.load_scene(scenes / "not_unique.toml"), [1.5]).curves
+def test_an_extent_that_was_not_sought_to_its_end_is_told(scenes=WEDGE.parent):
+    """Even where all motions that were found are alike, as one is."""
+    none = replace(SHOOTING.partly_sticking, max_tries=0)
+    alone = replace(SHOOTING, family=replace(SHOOTING.family, max_motions=0), partly_sticking=none)
+    options = replace(RESPONSE, shooting=alone)
+    (curve,) = trace_exact(fcm.load_scene(scenes / "not_unique.toml"), [1.5], options=options).curves
     assert curve.orbits.family_complete.tolist() == [0.0, 0.0]
     assert np.isnan(curve.orbits.family_greatest).all()
 
