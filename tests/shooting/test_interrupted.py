@@ -16,9 +16,7 @@ from fcm.response.options import RESPONSE
 from fcm.response.resumable_branches import TimeOver
 from fcm.results.orbits import Stuck
 from fcm.run.records import unpacked
-from fcm.shooting import trace
 from fcm.shooting.options import SHOOTING
-from fcm.shooting.period_doubling import DoubledPeriodProblem
 
 from ..interrupted import interrupted_after, interrupted_beyond
 from ..time_domain.cases import yang
@@ -101,25 +99,24 @@ def test_of_a_run_that_goes_on_and_is_stopped_at_once_there_is_all_that_was(scen
 
 
 @pytest.mark.slow
-def test_so_there_is_of_motions_of_two_periods(monkeypatch, tmp_path):
+def test_so_there_is_of_motions_of_two_periods(tmp_path):
+    """Of which the last branch that is followed is one."""
     scene = between(fcm.load_scene(SCENES / "irregular.toml"), 1.2, 1.25)
-    begins, begun = DoubledPeriodProblem.reset_flips, []
+    begun, last = 0, np.inf
 
-    def progress(_share, _text):
-        if begun:
+    def progress(share, text):
+        nonlocal begun
+        begun += text.endswith(": 1 points")
+        if begun == last and share < 1.0:
             raise KeyboardInterrupt
 
-    monkeypatch.setattr(DoubledPeriodProblem, "reset_flips", lambda problem: begun.append(begins(problem)))
+    curve_of(scene, periods=2, progress=progress)
+    begun, last = 0, begun
     first = curve_of(scene, keep=tmp_path / "kept", progress=progress, periods=2)
     assert set(first.orbits.repeats[np.isfinite(first.orbits.repeats)]) == {1.0, 2.0}
-    monkeypatch.setattr(trace, "find_initial_orbits", stopped)
-    again = curve_of(scene, keep=tmp_path / "kept", resume=True, periods=2)
+    again = curve_of(scene, keep=tmp_path / "kept", resume=True, periods=2, progress=interrupted_after(0))
     np.testing.assert_array_equal(again.amplitude, first.amplitude)
     np.testing.assert_array_equal(again.orbits.repeats, first.orbits.repeats)
-
-
-def stopped(*_):
-    raise KeyboardInterrupt
 
 
 def test_of_peaks_alone_those_that_were_found_are_kept():
