@@ -9,6 +9,7 @@ import pytest
 
 from fcm.response import trace
 from fcm.results.result import Curve
+from fcm.scene import scene_from_dict
 
 from .random_planes import random_plane
 
@@ -36,3 +37,29 @@ def test_slip_begins_at_a_cusp() -> None:
     assert before < here
     assert after < here
     assert curve.frequency[onset : onset + 20].min() < here - 1e-4
+
+
+def test_slip_begins_where_the_root_is_steep() -> None:
+    """Seen from where it slips the load's root is eighty times as steep as from where it sticks."""
+    data = {
+        "structure": {
+            "dofs": ["x", "y", "z"], "mass": np.eye(3).tolist(), "damping": 0.02,
+            "stiffness": [[2.17, 0.1, 0.2], [0.1, 2.02, 0.15], [0.2, 0.15, 1.32]],
+        },
+        "contact": [
+            {
+                "name": "c", "tangential": ["x", "y"], "normal": "z",
+                "mu": 0.57, "k_u": 4.97, "k_v": 3.89, "n_0": 2.85,
+            }
+        ],
+        "force": [
+            {"dof": "x", "amplitude": 1.24, "phase": 5.01},
+            {"dof": "y", "amplitude": 0.45, "phase": 2.39},
+            {"dof": "z", "amplitude": 0.71, "phase": 4.48},
+        ],
+        "response": {"frequency": [0.5, 3.5], "harmonics": 1},
+    }  # fmt: skip
+    curve = trace(scene_from_dict(data), method="closed-form").curves[0]
+    assert curve.complete, curve.reason
+    state = curve.regime[:, 0]
+    assert np.count_nonzero((state[:-1] == "EPEP") & (state[1:] == "E")) == 1

@@ -26,7 +26,7 @@ from fcm.continuation.options import FOLLOW, FollowOptions, StepOptions, Switchi
 from fcm.continuation.path import FloatArray, Mark, Path, PathInterrupted, Status
 from fcm.continuation.problem import Point, PointStore, Problem
 from fcm.continuation.recorder import NonsmoothPoints, Recorder, step_back
-from fcm.continuation.root_corner import is_met
+from fcm.continuation.root_corner import is_met, land
 from fcm.continuation.step_control import Stepper
 
 if cython.compiled:
@@ -262,6 +262,7 @@ class Follower:
                 return status
         if 0.0 < at < switching.reached_distance_root:  # the curve may turn back there
             stepper.move_short(at)
+            land(stepper)
             return self.leave_corner(stepper.here, 0.0)
         return Status.STALLED
 

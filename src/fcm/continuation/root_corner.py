@@ -35,7 +35,24 @@ class RootCorner(NamedTuple):
 def is_met(stepper: Stepper) -> bool:
     """Whether the curve has come to such a corner."""
     tangent = np.asarray(stepper.here.tangent)
-    return any(one.side * float(one.normal @ tangent) < 0.0 for one in _corners_near(stepper, stepper.here))
+    distance = stepper.options.switching.root_distance
+    near = _corners_near(stepper, stepper.here, distance)
+    return any(one.side * float(one.normal @ tangent) < 0.0 for one in near)
+
+
+def land(stepper: Stepper) -> None:
+    """Put here on the curve next to the surface of the corner ahead, on the side that the curve comes from.
+
+    Where the root is steep its extrapolation stops short of the surface, by more than the length at which the
+    curve beyond is looked for; the step beyond would then begin and end on the wrong sides.
+    """
+    newton, options = stepper.newton, stepper.options.switching
+    z, scale = np.array(stepper.here.z), np.array(newton.scale)
+    for one in _corners_near(stepper, stepper.here, options.reached_distance_root):
+        found = _solve(stepper, one, 0.5 * one.side * options.root_distance)
+        if found is not None and np.linalg.norm((found - z) / scale) < options.reached_distance_root:
+            stepper.here.z[:] = found
+            return
 
 
 def find_beyond(stepper: Stepper, before: Point) -> float:
@@ -43,27 +60,35 @@ def find_beyond(stepper: Stepper, before: Point) -> float:
 
     0 where there is no such corner, or no curve with the orientation of here.
     """
-    newton, options = stepper.newton, stepper.options
+    newton, distance = stepper.newton, stepper.options.switching.root_distance
     z, scale = np.array(stepper.here.z), np.array(newton.scale)
-    for one in _corners_near(stepper, before):
-        wanted = -one.side * options.switching.root_distance
-        newton.row[:] = -one.side * one.normal
-        at = z
-        for _ in range(options.newton.max_iterations):
-            off = stepper.problem.square(one.kind, at) / one.slope
-            newton.z[:] = last = at + scale * one.normal * (wanted - off)
-            if not newton.single_step():
-                return 0.0
-            at = np.array(newton.z)
-            if np.linalg.norm((at - last) / scale) < options.newton.negligible_step:
-                break
+    for one in _corners_near(stepper, before, distance):
+        found = _solve(stepper, one, -one.side * distance)
+        if found is None:
+            return 0.0
         if newton.take_tangent() and newton.orientation == stepper.here.orientation:
-            return float(np.linalg.norm((at - z) / scale))
+            return float(np.linalg.norm((found - z) / scale))
     return 0.0
 
 
-def _corners_near(stepper: Stepper, before: Point) -> Iterator[RootCorner]:
-    """Those that are here, the sides that of a point before them."""
+def _solve(stepper: Stepper, corner: RootCorner, wanted: float) -> FloatArray | None:
+    """Take the corrector to the curve at a length from the surface of a corner, along its normal."""
+    newton, problem, options = stepper.newton, stepper.problem, stepper.options.newton
+    scale, at = np.array(newton.scale), np.array(stepper.here.z)
+    newton.row[:] = np.sign(wanted) * corner.normal
+    for _ in range(options.max_iterations):
+        off = problem.square(corner.kind, at) / corner.slope
+        newton.z[:] = last = at + scale * corner.normal * (wanted - off)
+        if not newton.single_step():
+            return None
+        at = np.array(newton.z)
+        if np.linalg.norm((at - last) / scale) < options.negligible_step:
+            break
+    return at
+
+
+def _corners_near(stepper: Stepper, before: Point, distance: float) -> Iterator[RootCorner]:
+    """Those within a distance of here, the sides that of a point before them."""
     options, z, scale = stepper.options.switching, np.array(stepper.here.z), np.array(stepper.newton.scale)
     margins, kinds = np.asarray(before.margin), np.asarray(before.kind)
     for k in np.flatnonzero((margins != 0.0) & (np.abs(margins) < options.max_root_margin) & (kinds >= 0)):
@@ -75,5 +100,5 @@ def _corners_near(stepper: Stepper, before: Point) -> Iterator[RootCorner]:
         slopes = np.array([stepper.problem.square(kind, one) - value for one in ahead])
         slopes /= options.root_difference
         slope = float(np.linalg.norm(slopes))
-        if abs(value) < options.root_distance * slope:
+        if abs(value) < distance * slope:
             yield RootCorner(kind, float(np.sign(margins[k])), value / slope, slope, slopes / slope)
