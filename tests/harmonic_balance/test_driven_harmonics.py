@@ -249,10 +249,10 @@ def test_damping_that_varies_with_the_frequency_is_refused(damping):
 
 
 def test_the_linear_response_is_told_at_the_resonances_of_each_driven_harmonic():
-    from fcm.reduction.linear import linear_response, telling_frequencies
+    from fcm.reduction.linear import comparison_frequencies, linear_response
 
     of = scene([force(1.0, 2, 0.3)], span=(0.4, 0.6))
-    at, free = telling_frequencies(of, np.zeros(2)), np.zeros(2)
+    at, free = comparison_frequencies(of, np.zeros(2)), np.zeros(2)
     assert np.abs(at - 0.5).min() < 1e-3
     found = linear_response(of, at, free)
     dynamic = NATURAL**2 - (2.0 * at[:, None]) ** 2 + 4j * at[:, None] * DAMPING * NATURAL

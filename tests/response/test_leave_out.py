@@ -7,7 +7,7 @@ import pytest
 
 import fcm
 from fcm.reduction import negligible_parts
-from fcm.reduction.linear import change, linear_response, telling_frequencies
+from fcm.reduction.linear import change, comparison_frequencies, linear_response
 from fcm.reduction.options import REDUCTION
 from fcm.reduction.static_modes import condensed
 from fcm.response import trace
@@ -65,10 +65,10 @@ def test_a_smaller_tolerance_keeps_more():
     scene = structure(200, 2, 20, 150.0)
     kept = []
     for tolerance in (1e-3, 1e-5, 1e-7):
-        lighter = negligible_parts.leave_out((scene,), tolerance)
+        lighter = negligible_parts.without_negligible_parts((scene,), tolerance)
         kept.append(lighter.curves[0].modal.frequency.size)
     assert kept[0] <= kept[1] <= kept[2]
-    assert negligible_parts.leave_out((scene,), 0.0).curves == (scene,)
+    assert negligible_parts.without_negligible_parts((scene,), 0.0).curves == (scene,)
 
 
 def test_the_error_falls_with_the_fourth_power_of_the_frequency():
@@ -126,9 +126,9 @@ def strip(contacts):
 def test_of_many_contacts_few_combinations_answer():
     """Against the structure itself, solved as matrices, with springs that part of the contacts are."""
     scene = strip(120)
-    (lighter,) = negligible_parts.leave_out((scene,), REDUCTION.tolerance).curves
+    (lighter,) = negligible_parts.without_negligible_parts((scene,), REDUCTION.tolerance).curves
     assert lighter.modal.frequency.size < 0.4 * scene.modal.frequency.size
-    assert negligible_parts.leave_out((scene,), 1e-6).curves[0].modal.frequency.size > (
+    assert negligible_parts.without_negligible_parts((scene,), 1e-6).curves[0].modal.frequency.size > (
         lighter.modal.frequency.size
     )
 
@@ -152,7 +152,7 @@ def test_the_change_by_modes_left_out_is_the_difference_of_both_responses(share)
     scene = strip(20)
     fewer = replace(scene, modal=condensed(scene.modal, np.eye(40)[:, :3], scene.modal.frequency > 60.0))
     springs = share * np.array([(c.k_u, c.k_v) for c in scene.contacts]).ravel()
-    omega = telling_frequencies(fewer, springs)
+    omega = comparison_frequencies(fewer, springs)
     one, other = (linear_response(each, omega, springs) for each in (fewer, scene))
     expected = (np.abs(one - other).max(axis=1) / np.abs(other).max(axis=1)).max()
     assert expected > 1e-6

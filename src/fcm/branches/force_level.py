@@ -16,7 +16,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from fcm.branches.level_turns import LevelFold, level_folds
+from fcm.branches.level_folds import LevelFold, level_folds
 from fcm.branches.linear_limits import (
     closed_at_rest,
     highest_linear_limit,

@@ -15,7 +15,7 @@ import numpy as np
 
 from fcm.branches.fold_continuation import Folds, folds_from
 from fcm.branches.force_level import LevelSolutions, few_harmonics
-from fcm.branches.level_turns import LevelFold
+from fcm.branches.level_folds import LevelFold
 from fcm.branches.options import FOLDS, FoldOptions
 from fcm.branches.surface import Surface
 from fcm.continuation import Path

@@ -175,13 +175,13 @@ LEVEL_CURVE = LevelCurveOptions()
 
 
 @dataclass(frozen=True)
-class LevelTurnOptions:
-    """How turns of the level of the forces are brought to the level 1.
+class LevelFoldOptions:
+    """How folds of the level of the forces are brought to the level 1.
 
     Attributes
     ----------
     max_level : float
-        Turns between this level and its reciprocal may come to 1 within a range,
+        Folds between this level and its reciprocal may come to 1 within a range,
     stage_factor : float
         by stages, each of so many times the level,
     min_stage : float
@@ -189,7 +189,7 @@ class LevelTurnOptions:
     offsets : tuple of float
         Part of a solution's size: from one beside a fold to those on either side of the fold.
     max_change : float
-        Part of a solution's size: what Newton's method finds further away has little to do with the turn.
+        Part of a solution's size: what Newton's method finds further away has little to do with the fold.
     """
 
     max_level: float = 4.0
@@ -199,7 +199,7 @@ class LevelTurnOptions:
     max_change: float = 0.5
 
 
-LEVEL_TURNS = LevelTurnOptions()
+LEVEL_FOLDS = LevelFoldOptions()
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from fcm.compare.exact import exact_lines
 from fcm.compare.lines import Line, line_of
 from fcm.compare.options import COMPARE, CompareOptions
 from fcm.model.scene import Scene
-from fcm.reduction.negligible_parts import leave_out
+from fcm.reduction.negligible_parts import without_negligible_parts
 from fcm.response.options import leaving_out
 from fcm.response.request import Request
 from fcm.response.sweep import trace
@@ -101,4 +101,4 @@ def _lighter(scene: Scene, tolerance: float | None) -> Scene:
     """The scene without what it does not need."""
     if tolerance is None:
         return scene
-    return replace(scene, curves=leave_out(scene.each_curve(), tolerance).curves)
+    return replace(scene, curves=without_negligible_parts(scene.each_curve(), tolerance).curves)

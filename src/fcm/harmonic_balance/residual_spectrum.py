@@ -395,7 +395,7 @@ class EnrichedMotion:
         force, K = np.asarray(self.force).ravel(), np.asarray(self.resistance)
         F, spring = force[at] + 1j * force[at + 1], np.diagonal(K, axis1=1, axis2=2).ravel()
         if seen.summed:
-            G = seen.between(h)
+            G = seen.of_harmonic(h)
             X = -(G @ F)
             if (np.abs(G.diagonal()) * spring > 1.0).any():
                 GK = (G.reshape(-1, self.contacts, 1, each) @ K).reshape(G.shape)

@@ -118,7 +118,7 @@ def _stiffest(balance: Balance, omega: float, springs: FloatArray) -> float:
 
 
 def _receptance(balance: Balance) -> ComplexArray:
-    return balance.seen.between(balance.seen.first)
+    return balance.seen.of_harmonic(balance.seen.first)
 
 
 class _Forces:

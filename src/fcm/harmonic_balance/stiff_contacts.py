@@ -51,6 +51,6 @@ def _least_receptance(system: System) -> FloatArray:
     seen, found = system.shared_balance.seen, []
     for omega in system.scene.frequency_range:
         seen.at(omega)
-        found.append(np.abs(seen.between(seen.first).diagonal()))
+        found.append(np.abs(seen.of_harmonic(seen.first).diagonal()))
     least: FloatArray = np.min(found, axis=0)
     return least

@@ -13,13 +13,13 @@ from fcm.structure.loads import driven_harmonics
 ComplexArray = npt.NDArray[np.complex128]
 
 
-def all_springs(scene: Scene) -> FloatArray:
+def contact_stiffnesses(scene: Scene) -> FloatArray:
     """Stiffnesses of all contacts, (port,), along their directions."""
     along = scene.directions_of_contact - 1
     return np.array([(*[c.k_u] * along, c.k_v) for c in scene.contacts]).ravel()
 
 
-def telling_frequencies(scene: Scene, springs: FloatArray) -> FloatArray:
+def comparison_frequencies(scene: Scene, springs: FloatArray) -> FloatArray:
     """Frequencies spread over the range, and those in it at which a driven harmonic is in resonance."""
     low, high = scene.frequency_range
     natural = resonances(scene, springs) * (1.0 + REDUCTION.resonance_offset)
@@ -46,7 +46,7 @@ def change(full: Scene, fewer: Scene, springs: FloatArray) -> float:
 
     Solved are systems as large as the modes are few; all modes answer to forces that are known then.
     """
-    omega = telling_frequencies(fewer, springs)
+    omega = comparison_frequencies(fewer, springs)
     linear, few = linear_of(full), linear_of(fewer)
     worst = 0.0
     for k, h in enumerate(linear.driven):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fcm.model.scene import Scene
-from fcm.reduction.negligible_parts import Lighter
+from fcm.reduction.negligible_parts import ReducedScenes
 from fcm.reduction.options import REDUCTION
 from fcm.results.result import Curve, Response
 from fcm.shooting import harmonic_state, periodic
@@ -13,14 +13,14 @@ from fcm.shooting.initial_orbits import inner_resonances, near_balance
 from fcm.time_domain.errors import SimulationError
 
 
-def effect(response: Response, lighter: Lighter) -> float:
+def effect(response: Response, lighter: ReducedScenes) -> float:
     """Greatest change of an amplitude, relative to the greatest of the point; inf where it cannot be told."""
     numbers = np.unique(np.linspace(0, len(response.curves) - 1, REDUCTION.max_curves).astype(int))
     each = (_of_curve(response.curves[k], lighter.exact[k]) for k in numbers)
     return max(each, default=0.0)
 
 
-def expected_effect(lighter: Lighter) -> float:
+def expected_effect(lighter: ReducedScenes) -> float:
     """The same at the motions that the balance leads to, before any curve is followed."""
     numbers = np.unique(np.linspace(0, len(lighter.full) - 1, REDUCTION.max_curves).astype(int))
     return max((_of_starts(lighter.curves[k], lighter.exact[k]) for k in numbers), default=0.0)

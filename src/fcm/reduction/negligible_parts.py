@@ -20,7 +20,7 @@ from fcm.scene.errors import counted
 
 
 @dataclass(frozen=True)
-class Lighter:
+class ReducedScenes:
     """The scenes of a sweep without what they do not need."""
 
     full: tuple[Scene, ...]
@@ -38,17 +38,17 @@ class Lighter:
         return planar or not (self.whole or any(has_friction(c) for s in self.curves for c in s.contacts))
 
 
-def keep_all(curves: tuple[Scene, ...]) -> Lighter:
+def unreduced(curves: tuple[Scene, ...]) -> ReducedScenes:
     """The scenes as they are."""
-    return Lighter(curves, curves, curves, tuple(range(len(curves[0].contacts))), (), whole=True)
+    return ReducedScenes(curves, curves, curves, tuple(range(len(curves[0].contacts))), (), whole=True)
 
 
-def leave_out(
+def without_negligible_parts(
     curves: tuple[Scene, ...],
     tolerance: float,
     highest: int = 1,
     options: ReductionOptions = REDUCTION,
-) -> Lighter:
+) -> ReducedScenes:
     """The scenes without what they do not need; a tolerance of 0 leaves out only what has no effect.
 
     highest : the greatest harmonic of the response, which modes that are far above are far above, too.
@@ -57,17 +57,17 @@ def leave_out(
     lighter = tuple(_with_contacts(s, needed) for s in curves)
     lighter, said = _without_still_modes(lighter)
     sentences = (*_idle_contacts(curves[0], needed), *said)
-    found = _static(Lighter(curves, lighter, lighter, needed, sentences), tolerance, highest, options)
+    found = _static(ReducedScenes(curves, lighter, lighter, needed, sentences), tolerance, highest, options)
     return replace(found, sentences=(*found.sentences, *_parts_of_contacts(found)))
 
 
 def leave_out_modes(
     curves: tuple[Scene, ...], tolerance: float, highest: int, options: ReductionOptions = REDUCTION
-) -> Lighter:
+) -> ReducedScenes:
     """The same with all contacts: only modes are left out."""
     lighter, said = _without_still_modes(curves)
     every = tuple(range(len(curves[0].contacts)))
-    return _static(Lighter(curves, lighter, lighter, every, tuple(said)), tolerance, highest, options)
+    return _static(ReducedScenes(curves, lighter, lighter, every, tuple(said)), tolerance, highest, options)
 
 
 def _without_still_modes(curves: tuple[Scene, ...]) -> tuple[tuple[Scene, ...], list[str]]:
@@ -81,7 +81,9 @@ def _without_still_modes(curves: tuple[Scene, ...]) -> tuple[tuple[Scene, ...], 
     return lighter, [f"{what}: neither a force nor a contact moves {them} (no effect)"]
 
 
-def _static(lighter: Lighter, tolerance: float, highest: int, options: ReductionOptions) -> Lighter:
+def _static(
+    lighter: ReducedScenes, tolerance: float, highest: int, options: ReductionOptions
+) -> ReducedScenes:
     """Modes far above the range replaced, where every curve has the same structure."""
     curves = lighter.curves
     if len(_different(curves)) > 1:
@@ -167,7 +169,7 @@ def _idle_contacts(scene: Scene, needed: tuple[int, ...]) -> list[str]:
     return [f"contact {scene.contacts[i].name or i}: {why}" for i in idle]
 
 
-def _parts_of_contacts(lighter: Lighter) -> list[str]:
+def _parts_of_contacts(lighter: ReducedScenes) -> list[str]:
     """Of contacts that are traced, those whose friction or whose normal force is not computed."""
     contacts, said = lighter.full[0].contacts, []
     smooth = [i for i in lighter.contacts if not any(has_friction(s.contacts[i]) for s in lighter.full)]

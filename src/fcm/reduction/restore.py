@@ -10,7 +10,7 @@ from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.response_quantities import amplitudes_at, cycles, loops
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
-from fcm.reduction.negligible_parts import Lighter
+from fcm.reduction.negligible_parts import ReducedScenes
 from fcm.reduction.options import REDUCTION
 from fcm.results.contact_maxima import greatest_of
 from fcm.results.result import Curve, Response
@@ -19,7 +19,7 @@ from fcm.structure.layout import Layout
 IntArray = npt.NDArray[np.intp]
 
 
-def restored(response: Response, lighter: Lighter) -> Response:
+def restored(response: Response, lighter: ReducedScenes) -> Response:
     """The response with all contacts in it."""
     full = lighter.full
     if len(lighter.contacts) < len(full[0].contacts):
@@ -29,7 +29,7 @@ def restored(response: Response, lighter: Lighter) -> Response:
     return response
 
 
-def checked(response: Response, lighter: Lighter) -> float:
+def checked(response: Response, lighter: ReducedScenes) -> float:
     """Shift of the response, relative, when points of the curves are corrected with all modes."""
     per_curve = max(min(REDUCTION.max_checked_of_curve, REDUCTION.max_checked // len(response.curves)), 1)
     shifts = []

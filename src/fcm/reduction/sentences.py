@@ -13,7 +13,7 @@ from fcm.scene.errors import counted
 from fcm.units import UNIT
 
 if TYPE_CHECKING:
-    from fcm.reduction.negligible_parts import Lighter
+    from fcm.reduction.negligible_parts import ReducedScenes
 
 
 def named(contacts: Sequence[Contact], numbers: Sequence[int]) -> str:
@@ -28,7 +28,7 @@ def has_friction(contact: Contact) -> bool:
     return contact.mu > 0.0 and contact.k_u > 0.0
 
 
-def on_modes(lighter: Lighter, shift: float) -> str:
+def on_modes(lighter: ReducedScenes, shift: float) -> str:
     """What was replaced, with the bound that the check gives."""
     modal, fewer, unit = lighter.exact[0].modal, lighter.curves[0].modal, lighter.full[0].frequency_unit
     limit = lighter.above or 0.0
@@ -40,7 +40,7 @@ def on_modes(lighter: Lighter, shift: float) -> str:
     )
 
 
-def on_means(lighter: Lighter) -> list[str]:
+def on_means(lighter: ReducedScenes) -> list[str]:
     """Rigid-body modes whose mean no force depends on."""
     from fcm.structure.rigid import settled
 

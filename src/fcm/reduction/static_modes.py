@@ -24,7 +24,7 @@ import numpy as np
 
 from fcm.contact.limits import BoolArray, FloatArray
 from fcm.model.scene import Modal, Scene
-from fcm.reduction.linear import all_springs, change
+from fcm.reduction.linear import change, contact_stiffnesses
 from fcm.reduction.options import REDUCTION, ReductionOptions
 
 
@@ -97,7 +97,7 @@ def _choices(scene: Scene, high: BoolArray, options: ReductionOptions) -> Iterat
     if 2 * every <= options.min_saving * scene.modal.frequency.size - int((~high).sum()):
         yield np.concatenate((contacts, pushes), axis=1)
         return
-    weighted = contacts * np.sqrt(all_springs(scene))
+    weighted = contacts * np.sqrt(contact_stiffnesses(scene))
     modal = scene.modal
     yields = (modal.shapes[high] @ weighted) / (np.sqrt(modal.mass) * modal.frequency)[high, None]
     order = np.linalg.eigh(yields.T @ yields)[1][:, ::-1]
@@ -113,7 +113,7 @@ def _linear_error(full: Scene, fewer: Scene) -> float:
     Where contacts begin to slip the friction bends from one to the next but does not jump: as of springs that
     are none in the first half of the contacts, grow over a quarter, and are whole in the rest.
     """
-    springs = all_springs(full)
+    springs = contact_stiffnesses(full)
     along = np.arange(springs.size) / springs.size
     in_part = np.clip(4.0 * along - 2.0, 0.0, 1.0)
     return max(change(full, fewer, springs * stuck) for stuck in (0.0, 1.0, in_part))

@@ -10,7 +10,7 @@ from functools import partial
 from fcm.harmonic_balance.sampled import check_own_laws
 from fcm.model.scene import Scene
 from fcm.reduction import sentences
-from fcm.reduction.negligible_parts import Lighter, keep_all, leave_out
+from fcm.reduction.negligible_parts import ReducedScenes, unreduced, without_negligible_parts
 from fcm.reduction.options import REDUCTION
 from fcm.reduction.restore import checked, restored
 from fcm.response.blades import with_blades
@@ -107,16 +107,16 @@ def _traced(sweep: _Sweep, progress: Progress | None) -> Response:
     asked = sweep.wanted.harmonics or (options.expected_harmonic,)
     highest = max((*asked, *driven_harmonics(sweep.scene)))
     if tolerance is None or sweep.scene.ring is not None or sweep.scene.with_own_laws:
-        lighter = keep_all(curves)
+        lighter = unreduced(curves)
     else:
-        lighter = leave_out(curves, tolerance, highest, sweep.wanted.options.reduction)
+        lighter = without_negligible_parts(curves, tolerance, highest, sweep.wanted.options.reduction)
     response, said = sweep.run(lighter, part(progress, 0.0, options.traced_share)), list(lighter.sentences)
     if lighter.above is not None and tolerance is not None:
         shift = checked(response, lighter)
         if 2.0 * shift <= tolerance or response.interrupted:
             said.append(sentences.on_modes(lighter, shift))
         else:  # the estimate was too good: with all modes after all
-            lighter = leave_out(curves, 0.0, highest, sweep.wanted.options.reduction)
+            lighter = without_negligible_parts(curves, 0.0, highest, sweep.wanted.options.reduction)
             response = sweep.run(lighter, part(progress, options.traced_share, 1.0))
     response = restored(response, lighter)
     response.curves = [without_rounding(one) for one in response.curves]
@@ -148,7 +148,7 @@ class _Sweep:
         options = (method, table, wanted.harmonics, wanted.accuracy, wanted.options)
         self.mark = b"" if curves.checkpoint is None else fingerprint(*options)
 
-    def run(self, lighter: Lighter, progress: Progress | None) -> Response:
+    def run(self, lighter: ReducedScenes, progress: Progress | None) -> Response:
         """Trace all groups that are not finished already."""
         every = tuple(replace(scene, draft=None) for scene in lighter.curves)
         batches = in_batches(every, self.wanted.options.sweep.batch)
@@ -159,7 +159,7 @@ class _Sweep:
         response.peaks_only = self.peaks_only
         return response
 
-    def _table(self, lighter: Lighter) -> Table | None:
+    def _table(self, lighter: ReducedScenes) -> Table | None:
         """What is looked up at the points of the curves; a table only if a contact needs it."""
         if self.method != "table" or self.table is not None:
             return self.table

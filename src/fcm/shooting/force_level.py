@@ -4,7 +4,7 @@ At the frequencies at which a balance follows it (`branches.force_level`), the l
 nothing, where the motion is linear, until it is well beyond where that of a few harmonics comes back to 1.
 Every passing of the level 1 is a motion, and an exact one straight away. From motions that are known there
 and that this curve does not pass, or where it stalls does not come to, it is followed as well, both ways.
-Where it turns back below 1 the window of several motions may be at other frequencies (`level_turns`).
+Where it turns back below 1 the window of several motions may be at other frequencies (`level_folds`).
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from fcm.shooting.periodic_orbit import Poll, within_unit_circle
 from fcm.shooting.work_budget import BranchBudget
 
 if TYPE_CHECKING:
-    from fcm.branches.level_turns import LevelFold
+    from fcm.branches.level_folds import LevelFold
     from fcm.harmonic_balance.system import System
 
 Known = Callable[[float], Sequence[FloatArray]]
@@ -101,7 +101,7 @@ def _followed(
     follow: Follow,
 ) -> bool:
     """Whether the level was followed to its end; what it leads to is added to what is found."""
-    from fcm.branches.level_turns import level_folds
+    from fcm.branches.level_folds import level_folds
     from fcm.branches.linear_limits import lowest_linear_limit
     from fcm.branches.options import LEVEL_CURVE
 
@@ -177,7 +177,7 @@ def _beyond_level_folds(
     scene: Scene, turns: Sequence[LevelFold], poll: Poll, options: ShootingOptions = SHOOTING
 ) -> Iterator[FloatArray]:
     """Stable motions (unknown + 1,) beside turns below the level 1, at frequencies within the range."""
-    from fcm.branches.level_turns import reaches_level_one, solutions_past_fold
+    from fcm.branches.level_folds import reaches_level_one, solutions_past_fold
 
     problem, (low, high) = ProblemAtLevel(scene, options=options), scene.frequency_range
     newton = Newton(problem)

@@ -39,7 +39,7 @@ class Linear:
         """The structure seen from its ports at some harmonics, with the sums over its modes or without."""
         ends = self.force, self.static, harmonics, summed
         seen = Receptance(self.ports, self.natural, self.damping, *ends, self.counted.size, self.driven)
-        seen.grows(self.square)
+        seen.add_inertia_forces(self.square)
         return seen
 
     @property

@@ -85,12 +85,14 @@ class Receptance:
         self.first = numbers.index(1) if 1 in numbers else 0
         self.omega = -1.0
 
-    def grows(self, square: npt.NDArray[np.complex128]) -> None:
+    def add_inertia_forces(self, square: npt.NDArray[np.complex128]) -> None:
         """Add forces omega^2 square (driven, mode)."""
         self.square_re, self.square_im = np.array(square.real), np.array(square.imag)
         self.omega = -1.0
 
-    def moved_by(self, constant: npt.NDArray[np.complex128], square: npt.NDArray[np.complex128]) -> None:
+    def set_external_forces(
+        self, constant: npt.NDArray[np.complex128], square: npt.NDArray[np.complex128]
+    ) -> None:
         """Put other external forces, constant + omega^2 square (driven, mode), in their place."""
         self.constant_re, self.constant_im = np.array(constant.real), np.array(constant.imag)
         self.square_re, self.square_im = np.array(square.real), np.array(square.imag)
@@ -98,7 +100,7 @@ class Receptance:
             self.forces()
             self.external()
 
-    def between(self, j: int) -> npt.NDArray[np.complex128]:
+    def of_harmonic(self, j: int) -> npt.NDArray[np.complex128]:
         """G (port, port) of the harmonic number j of the list, at the frequency put last."""
         if self.summed:
             return np.asarray(self.G_re)[j] + 1j * np.asarray(self.G_im)[j]  # type: ignore[no-any-return]

@@ -66,7 +66,7 @@ class RingLinear(Linear):
             force[0], square[0] = onto @ self.loads.constant[k], onto @ self.loads.square[k]
         static, at = np.zeros((both.shape[1], both.shape[1])), np.array([float(harmonic)])
         seen = Receptance(both, wave.natural, wave.damping, force, static, at, driven=(harmonic,))
-        seen.grows(square)
+        seen.add_inertia_forces(square)
         return seen
 
     def displacements(self, harmonics: FloatArray, omega: FloatArray, force: ComplexArray) -> ComplexArray:

@@ -110,7 +110,7 @@ class VariedBalance:
         self.s, self._system = s, None
         if self._excitation is not None:
             constant, square = (origin + s * rate for origin, rate in self._excitation)
-            self.balance.seen.moved_by(constant, square)
+            self.balance.seen.set_external_forces(constant, square)
             self.balance.largest[:] = 0.0  # units are of the motion there, as of a balance of its own
             return
         if self.structure:

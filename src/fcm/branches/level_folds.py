@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from fcm.branches.options import LEVEL_TURNS
+from fcm.branches.options import LEVEL_FOLDS
 from fcm.continuation import Mark, Path
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
@@ -56,7 +56,7 @@ class LevelFold(NamedTuple):
     @property
     def may_reach_level_one(self) -> bool:
         """Whether the level may be 1 at a turn like this one within a range."""
-        return self.unfinished and 1.0 / LEVEL_TURNS.max_level < self.level < LEVEL_TURNS.max_level
+        return self.unfinished and 1.0 / LEVEL_FOLDS.max_level < self.level < LEVEL_FOLDS.max_level
 
     def extended(self, system: System, harmonics: tuple[int, ...]) -> LevelFold:
         """That of a balance with some harmonics as one of a system with more."""
@@ -93,12 +93,12 @@ def reaches_level_one(problem: ProblemAtLevel, newton: Newton, turn: LevelFold) 
     along = turn.direction / np.asarray(problem.scale)
     newton.row[:] = along / np.linalg.norm(along)
     left, known = math.log(turn.level), turn.z
-    stage = left / max(math.ceil(abs(left) / math.log(LEVEL_TURNS.stage_factor)), 1)
-    shortest = stage * LEVEL_TURNS.min_stage
+    stage = left / max(math.ceil(abs(left) / math.log(LEVEL_FOLDS.stage_factor)), 1)
+    shortest = stage * LEVEL_FOLDS.min_stage
     while left != 0.0:
         then = left - stage if abs(left) > 1.5 * abs(stage) else 0.0
         problem.load = math.exp(then)
-        if newton.correct(1.0) and newton.moved < LEVEL_TURNS.max_change:
+        if newton.correct(1.0) and newton.moved < LEVEL_FOLDS.max_change:
             left, known, newton.row[:] = then, np.array(newton.z), newton.tangent
         elif abs(stage) > abs(shortest):
             stage, newton.z[:] = 0.5 * stage, known
@@ -111,7 +111,7 @@ def solutions_past_fold(newton: Newton) -> list[FloatArray]:
     """Solutions on both sides of the one that was found last, in its plane or a little along its curve."""
     middle, along = np.array(newton.z), np.array(newton.tangent)
     found = [middle]
-    for way in (sign * aside for aside in LEVEL_TURNS.offsets for sign in (-1.0, 1.0)):
+    for way in (sign * aside for aside in LEVEL_FOLDS.offsets for sign in (-1.0, 1.0)):
         newton.z[:], newton.row[:] = middle + way * along * np.asarray(newton.scale), along
         if newton.correct(abs(way)):
             found.append(np.array(newton.z))
