@@ -9,11 +9,11 @@ import numpy.typing as npt
 
 from fcm.contact.closed_form import Sequence
 from fcm.contact.limits import FloatArray
-from fcm.contact.pieces import friction, piece_at
+from fcm.contact.pieces import Pieces, friction
 
 
 @dataclass(frozen=True)
-class Loop:
+class Loop(Pieces):
     """One steady cycle of a contact under u = sin(theta), v = b sin(theta + phi), dimensionless.
 
     Attributes
@@ -35,10 +35,6 @@ class Loop:
     angles: FloatArray
     slip_motion: FloatArray
     _since: FloatArray = field(default_factory=lambda: np.empty(0), repr=False)  # angles from the first on
-
-    def states(self, theta: npt.ArrayLike) -> npt.NDArray[np.str_]:
-        """State letter at each angle theta [rad]."""
-        return np.array(list(self.sequence))[self._piece(np.asarray(theta, dtype=np.float64))]
 
     def displacement(self, theta: npt.ArrayLike) -> FloatArray:
         """u / a [-] at each angle theta [rad]."""
@@ -62,9 +58,6 @@ class Loop:
         angle = np.asarray(theta, dtype=np.float64)
         stick = np.sin(angle) - np.nan_to_num(self.slip_motion)[self._piece(angle)]
         return friction(self.states(angle), stick, self.slip_limit(angle))
-
-    def _piece(self, theta: FloatArray) -> npt.NDArray[np.intp]:
-        return piece_at(theta, self.angles, self._since)
 
 
 def hysteresis_loop(n0_bar: float, b_bar: float, phi: float) -> Loop:

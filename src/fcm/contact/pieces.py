@@ -7,12 +7,50 @@ import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
 
+ComplexArray = npt.NDArray[np.complex128]
 
-def piece_at(theta: FloatArray, angles: FloatArray, since: FloatArray) -> npt.NDArray[np.intp]:
-    """Which piece each angle theta [rad] is in; `since` is where they begin, from the first on."""
-    if since.size == 0:
-        return np.zeros(theta.shape, dtype=np.intp)
-    return np.asarray(np.searchsorted(since, np.mod(theta - angles[0], 2.0 * np.pi), side="right") - 1)
+
+class Pieces:
+    """A cycle of states, with the angles at which each begins, and these from the first on."""
+
+    sequence: str
+    angles: FloatArray
+    _since: FloatArray
+
+    def states(self, theta: npt.ArrayLike) -> npt.NDArray[np.str_]:
+        """State letter at each angle theta [rad]."""
+        return np.array(list(self.sequence))[self._piece(np.asarray(theta, dtype=np.float64))]
+
+    def _piece(self, theta: FloatArray) -> npt.NDArray[np.intp]:
+        """Which piece each angle theta [rad] is in."""
+        if self._since.size == 0:
+            return np.zeros(theta.shape, dtype=np.intp)
+        since = np.mod(theta - self.angles[0], 2.0 * np.pi)
+        return np.asarray(np.searchsorted(self._since, since, side="right") - 1)
+
+
+class LoadedPieces(Pieces):
+    """The same of a contact under the normal motion v."""
+
+    v: ComplexArray
+    mu: float
+    k_v: float
+    n_0: float
+
+    def normal_load(self, theta: npt.ArrayLike) -> FloatArray:
+        """n = max(n_0 + k_v v, 0) [force] at each angle theta [rad]."""
+        return np.maximum(self.n_0 + self.k_v * waves_at(self.v, theta), 0.0)
+
+    def slip_limit(self, theta: npt.ArrayLike) -> FloatArray:
+        """mu n [force] at each angle theta [rad]."""
+        return self.mu * self.normal_load(theta)
+
+
+def waves_at(X: ComplexArray, theta: npt.ArrayLike) -> FloatArray:
+    """Re sum_h X_h exp(i h theta)."""
+    angle = np.asarray(theta, dtype=np.float64)
+    values: FloatArray = (np.exp(1j * np.multiply.outer(angle, np.arange(X.size))) @ X).real
+    return values
 
 
 def friction(state: npt.NDArray[np.str_], stick: FloatArray, limit: FloatArray) -> FloatArray:

@@ -11,13 +11,13 @@ from fcm.contact.options import PERIODIC
 from fcm.contact.periodic.coefficients import ComplexArray, FloatArray, one_motion
 from fcm.contact.periodic.cycle import Cycle
 from fcm.contact.periodic.margins import Measures
-from fcm.contact.pieces import friction, piece_at
+from fcm.contact.pieces import LoadedPieces, friction, waves_at
 
 LETTERS = {-1: "N", 0: "E", 1: "P", 2: "S"}  # by the kernel's states
 
 
 @dataclass(frozen=True)
-class PeriodicLoop:
+class PeriodicLoop(LoadedPieces):
     """One steady cycle of a contact under x(theta) = Re sum_h X_h exp(i h theta).
 
     Attributes
@@ -59,19 +59,7 @@ class PeriodicLoop:
 
     def displacement(self, theta: npt.ArrayLike) -> FloatArray:
         """u [length] at each angle theta [rad]."""
-        return _values(self.u, theta)
-
-    def normal_load(self, theta: npt.ArrayLike) -> FloatArray:
-        """n = max(n_0 + k_v v, 0) [force] at each angle theta [rad]."""
-        return np.maximum(self.n_0 + self.k_v * _values(self.v, theta), 0.0)
-
-    def slip_limit(self, theta: npt.ArrayLike) -> FloatArray:
-        """mu n [force] at each angle theta [rad]."""
-        return self.mu * self.normal_load(theta)
-
-    def states(self, theta: npt.ArrayLike) -> npt.NDArray[np.str_]:
-        """State letter at each angle theta [rad]."""
-        return np.array(list(self.sequence))[self._piece(np.asarray(theta, dtype=np.float64))]
+        return waves_at(self.u, theta)
 
     def force(self, theta: npt.ArrayLike) -> FloatArray:
         """Friction force f [force] at each angle theta [rad].
@@ -83,9 +71,6 @@ class PeriodicLoop:
         slid = np.nan_to_num(self.slip_motion)[self._piece(angle)]
         stick = self.k_u * (self.displacement(angle) - slid)
         return friction(self.states(angle), stick, self.slip_limit(angle))
-
-    def _piece(self, theta: FloatArray) -> npt.NDArray[np.intp]:
-        return piece_at(theta, self.angles, self._since)
 
 
 def periodic_loop(
@@ -145,13 +130,6 @@ def periodic_loop(
         measures.greatest_friction, measures.least_load, measures.greatest_load, measures.overlap,
         since[:0] if single else since,
     )  # fmt: skip
-
-
-def _values(X: ComplexArray, theta: npt.ArrayLike) -> FloatArray:
-    """Re sum_h X_h exp(i h theta)."""
-    angle = np.asarray(theta, dtype=np.float64)
-    values: FloatArray = (np.exp(1j * np.multiply.outer(angle, np.arange(X.size))) @ X).real
-    return values
 
 
 def _visible(cycle: Cycle) -> list[tuple[str, float, float]]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
+from fcm.contact.pieces import LoadedPieces, waves_at
 from fcm.contact.plane.coefficients import ComplexArray, FloatArray, one_motion
 from fcm.contact.plane.forces import PlanarContact
 from fcm.contact.plane.options import FINEST, LOOP
@@ -16,7 +17,7 @@ LETTERS = "EPS"  # by the kernel's states
 
 
 @dataclass(frozen=True)
-class PlanarLoop:
+class PlanarLoop(LoadedPieces):
     """One steady cycle of a contact in its plane under x(theta) = Re sum_h X_h exp(i h theta).
 
     Attributes
@@ -55,19 +56,7 @@ class PlanarLoop:
 
     def displacement(self, theta: npt.ArrayLike) -> FloatArray:
         """u_x and u_y [length] at each angle theta [rad], (..., 2)."""
-        return np.stack([_values(self.u_x, theta), _values(self.u_y, theta)], axis=-1)
-
-    def normal_load(self, theta: npt.ArrayLike) -> FloatArray:
-        """n = max(n_0 + k_v v, 0) [force] at each angle theta [rad]."""
-        return np.maximum(self.n_0 + self.k_v * _values(self.v, theta), 0.0)
-
-    def slip_limit(self, theta: npt.ArrayLike) -> FloatArray:
-        """mu n [force] at each angle theta [rad]."""
-        return self.mu * self.normal_load(theta)
-
-    def states(self, theta: npt.ArrayLike) -> npt.NDArray[np.str_]:
-        """State letter at each angle theta [rad]."""
-        return np.array(list(self.sequence))[self._piece(np.asarray(theta, dtype=np.float64))]
+        return np.stack([waves_at(self.u_x, theta), waves_at(self.u_y, theta)], axis=-1)
 
     def direction(self, theta: npt.ArrayLike) -> FloatArray:
         """Direction of the slip at each angle theta [rad], (..., 2); NaN while it does not slip."""
@@ -104,12 +93,6 @@ class PlanarLoop:
     def slider(self, theta: npt.ArrayLike) -> FloatArray:
         """Place of the slider w_x and w_y [length] at each angle theta [rad], (..., 2); k_u is not 0."""
         return self.displacement(theta) - self.force(theta) / self.k_u
-
-    def _piece(self, theta: FloatArray) -> npt.NDArray[np.intp]:
-        if self._since.size == 0:
-            return np.zeros(theta.shape, dtype=np.intp)
-        since = np.mod(theta - self.angles[0], 2.0 * np.pi)
-        return np.asarray(np.searchsorted(self._since, since, side="right") - 1)
 
 
 def planar_loop(
@@ -244,11 +227,3 @@ def between(tangent: FloatArray, part: FloatArray) -> FloatArray:
     weights = np.where(hit.any(axis=1)[:, None], hit, weights)
     found: FloatArray = (weights * values).sum(axis=1) / weights.sum(axis=1)
     return found
-
-
-def _values(X: ComplexArray, theta: npt.ArrayLike) -> FloatArray:
-    """Re sum_h X_h exp(i h theta)."""
-    angle = np.asarray(theta, dtype=np.float64)
-    real = np.concatenate((X[:1].real, X[1:]))
-    values: FloatArray = (np.exp(1j * np.multiply.outer(angle, np.arange(X.size))) @ real).real
-    return values
