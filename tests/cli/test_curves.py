@@ -36,6 +36,19 @@ def test_the_greatest_peaks_of_all_curves_are_shown_in_the_order_of_the_file():
     assert rows[-1] == "shown: the 4 of 6 degrees of freedom with the greatest peaks"
 
 
+def test_what_the_scene_asks_for_is_shown():
+    """And what is minimised; the others are in the files."""
+    peaks = {"a": 1.0, "b": 5.0, "c": 3.0}
+    asked = {"curves": [curve(peaks)], "output": ["a"]}
+    header, _, said = as_table(asked, "Hz").splitlines()
+    assert [word for word in header.split() if word in peaks] == ["a"]
+    assert said == "shown: those of output; 3 degrees of freedom are in the results"
+    header, _, said = as_table(asked | {"optimum": [{"minimise": ["peak.c"]}]}, "Hz").splitlines()
+    assert [word for word in header.split() if word in peaks] == ["a", "c"]
+    assert "and what is minimised" in said
+    assert "shown" not in as_table(asked | {"output": list(peaks)}, "Hz")
+
+
 def test_curves_that_an_interruption_left_out_are_counted():
     left = curve({"a": None}) | {"complete": False, "points": 0, "reason": "interrupted before it was traced"}
     broken = curve({"a": 1.0}) | {"complete": False, "reason": "interrupted at 3 rad/s"}

@@ -13,14 +13,14 @@ def scene_at(*dofs):
 
 
 def test_it_is_said_whose_peaks_fall_short():
-    """One that hardly moves may: nothing is to be said of what does not move at all."""
+    """Not those of which no accuracy is asked."""
     found = SimpleNamespace(
         reached=False, folds=np.empty(0), peak=np.array([1e-3, 2e-2, 9.0, 3e-2]),
         max_error=3e-2, max_known_error=3e-2,
         further=(), system=SimpleNamespace(harmonics=(1,), scene=scene_at("tip", "root", "still", "axis")),
-        shown=[SimpleNamespace(amplitude=np.array([[1.0, 0.1, 1e-9, 1e-5]]))],
+        judged=np.array([True, True, False, True]),
     )  # fmt: skip
-    assert shortfall(found, [], 1e-2).endswith("error of 3.0e-02 remains (of 4 peaks, those of axis, root)")
+    assert shortfall(found, [], 1e-2).endswith("error of 3.0e-02 remains (of 3 peaks, those of axis, root)")
 
 
 @pytest.mark.parametrize(("accuracy", "remains"), [(0.5, False), (1e-2, True)])
@@ -30,7 +30,7 @@ def test_an_error_within_the_accuracy_is_no_reason(accuracy, remains):
         reached=False, folds=np.array([np.nan, 1e-3]), peak=np.array([2.8e-2]),
         max_error=np.nan, max_known_error=2.8e-2,
         further=(), system=SimpleNamespace(harmonics=(1, 2, 3), scene=scene_at("u")),
-        shown=[SimpleNamespace(amplitude=np.ones((2, 1)))],
+        judged=np.array([True]),
     )  # fmt: skip
     said = shortfall(found, [], accuracy)
     assert ("an estimated error of 2.8e-02 remains" in said) == remains

@@ -66,13 +66,21 @@ def test_two_directions_of_pairs_of_nodes_are_axes():
         ({"tangential": [{"ax": 1.0}, {"ay": 1.0}], "normal": {"ax": 0.6, "ay": 0.8}}, True),
         (X | {"normal": {"ax": 1.0, "bx": -1.0}, "k_v": 0.0}, False),  # a constant load
         (X | {"normal": {"ax": 1.0, "bx": -1.0}, "mu": 0.0}, False),  # no friction
-        (X | {"normal": {"ax": 1.0, "bx": -0.9}}, False),
+        (X | {"normal": {"ax": 1.0, "bx": -0.9}}, True),  # a wrong weight
+        (X | {"normal": {"az": 1.0, "ax": 0.005}}, False),  # rounded
         (X, False),
     ],
 )
 def test_of_a_normal_along_which_a_contact_slides_it_is_said_what_that_means(contact, asked):
     said = [one for one in scene(contact).notes if "slip changes the normal load" in one]
     assert len(said) == asked and all('contact "c0"' in one for one in said)
+
+
+def test_a_normal_that_leans_is_told_with_its_angle():
+    one = {"tangential": {"ax": 2.0}, "normal": {"ax": 0.5, "az": 3.0**0.5 / 2.0}}
+    plane = {"tangential": [{"ax": 1.0}, {"ay": 1.0}], "normal": {"ax": 0.2, "ay": 0.2, "az": 0.4}}
+    (said,) = [text for text in scene(one, plane, X).notes if "right angles" in text]
+    assert 'contacts "c0" and "c1"' in said and "by 35 degrees at most" in said
 
 
 @pytest.mark.parametrize(

@@ -233,7 +233,7 @@ class RefinementOptions:
     rival_fraction : float
         Part of the greatest amplitude, from which on a top of a branch is looked at.
     min_amplitude : float
-        Part of the greatest amplitude: degrees of freedom that move less have no peak.
+        Part of the greatest amplitude: of degrees of freedom that move less no accuracy is asked.
     peak_offsets : tuple of int
         Points to either side of a top, where the partner may be found if it is not at the top.
     max_folds : int
@@ -250,7 +250,7 @@ class RefinementOptions:
     max_first_added: int = 6
     max_growth: int = 2
     rival_fraction: float = 0.8
-    min_amplitude: float = 1e-6
+    min_amplitude: float = 1e-4
     peak_offsets: tuple[int, ...] = (1, 2, 4, 8)
     max_folds: int = 24
     complete_harmonics: int = 3

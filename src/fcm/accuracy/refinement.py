@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fcm.accuracy.budget import Budget, share_of
-from fcm.accuracy.embedded_pair import Errors, errors_along, unknown_errors, with_nearest
+from fcm.accuracy.embedded_pair import Errors, Mask, errors_along, unknown_errors, with_nearest
 from fcm.accuracy.options import OF_GIVEN, PAIR, REFINEMENT, PairOptions, RefinementOptions
-from fcm.accuracy.required_harmonics import needed, required_harmonics
+from fcm.accuracy.required_harmonics import judged, needed, required_harmonics
 from fcm.accuracy.unchecked_response import (
     UncheckedResponse,
     prolongated_solutions,
@@ -62,9 +62,16 @@ class RefinedResponse(UncheckedResponse):
         return RefinedResponse(*own, self.peak, self.max_error, self.max_known_error, self.accuracy)
 
     @property
+    def judged(self) -> Mask:
+        """Degrees of freedom (dof,) of whose peaks the accuracy is asked."""
+        heights = [one.amplitude.max(axis=0) for one in self.shown]
+        return judged(self.system.scene, np.max(heights, axis=0))
+
+    @property
     def agrees(self) -> bool:
         """Whether the pair does: it is accurate, or folds alone cannot be told, which more do not change."""
-        return self.reached or (self.max_known_error <= self.accuracy and not np.isnan(self.peak).any())
+        untold = np.isnan(self.peak[self.judged]).any()
+        return self.reached or (self.max_known_error <= self.accuracy and not untold)
 
 
 def refined_response(
@@ -188,7 +195,7 @@ def with_errors(
         return RefinedResponse(*own, none, np.nan, np.nan, accuracy)
     heights = np.array([one.amplitude.max(axis=0) for one in shown])
     height, peak = heights.max(axis=0), _peaks(heights, errors)
-    matter = peak[height > REFINEMENT.min_amplitude * height.max()]
+    matter = peak[judged(system.scene, height)]
     each = np.concatenate((matter, *(one.fold for one in errors)))
     worst, told = float(each.max(initial=0.0)), float(each[np.isfinite(each)].max(initial=0.0))
     return RefinedResponse(*own, peak, worst, told, accuracy)

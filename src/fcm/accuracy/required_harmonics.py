@@ -15,13 +15,14 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from fcm.accuracy.embedded_pair import Mask
 from fcm.accuracy.options import PAIR, REFINEMENT, PairOptions, RefinementOptions
 from fcm.accuracy.partner import give_back, partner_of, prolongation_to
 from fcm.accuracy.unchecked_response import UncheckedResponse
 from fcm.continuation import Mark, Path
 from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
-from fcm.model.scene import FloatArray
+from fcm.model.scene import FloatArray, Scene
 from fcm.scene.options import LIMITS
 
 
@@ -51,14 +52,24 @@ class _SpecialPoint:
     counts: npt.NDArray[np.bool_]
 
 
+def judged(scene: Scene, height: FloatArray, options: RefinementOptions = REFINEMENT) -> Mask:
+    """Degrees of freedom (dof,) whose greatest amplitudes, the height, are to be as accurate as is asked.
+
+    Those of `output` where the scene has it, else all in the results; not those that hardly move beside them.
+    """
+    asked = np.array([scene.asks_for(dof) for dof in scene.modal.dofs])
+    moves: Mask = height > options.min_amplitude * height[asked].max(initial=0.0)
+    return asked & moves
+
+
 def required_harmonics(
     found: UncheckedResponse, options: RefinementOptions = REFINEMENT, pair: PairOptions = PAIR
 ) -> RequiredHarmonics:
     """What the partner changes of a response, at its peaks and folds alone."""
     system, amplitudes = found.system, [one.amplitude for one in found.shown]
     height = np.max([one.max(axis=0) for one in amplitudes], axis=0)
-    size = np.where(height > options.min_amplitude * height.max(), height, np.inf)
-    places = list(_places(found.traced.branches.paths, amplitudes, height, options))
+    size = np.where(judged(system.scene, height, options), height, np.inf)
+    places = list(_places(found.traced.branches.paths, amplitudes, size, options))
     share = _greatest_shares(
         FurtherHarmonics(system), np.array([one.path.z[one.tries[0]] for one in places]), size
     )
@@ -109,11 +120,11 @@ def needed(
 def _places(
     paths: Sequence[Path], amplitudes: Sequence[FloatArray], height: FloatArray, options: RefinementOptions
 ) -> list[_SpecialPoint]:
-    """Tops of paths nearly as high as the height (dof,), and folds."""
+    """Tops of paths nearly as high as the height (dof,), which is infinite where none counts; and folds."""
     found, dofs = [], len(height)
     for path, amplitude in zip(paths, amplitudes, strict=True):
         tops, most = amplitude.argmax(axis=0), amplitude.max(axis=0)
-        rivals = (most > options.rival_fraction * height) & (height > options.min_amplitude * height.max())
+        rivals = most > options.rival_fraction * height
         for top in np.unique(tops[rivals]).tolist():
             counts = np.append(False, rivals & (tops == top))
             steps = (0, *(way * step for step in options.peak_offsets for way in (-1, 1)))

@@ -32,9 +32,9 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
         from fcm.cli.nonlinear_mode import as_table as of_modes
 
         return of_modes(summary, names, unit)
-    minimised = _minimised(summary)
     dofs, length = shown_dofs(summary), summary.get("units", {}).get("length", "")
-    parts = [_curves(curves, names, dofs, unit, length, bool(minimised))]
+    shown = _which_are_shown(summary, dofs)
+    parts = [_curves(curves, names, dofs, unit, length, shown)]
     parts += [_blades(curves, names, unit, length)] if "blades" in curves[0] else []
     tables = (stable_table, jump_table, untold_table)
     parts += filter(None, [table(curves, names, dofs, unit) for table in tables])
@@ -102,6 +102,7 @@ def _minimised(summary: Mapping[str, Any]) -> list[str]:
 def shown_dofs(summary: Mapping[str, Any]) -> list[str]:
     """Those degrees of freedom whose peaks are the greatest, and what is minimised, in the order of the file.
 
+    Of those that the scene asks for, where it says so by `output`.
     Rotations, which are of another unit, come after all displacements.
     """
     curves, minimised = summary["curves"], _minimised(summary)
@@ -110,14 +111,15 @@ def shown_dofs(summary: Mapping[str, Any]) -> list[str]:
         found = ((curve["peak"].get(dof) or {}).get("amplitude") for curve in curves)
         return max((value for value in found if value is not None), default=0.0)
 
-    dofs = list(curves[0]["peak"])
+    asked = summary.get("output", ())
+    dofs = [dof for dof in curves[0]["peak"] if not asked or dof in asked or dof in minimised]
     order = greatest_first(dofs, [peak(dof) for dof in dofs])
     chosen = sorted(order, key=lambda d: dofs[d] not in minimised)[:MOST_DOFS]
     return [dofs[d] for d in sorted(chosen)]
 
 
 def _curves(
-    curves: Sequence[Curve], names: list[str], dofs: list[str], unit: str, length: str, minimised: bool
+    curves: Sequence[Curve], names: list[str], dofs: list[str], unit: str, length: str, shown: str
 ) -> str:
     """What was swept, the peaks, the points, the time, the folds, whether it is whole."""
     from fcm.results.result import NOT_BEGUN
@@ -135,11 +137,8 @@ def _curves(
     lines = [aligned([header, *rows], left=2)]
     if left := len(curves) - len(begun):
         lines.append(f"{left} more curve{'s' * (left > 1)} NOT COMPLETE: {NOT_BEGUN}")
-    if (count := len(curves[0]["peak"])) > len(dofs):
-        turning = ", displacements before rotations" if any(map(is_rotation, curves[0]["peak"])) else ""
-        least = ", and what is minimised" if minimised else ""
-        shown = f"the {len(dofs)} of {count} degrees of freedom with the greatest peaks"
-        lines.append(f"shown: {shown}{least}{turning}")
+    if shown:
+        lines.append(f"shown: {shown}")
     if any(_at_rest(curve, dof) for curve in curves for dof in dofs):
         lines.append(_AT_REST)
     if any(_at_edge(curve, dof) for curve in curves for dof in dofs):
@@ -156,6 +155,18 @@ def _curves(
     if any(_untold(curve, dof) for curve in curves for dof in dofs if curve.get("cause") != "interrupted"):
         lines.append(_OF_LEVELS if "level_folds" in curves[0] else _UNTOLD)
     return "\n".join(lines)
+
+
+def _which_are_shown(summary: Mapping[str, Any], dofs: list[str]) -> str:
+    """By what the degrees of freedom are chosen; empty where all are shown."""
+    every, asked = summary["curves"][0]["peak"], summary.get("output", ())
+    if len(every) == len(dofs):
+        return ""
+    least = ", and what is minimised" if {*_minimised(summary)} - {*asked} else ""
+    if 0 < len(asked) <= len(dofs):
+        return f"those of output{least}; {len(every)} degrees of freedom are in the results"
+    turning = ", displacements before rotations" if any(map(is_rotation, every)) else ""
+    return f"the {len(dofs)} of {len(every)} degrees of freedom with the greatest peaks{least}{turning}"
 
 
 def _with_unit(dof: str, length: str) -> str:

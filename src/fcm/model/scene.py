@@ -231,6 +231,7 @@ class Scene:
     curves: tuple[Scene, ...] = ()  # one for each combination of swept values; empty without a sweep
     name: str = ""  # file or bundled name, for messages
     reported: tuple[str, ...] = ()  # of modal.dofs, those in results; the others carry loads and contacts
+    output: tuple[str, ...] = ()  # of these, those that the scene asks for; none where it does not say
     loads: tuple[Load, ...] = ()  # static, beside the forces
     units: tuple[str, str] = ("", "")  # of length and force, for labels; empty where they are not given
     ring: Ring | None = None  # that this is a sector of; modal is then what the mean meets
@@ -258,6 +259,10 @@ class Scene:
     def reports(self, dof: str) -> bool:
         """Whether results have a degree of freedom; others only carry loads and contacts."""
         return not self.reported or dof in self.reported
+
+    def asks_for(self, dof: str) -> bool:
+        """Whether an accuracy is asked of a degree of freedom: one of `output`, or any in the results."""
+        return dof in self.output if self.output else self.reports(dof)
 
     def holding(self, held: Sequence[Held]) -> Scene:
         """The scene with some of its contacts held."""

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fcm.accuracy.options import REFINEMENT
 from fcm.accuracy.refinement import RefinedResponse
 from fcm.accuracy.stability_limits import StabilityLimit
 from fcm.response.options import SENTENCES
@@ -29,7 +28,7 @@ def _of_harmonics(found: RefinedResponse, accuracy: float) -> str:
     """Too large errors of peaks and folds, and how long it takes with more harmonics."""
     folds, said = found.folds, _with_harmonics(found)
     untold = np.count_nonzero(np.isnan(folds))
-    if np.isnan(found.max_error) and np.isnan(found.peak).any():
+    if np.isnan(found.max_error) and np.isnan(found.peak[found.judged]).any():
         said += f" the errors of some peaks cannot be told{_dofs_short(found, accuracy)}"
     elif untold and found.max_known_error <= accuracy:
         said += f" the errors of {untold} of {folds.size} folds cannot be told"
@@ -50,16 +49,14 @@ def _of_harmonics(found: RefinedResponse, accuracy: float) -> str:
 
 def _dofs_short(found: RefinedResponse, accuracy: float) -> str:
     """The degrees of freedom whose peaks fall short, the worst of them first; empty where all do, or none."""
-    height = np.max([one.amplitude.max(axis=0) for one in found.shown], axis=0)
-    short = ~(found.peak <= accuracy) & (height > REFINEMENT.min_amplitude * height.max())
-    off, dofs = np.flatnonzero(short), found.system.scene.modal.dofs
-    if not 0 < off.size < len(dofs):
+    asked, dofs = found.judged, found.system.scene.modal.dofs
+    off = np.flatnonzero(asked & ~(found.peak <= accuracy))
+    if not 0 < off.size < np.count_nonzero(asked):
         return ""
     worst = off[np.argsort(-np.nan_to_num(found.peak[off], nan=np.inf), kind="stable")]
     more = f" and {off.size - SENTENCES.max_dofs} more" if off.size > SENTENCES.max_dofs else ""
-    return (
-        f" (of {len(dofs)} peaks, those of {', '.join(dofs[i] for i in worst[: SENTENCES.max_dofs])}{more})"
-    )
+    named = ", ".join(dofs[i] for i in worst[: SENTENCES.max_dofs])
+    return f" (of {np.count_nonzero(asked)} peaks, those of {named}{more})"
 
 
 def _of_stability(found: RefinedResponse, off: Sequence[StabilityLimit]) -> str:

@@ -16,7 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.level_errors import LevelPoints, errors_at_levels, evenness, stable_at_levels
-from fcm.accuracy.options import REFINEMENT, VALIDITY
+from fcm.accuracy.options import VALIDITY
+from fcm.accuracy.required_harmonics import judged
 from fcm.branches.force_level import LevelRange, level_curve
 from fcm.branches.linear_limits import highest_linear_limit
 from fcm.continuation import Mark, Status
@@ -127,7 +128,7 @@ def _level_curve(scene: Scene, wanted: Request, omega: float, span: tuple[float,
     begin, stopped = time.perf_counter(), ""
     system = wanted.system(scene)
     curve = _followed(system, omega, span)
-    while wanted.harmonics is None and curve.complete and not _worst(curve) <= wanted.accuracy:
+    while wanted.harmonics is None and curve.complete and not _worst(curve, scene) <= wanted.accuracy:
         more = with_twice_as_many(system, curve.evaluations)
         if more is None:
             break
@@ -142,7 +143,9 @@ def _level_curve(scene: Scene, wanted: Request, omega: float, span: tuple[float,
         system, curve = more, then
     if stopped:
         curve.complete, curve.reason, curve.cause = False, stopped, Cause.INTERRUPTED
-    elif wanted.harmonics is None and curve.complete and not (worst := _worst(curve)) <= wanted.accuracy:
+    elif (
+        wanted.harmonics is None and curve.complete and not (worst := _worst(curve, scene)) <= wanted.accuracy
+    ):
         what = (
             "the errors of some peaks cannot be told"
             if np.isnan(worst)
@@ -153,12 +156,12 @@ def _level_curve(scene: Scene, wanted: Request, omega: float, span: tuple[float,
     return curve
 
 
-def _worst(curve: Curve) -> float:
+def _worst(curve: Curve, scene: Scene) -> float:
     """The greatest error of the peaks, and of those motions at the level 1 of which it is told; NaN where
     that of a peak is not. What hardly moves is not asked for."""
     assert curve.level is not None
     height = np.nanmax(curve.amplitude, axis=0)
-    moves = height > REFINEMENT.min_amplitude * height.max()
+    moves = judged(scene, height)
     peaks = np.array([peak.error for peak in curve.peaks.values()])[moves]
     there = curve.error[curve.level == 1.0][:, moves]
     return float(np.max([*peaks, *there[np.isfinite(there)]], initial=0.0))

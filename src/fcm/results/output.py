@@ -40,6 +40,8 @@ def summary(response: Response) -> dict[str, Any]:
         "units": dict(zip(("length", "force"), response.units, strict=True)),
         "seconds": response.seconds,
     }
+    if response.output:
+        data["output"] = list(response.output)
     if response.directions:
         data["directions"] = {
             name: dict(zip(DIRECTIONS, along, strict=True)) for name, along in response.directions.items()

@@ -175,6 +175,7 @@ class Response:
     histories: Histories | None = None  # of the scene's schedule
     defects: list[str] = field(default_factory=list)  # tracebacks, of curves that were lost to them
     peaks_only: bool = False  # whether the curves were asked for without their points
+    output: tuple[str, ...] = ()  # degrees of freedom that the scene asks for; none where it does not say
     directions: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of contacts that slide in a plane
     tracking: Tracking | None = None  # special points followed in a number of the scene, and optima
     fitted: Fitted | None = None  # numbers fitted to measured data
@@ -189,6 +190,7 @@ class Response:
         contacts = tuple(contact.name for contact in scene.contacts)
         response = Response(scene.title, scene.modal.dofs, contacts, curves, method, scene.frequency_unit)
         response.notes, response.units, response.drawn = list(scene.notes), scene.units, scene.drawn
+        response.output = scene.output
         response.directions, response.positions = directions_of(scene), positions_of(scene)
         response.in_time = in_time(scene)
         return response

@@ -51,7 +51,7 @@ from fcm.scene.plane import check_plane, notes_of_planes
 from fcm.scene.questionable_values import questions
 from fcm.scene.schedule import read_schedule, read_start, with_schedule
 from fcm.scene.section import Parts, Section
-from fcm.scene.shared_normal import note_of_own_normal, note_of_shared_normals
+from fcm.scene.shared_normal import note_of_shared_normals, notes_of_slopes
 from fcm.scene.size_notices import Told
 from fcm.scene.start_note import note_of_start
 from fcm.scene.sweep import combinations, curves_of, read_sweep
@@ -173,7 +173,7 @@ def _read(top: Section, files: Files, reading: _Reading) -> dict[str, Any]:
     harmonics, accuracy = read_harmonics(response)
     schedule = read_schedule(top, unit)
     ends_of_forces = with_schedule(ends, schedule)
-    parts, reported, notes = _parts(top, files, unit, response, ends_of_forces, reading)
+    parts, reported, asked, notes = _parts(top, files, unit, response, ends_of_forces, reading)
     if schedule and any("second" in one for one in parts["contact"]):
         top.wrong("schedule", NOT_IN_PLANE)
     start = read_start(top, parts)
@@ -191,6 +191,7 @@ def _read(top: Section, files: Files, reading: _Reading) -> dict[str, Any]:
         "of_matrices": "structure" in top.data,
         "start": start,
         "reported": reported,
+        "output": asked,
         "notes": tuple(notes),
         "read": tuple(files.said),
         "interfaces": tuple(files.interfaces),
@@ -226,7 +227,7 @@ def _made(name: str, fields: dict[str, Any], told: Told | None) -> Scene:
             *note_of_harmonics(scene.forces),
             *note_of_start(scene),
             *note_of_shared_normals(scene),
-            *note_of_own_normal(scene),
+            *notes_of_slopes(scene),
             *notes_of_planes(scene),
         ),
     )
@@ -240,7 +241,8 @@ def _tuned(name: str, fields: dict[str, Any]) -> Scene | None:
     whole = draft.parts["whole"][0]
     of_sector = Draft(whole["tuned"], tuned_sweep(whole["tuned"], draft.swept))
     nothing = {"notes": (), "read": (), "optimum": None, "fit": None}
-    return _made(name, fields | nothing | {"draft": of_sector, "reported": whole["reported"]}, None)
+    of_tuned = {"draft": of_sector, "reported": whole["reported"], "output": whole["output"]}
+    return _made(name, fields | nothing | of_tuned, None)
 
 
 def _parts(
@@ -250,8 +252,9 @@ def _parts(
     response: Section | None,
     ends: tuple[float, float],
     reading: _Reading,
-) -> tuple[Parts, tuple[str, ...], list[str]]:
-    """The drafts of modes, contacts and forces; the degrees of freedom in results; and what is to be said."""
+) -> tuple[Parts, tuple[str, ...], tuple[str, ...], list[str]]:
+    """The drafts of modes, contacts and forces; the degrees of freedom in results, and those asked for; and
+    what is to be said."""
     cyclic = read_cyclic(top)
     modal, matrices = read_linear(top, files, unit, cyclic)
     read_blade(top, files, cyclic, modal["dofs"], matrices)
@@ -268,7 +271,7 @@ def _parts(
     if top.mistakes.count:
         if matrices is not None:
             check_matrices(top, matrices, cyclic, ends)
-        return parts, (), []
+        return parts, (), (), []
     if matrices is not None:
         parts, notes = with_modes(top, parts, matrices, output, ends, unit)
     else:
@@ -276,16 +279,17 @@ def _parts(
         notes = [*modal["notes"], *notes]
     notes = [*notes, *notes_of_shares(parts["contact"])]
     if top.mistakes.count:
-        return parts, (), []
+        return parts, (), (), []
     asked = response is not None and "output" in response.data
     reported = reported_of(parts, output, asked)
     mistuned = bool(cyclic) and "mistuning" in cyclic[0]
     if matrices is not None and (mistuned or not reading.every_row):
         parts = without_others(top, parts, reported)
     if not mistuned:
-        return parts, reported, notes
-    parts, reported, more = whole_ring(top, parts, reported)
-    return parts, reported, [*notes, *more]
+        return parts, reported, tuple(output), notes
+    parts, reported, more = whole_ring(top, parts, reported, output)
+    of_ring = tuple(name for name in reported if name.rpartition("@")[0] in output)
+    return parts, reported, of_ring, [*notes, *more]
 
 
 def _check_curves(scene: Scene, mistakes: Mistakes) -> None:

@@ -194,7 +194,7 @@ def energy_of_matrices(found: Part, K: Any, shapes: Any) -> Any:
 
 
 def whole_ring(
-    top: Section, parts: Parts, reported: Sequence[str]
+    top: Section, parts: Parts, reported: Sequence[str], output: Sequence[str]
 ) -> tuple[Parts, tuple[str, ...], list[str]]:
     """The parts of the whole ring, from those of a sector with the modes of all nodal diameters.
 
@@ -246,6 +246,7 @@ def whole_ring(
         "basis": basis,
         "tuned": tuned,
         "reported": tuple(reported),
+        "output": tuple(output),
     }
     around = _Around(sectors, tuple(modal["dofs"]), tuple(own), len(hidden))
     made = parts | {"modal": draft, "cyclic": [], "whole": [numbers], **around.drafts(parts)}

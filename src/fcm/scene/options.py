@@ -98,6 +98,7 @@ class ToleranceOptions:
     mass_ratio: float = 1e20  # of modes: beyond it, sums over the modes lose the heavy ones to rounding
     scaled_shape: float = 1e-6  # how near to 1 the largest value of a shape is that was scaled to it
     same_direction: float = 1e-9  # directions that differ by no more are one
+    right_angle: float = 0.01  # sine of the angle by which a normal may lean: about half a degree
     square: float = 1e-6  # cosine of the angle between two directions at right angles, at most
     undamped: float = 1e-12  # of a frequency without damping: rounding that nobody would notice
     equal_frequency: float = 1e-6  # of frequencies that are one

@@ -1,4 +1,4 @@
-"""What is said of several contacts that press along the same normal: preload and normal stiffness add up."""
+"""What is said of the normals of contacts: several along one, and slopes along which slip presses."""
 
 from __future__ import annotations
 
@@ -61,32 +61,48 @@ def as_written(direction: FloatArray, dofs: Sequence[str]) -> str:
     return "{ " + ", ".join(f"{bare(dofs[i])} = {shown(float(direction[i]))}" for i in at) + " }"
 
 
-def note_of_own_normal(scene: Scene) -> list[str]:
-    """One sentence on contacts whose normal displacement is one along which they slide: of a wedge's slope,
-    but most often a name written twice. Nothing is said of a constant normal load (k_v = 0), nor without
+def notes_of_slopes(scene: Scene) -> list[str]:
+    """One sentence on contacts whose slip moves them along their normal, as on the slope of a wedge: often a
+    name written twice, or a wrong angle. Nothing is said of a constant normal load (k_v = 0), nor without
     friction."""
     rubbing = (one for one in scene.contacts if one.k_v * one.k_u * one.mu != 0.0)
-    found = [one.name for one in rubbing if _presses_as_it_slides(one)]
-    if not found:
-        return []
-    names = several(found)
-    slides = "contact {} slides along its" if len(found) == 1 else "contacts {} slide along their"
-    return [
-        f"{slides.format(names)} normal displacement: slip changes the normal load, as on the slope of a "
-        "wedge. If that is not meant, give another normal, or k_v = 0 where the load is constant"
-    ]
+    sloping = [(one.name, angle) for one in rubbing if (angle := _slope(one)) > 0.0]
+    own = [name for name, angle in sloping if angle == 90.0]
+    angles = {name: angle for name, angle in sloping if angle < 90.0}
+    means = "slip changes the normal load, as on the slope of a wedge"
+    helps = "If that is not meant, give another normal"
+    notes = []
+    if own:
+        slides = "contact {} slides along its" if len(own) == 1 else "contacts {} slide along their"
+        notes.append(
+            f"{slides.format(several(own))} normal displacement: {means}. {helps}, or k_v = 0 where the load "
+            "is constant"
+        )
+    if angles:
+        worst = max(angles, key=lambda name: angles[name])
+        contacts = "contact {}: its normal is" if len(angles) == 1 else "contacts {}: their normals are"
+        notes.append(
+            f"{contacts.format(several(list(angles)))} not at right angles to the sliding, by "
+            f"{angles[worst]:.2g} degrees{' at most' if len(angles) > 1 else ''}: {means}. {helps}"
+        )
+    return notes
 
 
-def _presses_as_it_slides(contact: Contact) -> bool:
-    """Whether the normal displacement is a combination of the tangential ones."""
+def _slope(contact: Contact) -> float:
+    """The angle [degrees] by which the normal leans to the tangential displacements; 0 at right angles.
+
+    The weights of degrees of freedom are taken as those of right-angled axes. With the part of the normal
+    :math:`P n` that is a combination of the tangential ones it is :math:`\\arcsin(|P n| / |n|)`.
+    """
     sliding = np.stack(contact.directions[:-1], axis=1)
     if not contact.normal.any() or not sliding.any():
-        return False
+        return 0.0
     shares = np.linalg.lstsq(sliding, contact.normal, rcond=None)[0]
-    return bool(
-        np.abs(sliding @ shares - contact.normal).max()
-        <= TOLERANCES.same_direction * np.abs(contact.normal).max()
-    )
+    along = sliding @ shares
+    if np.abs(along - contact.normal).max() <= TOLERANCES.same_direction * np.abs(contact.normal).max():
+        return 90.0
+    sine = min(float(np.linalg.norm(along) / np.linalg.norm(contact.normal)), 1.0)
+    return float(np.degrees(np.arcsin(sine))) if sine > TOLERANCES.right_angle else 0.0
 
 
 def _counts_twice(group: list[Contact]) -> bool:
