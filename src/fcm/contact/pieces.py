@@ -5,9 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from fcm.contact.limits import FloatArray
-
-ComplexArray = npt.NDArray[np.complex128]
+from fcm.contact.arguments import ComplexArray, FloatArray
 
 
 class Pieces:

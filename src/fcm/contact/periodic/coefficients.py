@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from math import prod
 from typing import NamedTuple
 
-import numpy as np
 import numpy.typing as npt
 
+from fcm.contact.arguments import Arguments, ComplexArray, FloatArray
 from fcm.contact.periodic.forces import PeriodicContact
-
-ComplexArray = npt.NDArray[np.complex128]
-FloatArray = npt.NDArray[np.float64]
 
 
 class PeriodicGradients(NamedTuple):
@@ -87,10 +83,10 @@ def periodic_forces(
     >>> complex(f[1].round(6)), n[0].real.item()
     ((0.31831-0.5j), 1.0)
     """
-    motion = _Motion.of(u, v, harmonics, mu=mu, k_u=k_u, k_v=k_v, n_0=n_0, start=start)
-    forces, _ = motion.evaluate(gradient=False)
-    f, n = _complex(forces)
-    return f.reshape(*motion.shape, *f.shape[1:]), n.reshape(*motion.shape, *n.shape[1:])
+    numbers = {"mu": mu, "k_u": k_u, "k_v": k_v, "n_0": n_0, "start": start}
+    motion = Arguments.of({"u": u, "v": v}, harmonics, numbers)
+    f, n = motion.coefficients(_evaluated(motion, gradient=False)[0])
+    return f, n
 
 
 def periodic_gradients(
@@ -126,84 +122,24 @@ def periodic_gradients(
     >>> round(float(G.df[1, 1, 0, 0].imag), 6)  # stiffness F_s = -Im f_1, by v at constant load
     -0.63662
     """
-    motion = _Motion.of(u, v, harmonics, mu=mu, k_u=k_u, k_v=k_v, n_0=n_0, start=start)
-    forces, jacobian = motion.evaluate(gradient=True)
-    by = _by_coefficients(jacobian)
-    df, dn = (x.reshape(*motion.shape, *x.shape[1:]) for x in _complex(by))
-    f, n = (x.reshape(*motion.shape, *x.shape[1:]) for x in _complex(forces))
-    return PeriodicGradients(f, n, df, dn)
+    numbers = {"mu": mu, "k_u": k_u, "k_v": k_v, "n_0": n_0, "start": start}
+    motion = Arguments.of({"u": u, "v": v}, harmonics, numbers)
+    forces, jacobian = _evaluated(motion, gradient=True)
+    return PeriodicGradients(*motion.coefficients(forces), *motion.derivatives(jacobian))
 
 
 def one_motion(
     u: npt.ArrayLike, v: npt.ArrayLike, **numbers: float
 ) -> tuple[PeriodicContact, FloatArray, FloatArray]:
     """A contact for one motion, its unknowns and its parameters, as the kernel takes them."""
-    motion = _Motion.of(u, v, None, **numbers)
-    if motion.shape:
-        raise ValueError(f"one loop needs numbers and one motion, not arrays of shape {motion.shape}")
-    return motion.contact, motion.unknowns[0], motion.parameters[0]
+    motion = Arguments.of({"u": u, "v": v}, None, numbers)
+    motion.check_single()
+    return PeriodicContact(motion.harmonics, motion.outputs), motion.unknowns[0], motion.parameters[0]
 
 
-class _Motion(NamedTuple):
-    """Arguments as the kernel takes them: a row for each contact."""
-
-    contact: PeriodicContact
-    shape: tuple[int, ...]  # to which the arguments broadcast
-    unknowns: FloatArray  # (point, unknown)
-    parameters: FloatArray  # (point, 5): mu, k_u, k_v, n_0, start
-
-    @classmethod
-    def of(
-        cls, u: npt.ArrayLike, v: npt.ArrayLike, harmonics: int | None, **numbers: npt.ArrayLike
-    ) -> _Motion:
-        u, v = np.atleast_1d(np.asarray(u, np.complex128)), np.atleast_1d(np.asarray(v, np.complex128))
-        if min(u.shape[-1], v.shape[-1]) < 1:
-            raise ValueError("u and v have at least one coefficient, their mean")
-        if harmonics is not None and harmonics < 0:
-            raise ValueError(f"harmonics is {harmonics}, but it is a number of harmonics, at least 0")
-        parameters = {name: np.asarray(value, np.float64) for name, value in numbers.items()}
-        for name in ("mu", "k_u", "k_v"):
-            if np.any(parameters[name] < 0.0):
-                raise ValueError(f"{name} must not be negative")
-        shape = np.broadcast_shapes(u.shape[:-1], v.shape[:-1], *(x.shape for x in parameters.values()))
-        count = max(u.shape[-1], v.shape[-1])
-        x = np.zeros((*shape, count, 4))
-        for i, motion in enumerate((u, v)):
-            x[..., : motion.shape[-1], 2 * i] = motion.real
-            x[..., 1 : motion.shape[-1], 2 * i + 1] = motion.imag[..., 1:]
-        x = x.reshape(prod(shape), 4 * count)
-        columns = [np.broadcast_to(value, shape).reshape(-1) for value in parameters.values()]
-        outputs = count - 1 if harmonics is None else harmonics
-        contact = PeriodicContact(list(range(1, count)), list(range(1, outputs + 1)))
-        unknowns = np.concatenate((x[:, 0:3:2], x[:, 4:]), axis=1)
-        return cls(
-            contact, shape, np.ascontiguousarray(unknowns), np.ascontiguousarray(np.stack(columns, axis=-1))
-        )
-
-    def evaluate(self, gradient: bool) -> tuple[FloatArray, FloatArray]:
-        """Forces (point, equation), and if wanted their derivatives (point, equation, unknown)."""
-        count, contact = self.unknowns.shape[0], self.contact
-        forces = np.empty((count, contact.equations))
-        jacobian = np.empty((count if gradient else 0, contact.equations, contact.unknowns))
-        contact.all(self.unknowns, self.parameters, forces, jacobian)
-        return forces, jacobian
-
-
-def _complex(forces: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-    """The coefficients of both forces from the order of the kernel, along axis 1."""
-    rest = forces[:, 2:].reshape(forces.shape[0], forces.shape[1] // 4, 4, *forces.shape[2:])
-    f, n = (
-        np.concatenate((forces[:, i : i + 1] + 0j, rest[:, :, 2 * i] + 1j * rest[:, :, 2 * i + 1]), axis=1)
-        for i in range(2)
-    )
-    return f, n
-
-
-def _by_coefficients(jacobian: FloatArray) -> FloatArray:
-    """Derivatives by motion, harmonic and part, in three axes instead of the last."""
-    points, equations, unknowns = jacobian.shape
-    means = np.zeros((points, equations, 1, 4))
-    means[:, :, 0, ::2] = jacobian[:, :, :2]
-    rest = jacobian[:, :, 2:].reshape(points, equations, unknowns // 4, 4)
-    by = np.concatenate((means, rest), axis=2)
-    return by.reshape(points, equations, by.shape[2], 2, 2).swapaxes(2, 3)
+def _evaluated(motion: Arguments, gradient: bool) -> tuple[FloatArray, FloatArray]:
+    """Forces (point, equation), and if wanted their derivatives (point, equation, unknown)."""
+    contact = PeriodicContact(motion.harmonics, motion.outputs)
+    forces, jacobian = motion.room(contact.equations, gradient)
+    contact.all(motion.unknowns, motion.parameters, forces, jacobian)
+    return forces, jacobian

@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from fcm.contact.arguments import ComplexArray, FloatArray
 from fcm.contact.options import PERIODIC
-from fcm.contact.periodic.coefficients import ComplexArray, FloatArray, one_motion
+from fcm.contact.periodic.coefficients import one_motion
 from fcm.contact.periodic.cycle import Cycle
 from fcm.contact.periodic.margins import Measures
 from fcm.contact.pieces import LoadedPieces, friction, waves_at

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from math import prod
 from typing import NamedTuple
 
-import numpy as np
 import numpy.typing as npt
 
+from fcm.contact.arguments import Arguments, ComplexArray, FloatArray
 from fcm.contact.plane.forces import PlanarContact
 from fcm.contact.plane.options import FINE
-
-ComplexArray = npt.NDArray[np.complex128]
-FloatArray = npt.NDArray[np.float64]
 
 
 class PlanarGradients(NamedTuple):
@@ -96,11 +92,9 @@ def planar_forces(
     >>> complex(f_x[1].round(6)), complex(f_y[1].round(6))
     ((0.25+0.433013j), (0.433013-0.25j))
     """
-    motion = _Motion.of(
-        u_x, u_y, v, harmonics, mu=mu, k_u=k_u, k_v=k_v, n_0=n_0, start_x=start_x, start_y=start_y
-    )
-    forces, _ = motion.evaluate(gradient=False)
-    f_x, f_y, n = (part.reshape(*motion.shape, *part.shape[1:]) for part in _complex(forces))
+    numbers = {"mu": mu, "k_u": k_u, "k_v": k_v, "n_0": n_0, "start_x": start_x, "start_y": start_y}
+    motion = Arguments.of({"u_x": u_x, "u_y": u_y, "v": v}, harmonics, numbers)
+    f_x, f_y, n = motion.coefficients(_evaluated(motion, gradient=False)[0])
     return f_x, f_y, n
 
 
@@ -140,96 +134,26 @@ def planar_gradients(
     >>> round(float(G.df_x[1, 2, 0, 0].real), 6)  # radial part of the force, r**2, by v at constant load
     0.5
     """
-    motion = _Motion.of(
-        u_x, u_y, v, harmonics, mu=mu, k_u=k_u, k_v=k_v, n_0=n_0, start_x=start_x, start_y=start_y
-    )
-    forces, jacobian = motion.evaluate(gradient=True)
-    slopes = (part.reshape(*motion.shape, *part.shape[1:]) for part in _complex(_by_coefficients(jacobian)))
-    values = (part.reshape(*motion.shape, *part.shape[1:]) for part in _complex(forces))
-    return PlanarGradients(*values, *slopes)
+    numbers = {"mu": mu, "k_u": k_u, "k_v": k_v, "n_0": n_0, "start_x": start_x, "start_y": start_y}
+    motion = Arguments.of({"u_x": u_x, "u_y": u_y, "v": v}, harmonics, numbers)
+    forces, jacobian = _evaluated(motion, gradient=True)
+    return PlanarGradients(*motion.coefficients(forces), *motion.derivatives(jacobian))
 
 
 def one_motion(
     u_x: npt.ArrayLike, u_y: npt.ArrayLike, v: npt.ArrayLike, **numbers: float
 ) -> tuple[list[int], FloatArray, FloatArray]:
     """The harmonics of one motion, its unknowns and its parameters, as the kernel takes them."""
-    motion = _Motion.of(u_x, u_y, v, None, **numbers)
-    if motion.shape:
-        raise ValueError(f"one loop needs numbers and one motion, not arrays of shape {motion.shape}")
-    return list(range(1, motion.harmonics)), motion.unknowns[0], motion.parameters[0]
+    motion = Arguments.of({"u_x": u_x, "u_y": u_y, "v": v}, None, numbers)
+    motion.check_single()
+    return motion.harmonics, motion.unknowns[0], motion.parameters[0]
 
 
-class _Motion(NamedTuple):
-    """Arguments as the kernel takes them: a row for each contact."""
-
-    harmonics: int  # with the mean
-    outputs: int
-    shape: tuple[int, ...]  # to which the arguments broadcast
-    unknowns: FloatArray  # (point, unknown)
-    parameters: FloatArray  # (point, 6): mu, k_u, k_v, n_0, start_x, start_y
-
-    @classmethod
-    def of(
-        cls,
-        u_x: npt.ArrayLike,
-        u_y: npt.ArrayLike,
-        v: npt.ArrayLike,
-        harmonics: int | None,
-        **numbers: npt.ArrayLike,
-    ) -> _Motion:
-        motions = [np.atleast_1d(np.asarray(one, np.complex128)) for one in (u_x, u_y, v)]
-        if min(one.shape[-1] for one in motions) < 1:
-            raise ValueError("u_x, u_y and v have at least one coefficient, their mean")
-        if harmonics is not None and harmonics < 0:
-            raise ValueError(f"harmonics is {harmonics}, but it is a number of harmonics, at least 0")
-        parameters = {name: np.asarray(value, np.float64) for name, value in numbers.items()}
-        for name in ("mu", "k_u", "k_v"):
-            if np.any(parameters[name] < 0.0):
-                raise ValueError(f"{name} must not be negative")
-        shape = np.broadcast_shapes(
-            *(one.shape[:-1] for one in motions), *(value.shape for value in parameters.values())
-        )
-        count = max(one.shape[-1] for one in motions)
-        x = np.zeros((*shape, count, 6))
-        for i, one in enumerate(motions):
-            x[..., : one.shape[-1], 2 * i] = one.real
-            x[..., 1 : one.shape[-1], 2 * i + 1] = one.imag[..., 1:]
-        x = x.reshape(prod(shape), 6 * count)
-        columns = [np.broadcast_to(value, shape).reshape(-1) for value in parameters.values()]
-        unknowns = np.concatenate((x[:, 0:6:2], x[:, 6:]), axis=1)
-        return cls(
-            count, count - 1 if harmonics is None else harmonics, shape,
-            np.ascontiguousarray(unknowns), np.ascontiguousarray(np.stack(columns, axis=-1)),
-        )  # fmt: skip
-
-    def evaluate(self, gradient: bool) -> tuple[FloatArray, FloatArray]:
-        """Forces (point, equation), and if wanted their derivatives (point, equation, unknown)."""
-        contact = PlanarContact(
-            list(range(1, self.harmonics)), list(range(1, self.outputs + 1)), options=FINE
-        )
-        count = self.unknowns.shape[0]
-        forces = np.empty((count, contact.equations))
-        jacobian = np.empty((count if gradient else 0, contact.equations, contact.unknowns))
-        unsolved = contact.all(self.unknowns, self.parameters, forces, jacobian)
-        if unsolved >= 0:
-            raise RuntimeError(f"no steady cycle of the motion with number {unsolved} was found")
-        return forces, jacobian
-
-
-def _complex(forces: FloatArray) -> list[ComplexArray]:
-    """The coefficients of the three forces from the order of the kernel, along axis 1."""
-    rest = forces[:, 3:].reshape(forces.shape[0], forces.shape[1] // 6, 6, *forces.shape[2:])
-    return [
-        np.concatenate((forces[:, i : i + 1] + 0j, rest[:, :, 2 * i] + 1j * rest[:, :, 2 * i + 1]), axis=1)
-        for i in range(3)
-    ]
-
-
-def _by_coefficients(jacobian: FloatArray) -> FloatArray:
-    """Derivatives by motion, harmonic and part, in three axes instead of the last."""
-    points, equations, unknowns = jacobian.shape
-    means = np.zeros((points, equations, 1, 6))
-    means[:, :, 0, ::2] = jacobian[:, :, :3]
-    rest = jacobian[:, :, 3:].reshape(points, equations, unknowns // 6, 6)
-    by = np.concatenate((means, rest), axis=2)
-    return by.reshape(points, equations, by.shape[2], 3, 2).swapaxes(2, 3)
+def _evaluated(motion: Arguments, gradient: bool) -> tuple[FloatArray, FloatArray]:
+    """Forces (point, equation), and if wanted their derivatives (point, equation, unknown)."""
+    contact = PlanarContact(motion.harmonics, motion.outputs, options=FINE)
+    forces, jacobian = motion.room(contact.equations, gradient)
+    unsolved = contact.all(motion.unknowns, motion.parameters, forces, jacobian)
+    if unsolved >= 0:
+        raise RuntimeError(f"no steady cycle of the motion with number {unsolved} was found")
+    return forces, jacobian

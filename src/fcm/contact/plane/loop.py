@@ -7,8 +7,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
+from fcm.contact.arguments import ComplexArray, FloatArray
 from fcm.contact.pieces import LoadedPieces, waves_at
-from fcm.contact.plane.coefficients import ComplexArray, FloatArray, one_motion
+from fcm.contact.plane.coefficients import one_motion
 from fcm.contact.plane.forces import PlanarContact
 from fcm.contact.plane.options import FINEST, LOOP
 from fcm.contact.plane.radau import STAGES, radau
