@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -138,10 +137,7 @@ def _loaded(messages: Messages, name: str, asked: Asked) -> tuple[Scene, export.
 
 def _with_step(scene: Scene, asked: Asked) -> Scene:
     """The scene with the longest step that is asked for."""
-    if (max_step := asked.max_step) is None:
-        return scene
-    curves = tuple(replace(curve, max_step=max_step) for curve in scene.curves)
-    return replace(scene, max_step=max_step, curves=curves)
+    return scene if asked.max_step is None else scene.with_step(asked.max_step)
 
 
 def _check_scene(scene: Scene, asked: Asked) -> None:

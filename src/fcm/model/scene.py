@@ -264,6 +264,11 @@ class Scene:
         """Whether an accuracy is asked of a degree of freedom: one of `output`, or any in the results."""
         return dof in self.output if self.output else self.reports(dof)
 
+    def with_step(self, max_step: float) -> Scene:
+        """The scene with another longest step along all its curves."""
+        curves = tuple(replace(curve, max_step=max_step) for curve in self.curves)
+        return replace(self, max_step=max_step, curves=curves)
+
     def holding(self, held: Sequence[Held]) -> Scene:
         """The scene with some of its contacts held."""
         places = {one.place for one in held}

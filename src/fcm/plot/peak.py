@@ -163,14 +163,19 @@ def _name_lines(
     figure.legend(axes.get_lines(), names, loc="outside right upper")
 
 
+def ring_at(upper: Axes, lower: Axes, x: float, y: float, color: str) -> None:
+    """A ring around a peak, and a thin line down to its frequency."""
+    upper.plot([x], [y], "o", markersize=7, markerfacecolor="none", color=color, markeredgewidth=1.0)
+    for axes in (upper, lower):
+        axes.axvline(x, color=color, linewidth=0.5, linestyle=(0, (4, 3)), zorder=0)
+
+
 def _mark_least(upper: Axes, lower: Axes, peaks: Peaks, key: str, column: int, known: BoolArray) -> None:
     """A ring around the least peak of all, a thin line down to its frequency, and its values above."""
     curves = np.flatnonzero(known)
     least = curves[np.argmin(peaks.amplitude[curves, column])]
     x, y = float(peaks.parameters[key][least]), float(peaks.amplitude[least, column])
-    upper.plot([x], [y], "o", markersize=7, markerfacecolor="none", color=_MARK, markeredgewidth=1.0)
-    for axes in (upper, lower):
-        axes.axvline(x, color=_MARK, linewidth=0.5, linestyle=(0, (4, 3)), zorder=0)
+    ring_at(upper, lower, x, y, _MARK)
     values = {name: float(values[least]) for name, values in peaks.parameters.items()}
     where = curve_label(values, units=peaks.units)
     stays = "" if peaks.stable is None or y == 0.0 else staying(float(peaks.stable[least, column]))

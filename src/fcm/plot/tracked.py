@@ -12,6 +12,7 @@ import numpy as np
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label, staying, symbols, with_unit
+from fcm.plot.peak import ring_at
 from fcm.plot.read import FloatArray, floats, opened
 from fcm.plot.reader_process import apart
 from fcm.plot.style import (
@@ -220,9 +221,7 @@ def _mark_optimum(upper: Axes, lower: Axes, drawn: DrawnTracking) -> None:
     if drawn.optimum is None:
         return
     x, y = drawn.optimum
-    upper.plot([x], [y], "o", markersize=7, markerfacecolor="none", color=_MARK, markeredgewidth=1.0)
-    for axes in (upper, lower):
-        axes.axvline(x, color=_MARK, linewidth=0.5, linestyle=(0, (4, 3)), zorder=0)
+    ring_at(upper, lower, x, y, _MARK)
     (symbol,) = symbols([drawn.key])
     at, least = f"{symbol} = {x:.5g} {drawn.unit}".rstrip(), f"{y:.5g} {drawn.length}".rstrip()
     upper.set_title(f"least peak {least}{drawn.stays} at {at}", loc="right", fontsize=8, color=_MARK)

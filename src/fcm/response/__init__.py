@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from fcm.model.scene import Scene
@@ -94,7 +93,9 @@ def respond(
     scene = scene.in_use()
     check_solvable(scene)
     if max_step is not None:
-        scene = _with_step(scene, max_step)
+        if fault := step_fault(max_step):
+            raise ResponseError(f"max_step {fault}")
+        scene = scene.with_step(max_step)
     if sensitivity and method == "exact":
         raise ResponseError("sensitivities are of the balance's peaks; the method is 'exact'")
     if sensitivity:
@@ -114,14 +115,6 @@ def respond(
 
         response.histories = histories(scene)
     return to_dataset(visible(response, scene))
-
-
-def _with_step(scene: Scene, max_step: float) -> Scene:
-    """With another longest step along all its curves."""
-    if fault := step_fault(max_step):
-        raise ResponseError(f"max_step {fault}")
-    curves = tuple(replace(curve, max_step=max_step) for curve in scene.curves)
-    return replace(scene, max_step=max_step, curves=curves)
 
 
 def _curves(

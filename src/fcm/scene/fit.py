@@ -8,15 +8,14 @@ from typing import Any
 import numpy as np
 
 from fcm.model.scene import Fit, FloatArray, Measured
-from fcm.scene.address import overlap
-from fcm.scene.draft import LEVEL, Draft, Number, number_in
+from fcm.scene.draft import LEVEL, Draft, Number
 from fcm.scene.errors import choices, counted, kind, quoted, shown
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
 from fcm.scene.measured_file import read_measured
 from fcm.scene.modal import UNITS
 from fcm.scene.names import Names
-from fcm.scene.optimum import pair_of_bounds, words_of
+from fcm.scene.optimum import pair_of_bounds, varied_numbers
 from fcm.scene.options import LIMITS
 from fcm.scene.rules import FRACTION, POSITIVE, Rule
 from fcm.scene.section import Section
@@ -47,7 +46,8 @@ def read_fit(top: Section, files: Files, draft: Draft, reported: Sequence[str], 
     for other in ("optimum", "sweep", "schedule"):
         if other in top.data:
             section.wrong("", f"is of no use with [{other}]: fit first, then use the numbers found")
-    numbers = _numbers(section, draft)
+    refused = {LEVEL: "the level of the forces belongs to the data: give it there"}
+    numbers = varied_numbers(section, draft, "contact.shroud.mu", LIMITS.fitted, refused)
     bounds = _bounds(section, numbers)
     starts = section.number("starts", STARTS) if "starts" in section.data else None
     sections = section.tables("data")
@@ -64,27 +64,6 @@ def read_fit(top: Section, files: Files, draft: Draft, reported: Sequence[str], 
         return None
     keys = tuple(number.key for number in numbers if number)
     return Fit(keys, tuple(bounds), known, None if starts is None else int(starts))
-
-
-def _numbers(section: Section, draft: Draft) -> list[Number | None]:
-    """The numbers to fit; None in the place of one that there is not."""
-    right = 'a list of numbers of the scene, as ["contact.shroud.mu"]'
-    keys = words_of(section, "vary", right)
-    if len(keys) > LIMITS.fitted:
-        section.wrong("vary", f"has {len(keys)} numbers; there can be {LIMITS.fitted}")
-    found: list[Number | None] = []
-    for i, key in enumerate(keys):
-        path = f"{section.at('vary')}[{i}]"
-        if key == LEVEL:
-            section.mistakes.add(path, "the level of the forces belongs to the data: give it there")
-            found.append(None)
-            continue
-        number = number_in(draft, key, path, section.mistakes)
-        before = [address for one in found if one for address in one.addresses]
-        if number and any(overlap(a, b) for a in before for b in number.addresses):
-            section.mistakes.add(path, "sets the same number as another one")
-        found.append(number)
-    return found
 
 
 def _bounds(section: Section, numbers: Sequence[Number | None]) -> list[tuple[float, float] | None]:

@@ -29,7 +29,7 @@ def read_optimum(top: Section, draft: Draft, reported: Sequence[str]) -> Optimum
     before = section.mistakes.count
     if "response" not in top.data:
         section.wrong("", "needs a [response] with a range of frequencies, in which the peak is")
-    numbers = _numbers(section, draft)
+    numbers = varied_numbers(section, draft, "contact.shroud.n_0", LIMITS.chosen)
     aims = _aims(section, reported)
     bounds = _bounds(section, numbers, draft)
     if section.mistakes.count > before:
@@ -37,17 +37,24 @@ def read_optimum(top: Section, draft: Draft, reported: Sequence[str]) -> Optimum
     return Optimum(tuple(number.key for number in numbers if number), tuple(bounds), tuple(aims))
 
 
-def _numbers(section: Section, draft: Draft) -> list[Number | None]:
-    """The numbers to vary; None in the place of one that there is not."""
-    keys = words_of(section, "vary", 'a list of numbers of the scene, as ["contact.shroud.n_0"]')
-    if len(keys) > LIMITS.chosen:
-        section.wrong("vary", f"has {len(keys)} numbers; there can be {LIMITS.chosen}")
+def varied_numbers(
+    section: Section, draft: Draft, example: str, most: int, refused: Mapping[str, str] | None = None
+) -> list[Number | None]:
+    """The numbers to vary; None in the place of one that there is not, or that is refused with a reason."""
+    keys = words_of(section, "vary", f'a list of numbers of the scene, as ["{example}"]')
+    if len(keys) > most:
+        section.wrong("vary", f"has {len(keys)} numbers; there can be {most}")
     found: list[Number | None] = []
     for i, key in enumerate(keys):
-        number = number_in(draft, key, f"{section.at('vary')}[{i}]", section.mistakes)
+        path = f"{section.at('vary')}[{i}]"
+        if refused and key in refused:
+            section.mistakes.add(path, refused[key])
+            found.append(None)
+            continue
+        number = number_in(draft, key, path, section.mistakes)
         before = [address for one in found if one for address in one.addresses]
         if number and any(overlap(a, b) for a in before for b in number.addresses):
-            section.mistakes.add(f"{section.at('vary')}[{i}]", "sets the same number as another one")
+            section.mistakes.add(path, "sets the same number as another one")
         found.append(number)
     return found
 
