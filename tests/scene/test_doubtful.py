@@ -28,6 +28,8 @@ def notes(data, **more):
         ),
         (("modal", "damping"), [0.01, 1.0], ["modal.damping: is 1 right?"]),
         (("modal", "damping"), [0.01, 0.99], []),
+        (("modal", "damping"), 0.2, ["It is 20 % of critical damping; if 0.2 % is meant, write 0.002"]),
+        (("modal", "damping"), 0.19, []),
         (
             ("force", 0, "phase"),
             30,
@@ -133,3 +135,30 @@ def test_a_range_without_a_resonance_says_so_with_the_nearest_modes(change, word
     if words:
         assert "no resonance is near the range of frequencies: the nearest mode is at" in said
         assert "without contacts" in said and "while all stick" in said
+
+
+@pytest.mark.parametrize(
+    "stiffness, said",
+    [
+        (1e13, ["1.0e+08 times as stiff as the structure there. Are k_u and k_v in its units?"]),
+        (1e9, []),
+        (1e2, []),
+        (1.0, ["the contacts are soft beside the structure: 1.0e-05 times its stiffness at most"]),
+        (0.0, []),  # no spring
+    ],
+)
+def test_contacts_of_another_unit_than_the_structure(stiffness, said):
+    """One degree of freedom of 1e5 N/m; a contact of 1 N/mm in N/m, or of GPa where MPa are meant."""
+    structure = {"dofs": ["u", "v"], "mass": [[1.0, 0.0], [0.0, 1.0]], "stiffness": [[1e5, 0.0], [0.0, 1e5]]}
+    structure["damping"] = 0.01
+    contact = {"name": "a", "tangential": "u", "normal": "v", "mu": 0.3, "n_0": 1.0}
+    data = {
+        "structure": structure,
+        "contact": [contact | {"k_u": stiffness, "k_v": stiffness}],
+        "force": [{"dof": "u", "amplitude": 1.0}],
+        "response": {"frequency": [200.0, 400.0]},
+    }
+    found = [one for one in scene_from_dict(data).notes if "in its units" in one]
+    assert len(found) == len(said) and all(words in one for words, one in zip(said, found, strict=True))
+    swept = data | {"sweep": {"contact.a.k_u": [1.0, 1e5]}}
+    assert not any("in its units" in one for one in scene_from_dict(swept).notes)

@@ -13,6 +13,7 @@ import numpy as np
 
 from fcm.files import NOT_THERE, no_file
 from fcm.model.scene import Scene
+from fcm.scene.contact_stiffness import notes_of_stiffness
 from fcm.scene.cyclic import check_diameters, note_of_stability, only_own, own_names, read_cyclic
 from fcm.scene.draft import Draft, forces_of, modes_of
 from fcm.scene.errors import Mistakes, SceneError, choices, kind, quoted, suggestion
@@ -229,6 +230,7 @@ def _made(name: str, fields: dict[str, Any], told: Told | None) -> Scene:
             *note_of_shared_normals(scene),
             *notes_of_slopes(scene),
             *notes_of_planes(scene),
+            *notes_of_stiffness(scene),
         ),
     )
 

@@ -41,6 +41,9 @@ class MessageOptions:
     start_rounding: float = 1e-9  # of the limit of the contact's force, by which a start may be off unsaid
     # times the range's end: modes ought to reach there, or their flexibility be kept
     range_above: float = 2.0
+    # times the structure's flexibility there: stiffnesses of contacts beyond these are asked about
+    stiff_contact: float = 1e6
+    soft_contact: float = 1e-4
     range_near: float = 2.0  # times the range's ends: a mode within that is near it
 
 
@@ -66,6 +69,9 @@ class LimitOptions:
     bytes_of_curve: float = 1000.0  # of the numbers of one curve of a sweep
     draws_timed: int = 8  # draws of a number that are timed before all are made
     draws_seconds: float = 600.0  # [s] longest time of all draws of a number
+    damping_of_all: float = (
+        0.2  # of every mode: from here on no resonance is seen, and a percentage may be meant
+    )
     damping_ratio: float = 1.0  # from here on a mode does not vibrate, and more likely a percentage is meant
     angle: float = 2.001 * pi  # [rad] a whole turn, and what "6.2832" is more
     reported: int = 50  # degrees of freedom of which all are in the results, where no others are asked for

@@ -14,11 +14,14 @@ from fcm.scene.rules import as_float
 from fcm.scene.section import Parts, Section
 from fcm.scene.sweep import Swept
 
+CRITICAL = "critical damping"
+
 
 def questions(top: Section, parts: Parts, swept: Sequence[Swept]) -> list[str]:
     """A question for each key whose number is hardly meant as it is; the scene is read as it says.
 
-    damping ratios and loss factors of 1 and more, and angles of more than a turn that are given in rad.
+    damping ratios and loss factors of 1 and more, damping ratios of which the least is large,
+    and angles of more than a turn that are given in rad.
     """
     found = [_of_ratio(*one) for one in _ratios(top, parts, swept)]
     found += [_of_angle(*one) for one in _angles(top, swept)]
@@ -33,13 +36,13 @@ def _ratios(top: Section, parts: Parts, swept: Sequence[Swept]) -> Iterator[tupl
         if isinstance(damping, Mapping):
             yield "structure.damping.loss_factor", _numbers(damping.get("loss_factor")), "the stiffness"
         else:
-            yield "structure.damping", _numbers(damping), "critical damping"
+            yield "structure.damping", _numbers(damping), CRITICAL
     elif (damping := parts["modal"].get("damping")) is not None:
         given = top.data["modal"].get("damping") if isinstance(top.data.get("modal"), Mapping) else None
-        yield "modal.damping", _numbers(damping.tolist() if given is None else given), "critical damping"
+        yield "modal.damping", _numbers(damping.tolist() if given is None else given), CRITICAL
     for one in swept:
         if one.key.startswith("modal.damping"):
-            yield _of_sweep(one), one.values, "critical damping"
+            yield _of_sweep(one), one.values, CRITICAL
 
 
 def _angles(top: Section, swept: Sequence[Swept]) -> Iterator[tuple[str, Iterable[float]]]:
@@ -66,8 +69,10 @@ def _numbers(value: Any) -> list[float]:
 
 
 def _of_ratio(key: str, values: Iterable[float], whole: str) -> str:
-    value = max(values, default=0.0)
-    if value < LIMITS.damping_ratio:
+    each = list(values)
+    value = max(each, default=0.0)
+    all_large = whole == CRITICAL and min(each, default=0.0) >= LIMITS.damping_of_all
+    if value < LIMITS.damping_ratio and not all_large:
         return ""
     meant = f"if {shown(value)} % is meant, write {value / 100.0:.12g}"
     return f"{key}: is {shown(value)} right? It is {100.0 * value:.12g} % of {whole}; {meant}"
