@@ -122,6 +122,16 @@ def test_a_peak_that_falls_by_decades_is_to_be_seen_at_its_least_and_named():
     assert upper.get_yscale() == "log" and upper.get_ylabel() == "Peak amplitude of u"
 
 
+def test_a_gap_in_a_tracked_peak_is_explained():
+    number, none = np.linspace(1.0, 2.0, 5), np.zeros(5)
+    trough = np.array([0.0, 1.0, 1.0, 0.0, 0.0])
+    track = DrawnTrack("peak of u", number, number, number[:, None], none, trough, none + 1.0)
+    axes = draw_tracked(DrawnTracking("contact.c.n_0", ("u",), "Hz", (track,))).axes[:2]
+    assert axes[1].get_title(loc="left") == "gap: it is no peak but a trough"
+    for line in (one.lines[0] for one in axes):
+        assert np.isnan(line.get_ydata()).tolist() == trough.astype(bool).tolist()
+
+
 @pytest.mark.parametrize("low, scale", [(1.0, "log"), (100.0, "linear"), (0.0, "linear"), (-5.0, "linear")])
 def test_a_number_over_decades_has_a_logarithmic_axis(low, scale):
     number, none = np.linspace(low, 200.0, 5), np.zeros(5)

@@ -203,6 +203,7 @@ def _name_lines(axes: Axes, tracks: Sequence[DrawnTrack]) -> None:
     said = ["a colour for each peak"] if len(tracks) > 1 and len(peaks) == 1 else []
     said += ["dashed: no motion stays there"] if (stable == 0.0).any() else []
     said += ["dotted: stability unknown"] if np.isnan(stable).any() else []
+    said += ["gap: it is no peak but a trough"] if any((one.trough == 1.0).any() for one in tracks) else []
     if said:
         axes.set_title("; ".join(said), loc="left", fontsize=8)
 
