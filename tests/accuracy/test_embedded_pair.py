@@ -341,3 +341,13 @@ def test_the_partner_of_a_further_branch_takes_no_more_than_its_part_of_the_work
     (one,) = Budget.of(work, PAIR, part).shares(1)
     assert one.seconds == pytest.approx(0.1 * max(PAIR.work_fraction, PAIR.min_seconds))
     assert Budget.elsewhere(work, PAIR, part).seconds == pytest.approx(0.1 * PAIR.work_fraction_elsewhere)
+
+
+def test_points_of_a_curve_without_length_have_no_neighbours_to_be_compared_with():
+    """Two points that are one, as of a branch that is lost where it begins: nothing is told of them."""
+    system = System(scene("yang1998", 5), (1,))
+    path = unchecked_response(system).traced.branches.paths[0]
+    twice = np.repeat(path.where(Mark.PEAK)[:1], 2)
+    found = errors_along(system, path.part(twice))
+    assert not found.pieces
+    assert not found.is_same_curve.any()

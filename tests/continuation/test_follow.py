@@ -463,6 +463,30 @@ def test_a_curve_that_ends_is_kept_up_to_there():
     assert path.parameter[-1] == pytest.approx(2.0, abs=1e-6)
 
 
+class Ended(Problem):
+    """A closed curve in space of which there is only what lies near a value of the parameter."""
+
+    def __init__(self, at):
+        Problem.__init__(self, 2, 0, 0)
+        self.at = at
+
+    def evaluate(self, z):
+        x, y, p = z
+        self.residual[0] = x * x + p * p + 0.3 * y - 1.0 if abs(p - self.at) < 1e-3 else np.nan
+        self.residual[1] = y - 0.5 * x * p
+        self.jacobian[0, 0], self.jacobian[0, 1], self.jacobian[0, 2] = 2.0 * x, 0.3, 2.0 * p
+        self.jacobian[1, 0], self.jacobian[1, 1], self.jacobian[1, 2] = -0.5 * p, 1.0, -0.5 * x
+        return 0
+
+
+def test_a_curve_that_ends_where_it_begins_is_not_closed():
+    """It is taken back to its first point, which rounding may put before where it began."""
+    for angle in np.linspace(0.05, 1.5, 200):
+        begin = np.array([np.cos(angle), 0.0, np.sin(angle)])
+        path = follow(Ended(np.sin(angle)), begin, (-2.0, 2.0))
+        assert path.status is Status.STALLED and len(path.z) > 1
+
+
 class Hook(Problem):
     """y = c w(r), r = s + y / 2: nothing for r < 0, the root of r up to q^2, then straight on.
 

@@ -324,17 +324,22 @@ def _with_nearest_folds(
     Near is one whose amplitudes and frequency are both within `PairOptions.end_tolerance`: with the same
     amplitudes at another frequency it is another fold.
     """
-    error, folds = errors.fold.copy(), path.where(Mark.FOLD)
+    error, folds, dofs = errors.fold.copy(), path.where(Mark.FOLD), amplitude.shape[1]
+    turns = {side: [(one, one.turns(side)) for one in pieces] for side in (-1.0, 1.0)}
+    there = {
+        side: (
+            np.concatenate([np.empty(0), *(one.frequency[at] for one, at in found)]),
+            np.concatenate([np.empty((0, dofs)), *(one.value[at, :dofs] for one, at in found)]),
+        )
+        for side, found in turns.items()
+    }
     for k in np.flatnonzero(np.isnan(error)).tolist():
-        fold = int(folds[k])
-        now, omega, side = amplitude[fold], path.parameter[fold], _side(path.parameter, fold)
-        least, size = options.end_tolerance, float(now.max()) or 1.0
-        for piece in pieces:
-            for i in piece.turns(float(np.sign(side))).tolist():
-                shift = abs(float(piece.frequency[i] / omega) - 1.0)
-                off = max(float(np.abs(piece.value[i, : len(now)] - now).max() / size), shift)
-                if off < least:
-                    least, error[k] = off, shift
+        now, omega = amplitude[folds[k]], path.parameter[folds[k]]
+        frequency, value = there[1.0 if _side(path.parameter, int(folds[k])) > 0.0 else -1.0]
+        shift = np.abs(frequency / omega - 1.0)
+        off = np.maximum(np.abs(value - now).max(axis=1, initial=0.0) / (float(now.max()) or 1.0), shift)
+        if off.min(initial=np.inf) < options.end_tolerance:
+            error[k] = shift[off.argmin()]
     return error
 
 

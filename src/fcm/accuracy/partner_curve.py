@@ -404,16 +404,15 @@ class PartnerCurve:
         rows, own = np.flatnonzero(missing), self.path.parameter
         if not whole or not rows.size:
             return
-        pieces = self.pieces(compared, followed)
-        for first in range(0, len(rows), PAIR.batch):
-            some = rows[first : first + PAIR.batch]
-            mine = _passes(own, own[some]).sum(axis=1)
-            theirs = sum(_passes(one.frequency, own[some]).sum(axis=1) for one in pieces)
-            self.ends_before[some] = theirs < mine
-            some = some[(mine == 1) & (theirs == 1)]
-            now, even = compared.value[some], np.zeros(len(some))
-            by = np.ascontiguousarray(now[:, : self.amplitude.shape[1]])
-            shift[some] = (nearest(pieces, own[some], even, by) - now) / compared.unit[some]
+        pieces, mine = self.pieces(compared, followed), passings(own, own[rows])
+        theirs = sum((passings(one.frequency, own[rows]) for one in pieces), np.zeros_like(mine))
+        self.ends_before[rows] = theirs < mine
+        some = rows[(mine == 1) & (theirs == 1)]
+        if not some.size:
+            return
+        now, even = compared.value[some], np.zeros(len(some))
+        by = np.ascontiguousarray(now[:, : self.amplitude.shape[1]])
+        shift[some] = (nearest(pieces, own[some], even, by) - now) / compared.unit[some]
 
     def _by_pieces(self, one: FollowedStretch, compared: ComparedQuantities, shift: FloatArray) -> None:
         """Fill those along a stretch, and next to it where the way to the same frequency leads into
@@ -477,20 +476,16 @@ class PartnerCurve:
         """Which passing of the partner (row,) belongs to points of a stretch with folds: the same in
         their order where both have as many, the nearest (-1) where the partner has more, none (-2) where it
         has fewer."""
-        own = self.path.parameter[max(rows[0] - 1, 0) : rows[-1] + 2]
-        number, offset = np.full(len(rows), -1, dtype=np.intc), rows[0] - max(rows[0] - 1, 0)
-        for first in range(0, len(rows), PAIR.batch):
-            some = np.arange(first, min(first + PAIR.batch, len(rows)))
-            omega = self.path.parameter[rows[some]]
-            mine = _passes(own, omega)
-            count = np.zeros(len(some), dtype=np.intp)
-            for piece in one.pieces:
-                count += _passes(piece.path.parameter, omega).sum(axis=1)
-            before = np.arange(mine.shape[1]) < (offset + some - 1)[:, None]
-            number[some[count < mine.sum(axis=1)]] = -2
-            if len(one.pieces) == 1:
-                same = count == mine.sum(axis=1)
-                number[some[same]] = (mine & before)[same].sum(axis=1)
+        own, omega = self.path.parameter[max(rows[0] - 1, 0) : rows[-1] + 2], self.path.parameter[rows]
+        offset, mine = rows[0] - max(rows[0] - 1, 0), passings(own, omega)
+        theirs = sum((passings(piece.path.parameter, omega) for piece in one.pieces), np.zeros_like(mine))
+        number = np.where(theirs < mine, -2, -1).astype(np.intc)
+        same = np.flatnonzero(theirs == mine) if len(one.pieces) == 1 else np.empty(0, dtype=np.intp)
+        for first in range(0, len(same), PAIR.batch):
+            some = same[first : first + PAIR.batch]
+            passes = _passes(own, omega[some])
+            before = np.arange(passes.shape[1]) < (offset + some - 1)[:, None]
+            number[some] = (passes & before).sum(axis=1)
         return number
 
 
@@ -498,6 +493,23 @@ def curve_piece(finer: System, piece: PartnerPiece) -> CurvePiece:
     """A piece of the partner that was followed, with what the contacts bear."""
     contact_loads = contact_loads_along(finer, piece.path.z).reshape(len(piece.path.z), -1)
     return piece_of(ReportedPath(piece.path, piece.shown, contact_loads))
+
+
+def passings(parameter: FloatArray, omega: FloatArray) -> Indices:
+    """How often a curve passes frequencies (place,): the pieces of it that begin below and end at or above
+    them, or the other way round.
+
+    >>> passings(np.array([0.0, 2.0, 1.0, 3.0]), np.array([0.0, 0.5, 1.5, 3.0, 4.0])).tolist()
+    [1, 1, 3, 1, 0]
+    """
+    if len(parameter) < 2:
+        return np.zeros(len(omega), dtype=np.intp)
+    one, other = parameter[:-1], parameter[1:]
+    found: Indices = np.searchsorted(np.sort(np.minimum(one, other)), omega)
+    found -= np.searchsorted(np.sort(np.maximum(one, other)), omega)
+    for end, beside in ((0, 1), (-1, -2)):  # an end on it counts, too
+        found += (parameter[end] == omega) & (omega < parameter[beside])
+    return found
 
 
 def _passes(parameter: FloatArray, omega: FloatArray) -> Mask:

@@ -208,7 +208,9 @@ class Recorder:
     @cython.exceptval(-1, check=False)
     def closed(self) -> cython.bint:
         """Whether the step comes to where the curve began; the curve is kept as a closed one then."""
-        if not self.interior or not closes_curve(self.stepper, self.first, self.initial_direction):
+        if self.store.count < 2 or not self.interior:  # the first step leaves where it began
+            return False
+        if not closes_curve(self.stepper, self.first, self.initial_direction):
             return False
         self.store.close()
         return True
