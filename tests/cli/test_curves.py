@@ -184,6 +184,19 @@ def test_where_stability_is_not_told_is_a_table_of_its_own():
     assert "jump at" not in alone and "land on" not in alone and alone.count("\n\n") == 1
 
 
+def test_narrow_windows_of_unknown_stability_are_counted():
+    """Each would be a line of two frequencies that look alike."""
+    wide = {"sweep": "up", "from": 1.0, "to": 1.1, "before": {"u": 2.0}}
+    narrow = wide | {"to": 1.0005}
+    down = wide | {"sweep": "down", "from": 1.5, "to": 1.4999}
+    some = as_table({"curves": [curve({"u": 1.0}) | {"stability_untold": [wide, narrow, down]}]}, "Hz")
+    assert some.splitlines()[-2].split() == ["1.00000", "1.10000", "2.00000", "up"]
+    assert some.splitlines()[-1] == "and in 2 more windows narrower than 0.1 % of the frequency"
+    alone = as_table({"curves": [curve({"u": 1.0}) | {"stability_untold": [narrow]}]}, "Hz")
+    said = "stability is unknown, and a sweep may jump, in 1 window narrower than 0.1 % of the frequency"
+    assert alone.splitlines()[-1] == said
+
+
 UNITS = '[units]\nlength = "mm"\nforce = "N"\n'
 SCENE = UNITS + oscillator("[response]\nfrequency = [0.5, RANGE]\n", damping=0.05)
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from fcm.cli.columns import aligned, number, short, swept
 
+_NARROW = 1e-3  # of the frequency: windows of unknown stability that are narrower have no line each
 _LOST = "\n- the curve has no stable part there to land on"
 Row = tuple[str, float, list[str]]  # the sweep, where it begins, the cells between swept values and sweep
 
@@ -57,7 +58,12 @@ def _stays(one: Mapping[str, Any] | None) -> list[str]:
 
 
 def untold_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: list[str], unit: str) -> str:
-    """A line for each way of a sweep on which it is not told whether the motion is stable; empty if none."""
+    """A line for each way of a sweep on which it is not told whether the motion is stable; empty if none.
+
+    Narrow windows are counted.
+    """
+    every = [one for curve in curves for one in curve.get("stability_untold", ())]
+    narrow = sum(map(_is_narrow, every))
 
     def rows(curve: Mapping[str, Any]) -> list[Row]:
         return [
@@ -67,14 +73,22 @@ def untold_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: li
                 [number(one["from"]), number(one["to"]), *(number(one["before"].get(dof)) for dof in dofs)],
             )
             for one in curve.get("stability_untold", ())
+            if not _is_narrow(one)
         ]
 
+    windows = f"window{'s' * (narrow > 1)} narrower than {100.0 * _NARROW:g} % of the frequency"
     cells = _rows(curves, rows)
     if not cells:
-        return ""
+        said = f"stability is unknown, and a sweep may jump, in {narrow} {windows}"
+        return said if narrow else ""
     header = [*names, f"from {unit}", "to", *(f"{dof} there" for dof in dofs), "sweep"]
     said = "between these stability is unknown, and a sweep may jump; more harmonics may tell:"
-    return f"{said}\n{aligned([header, *cells], left=1)}"
+    more = f"\nand in {narrow} more {windows}" if narrow else ""
+    return f"{said}\n{aligned([header, *cells], left=1)}{more}"
+
+
+def _is_narrow(window: Mapping[str, Any]) -> bool:
+    return bool(abs(window["to"] - window["from"]) < _NARROW * window["from"])
 
 
 def _rows(
