@@ -12,7 +12,7 @@ from fcm.cli.balance import harmonics
 from fcm.cli.columns import ranges
 from fcm.cli.curves import as_table, cost_and_error
 from fcm.cli.doubts import residual_friction
-from fcm.model.in_time import InTime
+from fcm.model.scene import InTime
 from fcm.plot.peak import draw_peak, read_peaks
 from fcm.plot.read import read_response
 from fcm.plot.response import draw_response

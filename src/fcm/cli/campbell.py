@@ -12,7 +12,7 @@ from fcm.cli.drawing import ENDINGS, picture_of, save_picture
 from fcm.cli.files import largest_file_option, output_option
 from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages, pass_messages
-from fcm.cli.scene_name import scene_argument
+from fcm.cli.options import scene_argument
 
 if TYPE_CHECKING:
     from fcm.model.scene import Scene

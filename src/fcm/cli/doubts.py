@@ -235,7 +235,7 @@ def residual_friction(summary: Mapping[str, Any]) -> str:
 def _how(summary: Mapping[str, Any]) -> str:
     """By which option the exact motion is visited at a frequency F; empty where it is not computed, as of a
     nonlinear mode, which has no forces."""
-    from fcm.model.in_time import InTime
+    from fcm.model.scene import InTime
 
     if any("mode" in curve for curve in summary["curves"]) or (
         InTime(summary["exact_motion"]) is not InTime.COMPUTED

@@ -11,7 +11,7 @@ from fcm.cli.columns import aligned, number
 from fcm.cli.files import largest_file_option
 from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages, pass_messages
-from fcm.cli.scene_name import scene_argument
+from fcm.cli.options import scene_argument
 
 
 @click.command()

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 import click
+from click.shell_completion import CompletionItem
 
 from fcm.cli.messages import Messages
 
@@ -43,3 +44,14 @@ def add_verbosity(command: click.Command) -> None:
         ),
     )  # fmt: skip
     command.params += [option for option in options if not taken & set(option.opts)]
+
+
+def complete_scene(_ctx: click.Context, _param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    """Names of bundled scenes that begin so, and that the shell completes names of files, too."""
+    from fcm.scene import bundled_scenes
+
+    names = [CompletionItem(name) for name in bundled_scenes() if name.startswith(incomplete)]
+    return [*names, CompletionItem(incomplete, type="file")]
+
+
+scene_argument = click.argument("scene", metavar="SCENE", shell_complete=complete_scene)

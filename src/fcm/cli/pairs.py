@@ -9,7 +9,7 @@ import click
 from fcm.cli.drawing import ENDINGS, picture_of, save_picture_of
 from fcm.cli.files import largest_file_option, output_option
 from fcm.cli.messages import Messages, pass_messages
-from fcm.cli.scene_name import scene_argument
+from fcm.cli.options import scene_argument
 
 
 @click.command()

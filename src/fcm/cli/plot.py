@@ -17,18 +17,19 @@ from fcm.files import MEASURED, replacing
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+
 PICTURES = {
     "response": ("fcm.cli.plot:response", "Amplitude against frequency, one line a curve."),
     "modes": ("fcm.cli.modes:modes", "The modes of a scene and what moves them, as a table."),
-    "mode": ("fcm.cli.mode_picture:mode", "Frequency and damping of a nonlinear mode against amplitude."),
+    "mode": ("fcm.cli.plot:mode", "Frequency and damping of a nonlinear mode against amplitude."),
     "campbell": ("fcm.cli.campbell:campbell", "Frequencies of a ring of sectors by nodal diameter."),
     "history": ("fcm.cli.history:history", "Motion through the phases of a schedule."),
     "peak": ("fcm.cli.peak:peak", "Peak amplitude and frequency against what was swept."),
     "sensitivity": (
-        "fcm.cli.sensitivity_picture:sensitivity",
+        "fcm.cli.plot:sensitivity",
         "What each number of the scene does to a peak.",
     ),
-    "accuracy": ("fcm.cli.accuracy:accuracy", "Error against run time, one line a method."),
+    "accuracy": ("fcm.cli.plot:accuracy", "Error against run time, one line a method."),
     "loop": ("fcm.cli.loop:loop", "Hysteresis loops of a contact, given or of a response."),
     "contacts": ("fcm.cli.interface:contacts", "Which contacts stick, slip and open, and what they bear."),
     "pairs": ("fcm.cli.pairs:pairs", "Which nodes of two sets are pairs, and how far apart they are."),
@@ -131,3 +132,61 @@ def _bands(
     curves = [curve for curve in read.curves if np.isfinite(curve.amplitude[:, column]).any()]
     bands = bands_of(curves, read.drawn, column, band, wide(curves))
     return draw_bands(read, column, bands, band, log)
+
+
+@click.command()
+@draws_file("-mode.png")
+@pass_messages
+def mode(messages: Messages, file: Path, output: Path | None) -> None:
+    """Draw the nonlinear modes of FILE, the netCDF file of `fcm respond --mode N --level FROM:TO -o FILE`.
+
+    Frequency, damping ratio and error against the modal amplitude. Marked are where a mode is damped most,
+    and where the forces of each --force-level are in resonance.
+    """
+    from fcm.plot.mode import draw_modes, read_modes
+
+    output = picture_of(file, output, "-mode.png")
+    read = read_modes(file)
+    save_picture_of(lambda: draw_modes(read), output)
+    messages.info(f"wrote {output}")
+
+
+@click.command()
+@draws_file("-sensitivity.png")
+@click.option("--dof", metavar="NAME", help="The degree of freedom to draw.  [default: the first]")
+@click.option("--curve", type=click.IntRange(min=0), default=0, metavar="I", help="Of a sweep.  [default: 0]")
+@pass_messages
+def sensitivity(messages: Messages, file: Path, output: Path | None, dof: str | None, curve: int) -> None:
+    """Draw what each number does to a peak of FILE, the netCDF file of `fcm respond --sensitivity -o FILE`.
+
+    Relative: by how many percent the peak rises, and its frequency, for each percent of the number. The
+    numbers that do most come first.
+    """
+    from fcm.plot.sensitivity import draw_sensitivity, read_sensitivity
+
+    output = picture_of(file, output, "-sensitivity.png")
+    read = read_sensitivity(file)
+    save_picture_of(lambda: draw_sensitivity(read, dof=dof, curve=curve), output)
+    messages.info(f"wrote {output}")
+
+
+@click.command()
+@draws_file(".png")
+@click.option(
+    "--of", "quantity", type=click.Choice(["curve", "points", "peak", "peak-frequency", "fold"]),
+    default="curve", show_default=True, help="What the error is of.",
+)  # fmt: skip
+@pass_messages
+def accuracy(messages: Messages, file: Path, output: Path | None, quantity: str) -> None:
+    """Draw error against run time from FILE, which `fcm respond SCENE --compare -o FILE` has written.
+
+    One line a method, its longest step from long to short. An arrow points down where the error is less
+    than the reference can show. The time is that of the processor, which other programs do
+    not make longer.
+    """
+    from fcm.plot.accuracy import draw_accuracy, read_accuracy
+
+    output = picture_of(file, output, ".png")
+    read = read_accuracy(file, quantity.replace("-", "_"))
+    save_picture_of(lambda: draw_accuracy(read), output)
+    messages.info(f"wrote {output}")

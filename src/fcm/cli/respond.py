@@ -11,11 +11,11 @@ from fcm.cli import balance, cluster, exact, export, fit, nonlinear_mode, schedu
 from fcm.cli.calculation import calculated
 from fcm.cli.files import alone, check_different, check_not_read
 from fcm.cli.messages import Messages, pass_messages
+from fcm.cli.options import scene_argument
 from fcm.cli.outputs import Outputs
 from fcm.cli.remarks import announce, close
 from fcm.cli.resources_needed import check_room
 from fcm.cli.respond_options import Asked, respond_options
-from fcm.cli.scene_name import scene_argument
 from fcm.cli.time_limit import TimeLimit
 
 if TYPE_CHECKING:

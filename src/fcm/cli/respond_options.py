@@ -4,18 +4,51 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import click
 
 from fcm.cli import balance, exact
-from fcm.cli.about_scenes import about_scenes
+from fcm.cli.columns import aligned
 from fcm.cli.export import export_options
 from fcm.cli.files import largest_file_option, output_option
 from fcm.cli.options import FiniteRange
 from fcm.cli.time_limit import seconds
 from fcm.cli.track import track_options
+
+
+def _printed(text: str) -> None:
+    click.echo(text)
+    click.get_current_context().exit()
+
+
+def _keys(_ctx: click.Context, _param: click.Parameter, wanted: bool) -> None:
+    if wanted:
+        from fcm.scene.keys import as_lines
+
+        _printed(
+            aligned([["key", "what it may be", "without it", "meaning"], *map(list, as_lines())], left=4)
+        )
+
+
+def _template(_ctx: click.Context, _param: click.Parameter, wanted: bool) -> None:
+    if wanted:
+        _printed((files("fcm") / "scene" / "template.toml").read_text("utf-8").rstrip("\n"))
+
+
+def about_scenes(command: Any) -> Any:
+    """The options --keys and --template."""
+    keys = click.option(
+        "--keys", is_flag=True, is_eager=True, expose_value=False, callback=_keys,
+        help="Print every key of a scene and end.",
+    )  # fmt: skip
+    template = click.option(
+        "--template", is_flag=True, is_eager=True, expose_value=False, callback=_template,
+        help="Print a commented scene with every key and end.",
+    )  # fmt: skip
+    return keys(template(command))
 
 
 def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -> float | None:

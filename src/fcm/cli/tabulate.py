@@ -14,7 +14,7 @@ from fcm.cli.guard import NOT_COMPLETED
 from fcm.cli.interruptible import Interruptible
 from fcm.cli.limits import REQUESTS, SENTENCES
 from fcm.cli.messages import Messages, pass_messages
-from fcm.cli.scene_name import complete_scene
+from fcm.cli.options import complete_scene
 from fcm.cli.table_study import write_study
 from fcm.cli.terminal import plain
 

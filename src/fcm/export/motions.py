@@ -6,6 +6,7 @@ forces then balance it.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -21,7 +22,7 @@ from fcm.response.request import ResponseError
 from fcm.results.motions import ComplexArray, Motion
 from fcm.results.result import Curve, Response
 from fcm.rotational_dofs import greatest_first
-from fcm.units import UNIT
+from fcm.units import UNIT, in_unit
 
 
 def motions_of(
@@ -194,3 +195,28 @@ def scene_in_modes(scene: Scene) -> Scene:
     return replace(
         scene, modal=own, contacts=contacts, forces=forces, loads=loads, reported=(), curves=(), draft=None
     )
+
+
+_OTHER = re.compile(r"[^A-Za-z0-9_.+-]+")
+
+
+def labels_of(motions: Sequence[Motion], unit: str) -> list[str]:
+    """A name for each motion, all different: its curve, its peak or frequency.
+
+    >>> import numpy as np
+    >>> nothing = np.zeros((0, 2, 2), dtype=complex)
+    >>> motion = Motion(0, {}, ("16y",), 2.5, 1.0, (1,), nothing, None)
+    >>> labels_of([motion, motion], "rad/s")
+    ['peak_16y_2.5_rad_s', 'peak_16y_2.5_rad_s_2']
+    """
+    several, found = len({one.curve for one in motions}) > 1, list[str]()
+    for one in motions:
+        of = "_".join(["peak", *one.of[:1]]) if one.of else "at"
+        text = f"{of}_{in_unit(one.frequency, unit):.6g}_{unit}"
+        name = _OTHER.sub("_", f"curve{one.curve}_{text}" if several else text)
+        count, first = 1, name
+        while name in found:
+            count += 1
+            name = f"{first}_{count}"
+        found.append(name)
+    return found

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fcm.export.label import labels_of
+from fcm.export.motions import labels_of
 from fcm.export.rows import Rows
 from fcm.mesh import Mesh
 from fcm.model.scene import FloatArray, Scene

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.export.label import labels_of
+from fcm.export.motions import labels_of
 from fcm.export.rows import Rows
 from fcm.mesh import Mesh
 from fcm.model.scene import Scene

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fcm.model.interface import Interface
+
 
 FloatArray = npt.NDArray[np.float64]
 Address = tuple[str | int, ...]  # of a number of a scene, or of a vector whose numbers are all set
@@ -390,3 +392,26 @@ class Scene:
     def each_curve(self) -> tuple[Scene, ...]:
         """The scenes to trace: those of the sweep, or this one alone."""
         return self.curves or (self,)
+
+
+class InTime(Enum):
+    """Whether there is an exact motion in time of a scene; the values are those of a summary as JSON."""
+
+    COMPUTED = "computed"
+    RING = "not of a ring of sectors"
+    PLANE = "not of contacts in a plane"
+    OWN_LAW = "not of a contact law of one's own"
+
+
+def in_time(scene: Scene) -> InTime:
+    """Whether the exact motion of a scene is computed.
+
+    >>> import fcm
+    >>> in_time(fcm.load_scene("yang1998-n5")), in_time(fcm.load_scene("bladed-disk"))
+    (<InTime.COMPUTED: 'computed'>, <InTime.RING: 'not of a ring of sectors'>)
+    """
+    if scene.ring is not None:
+        return InTime.RING
+    if scene.planar:
+        return InTime.PLANE
+    return InTime.OWN_LAW if scene.with_own_laws else InTime.COMPUTED

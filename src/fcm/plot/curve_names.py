@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from fcm.plot.colour_bar import colour_bar
 from fcm.plot.labels import curve_label, symbols
-from fcm.plot.style import LAYOUT
+from fcm.plot.style import LAYOUT, colour_bar
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

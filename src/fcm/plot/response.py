@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from fcm.plot.colour_bar import colour_bar
 from fcm.plot.curve_names import label_at_peaks
 from fcm.plot.error_panel import SHARES, draw_errors, has_errors, name_errors
 from fcm.plot.errors import PlotError
@@ -15,7 +14,15 @@ from fcm.plot.labels import curve_label, frequency_label, symbols, with_unit
 from fcm.plot.measured import draw_measured, name_measured
 from fcm.plot.points import DrawnPoints, draw_points, name_points
 from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, FloatArray, wide
-from fcm.plot.style import LAYOUT, has_decades, house_style, logarithmic_axis, new_figure, sequence_colours
+from fcm.plot.style import (
+    LAYOUT,
+    colour_bar,
+    has_decades,
+    house_style,
+    logarithmic_axis,
+    new_figure,
+    sequence_colours,
+)
 from fcm.rotational_dofs import unit_of
 
 if TYPE_CHECKING:

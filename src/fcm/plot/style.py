@@ -212,3 +212,18 @@ def save(figure: Figure, path: Path, dpi: int = LAYOUT.dpi) -> None:
     with house_style():
         figure.savefig(drawn, dpi=dpi, format=ending[1:], metadata=_UNDATED[ending])
     path.write_bytes(drawn.getvalue())
+
+
+def colour_bar(figure: Figure, names: Sequence[str], title: str) -> None:
+    """The colours of lines in their order, with the names of some of them."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import BoundaryNorm, ListedColormap
+
+    count = len(names)
+    each = BoundaryNorm(np.arange(count + 1) - 0.5, count)
+    colours = ScalarMappable(each, ListedColormap(sequence_colours(count)))
+    shown = np.unique(np.linspace(0, count - 1, LAYOUT.bar_ticks).round().astype(int)).tolist()
+    bar = figure.colorbar(colours, ax=figure.axes, ticks=shown, pad=0.02)
+    bar.ax.set_yticklabels([names[i] for i in shown])
+    bar.ax.minorticks_off()
+    bar.set_label(title)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from fcm.model.in_time import InTime, in_time
-from fcm.model.scene import Scene
+from fcm.model.scene import InTime, Scene, in_time
 from fcm.response.options import SENTENCES
 from fcm.response.request import Request, ResponseError
 from fcm.scene.cyclic import WHOLE_RING, lacks

@@ -11,8 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
-from fcm.results.field import Field
-from fcm.results.padded_arrays import by_point
+from fcm.results.padded_arrays import Field, by_point
 from fcm.results.result import Curve, Response
 from fcm.results.scatter import PERCENTS, groups, percentiles
 from fcm.units import CF_UNIT, in_unit

@@ -10,8 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.model.scene import FloatArray
-from fcm.results.field import Field
-from fcm.results.padded_arrays import by_point
+from fcm.results.padded_arrays import Field, by_point
 from fcm.results.result import Curve
 
 DIRECTIONS = ("x", "y", "normal")  # in a plane,

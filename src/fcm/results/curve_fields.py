@@ -8,8 +8,7 @@ import numpy as np
 
 from fcm.results.condensed_curves import CondensedCurve, condense
 from fcm.results.contact_maxima import Greatest
-from fcm.results.field import Field
-from fcm.results.padded_arrays import by_fold
+from fcm.results.padded_arrays import Field, by_fold
 from fcm.results.result import Curve, Response
 from fcm.results.scatter import PERCENTS, SWEEPS, Scatter
 from fcm.results.variable_meanings import CYCLE

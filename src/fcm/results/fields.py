@@ -13,8 +13,7 @@ from fcm.contact.limits import FloatArray
 from fcm.results.blades import blade_fields
 from fcm.results.contact_motions import motions_across
 from fcm.results.curve_fields import condensed_fields, curve_fields, scatter_fields, sensitivity_fields
-from fcm.results.field import Field
-from fcm.results.padded_arrays import Padded, by_point
+from fcm.results.padded_arrays import Field, Padded, by_point
 from fcm.results.result import Curve, Response
 from fcm.results.scatter import scatter
 from fcm.results.variable_meanings import (

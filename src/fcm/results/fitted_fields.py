@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from fcm.model.scene import FloatArray, Measured
-from fcm.results.field import Field
 from fcm.results.fitted import Fitted, frequencies
+from fcm.results.padded_arrays import Field
 from fcm.results.result import Response
 from fcm.results.tracked_fields import padded
 from fcm.units import CF_UNIT, QUANTITIES

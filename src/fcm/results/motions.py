@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
-from fcm.results.field import Field
+from fcm.results.padded_arrays import Field
 from fcm.units import CF_UNIT, in_unit
 
 ComplexArray = npt.NDArray[np.complex128]

@@ -14,10 +14,9 @@ import fcm
 from fcm.files import replacing
 from fcm.results.blades import add_to_summary
 from fcm.results.contact_motions import DIRECTIONS
-from fcm.results.field import Field
 from fcm.results.fields import fields_of, swept_names
 from fcm.results.options import RESULTS, FileOptions
-from fcm.results.padded_arrays import Padded
+from fcm.results.padded_arrays import Field, Padded
 from fcm.results.result import Response
 from fcm.results.scatter import scatter, summary_of
 from fcm.results.tracked_fields import tracked_names

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -50,3 +50,11 @@ def by_point(curves: Sequence[Curve], pick: Callable[[Curve], npt.NDArray[Any]])
 def by_fold(curves: Sequence[Curve], pick: Callable[[Curve], npt.NDArray[Any]]) -> Padded:
     """What is picked of a number of places of each curve that is its own."""
     return Padded(curves, pick, max((len(pick(curve)) for curve in curves), default=0))
+
+
+class Field(NamedTuple):
+    """One variable of the file."""
+
+    dims: tuple[str, ...]
+    values: npt.NDArray[Any] | Padded
+    attrs: dict[str, str]

@@ -11,9 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
-from fcm.model.in_time import InTime, in_time
 from fcm.model.ring import of_sector
-from fcm.model.scene import Scene
+from fcm.model.scene import InTime, Scene, in_time
 from fcm.results.cause import Cause
 from fcm.results.condensed_curves import CondensedCurve
 from fcm.results.contact_maxima import Greatest

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fcm.results.field import Field
+from fcm.results.padded_arrays import Field
 from fcm.results.result import Response
 from fcm.results.tracked import Tracking
 from fcm.results.variable_names import variable_names
