@@ -14,8 +14,7 @@ from fcm.continuation import Status, follow
 from fcm.harmonic_balance.system import System as Balanced
 from fcm.harmonic_balance.work_budget import WorkLimitError
 from fcm.shooting import OrbitProblem
-from fcm.shooting.force_level import LevelMotions, level_motions, level_motions_at
-from fcm.shooting.force_level_problem import LevelProblem
+from fcm.shooting.force_level import LevelMotions, LevelProblem, level_motions, level_motions_at
 from fcm.shooting.options import SHOOTING
 from fcm.shooting.periodic_orbit import never_interrupt
 from fcm.shooting.residual import Shooting

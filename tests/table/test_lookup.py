@@ -7,8 +7,7 @@ from hypothesis import strategies as st
 
 from fcm import fourier_coefficients
 from fcm.contact import fourier_gradients
-from fcm.table.boundary_jump import seam
-from fcm.table.error import sample
+from fcm.table.error import sample, seam
 
 from ..program import python
 from ..scale import SCALE

@@ -18,7 +18,7 @@ from fcm.response.ring_limits import refuse_in_time
 from fcm.response.sweep import trace
 from fcm.scene.errors import counted
 from fcm.table import open_table
-from fcm.table.boundary_jump import seam
+from fcm.table.error import seam
 from fcm.table.shipped import DEFAULT
 
 Progress = Callable[[float, str], None]
@@ -39,7 +39,7 @@ class Comparison:
     runs: list[Run] = field(default_factory=list)
     errors: dict[str, list[Errors]] = field(default_factory=lambda: {EXACT: [], CLOSED_FORM: []})
     left_out: list[str] = field(default_factory=list)
-    seams: dict[str, float] = field(default_factory=dict)  # of each table, see `fcm.table.boundary_jump`
+    seams: dict[str, float] = field(default_factory=dict)  # of each table, see `fcm.table.error.seam`
     seconds: float = 0.0
     interrupted: bool = False
 

@@ -50,11 +50,10 @@ from fcm.scene.parts import (
 )
 from fcm.scene.plane import check_plane, notes_of_planes
 from fcm.scene.questionable_values import questions
-from fcm.scene.schedule import read_schedule, read_start, with_schedule
+from fcm.scene.schedule import note_of_start, read_schedule, read_start, with_schedule
 from fcm.scene.section import Parts, Section
 from fcm.scene.shared_normal import note_of_shared_normals, notes_of_slopes
 from fcm.scene.size_notices import Told
-from fcm.scene.start_note import note_of_start
 from fcm.scene.sweep import combinations, curves_of, read_sweep
 from fcm.scene.toml import read_toml
 

@@ -20,15 +20,64 @@ from fcm.continuation.all_branches import Follow, Following
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.fixed_frequency import correct_at_frequency
-from fcm.shooting.force_level_problem import LevelProblem, ProblemAtLevel
 from fcm.shooting.linear_orbits import about_rest
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic_orbit import Poll, within_unit_circle
+from fcm.shooting.problem import OrbitProblem
+from fcm.shooting.residual import Shot
 from fcm.shooting.work_budget import BranchBudget
+from fcm.time_domain.errors import SimulationError
 
 if TYPE_CHECKING:
     from fcm.branches.level_folds import LevelFold
     from fcm.harmonic_balance.system import System
+
+
+class LevelProblem(OrbitProblem):
+    """The closure of one period at omega [rad/s], z = (q, q', f, level) at the forces' angle 0."""
+
+    def __init__(self, scene: Scene, omega: float, options: ShootingOptions = SHOOTING) -> None:
+        super().__init__(scene, options=options)
+        self.omega = omega
+
+    def _made(self, z: FloatArray) -> Shot | None:
+        self.periods += 1
+        try:
+            return self.shooting.residual(z[:-1], self.omega, float(z[-1]), by_level=True)
+        except SimulationError:
+            return None
+
+    def measure(self, z: FloatArray) -> int:
+        """See `OrbitProblem`."""
+        super().measure(z)
+        self._scale[-1] = max(abs(float(z[-1])), self.options.level.level_floor)
+        return 0
+
+    def report(self, z: FloatArray, direction: FloatArray) -> int:
+        """Nothing: only what the level passes matters."""
+        return 0
+
+
+class ProblemAtLevel(OrbitProblem):
+    """The closure of one period, z = (q, q', f, omega), with all harmonic forces times its `load`."""
+
+    @property
+    def load(self) -> float:
+        """The level of the forces."""
+        return self._load
+
+    @load.setter
+    def load(self, level: float) -> None:
+        self._load = level
+        self.forget()
+
+    def _made(self, z: FloatArray) -> Shot | None:
+        self.periods += 1
+        try:
+            return self.shooting.residual(z[:-1], float(z[-1]), self._load)
+        except SimulationError:
+            return None
+
 
 Known = Callable[[float], Sequence[FloatArray]]
 Find = Callable[..., "LevelMotions"]

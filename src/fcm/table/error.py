@@ -10,8 +10,9 @@ import numpy.typing as npt
 
 from fcm.contact import fourier_coefficients
 from fcm.table import atlas
-from fcm.table.atlas import FloatArray
-from fcm.table.options import ERROR_OPTIONS
+from fcm.table.atlas import FloatArray, b_variation, phi_phase
+from fcm.table.lookup import Table
+from fcm.table.options import ERROR_OPTIONS, MAP_OPTIONS
 
 REGIMES = ("open", "separation", "slip", "stick")
 NAMES = ("F_b", "F_s", "F_c")
@@ -152,3 +153,20 @@ def _at(error: Any, path: tuple[str, ...]) -> float | None:
     for key in path:
         error = error.get(key) if isinstance(error, dict) else None
     return None if error is None else float(error)
+
+
+def seam(table: Table) -> FloatArray:
+    """The greatest jumps of F_b, F_s, F_c (3,) where separation begins, at n0_bar = b_bar.
+
+    There the splines of two charts meet: of F / beta, and of (F - F_edge) / E, see `fcm.table.atlas`. At nodes
+    both give the same F; between nodes each errs in its own way. The closed form has no jump.
+    """
+    _, _, nodes_x, nodes_z = table.resolution
+    x, z = (
+        np.linspace(0.0, 1.0, MAP_OPTIONS.points_of_cell * (nodes - 1) + 1) for nodes in (nodes_x, nodes_z)
+    )
+    phi = phi_phase(z)[None, :] + np.zeros((x.size, 1))
+    b = b_variation(x[:, None] + np.zeros(z.size), phi)
+    before, beyond = (np.array(table(n0, b, phi)) for n0 in (np.nextafter(b, 0.0), b))
+    jumps: FloatArray = np.abs(beyond - before).reshape(3, -1).max(axis=1)
+    return jumps
