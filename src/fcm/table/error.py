@@ -158,7 +158,7 @@ def _at(error: Any, path: tuple[str, ...]) -> float | None:
 def seam(table: Table) -> FloatArray:
     """The greatest jumps of F_b, F_s, F_c (3,) where separation begins, at n0_bar = b_bar.
 
-    There the splines of two charts meet: of F / beta, and of (F - F_edge) / E, see `fcm.table.atlas`. At nodes
+    There the splines of two charts meet: of F / beta, and of (F - F_edge) / E, see `table.atlas`. At nodes
     both give the same F; between nodes each errs in its own way. The closed form has no jump.
     """
     _, _, nodes_x, nodes_z = table.resolution
