@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.structure.diameters import nodal_diameters
+from fcm.structure.ring import nodal_diameters
 
 ONCE = [88.26374399, 195.67605066, 249.31165161, 617.32579659, 619.34330474, 2062.97567761]  # Hz
 TWICE = [169.3441295, 189.3018526, 193.0496227, 194.33310084, 194.91823247, 195.23065575, 195.41408815]

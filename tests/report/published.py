@@ -19,7 +19,7 @@ from fcm.response.sweep import trace
 from fcm.results.result import Curve
 from fcm.scene.load import load_scene
 from fcm.shooting.initial_orbits import solution_at
-from fcm.structure.diameters import nodal_diameters
+from fcm.structure.ring import nodal_diameters
 
 from .page import Section, Table
 from .rows import Row

@@ -9,7 +9,7 @@ import xarray
 
 import fcm
 from fcm.plot.read import read_response
-from fcm.results.variable_names import variable_names
+from fcm.results.variable_meanings import variable_names
 
 NAMES = (
     "left shroud", " x", "a,b", 'say "so"', "o'clock", "a/b", "/", "9 lives", "Öffnung", "é", "接触", "a:b",

@@ -10,8 +10,8 @@ import scipy.sparse
 from fcm.branches.force_level import solutions
 from fcm.harmonic_balance.system import System
 from fcm.scene import SceneError, scene_from_dict
-from fcm.structure.diameters import nodal_diameters
 from fcm.structure.linear import linear_of
+from fcm.structure.ring import nodal_diameters
 
 from . import rings
 

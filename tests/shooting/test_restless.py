@@ -12,7 +12,7 @@ from fcm.continuation import FollowOptions, follow
 from fcm.shooting.orbit_record import samples
 from fcm.shooting.periodic_orbit import shoot
 from fcm.shooting.problem import OrbitProblem
-from fcm.shooting.unstable_range_search import orbits_in_unstable_ranges
+from fcm.shooting.trace import orbits_in_unstable_ranges
 from fcm.time_domain.state import State
 from fcm.time_domain.system import System
 

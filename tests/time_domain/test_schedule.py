@@ -14,8 +14,7 @@ from fcm.shooting import periodic
 from fcm.time_domain import State, energy, histories, simulate_phases
 from fcm.time_domain.options import TIME, SimulationOptions
 from fcm.time_domain.schedule_plan import Plan
-from fcm.time_domain.schedule_record import INTERRUPTED, NOT_BEGUN, record
-from fcm.time_domain.settling import unsettled
+from fcm.time_domain.schedule_record import INTERRUPTED, NOT_BEGUN, record, unsettled
 from fcm.time_domain.system import LETTERS
 
 from ..interrupted import interrupted_after

@@ -56,7 +56,7 @@ def campbell(messages: Messages, scene: str, output: Path | None, to_json: bool,
 
 def numbers(scene: Scene) -> dict[str, Any]:
     """The diagram in numbers, frequencies in the scene's unit."""
-    from fcm.structure.diameters import nodal_diameters
+    from fcm.structure.ring import nodal_diameters
     from fcm.units import in_unit
 
     ring, unit = scene.ring, scene.frequency_unit

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from fcm.results.padded_arrays import Field
 from fcm.results.result import Response
 from fcm.results.tracked import Tracking
-from fcm.results.variable_names import variable_names
+from fcm.results.variable_meanings import variable_names
 from fcm.units import CF_UNIT, in_unit, unit_of_number
 
 KINDS = "smooth, kink of equal peaks, corner of the response, end of a higher peak"

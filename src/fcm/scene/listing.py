@@ -9,7 +9,7 @@ import numpy as np
 from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray, Force, Scene
 from fcm.scene.options import MESSAGES, TOLERANCES
-from fcm.structure.diameters import nodal_diameters
+from fcm.structure.ring import nodal_diameters
 
 METRE_AND_MILLIMETRE = float(np.sqrt(1000.0))  # of frequencies, where stiffness and mass mix the two systems
 UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}

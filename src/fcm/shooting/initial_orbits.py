@@ -20,11 +20,12 @@ from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.partly_sticking_orbits import partly_stuck_as_started
 from fcm.shooting.periodic_orbit import Orbit, Poll, approached, never_interrupt, shoot
 from fcm.shooting.problem import OrbitProblem
+from fcm.shooting.residual import Shot
 from fcm.shooting.traction_families import member_at_start
-from fcm.shooting.undetermined import start_reason, undetermined_reason
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.state import State
 from fcm.time_domain.system import System
+from fcm.units import spoken
 
 if TYPE_CHECKING:
     from fcm.accuracy.unchecked_response import UncheckedResponse
@@ -289,3 +290,29 @@ def first_point(problem: OrbitProblem, orbit: Orbit, poll: Poll = never_interrup
             raise SimulationError(start_reason(problem.scene, orbit, near))
         raise SimulationError(undetermined_reason(orbit, problem.options))
     return np.array(newton.z)
+
+
+def undetermined_reason(orbit: Orbit, options: ShootingOptions = SHOOTING) -> str:
+    """That a solution is not determined, and why."""
+    unit = orbit.scene.frequency_unit
+    where = f"the solution at {spoken(orbit.frequency, unit)} to start from is not determined"
+    ratio = orbit.frequency / float(orbit.scene.modal.frequency.max(initial=0.0) or np.inf)
+    if ratio > options.search.rounding_frequency:
+        return (
+            f"{where}: that is {ratio:.1g} times the frequency of the highest mode, which hardly moves, and "
+            "loses nothing, in one period of the force; take a lower frequency"
+        )
+    return (
+        f"{where}: a mode is free to drift, or resonates without damping; add damping, or try another range"
+    )
+
+
+def start_reason(scene: Scene, orbit: Orbit, near: Shot) -> str:
+    """That its contacts cannot rest where a scene starts."""
+    names = " and ".join(scene.contacts[choice.contact].name for choice in near.chosen if choice.gap)
+    at = spoken(orbit.frequency, scene.frequency_unit)
+    return (
+        f"of the solution found at {at} the contact {names} always sticks, on a "
+        "residual friction of its own, and with that of [start] there is none near it; give [start] another "
+        "friction"
+    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -16,12 +16,13 @@ from fcm.shooting.force_level import LevelMotions, level_motions
 from fcm.shooting.harmonic_balance_branches import converged_balance, passes
 from fcm.shooting.initial_orbits import find_initial_orbits, first_point, height_of, orbits_along_balance
 from fcm.shooting.options import SHOOTING, ShootingOptions
-from fcm.shooting.orbit_record import OrbitRecord, samples
-from fcm.shooting.periodic_orbit import Orbit, Poll, never_interrupt, periodic
+from fcm.shooting.orbit_record import OrbitRecord, recorded, samples
+from fcm.shooting.periodic_orbit import Orbit, Poll, approached, never_interrupt, periodic
 from fcm.shooting.problem import OrbitProblem
-from fcm.shooting.unstable_range_search import orbits_in_unstable_ranges
 from fcm.shooting.work_budget import BranchBudget, UncertainFrequencies
+from fcm.stability.unstable_ranges import unstable_stretches
 from fcm.time_domain.errors import SimulationError
+from fcm.time_domain.system import System
 
 Progress = Callable[[float, str], None]
 COMPLETE_STATUS = (Status.COMPLETE, Status.RETURNED, Status.CLOSED)
@@ -255,3 +256,28 @@ def stop_reason(scene: Scene, paths: Sequence[Path]) -> str:
 def with_unit(scene: Scene, omega: float) -> str:
     """A frequency [rad/s] in the scene's unit."""
     return f"{omega / UNITS[scene.frequency_unit]:.8g} {scene.frequency_unit}"
+
+
+def orbits_in_unstable_ranges(
+    problem: OrbitProblem, paths: Sequence[Path], poll: Poll
+) -> Iterator[FloatArray]:
+    """The stable motions (unknown + 1,) that simulations from rest come to in the widest stretches of the
+    range in which every motion of some paths is unstable.
+
+    A structure with a mode that nothing damps comes to none.
+    """
+    scene = problem.scene
+    if not (scene.modal.damping > 0.0).all():
+        return
+    parts = [(path.parameter, np.array([_stable(problem, z) for z in path.z])) for path in paths]
+    for low, high in unstable_stretches(parts, scene.frequency_range)[: problem.options.stability.max_ranges]:
+        try:
+            orbit = approached(System(scene, 0.5 * (low + high)), poll, problem.options)
+            if orbit.stable:
+                yield first_point(problem, orbit, poll)
+        except SimulationError:  # it does not become periodic, or is not determined
+            continue
+
+
+def _stable(problem: OrbitProblem, z: FloatArray) -> float:
+    return float(recorded(problem, z).stable)

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.model.ring import Ring
-from fcm.model.scene import FloatArray
+from fcm.model.scene import FloatArray, Scene
 from fcm.structure.linear import FROM_SINE, Linear, amplitudes, attached_to, with_springs
 from fcm.structure.loads import Loads
 from fcm.structure.receptance import Receptance, TravellingReceptance
@@ -83,3 +83,36 @@ class RingLinear(Linear):
     def stiffened(self, springs: FloatArray, harmonic: int = 1) -> FloatArray:
         """As `Linear.stiffened`, of the modes that a harmonic meets."""
         return self.wave(harmonic).stiffened(springs)
+
+
+@dataclass(frozen=True)
+class Diameter:
+    """Natural frequencies [rad/s] in ascending order, (mode,) each."""
+
+    number: int
+    opened: FloatArray  # without the contacts
+    stuck: FloatArray  # with k_u, k_v of every contact; k_v alone where there is no friction
+
+
+def nodal_diameters(scene: Scene) -> list[Diameter]:
+    """Those that have modes, from 0 to half of the sectors.
+
+    >>> import fcm
+    >>> disk = nodal_diameters(fcm.load_scene("bladed-disk"))
+    >>> [round(float(one.opened[0] / 2 / np.pi), 4) for one in disk[:3]]
+    [88.2637, 169.3441, 189.3019]
+    """
+    ring = scene.ring
+    assert ring is not None
+    rows = scene.directions_of_contacts()
+    directions = np.array(rows).reshape(len(rows), len(scene.modal.dofs)).T
+    along = scene.directions_of_contact - 1
+    each = [(*[one.k_u if one.mu > 0.0 else 0.0] * along, one.k_v) for one in scene.contacts]
+    springs = np.array(each).ravel()
+    found = []
+    for number in sorted(set(ring.diameter.tolist())):
+        which = ring.diameter == number
+        natural, own = ring.frequency[which], int((~ring.added[which]).sum())
+        stuck = with_springs(natural, ring.shapes[which] @ directions, springs)
+        found.append(Diameter(number, np.sort(natural[~ring.added[which]]), stuck[:own]))
+    return found
