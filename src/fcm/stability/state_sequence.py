@@ -12,7 +12,7 @@ from __future__ import annotations
 import cython
 import numpy as np
 import numpy.typing as npt
-from cython.cimports.libc.math import cos, fabs, log, sin
+from cython.cimports.libc.math import cos, fabs, sin, sqrt
 
 from fcm.contact.kernels import periodic_contact
 from fcm.contact.plane.options import OPTIONS
@@ -424,7 +424,8 @@ class PlanarSequence:
         length: float = self.record[p, 1]
         part: float = min(since / length, 1.0)
         if self.record[p, 4] > 0.0:
-            part = log(1.0 - part * length / self.record[p, 4]) / log(1.0 - length / self.record[p, 4])
+            left: float = self.record[p, 4]
+            part = (1.0 - sqrt(1.0 - part * length / left)) / (1.0 - sqrt(1.0 - length / left))
         total: float = 0.0
         t: float = 0.0
         for k in range(STAGES + 1):

@@ -212,7 +212,7 @@ def directions(panels: FloatArray, theta: FloatArray) -> FloatArray:
     part = np.clip((theta - begin) / length, 0.0, 1.0)
     graded = left > 0.0
     gone = part[graded] * length[graded] / left[graded]
-    part[graded] = np.log1p(-gone) / np.log1p(-length[graded] / left[graded])
+    part[graded] = (1.0 - np.sqrt(1.0 - gone)) / (1.0 - np.sqrt(1.0 - length[graded] / left[graded]))
     turned = np.exp(2j * np.arctan(between(panels[:, 5:], part))) * (panels[:, 2] + 1j * panels[:, 3])
     return np.stack((turned.real, turned.imag), axis=-1)
 

@@ -12,7 +12,7 @@ class PlanarOptions:
     Of the panels by which slip is followed
     ---------------------------------------
     tolerance : what the last coefficient of a panel's polynomial may be, times its radius over the greatest.
-        Forces err by about 1e-3 of that, their derivatives by more, see below.
+        Forces err by about 1e-5 of that, 1e-3 at worst, their derivatives by more, see below.
     panel_length : how long a panel may be, times the highest harmonic that is integrated.
     coefficient_floor : of the last coefficient but one, what the last is taken for at least, as it may vanish
         by chance.
@@ -64,7 +64,7 @@ class PlanarOptions:
     min_motion : motion that is smaller than its mean by that is none.
     """
 
-    tolerance: float = 5e-8
+    tolerance: float = 2e-7
     panel_length: float = 6.0
     coefficient_floor: float = 0.1
     last_change: float = 3e-5
@@ -79,9 +79,9 @@ class PlanarOptions:
     max_factor: float = 2.5
     safety: float = 0.7
     grading_length: float = 1.0
-    end_factor: float = 1e-3
+    end_factor: float = 0.1
     impulse_tolerance: float = 1e-9
-    max_grading: float = 0.8
+    max_grading: float = 0.97
     zero_radius: float = 1e-12
     negligible_length: float = 1e-10
     min_step: float = 1e-13
@@ -120,7 +120,6 @@ FINE = replace(
     OPTIONS,
     tolerance=1e-9,
     panel_length=4.0,
-    max_grading=0.6,
     last_change=1e-6,
     derivative_fraction=1e-3,
     impulse_tolerance=1e-11,

@@ -182,6 +182,7 @@ cdef class Panel:
     cdef double inner[64]
     cdef double rows[64]
     cdef double at[8]
+    cdef double fall[8]
     cdef double right[8]
     cdef double a[8]
     cdef double b[8]

@@ -30,7 +30,7 @@ from __future__ import annotations
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import cos, exp, fabs, isfinite, log, sin
+from cython.cimports.libc.math import cos, fabs, isfinite, sin, sqrt
 
 from fcm.contact.plane.options import PlanarOptions
 from fcm.contact.plane.radau import radau
@@ -248,9 +248,10 @@ class Panel:
         The angle [rad] at which it begins, how long it is, and the direction there.
     left, fade
         0 if its nodes are Radau's in the angle. Else how far from its beginning the contact opens [rad], and
-        the logarithm by which that falls: they are in the logarithm of what is left.
-    speed (s,)
-        Of the angle by the part of the panel, at the nodes: `length`, or `fade` times what is left.
+        the part by which the root of what is left falls: they are in that root. The direction is drawn to
+        that of U' like a power of what is left, and the force falls as what is left.
+    speed, fall (s,)
+        Of the angle by the part of the panel, at the nodes; and of what is left the part that is left there.
     tangent (s + 1,), change (s,), rate (s,)
         t at the start and at the nodes; its derivative by the angle, and that of alpha, at the nodes.
     e_x, e_y, along (s,), push (s + 1,)
@@ -281,7 +282,7 @@ class Panel:
         self.speed = np.zeros(STAGES)
         if not cython.compiled:
             self.matrix, self.inner, self.rows = np.zeros((3, STAGES * STAGES))
-            self.right, self.a, self.b, self.r, self.at = np.zeros((5, STAGES))
+            self.right, self.a, self.b, self.r, self.at, self.fall = np.zeros((6, STAGES))
         i: cython.int
         j: cython.int
         for i in range(STAGES):
@@ -303,11 +304,12 @@ class Panel:
         gone: float
         self.theta, self.length, self.start_x, self.start_y = theta, length, e_x, e_y
         self.left = left if length < left else 0.0
-        self.fade = -log(1.0 - length / left) if length < left else 0.0
+        self.fade = 1.0 - sqrt(1.0 - length / left) if length < left else 0.0
         self.noise = 4.0 * EPSILON * (self.motion.motion_bound[1] + self.motion.reach_bound[1])
         for i in range(STAGES):
             gone, self.speed[i] = self.gone(self.node[i + 1])
             self.at[i] = theta + gone
+            self.fall[i] = 1.0 - gone / left if self.fade > 0.0 else 1.0
         self.motion.place_nodes(self.at)
         for i in range(STAGES):
             x_1: float = self.motion.value[i + 1, 3]
@@ -316,8 +318,8 @@ class Panel:
             self.b[i] = e_x * y_1 - e_y * x_1
             self.r[i] = 2.0 * max(self.motion.value[i + 1, 2], 0.0) / self.speed[i]
         if self.fade > 0.0:
-            bend = self.fade * self.fade * left * (bend * left - rate)
-            rate *= self.fade * left
+            bend = self.fade * self.fade * left * (4.0 * bend * left - 2.0 * rate)
+            rate *= 2.0 * self.fade * left
         else:
             bend, rate = bend * length * length, rate * length
         slope: float = max(min(0.5 * rate, self.steepest), -self.steepest)
@@ -326,10 +328,10 @@ class Panel:
 
     def gone(self, part: float) -> tuple[float, float]:
         """How far a part of the panel is from its beginning [rad], and the speed of the angle there."""
-        remains: float
+        root: float
         if self.fade > 0.0:
-            remains = self.left * exp(-self.fade * part)
-            return self.left - remains, self.fade * remains
+            root = 1.0 - self.fade * part
+            return self.left * (1.0 - root * root), 2.0 * self.left * self.fade * root
         return self.length * part, self.length
 
     def newton(self, slope: float, bend: float) -> bool:
@@ -444,14 +446,16 @@ class Panel:
     def rest(self) -> float:
         """The last coefficient of t in Legendre's polynomials: what the polynomial leaves out is like it.
 
+        Of t times what is left, where the contact opens: so is the force.
+
         The last may vanish by chance; then the one before it tells, of which that is about a tenth.
         """
         j: cython.int
         before: float = 0.0
         last: float = 0.0
         for j in range(STAGES):
-            before += self.tail[0, j + 1] * self.tangent[j + 1]
-            last += self.tail[1, j + 1] * self.tangent[j + 1]
+            before += self.tail[0, j + 1] * self.fall[j] * self.tangent[j + 1]
+            last += self.tail[1, j + 1] * self.fall[j] * self.tangent[j + 1]
         rest: float = max(fabs(last), self.before * fabs(before))
         return rest
 
@@ -472,8 +476,8 @@ class Panel:
             for k in range(i + 1, STAGES):
                 self.right[i] -= self.matrix[STAGES * i + k] * self.right[k]
             self.right[i] *= self.matrix[STAGES * i + i]
-            before += self.tail[0, i + 1] * self.right[i]
-            last += self.tail[1, i + 1] * self.right[i]
+            before += self.tail[0, i + 1] * self.fall[i] * self.right[i]
+            last += self.tail[1, i + 1] * self.fall[i] * self.right[i]
         rest: float = max(fabs(last), self.before * fabs(before))
         return rest
 

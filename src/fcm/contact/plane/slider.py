@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import exp, fabs, hypot, sqrt
+from cython.cimports.libc.math import fabs, hypot, sqrt
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.motion import EPSILON, SLOPE_ERROR, VALUE_ERROR
@@ -218,8 +218,9 @@ class Slider:
                 graded, last = False, True
                 self.next_length = left
             length = min(self.next_length, left, self.longest)
-            if graded:
-                length = min(length, self.deepest * left)
+            if graded:  # the harmonics are those of a square
+                part = max(1.0 - self.longest / (3.0 * left), 0.0)
+                length = min(length, min(self.deepest, 1.0 - part * part) * left)
             elif length > 0.6 * left and (length < left or (opens and r <= nothing)):
                 length = 0.6 * left  # nor from closing to opening at once: turns matter between alone
             for tries in range(200):  # noqa: B007
@@ -282,9 +283,11 @@ class Slider:
         return bend
 
     def scaled(self, length: float, left: float, by: float) -> float:
-        """A length times a factor; if the panel was graded, of what is then left, so many times as deep."""
+        """A length times a factor; if the panel was graded, the part of the root of what is then left."""
+        part: float
         if self.panel.fade > 0.0:
-            length = left * (1.0 - exp(-by * self.panel.fade))
+            part = max(1.0 - by * self.panel.fade, 0.0)
+            length = left * (1.0 - part * part)
         else:
             length *= by
         return length
