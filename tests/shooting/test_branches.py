@@ -24,7 +24,6 @@ from fcm.shooting import (
     trace,
 )
 from fcm.shooting.damping_homotopy import less_damped, more_damped
-from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.harmonic_balance_branches import passes
 from fcm.shooting.initial_orbits import (
     find_initial_orbits,
@@ -33,6 +32,7 @@ from fcm.shooting.initial_orbits import (
     near_balance,
 )
 from fcm.shooting.options import SHOOTING
+from fcm.shooting.problem import correct_at_frequency
 from fcm.shooting.trace import distinct_motions, explore, incomplete, is_known
 from fcm.time_domain import State, simulate
 from fcm.time_domain.errors import SimulationError

@@ -8,8 +8,7 @@ import pytest
 
 from fcm.cli.track import as_table
 from fcm.response.least_peak import PeakTask
-from fcm.response.optima import optima
-from fcm.response.optimum import optimise
+from fcm.response.optimum import optima, optimise
 from fcm.response.options import OPTIMUM
 from fcm.response.track import track
 from fcm.results.output import write_netcdf

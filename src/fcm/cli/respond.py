@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager, nullcontext
 from typing import TYPE_CHECKING, Any
 
 import click
 from click.core import ParameterSource
 
-from fcm.cli import balance, cluster, exact, export, fit, nonlinear_mode, schedule, sensitivity, track
+from fcm.cli import balance, exact, export, fit, nonlinear_mode, schedule, sensitivity, track
 from fcm.cli.calculation import calculated
 from fcm.cli.files import alone, check_different, check_not_read
 from fcm.cli.messages import Messages, pass_messages
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from fcm.model.scene import Scene
+    from fcm.run import Factory
+    from fcm.run.options import RunOptions
 
 
 @click.command()
@@ -53,7 +56,7 @@ def respond(messages: Messages, /, scene: str, **options: Any) -> None:
         messages.expect(len(loaded.each_curve()))
     exported = [] if exporting is None else exporting.files
     outputs = Outputs(messages, asked.output, asked.csv, asked.history_csv, exported)
-    with outputs.kept(asked.resume) as keep, cluster.place_of(asked.cluster, messages.settings.run) as place:
+    with outputs.kept(asked.resume) as keep, _place_of(asked.cluster, messages.settings.run) as place:
         with TimeLimit(messages, asked.time_limit):
             response = calculated(messages, loaded, asked, place or messages.settings.place, keep)
             if exporting is not None:
@@ -76,7 +79,7 @@ def _compare(messages: Messages, scene: str, asked: Asked) -> None:
 def _check_options(asked: Asked) -> None:
     """A usage error if options exclude or need one another, whatever the scene."""
     level, mode, method = asked.level, asked.mode, asked.method
-    cluster.check_options(asked.cluster, level)
+    _check_cluster(asked.cluster, level)
     _check_left_out(asked)
     nonlinear_mode.check_options(mode, level, asked.at, asked.force_levels)
     track.check_options(asked.track, asked.over, asked.low, asked.high, method)
@@ -133,6 +136,28 @@ def _loaded(messages: Messages, name: str, asked: Asked) -> tuple[Scene, export.
         messages.info(note)
     schedule.check_options(scene, asked.history_csv)
     return _with_step(scene, asked), exporting
+
+
+def _check_cluster(address: str | None, level: object) -> None:
+    """A usage error if there are options beside the address of a cluster that have no meaning then."""
+    if address is None:
+        return
+    if level is not None:
+        raise click.UsageError(
+            "--cluster is of no use with --level, whose curves are followed in this process."
+        )
+    given = click.get_current_context().get_parameter_source("jobs")
+    if given is ParameterSource.COMMANDLINE:
+        raise click.UsageError("--jobs is of no use with --cluster, whose workers are as many as it has.")
+
+
+def _place_of(address: str | None, options: RunOptions | None) -> AbstractContextManager[Factory | None]:
+    """Where to compute: on that cluster, as long as it is open; None for this machine."""
+    if address is None:
+        return nullcontext()
+    from fcm.run.cluster import connected
+
+    return connected(address) if options is None else connected(address, options)
 
 
 def _with_step(scene: Scene, asked: Asked) -> Scene:

@@ -20,11 +20,10 @@ from fcm.model.scene import FloatArray, Scene
 from fcm.response.options import SENTENCES, STEPPED
 from fcm.results.jumps import Jump
 from fcm.run import Report
-from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.initial_orbits import first_point, solution_at
 from fcm.shooting.orbit_record import OrbitRecord, recorded_point, recorded_steady
 from fcm.shooting.periodic_orbit import Poll, never_interrupt, shoot
-from fcm.shooting.problem import OrbitProblem
+from fcm.shooting.problem import OrbitProblem, correct_at_frequency
 from fcm.shooting.steady_state import SteadyMotion, steady
 from fcm.shooting.trace import with_unit
 from fcm.time_domain.cycle_measures import Measure

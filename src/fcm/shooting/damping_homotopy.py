@@ -9,9 +9,8 @@ import numpy as np
 
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray, Scene
-from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.options import SHOOTING, ShootingOptions
-from fcm.shooting.problem import OrbitProblem
+from fcm.shooting.problem import OrbitProblem, correct_at_frequency
 
 
 def more_damped(scene: Scene, options: ShootingOptions = SHOOTING) -> tuple[Scene, float] | None:

@@ -19,11 +19,10 @@ from fcm.continuation import Checkpoint, Events, FollowOptions, Path, Status, al
 from fcm.continuation.all_branches import Follow, Following
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray, Scene
-from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.linear_orbits import about_rest
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic_orbit import Poll, within_unit_circle
-from fcm.shooting.problem import OrbitProblem
+from fcm.shooting.problem import OrbitProblem, correct_at_frequency
 from fcm.shooting.residual import Shot
 from fcm.shooting.work_budget import BranchBudget
 from fcm.time_domain.errors import SimulationError

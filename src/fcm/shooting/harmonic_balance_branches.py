@@ -13,11 +13,10 @@ from fcm.continuation import Path
 from fcm.continuation.corrector import Newton
 from fcm.continuation.options import PATH
 from fcm.model.scene import FloatArray, Scene
-from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.harmonic_balance_state import computed_state
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic_orbit import Poll
-from fcm.shooting.problem import OrbitProblem
+from fcm.shooting.problem import OrbitProblem, correct_at_frequency
 from fcm.time_domain.state import State
 
 if TYPE_CHECKING:

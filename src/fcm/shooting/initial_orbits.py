@@ -12,14 +12,13 @@ import numpy as np
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.damping_homotopy import less_damped, more_damped
-from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.harmonic_balance_branches import Place, is_stable, states_of_branches
 from fcm.shooting.harmonic_balance_state import balanced_states, computed_state
 from fcm.shooting.linear_orbits import started_states
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.partly_sticking_orbits import partly_stuck_as_started
 from fcm.shooting.periodic_orbit import Orbit, Poll, approached, never_interrupt, shoot
-from fcm.shooting.problem import OrbitProblem
+from fcm.shooting.problem import OrbitProblem, correct_at_frequency
 from fcm.shooting.residual import Shot
 from fcm.shooting.traction_families import member_at_start
 from fcm.time_domain.errors import SimulationError

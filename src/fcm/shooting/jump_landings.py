@@ -9,9 +9,8 @@ import numpy as np
 from fcm.continuation import Mark
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
-from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.orbit_record import OrbitRecord, recorded_point
-from fcm.shooting.problem import OrbitProblem
+from fcm.shooting.problem import OrbitProblem, correct_at_frequency
 
 
 def with_landings(problem: OrbitProblem, branches: list[list[OrbitRecord]]) -> list[list[OrbitRecord]]:

@@ -11,10 +11,9 @@ import numpy.typing as npt
 from fcm.continuation import FollowOptions, Mark, Path, follow
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
-from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.orbit_record import OrbitRecord, recorded_point
-from fcm.shooting.problem import OrbitProblem
+from fcm.shooting.problem import OrbitProblem, correct_at_frequency
 from fcm.time_domain.state import State
 
 PeakDofs = npt.NDArray[np.bool_]  # (dof,)

@@ -15,10 +15,9 @@ from fcm.continuation import Events, FollowOptions, Mark, Path
 from fcm.continuation.all_branches import Follow, Following, branch_through, contains
 from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
-from fcm.shooting.fixed_frequency import correct_at_frequency
 from fcm.shooting.orbit_record import OrbitRecord
 from fcm.shooting.periodic_orbit import Poll, converged, never_interrupt
-from fcm.shooting.problem import OrbitProblem
+from fcm.shooting.problem import OrbitProblem, correct_at_frequency
 from fcm.shooting.residual import Shot
 from fcm.shooting.steady_state import SteadyMotion, steady
 from fcm.stability.verdict import Bifurcation, bifurcation_of

@@ -7,6 +7,7 @@ from zlib import crc32
 
 import numpy as np
 
+from fcm.continuation.corrector import Newton
 from fcm.continuation.problem import Problem
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.options import SHOOTING, ShootingOptions
@@ -17,6 +18,19 @@ from fcm.time_domain.state import State
 
 if TYPE_CHECKING:
     from fcm.shooting.orbit_record import OrbitRecord
+
+
+def correct_at_frequency(newton: Newton, z: FloatArray, reach: float = 1.0) -> bool:
+    """Whether Newton's method comes to the curve from near z, with the frequency held."""
+    newton.problem.measure(z)
+    np.asarray(newton.scale)[:] = newton.problem.scale
+    np.asarray(newton.z)[:] = z
+    row = np.asarray(newton.row)
+    row[:-1], row[-1] = 0.0, 1.0
+    if not newton.correct(reach):
+        return False
+    newton.z[-1] = z[-1]
+    return True
 
 
 class OrbitProblem(Problem):
