@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 import fcm
 from fcm.branches.force_level import solutions
 from fcm.contact import ContactLawError
-from fcm.harmonic_balance.sampled import check_own_laws
+from fcm.harmonic_balance.sampled_law import check_own_laws
 from fcm.harmonic_balance.system import System
 from fcm.response import ResponseError
 from fcm.scene import scene_from_dict

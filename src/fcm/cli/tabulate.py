@@ -118,7 +118,7 @@ def _build(
     points: int,
     to_json: bool,
 ) -> None:
-    from fcm.cli.part import reached, saving
+    from fcm.cli.partial_table import reached, saving
     from fcm.run.progress import part as share
     from fcm.table import build_table
 

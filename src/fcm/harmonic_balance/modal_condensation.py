@@ -15,7 +15,7 @@ left out of the condensed system, which then is the preconditioner of the whole 
 the solution is, after few iterations, as what is left out changes little.
 
 Where most contacts stay stuck or open, the forces of the others may be fewer than these modes: then they are
-condensed to, see `fcm.harmonic_balance.held_contacts`.
+condensed to, see `fcm.harmonic_balance.linear_contacts`.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from typing import Protocol
 
 import numpy as np
 
-from fcm.harmonic_balance.held_contacts import LinearContacts
+from fcm.harmonic_balance.linear_contacts import LinearContacts
 from fcm.harmonic_balance.modal_equations import ModalCompliance, ModalEquations
 from fcm.model.scene import FloatArray
 

@@ -28,7 +28,7 @@ from fcm.harmonic_balance.modal_equations import ModalCompliance
 from fcm.harmonic_balance.options import HARMONIC_BALANCE, ExtremeOptions, HarmonicBalanceOptions
 from fcm.harmonic_balance.prolongation import ForceLevelProblem
 from fcm.harmonic_balance.residual import Balance
-from fcm.harmonic_balance.sampled import SampledLaw
+from fcm.harmonic_balance.sampled_law import SampledLaw
 from fcm.harmonic_balance.work_budget import WorkCount
 from fcm.model.scene import FloatArray, Scene
 from fcm.structure.layout import Layout, layout_of

@@ -25,7 +25,7 @@ from fcm.continuation.path import Path
 from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.cost_model import with_twice_as_many
 from fcm.harmonic_balance.response_quantities import cycles, loops, recorded_at_levels
-from fcm.harmonic_balance.sampled import check_own_laws
+from fcm.harmonic_balance.sampled_law import check_own_laws
 from fcm.harmonic_balance.static_equilibrium import RestError
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene

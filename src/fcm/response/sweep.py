@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
-from fcm.harmonic_balance.sampled import check_own_laws
+from fcm.harmonic_balance.sampled_law import check_own_laws
 from fcm.model.scene import Scene
 from fcm.reduction import sentences
 from fcm.reduction.negligible_parts import ReducedScenes, unreduced, without_negligible_parts
