@@ -73,7 +73,8 @@ class PairOptions:
     piece_fraction : float
         Part of that, that following the partner one way may take before others are followed,
     level_fraction : float
-        and part of what is left of it, that the level of the forces may take at one frequency.
+        and part of what is left of it, that the level of the forces may take at one frequency, times
+        the part of the points of which nothing is told yet.
     interval_factor : int
         `point_interval` over the next one, at which motions are tried that may lead to the partner.
     probes, min_found : int, float

@@ -118,8 +118,13 @@ class _Search:
     @property
     def is_open(self) -> bool:
         """Whether there is something to tell, and work that it may take."""
-        rest = self.untold[self.first :]
-        return self.budget.seconds > 0.0 and any(np.isfinite(one.size).any() for one in rest)
+        return self.budget.seconds > 0.0 and self.untold_fraction > 0.0
+
+    @property
+    def untold_fraction(self) -> float:
+        """Part of the points of the paths from the first on of which nothing is told yet."""
+        size = np.concatenate([one.size for one in self.untold[self.first :]])
+        return float(np.isfinite(size).mean()) if size.size else 0.0
 
     def leads(self, interval: int) -> bool:
         """Whether points at least so far apart lead to any motion of a partner, and on from there."""
@@ -161,7 +166,7 @@ class _Search:
         """Both ways from a motion at a point of a path, if there is one."""
         stretches, most = self._stretches(k), self.each
         if by_level:
-            most = self.budget.seconds * self.options.level_fraction
+            most = self.budget.seconds * self.options.level_fraction * self.untold_fraction
         stretches.budget = Budget(most)
         z = stretches.start(i, by_level)
         self.budget.seconds -= most - stretches.budget.seconds
