@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 
 from fcm.harmonic_balance.sampled_law import check_own_laws
 from fcm.model.scene import Scene
@@ -169,11 +170,16 @@ class _Sweep:
         return _shipped_table()
 
 
-def _shipped_table() -> Table:
-    """The shipped table, opened once for all groups."""
+@cache
+def _opened() -> Table:
     from fcm.table import open_table
 
     return open_table()
+
+
+def _shipped_table() -> Table:
+    """The shipped table, opened once in a process; it counts for itself what it does not answer for."""
+    return copy(_opened())
 
 
 def in_batches(curves: tuple[Scene, ...], size: int) -> list[tuple[Scene, ...]]:
