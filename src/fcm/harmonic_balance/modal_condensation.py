@@ -12,7 +12,12 @@ of the same determinant, and no worse conditioned at a fold.
 A mode far above the harmonics is stiff beside the contacts: with modal mass 1 and shapes p on the ports it
 yields sum_p k_p p^2 / (w^2 - (H omega)^2) of what a contact's spring k does. Modes of which that is small are
 left out of the condensed system, which then is the preconditioner of the whole one, with all modes: of that
-the solution is, after few iterations, as what is left out changes little.
+the solution is, after few iterations, as what is left out changes little. With what is left out the spectrum
+is within 1 and 1 + y, with y the greatest yield of these modes, so that an iteration leaves the part
+
+    (sqrt(1 + y) - 1) / (sqrt(1 + y) + 1)
+
+of an error (Saad 2003, 6.11). As many modes are kept as make factorisation and iterations cheapest.
 
 Where most contacts stay stuck or open, the forces of the others may be fewer than these modes: then they are
 condensed to, see `fcm.harmonic_balance.linear_contacts`.
@@ -20,6 +25,7 @@ condensed to, see `fcm.harmonic_balance.linear_contacts`.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -41,7 +47,11 @@ class CondensationOptions:
     max_fraction : float
         Of the unknowns, how large the condensed system may be.
     compliance_limits : tuple of float
-        How much a mode that is left out may yield beside the contacts.
+        How much a mode that is left out may yield beside the contacts: the cheapest of these is taken.
+    solutions : int
+        With one factorisation, for that choice.
+    product_speed : float
+        How many times as fast matrices are multiplied by matrices as by a vector, for that choice.
     tolerance : float
         Of the last correction of a solution, relative to it.
     newton_tolerance : float
@@ -56,6 +66,8 @@ class CondensationOptions:
     min_unknowns: int = 200
     max_fraction: float = 0.5
     compliance_limits: tuple[float, ...] = (0.03, 0.3, 1.0)
+    solutions: int = 3
+    product_speed: float = 8.0
     tolerance: float = 1e-9
     newton_tolerance: float = 0.1
     min_step: float = 1e-3
@@ -80,13 +92,29 @@ def modal_compliance(
     return np.where(share > 0.0, size, 0.0) * np.where(share > 0.0, share, 1.0)
 
 
-def retained_modes(yields: FloatArray, ports: int, options: CondensationOptions = CONDENSATION) -> int:
-    """To how many modes many contacts are condensed; 0 where these are not much fewer than the ports."""
-    for stiff in options.compliance_limits:
-        modes = int((yields > stiff).sum())
-        if modes < options.max_fraction * ports:
-            return max(modes, 1)
-    return 0
+def retained_modes(
+    yields: FloatArray, ports: int, parts: int, options: CondensationOptions = CONDENSATION
+) -> int:
+    """To how many modes many contacts are condensed, each in so many parts; 0 where these are not much fewer
+    than the ports.
+
+    >>> modes = np.r_[np.full(40, 10.0), np.full(250, 0.5), np.full(310, 0.1)]
+    >>> retained_modes(modes, 600, 7), retained_modes(modes[::5], 120, 3)
+    (40, 8)
+    """
+    number = {stiff: max(int((yields > stiff).sum()), 1) for stiff in options.compliance_limits}
+    few = {stiff: modes for stiff, modes in number.items() if modes < options.max_fraction * ports}
+
+    def cost(stiff: float) -> float:
+        """Multiplications for one factorisation and what is solved with it."""
+        rank, root = parts * few[stiff], math.sqrt(1.0 + stiff)
+        factored = rank**3 / 3.0 + rank * rank * ports
+        by_iteration = math.log((root + 1.0) / (root - 1.0)) if stiff > 0.0 else math.inf
+        iterations = -math.log(options.tolerance) / by_iteration
+        each = 2.0 * parts * ports * yields.size + rank * rank
+        return factored / options.product_speed + options.solutions * iterations * each
+
+    return few[min(few, key=cost)] if few else 0
 
 
 class Condensable(Protocol):
@@ -105,7 +133,7 @@ def condensed_size(system: Condensable, ports: int, harmonics: int) -> int:
     parts = 1 + 2 * harmonics
     if ports * parts < system.condensation.min_unknowns or not system.modal_compliance.size:
         return 0
-    return retained_modes(system.modal_compliance, ports, system.condensation) * parts
+    return retained_modes(system.modal_compliance, ports, parts, system.condensation) * parts
 
 
 class CondensedSystem:
@@ -127,7 +155,8 @@ class CondensedSystem:
         self.answer, self.tangent, self.options = answer, tangent, options
         self.equations = ModalEquations(self.answer, tangent, options.max_corrections)
         self.ranking = np.argsort(-yields, kind="stable")
-        self.choose_modes(retained_modes(yields, answer.seen.ports, options))
+        parts = 1 + 2 * answer.seen.count
+        self.choose_modes(retained_modes(yields, answer.seen.ports, parts, options))
         self.linear_contacts = LinearContacts(answer, springs, counted)
         self.row, self.scale = np.zeros((2, tangent.shape[0] * tangent.shape[1] + 1))
 
