@@ -59,6 +59,7 @@ cdef extern from *:
     """
     #include <stddef.h>
     #if defined(__GNUC__)
+    typedef long long fcm_eight_whole __attribute__((vector_size(64), aligned(8)));
     typedef double fcm_eight __attribute__((vector_size(64), aligned(8)));
     #if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__)
     #define FCM_COLUMNS __attribute__((unused, target_clones("avx512f", "avx2", "default")))
@@ -66,32 +67,91 @@ cdef extern from *:
     #define FCM_COLUMNS __attribute__((unused))
     #endif
 
-    /* Eight columns of the block (8, width) at a time are solved by the factors of a panel, and added to the
-       sums (rows, width) with the weights (rows, 8). Nothing is contracted: all processors round alike. */
+    /* The right sides (8, width) of what t at eight nodes has from its start and from the motion; see `carry`. */
+    FCM_COLUMNS static int fcm_drive_eight(
+        const double *t, const double *r, const double *slope, const double *rate, const double *e_x,
+        const double *e_y, const double *cosines, const double *sines, const double *order, int count,
+        const double *turn, ptrdiff_t width, int moves, double *block)
+    {
+        double start[8], mean[8], six[48];
+        const fcm_eight T = *(const fcm_eight *)t, part = 1.0 + T * T;
+        const fcm_eight of_reach = -part * *(const fcm_eight *)rate;
+        const fcm_eight across_x = -part * *(const fcm_eight *)e_y, across_y = part * *(const fcm_eight *)e_x;
+        *(fcm_eight *)start = -0.5 * *(const fcm_eight *)r * *(const fcm_eight *)slope;
+        *(fcm_eight *)mean = of_reach;
+        for (int i = 0; i < 8; i++)
+            for (ptrdiff_t j = 0; j < width; j += 8)
+                *(fcm_eight *)(block + i * width + j) = start[i] * *(const fcm_eight *)(turn + j);
+        if (!moves)
+            return 1;
+        for (int i = 0; i < 8; i++)
+            block[i * width + 2] += mean[i];
+        for (int k = 0; k < count; k++) {
+            const fcm_eight c = *(const fcm_eight *)(cosines + 8 * k), s = *(const fcm_eight *)(sines + 8 * k);
+            const fcm_eight c_1 = order[k] * c, s_1 = order[k] * s;
+            fcm_eight *one = (fcm_eight *)six;
+            one[0] = -across_x * s_1, one[1] = -across_x * c_1, one[2] = -across_y * s_1;
+            one[3] = -across_y * c_1, one[4] = of_reach * c, one[5] = -of_reach * s;
+            double *into = block + 3 + 6 * k;
+            for (int i = 0; i < 8; i++, into += width)
+    #pragma GCC unroll 6
+                for (int p = 0; p < 6; p++)
+                    into[p] += six[8 * p + i];
+        }
+        return 1;
+    }
+
+    /* Rows of eight: what derivatives of t at the nodes add to the means of the forces and to their harmonics, the
+       numbers `place` among those of the motion; see `weigh`. */
+    FCM_COLUMNS static int fcm_weigh_eight(
+        const double *t, const double *weight, const double *speed, const double *reach, const double *e_x,
+        const double *e_y, const double *cosines, const double *sines, const int *place, int count, double by,
+        double *into)
+    {
+        const fcm_eight T = *(const fcm_eight *)t, R = *(const fcm_eight *)reach, zero = R - R;
+        const fcm_eight w = *(const fcm_eight *)weight * *(const fcm_eight *)speed * by / (1.0 + T * T)
+            * (fcm_eight)((fcm_eight_whole)R & (R > zero));
+        const fcm_eight x = -w * *(const fcm_eight *)e_y, y = w * *(const fcm_eight *)e_x;
+        fcm_eight *row = (fcm_eight *)into;
+        row[0] = 0.5 * x, row[1] = 0.5 * y;
+        for (int m = 0; m < count; m++) {
+            const fcm_eight c = *(const fcm_eight *)(cosines + 8 * place[m]);
+            const fcm_eight s = *(const fcm_eight *)(sines + 8 * place[m]);
+            row[4 * m + 2] = x * c, row[4 * m + 3] = -x * s, row[4 * m + 4] = y * c, row[4 * m + 5] = -y * s;
+        }
+        return 1;
+    }
+
+    /* Eight columns of the block (8, width) at a time are multiplied by the inverse of a panel, by columns (8, 8),
+       and added to the sums (rows, width) with the weights (rows, 8); the last row times `by` is the turn (width).
+       Nothing is contracted: all processors round alike. */
     FCM_COLUMNS static int fcm_carry_eight(
-        const double *matrix, double *block, ptrdiff_t width, ptrdiff_t columns, const double *weight,
-        double *sums, ptrdiff_t rows)
+        const double *inverse, const double *block, ptrdiff_t width, ptrdiff_t columns, const double *weight,
+        double *sums, ptrdiff_t rows, double by, double *turn)
     {
         for (ptrdiff_t j = 0; j < columns; j += 8) {
             fcm_eight x[8];
-    #pragma GCC unroll 8
-            for (int i = 0; i < 8; i++)
-                x[i] = *(const fcm_eight *)(block + i * width + j);
-    #pragma GCC unroll 8
-            for (int i = 1; i < 8; i++)
-    #pragma GCC unroll 8
-                for (int p = 0; p < i; p++)
-                    x[i] -= matrix[8 * i + p] * x[p];
-    #pragma GCC unroll 8
-            for (int i = 7; i >= 0; i--) {
-    #pragma GCC unroll 8
-                for (int p = i + 1; p < 8; p++)
-                    x[i] -= matrix[8 * i + p] * x[p];
-                x[i] *= matrix[9 * i];
+            if (!rows) {
+                const double *a = inverse + 7;
+                const double *b = block + j;
+                x[7] = *(const fcm_eight *)b * a[0];
+                for (int k = 1; k < 8; k++)
+                    x[7] += *(const fcm_eight *)(b + k * width) * a[8 * k];
+                *(fcm_eight *)(turn + j) = by * x[7];
+                continue;
             }
+            const fcm_eight first = *(const fcm_eight *)(block + j);
     #pragma GCC unroll 8
             for (int i = 0; i < 8; i++)
-                *(fcm_eight *)(block + i * width + j) = x[i];
+                x[i] = inverse[i] * first;
+    #pragma GCC unroll 8
+            for (int k = 1; k < 8; k++) {
+                const fcm_eight next = *(const fcm_eight *)(block + k * width + j);
+    #pragma GCC unroll 8
+                for (int i = 0; i < 8; i++)
+                    x[i] += inverse[8 * k + i] * next;
+            }
+            *(fcm_eight *)(turn + j) = by * x[7];
             for (ptrdiff_t r = 0; r < rows; r++) {
                 const double *w = weight + 8 * r;
                 fcm_eight *sum = (fcm_eight *)(sums + r * width + j);
@@ -102,11 +162,21 @@ cdef extern from *:
         return 1;
     }
     #else
-    #define fcm_carry_eight(matrix, block, width, columns, weight, sums, rows) 0
+    #define fcm_drive_eight(t, r, slope, rate, e_x, e_y, cosines, sines, order, count, turn, width, moves, block) 0
+    #define fcm_weigh_eight(t, weight, speed, reach, e_x, e_y, cosines, sines, place, count, by, into) 0
+    #define fcm_carry_eight(inverse, block, width, columns, weight, sums, rows, by, turn) 0
     #endif
     """
+    bint drive_eight "fcm_drive_eight"(
+        const double *, const double *, const double *, const double *, const double *, const double *,
+        const double *, const double *, const double *, int, const double *, Py_ssize_t, int,
+        double *) noexcept nogil
+    bint weigh_eight "fcm_weigh_eight"(
+        const double *, const double *, const double *, const double *, const double *, const double *,
+        const double *, const double *, const int *, int, double, double *) noexcept nogil
     bint carry_eight "fcm_carry_eight"(
-        const double *, double *, Py_ssize_t, Py_ssize_t, const double *, double *, Py_ssize_t) noexcept nogil
+        const double *, const double *, Py_ssize_t, Py_ssize_t, const double *, double *, Py_ssize_t, double,
+        double *) noexcept nogil
 
 cdef class Derivatives:
     cdef readonly PlaneMotion motion
@@ -121,6 +191,7 @@ cdef class Derivatives:
     cdef readonly double[::1] turn, w_x, w_y
     cdef double[::1] u_x, u_y, r
     cdef double[:, ::1] block, gathered, weight
+    cdef double[::1] slope
     cdef void fill(self, double value) noexcept nogil
     cdef void take(self, int low, int high) noexcept nogil
     cdef void moved(self) noexcept nogil
@@ -131,7 +202,8 @@ cdef class Derivatives:
     cdef void close_sliding(self, double e_x, double e_y, double rate) noexcept nogil
     cdef double greatest(self) noexcept nogil
     cdef void carry(self, bint gather) noexcept nogil
-    cdef void solve(self, bint gather) noexcept nogil
+    cdef void drive(self) noexcept nogil
+    cdef void solve(self, bint gather, double by) noexcept nogil
     cdef void weigh(self) noexcept nogil
     cdef void stick(self, double begin, double end) noexcept nogil
     cdef void direct(self) noexcept nogil

@@ -28,7 +28,7 @@ from cython.cimports.libc.math import cos, fabs, sin
 
 if cython.compiled:
     from cython.cimports.fcm.contact.closed_form import PI
-    from cython.cimports.fcm.contact.plane.integrals import carry_eight, turn_eight
+    from cython.cimports.fcm.contact.plane.integrals import carry_eight, drive_eight, turn_eight, weigh_eight
     from cython.cimports.fcm.contact.plane.panel import SCAN, STAGES, Panel, PlaneMotion
 else:
     from fcm.contact.closed_form import PI
@@ -135,10 +135,10 @@ class Sums:
         for i in range(STAGES):
             w = panel.weight[i] * panel.speed[i]
             self.x[i], self.y[i] = w * panel.e_x[i], w * panel.e_y[i]
-            self.c[i], self.s[i] = self.motion.value[i + 1, 9], self.motion.value[i + 1, 10]
+            self.c[i], self.s[i] = self.motion.node[6 * STAGES + i], self.motion.node[7 * STAGES + i]
             w *= panel.push[i + 1]
             self.path += w
-            self.work += w * max(self.motion.value[i + 1, 2], 0.0)
+            self.work += w * max(self.motion.node[2 * STAGES + i], 0.0)
         if cython.compiled and turn_eight(
             cython.address(self.x[0]), cython.address(self.y[0]), cython.address(self.c[0]),
             cython.address(self.s[0]), cython.address(self.lanes[0, 0]), self.highest,
@@ -215,10 +215,11 @@ class Derivatives:
         self.output, self.outputs = np.array(outputs, dtype=np.intc), len(outputs)
         self.unknowns = 3 + 6 * self.motion.count
         self.jacobian = np.zeros((3 + 6 * self.outputs, self.unknowns))
-        self.turn, self.w_x, self.w_y, self.u_x, self.u_y, self.r = np.zeros((6, self.unknowns))
+        self.w_x, self.w_y, self.u_x, self.u_y, self.r = np.zeros((5, self.unknowns))
         motion_of = {h: k for k, h in enumerate(np.asarray(self.motion.number).tolist())}
         self.rows = 2 + 4 * self.outputs
         self.width = (self.unknowns + 7) // 8 * 8  # whole registers
+        self.turn, self.slope = np.zeros(self.width), np.array(self.panel.slopes)[1:, 0].copy()
         self.block, self.gathered = _whole_lines(STAGES, self.width), _whole_lines(self.rows, self.width)
         # of an output that is a harmonic of the motion, its place among them
         self.place = np.array([motion_of.get(h, -1) for h in outputs], dtype=np.intc)
@@ -333,32 +334,46 @@ class Derivatives:
         return most
 
     def carry(self, gather: bool) -> None:
-        """Through the panel, whose matrix is that of its last step; if wanted their part of the Jacobian."""
+        """Through the panel, whose inverse is that of its last step; if wanted their part of the Jacobian."""
+        by: float = 2.0 / (1.0 + self.panel.tangent[STAGES] * self.panel.tangent[STAGES])
+        if not cython.compiled or not drive_eight(
+            cython.address(self.panel.tangent[1]), self.panel.r, cython.address(self.slope[0]),
+            cython.address(self.panel.rate[0]), cython.address(self.panel.e_x[0]),
+            cython.address(self.panel.e_y[0]), cython.address(self.motion.node_cos[0, 0]),
+            cython.address(self.motion.node_sin[0, 0]), cython.address(self.motion.order[0]),
+            self.motion.count, cython.address(self.turn[0]), self.width, self.high > 2,
+            cython.address(self.block[0, 0]),
+        ):  # fmt: skip
+            self.drive()
+        if gather:
+            self.weigh()
+        if not cython.compiled or not carry_eight(
+            self.panel.inverse, cython.address(self.block[0, 0]), self.width, self.high,
+            cython.address(self.weight[0, 0]), cython.address(self.gathered[0, 0]),
+            self.rows if gather else 0, by, cython.address(self.turn[0]),
+        ):  # fmt: skip
+            self.solve(gather, by)
+
+    def drive(self) -> None:
+        """`block`: what t at the nodes has from the direction at the start, and from the motion."""
         i: cython.int
         j: cython.int
         k: cython.int
-        part: float
-        from_start: float
-        across_x: float
-        across_y: float
-        of_reach: float
-        c: float
-        d: float
         for i in range(STAGES):
             t: float = self.panel.tangent[i + 1]
-            part = 1.0 + t * t
-            from_start = -0.5 * self.panel.r[i] * self.panel.slopes[i + 1, 0]
-            for j in range(self.low):
-                self.block[i, j] = 0.0
-            for j in range(self.low, self.high):
+            part: float = 1.0 + t * t
+            from_start: float = -0.5 * self.panel.r[i] * self.slope[i]
+            for j in range(self.width):
                 self.block[i, j] = from_start * self.turn[j]
             if self.high < 3:
                 continue
-            of_reach = -part * self.panel.rate[i]
-            across_x, across_y = -part * self.panel.e_y[i], part * self.panel.e_x[i]
+            of_reach: float = -part * self.panel.rate[i]
+            across_x: float = -part * self.panel.e_y[i]
+            across_y: float = part * self.panel.e_x[i]
             self.block[i, 2] += of_reach
             for k in range(self.motion.count):
-                c, d = self.motion.cos[i + 1, k], self.motion.sin[i + 1, k]
+                c: float = self.motion.node_cos[k, i]
+                d: float = self.motion.node_sin[k, i]
                 j = 3 + 6 * k
                 self.block[i, j + 4] += of_reach * c
                 self.block[i, j + 5] -= of_reach * d
@@ -367,47 +382,22 @@ class Derivatives:
                 self.block[i, j + 1] -= across_x * c
                 self.block[i, j + 2] -= across_y * d
                 self.block[i, j + 3] -= across_y * c
-        if gather:
-            self.weigh()
-        if not cython.compiled or not carry_eight(
-            cython.address(self.panel.matrix[0]),
-            cython.address(self.block[0, 0]),
-            self.width,
-            self.high,
-            cython.address(self.weight[0, 0]),
-            cython.address(self.gathered[0, 0]),
-            self.rows if gather else 0,
-        ):
-            self.solve(gather)
-        part = 2.0 / (1.0 + self.panel.tangent[STAGES] * self.panel.tangent[STAGES])
-        for j in range(self.low, self.high):
-            self.turn[j] = part * self.block[STAGES - 1, j]
 
-    def solve(self, gather: bool) -> None:
-        """`block` becomes the derivatives of t at the nodes; if wanted what they add is gathered."""
+    def solve(self, gather: bool, by: float) -> None:
+        """`turn` at the end of the panel; if wanted what derivatives of t at the nodes add is gathered."""
         i: cython.int
         j: cython.int
         p: cython.int
-        by: float
-        for i in range(STAGES):
-            for p in range(i):
-                by = self.panel.matrix[STAGES * i + p]
-                for j in range(self.low, self.high):
-                    self.block[i, j] -= by * self.block[p, j]
-        for i in range(STAGES - 1, -1, -1):
-            for p in range(i + 1, STAGES):
-                by = self.panel.matrix[STAGES * i + p]
-                for j in range(self.low, self.high):
-                    self.block[i, j] -= by * self.block[p, j]
-            by = self.panel.matrix[STAGES * i + i]
-            for j in range(self.low, self.high):
-                self.block[i, j] *= by
-        if gather:
-            for p in range(self.rows):
-                for i in range(STAGES):
-                    by = self.weight[p, i]
-                    for j in range(self.low, self.high):
-                        self.gathered[p, j] += by * self.block[i, j]
+        for j in range(self.high):
+            for i in range(STAGES):
+                t: float = 0.0
+                for p in range(STAGES):
+                    t += self.panel.inverse[STAGES * p + i] * self.block[p, j]
+                if i + 1 == STAGES:
+                    self.turn[j] = by * t
+                if gather:
+                    for p in range(self.rows):
+                        self.gathered[p, j] += self.weight[p, i] * t
 
     def weigh(self) -> None:
         """`weight`: what derivatives of t at the nodes add to R xi e_perp exp(-i h theta), integrated."""
@@ -419,19 +409,23 @@ class Derivatives:
         y: float
         c: float
         s: float
+        if cython.compiled and self.known and weigh_eight(
+            cython.address(self.panel.tangent[1]), cython.address(self.panel.weight[0]),
+            cython.address(self.panel.speed[0]), cython.address(self.motion.node[2 * STAGES]),
+            cython.address(self.panel.e_x[0]), cython.address(self.panel.e_y[0]),
+            cython.address(self.motion.node_cos[0, 0]), cython.address(self.motion.node_sin[0, 0]),
+            cython.address(self.place[0]), self.outputs, 2.0 / PI, cython.address(self.weight[0, 0]),
+        ):  # fmt: skip
+            return
         for i in range(STAGES):
             t: float = self.panel.tangent[i + 1]
             w = self.panel.weight[i] * self.panel.speed[i] * 2.0 / (1.0 + t * t) / PI
-            w *= max(self.motion.value[i + 1, 2], 0.0)
+            w *= max(self.motion.node[2 * STAGES + i], 0.0)
             x, y = -w * self.panel.e_y[i], w * self.panel.e_x[i]
             self.weight[0, i], self.weight[1, i] = 0.5 * x, 0.5 * y
-            if not self.known:
-                self.sums.powers(0, self.motion.value[i + 1, 9], self.motion.value[i + 1, 10])
+            self.sums.powers(0, self.motion.node[6 * STAGES + i], self.motion.node[7 * STAGES + i])
             for m in range(self.outputs):
-                if self.known:
-                    c, s = self.motion.cos[i + 1, self.place[m]], self.motion.sin[i + 1, self.place[m]]
-                else:
-                    c, s = self.sums.power_cos[0, self.output[m]], self.sums.power_sin[0, self.output[m]]
+                c, s = self.sums.power_cos[0, self.output[m]], self.sums.power_sin[0, self.output[m]]
                 row = 2 + 4 * m
                 self.weight[row, i], self.weight[row + 1, i] = x * c, -x * s
                 self.weight[row + 2, i], self.weight[row + 3, i] = y * c, -y * s

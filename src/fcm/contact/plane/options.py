@@ -16,9 +16,10 @@ class PlanarOptions:
     panel_length : how long a panel may be, times the highest harmonic that is integrated.
     coefficient_floor : of the last coefficient but one, what the last is taken for at least, as it may vanish
         by chance.
-    last_change : a change of t in Newton's method after which one more step, of about its square, is the
-        last.
+    last_change : one more step of Newton's method is the last where the change of t that it will make is less
+        than the square of this.
     zero_change : a change after which there is none.
+    frozen_change : a change after which the derivatives of the equations are kept.
     max_iterations : steps of it; where it takes more, the panel is too long.
     max_initial_tangent : t at the end of a panel, at most, to begin with.
     max_tangent : of t; directions are then within 100 degrees of that at the start.
@@ -69,6 +70,7 @@ class PlanarOptions:
     coefficient_floor: float = 0.1
     last_change: float = 3e-5
     zero_change: float = 1e-10
+    frozen_change: float = 0.1
     max_iterations: int = 12
     max_initial_tangent: float = 0.6
     max_tangent: float = 1.2

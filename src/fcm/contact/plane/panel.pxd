@@ -14,12 +14,12 @@ cdef extern from *:
     #endif
 
     /* Of eight angles, not beyond a million: cosine and sine to a rounding, by the polynomials of fdlibm within
-       pi / 4 of a multiple of pi / 2, that in three parts. Then the harmonics, and U_x, U_y, R with their
-       derivatives, by columns of value (8, 11) and of cosine and sine (8, stride); amplitudes are rows of
-       re, im (3.., stride). Nothing is contracted, so that all processors round alike. */
+       pi / 4 of a multiple of pi / 2, that in three parts. Then rows of eight: U_x, U_y, R, their derivatives,
+       cosine and sine; and those of the harmonics. Amplitudes are rows of re, im (3.., stride). Nothing is
+       contracted, so that all processors round alike. */
     FCM_PLACE static int fcm_place_eight(
         const double *angle, const double *re, const double *im, const int *number, int moving, ptrdiff_t stride,
-        double mean, double *value, double *cosines, double *sines)
+        double mean, double *rows, double *cosines, double *sines)
     {
         const fcm_eight x = *(const fcm_eight *)angle, zero = x - x, one = zero + 1.0;
         const fcm_eight shifted = x * 0.63661977236758134 + 6755399441055744.0;
@@ -50,23 +50,20 @@ cdef extern from *:
                 const fcm_eight turned = a * c_1 - b * s_1;
                 b = b * c_1 + a * s_1, a = turned;
             }
-            for (int i = 0; i < 8; i++)
-                cosines[i * stride + k] = a[i], sines[i * stride + k] = b[i];
+            *(fcm_eight *)(cosines + 8 * k) = a, *(fcm_eight *)(sines + 8 * k) = b;
             for (int row = 0; row < 3; row++) {
                 const double p = re[row * stride + k], q = im[row * stride + k];
                 sums[row] += p * a - q * b;
                 sums[3 + row] -= (double)h * (p * b + q * a);
             }
         }
-        for (int i = 0; i < 8; i++, value += 11) {
-            for (int row = 0; row < 6; row++)
-                value[row] = sums[row][i];
-            value[9] = c_1[i], value[10] = s_1[i];
-        }
+        for (int row = 0; row < 6; row++)
+            *(fcm_eight *)(rows + 8 * row) = sums[row];
+        *(fcm_eight *)(rows + 48) = c_1, *(fcm_eight *)(rows + 56) = s_1;
         return 1;
     }
     #else
-    #define fcm_place_eight(angle, re, im, number, moving, stride, mean, value, cosines, sines) 0
+    #define fcm_place_eight(angle, re, im, number, moving, stride, mean, rows, cosines, sines) 0
     #endif
     """
     bint place_eight "fcm_place_eight"(
@@ -83,7 +80,8 @@ cdef class PlaneMotion:
     cdef readonly double scale, load_scale, ratio, preload, mean_x, mean_y, size, reach
     cdef readonly int[::1] number
     cdef readonly double[::1] order, mean, motion_bound, reach_bound
-    cdef readonly double[:, ::1] re, im, cos, sin, value
+    cdef readonly double[:, ::1] re, im, cos, sin, value, node_cos, node_sin
+    cdef double node[64]
     cdef double[::1] line
     cdef int load(self, double[::1] x, Py_ssize_t first, double mu, double k_u, double k_v, double n_0) noexcept nogil
     cdef void fill(self, double[::1] x, Py_ssize_t first, double k_u, double k_v) noexcept nogil
@@ -101,98 +99,147 @@ cdef extern from *:
     #if defined(__GNUC__)
     #define FCM_EIGHT
     typedef double fcm_eight __attribute__((vector_size(64), aligned(8)));
+    typedef long long fcm_eight_whole __attribute__((vector_size(64), aligned(8)));
     #if defined(__x86_64__) && defined(__GLIBC__) && !defined(__clang__)
     #define FCM_WIDEST __attribute__((unused, target_clones("avx512f", "avx2", "default")))
     #else
     #define FCM_WIDEST __attribute__((unused))
     #endif
 
-    /* The equation r D t = b - 2 a t - b t^2 at eight nodes: its derivatives by t, a matrix (8, 8), become
-       their factors, the diagonal inverted, and x the step of Newton's method. The derivatives D of a
-       polynomial are by rows and by columns. Without pivots: of a rule's derivatives, and positive numbers
-       along the diagonal, none vanishes. */
-    FCM_WIDEST static int fcm_newton_eight(
-        const double *rows, const double *columns, const double *r, const double *a, const double *b,
-        const double *t, double *matrix, double *x)
+    /* Of the motion at eight nodes, seen from a direction: a, b and r of the equation. */
+    FCM_WIDEST static int fcm_face_eight(
+        const double *node, const double *speed, double e_x, double e_y, double *a, double *b, double *r)
     {
-        fcm_eight row[8], slope = *(const fcm_eight *)columns * t[0];
+        const fcm_eight *row = (const fcm_eight *)node, R = row[2], zero = R - R;
+        *(fcm_eight *)a = e_x * row[3] + e_y * row[4];
+        *(fcm_eight *)b = e_x * row[4] - e_y * row[3];
+        const fcm_eight reach = (fcm_eight)((fcm_eight_whole)R & (R > zero));
+        *(fcm_eight *)r = 2.0 * reach / *(const fcm_eight *)speed;
+        return 1;
+    }
+
+    FCM_WIDEST static int fcm_apply_eight(const double *inverse, const double *y, double *x)
+    {
+        const fcm_eight *column = (const fcm_eight *)inverse;
+        *(fcm_eight *)x = ((column[0] * y[0] + column[1] * y[1]) + (column[2] * y[2] + column[3] * y[3]))
+            + ((column[4] * y[4] + column[5] * y[5]) + (column[6] * y[6] + column[7] * y[7]));
+        return 1;
+    }
+
+    /* The equation r D t = b - 2 a t - b t^2 at eight nodes: x, a step of Newton's method. The columns of the
+       inverse of its derivatives by t, at t if they are wanted, else those given. Derivatives D of a polynomial
+       are by columns. Without pivots: of a rule's derivatives, and positive numbers along the diagonal, none
+       vanishes. */
+    FCM_WIDEST static int fcm_newton_eight(
+        const double *columns, const double *r, const double *a, const double *b, const double *t,
+        double *inverse, double *x, int wanted)
+    {
+        fcm_eight column[8];
         const fcm_eight R = *(const fcm_eight *)r, A = *(const fcm_eight *)a, B = *(const fcm_eight *)b;
         const fcm_eight T = *(const fcm_eight *)t, across = A + B * T;
-        double lower[64], y[8], own[8];
-    #pragma GCC unroll 8
-        for (int j = 1; j < 8; j++)
-            slope += *(const fcm_eight *)(columns + 8 * j) * t[j];
-        *(fcm_eight *)y = B - T * (A + across) - R * slope;
+        const fcm_eight *D = (const fcm_eight *)columns;
+        double y[8], own[8];
+        *(fcm_eight *)y = B - T * (A + across)
+            - R * (((D[0] * t[0] + D[1] * t[1]) + (D[2] * t[2] + D[3] * t[3]))
+                + ((D[4] * t[4] + D[5] * t[5]) + (D[6] * t[6] + D[7] * t[7])));
+        if (!wanted)
+            return fcm_apply_eight(inverse, y, x);
         *(fcm_eight *)own = 2.0 * across;
     #pragma GCC unroll 8
-        for (int i = 0; i < 8; i++) {
-            row[i] = r[i] * *(const fcm_eight *)(rows + 8 * i);
-            row[i][i] += own[i];
+        for (int j = 0; j < 8; j++) {
+            column[j] = R * D[j];
+            column[j][j] += own[j];
         }
     #pragma GCC unroll 8
         for (int k = 0; k < 8; k++) {
-            const double pivot = row[k][k];
+            const double pivot = column[k][k];
             if (!(pivot > 1e-300 || pivot < -1e-300))
                 return 0;
-            const double by = 1.0 / pivot;
-            lower[9 * k] = by;
+            column[k][k] = 1.0;
+            column[k] *= 1.0 / pivot;
     #pragma GCC unroll 8
-            for (int i = k + 1; i < 8; i++) {
-                const double part = row[i][k] * by;
-                lower[8 * i + k] = part;
-                row[i] -= part * row[k];
-                y[i] -= part * y[k];
+            for (int j = 0; j < 8; j++) {
+                if (j == k)
+                    continue;
+                const double part = column[j][k];
+                column[j][k] = 0.0;
+                column[j] -= part * column[k];
             }
         }
     #pragma GCC unroll 8
-        for (int i = 0; i < 8; i++) {
-            *(fcm_eight *)(matrix + 8 * i) = row[i];
+        for (int j = 0; j < 8; j++)
+            *(fcm_eight *)(inverse + 8 * j) = column[j];
+        return fcm_apply_eight(inverse, y, x);
+    }
+
+    /* Rows of eight: directions, e . U', lambda, and how fast t and alpha turn; 0 where directions part more than
+       so often in the panel. */
+    FCM_WIDEST static int fcm_turn_of_eight(
+        const double *columns, const double *node, const double *r, const double *a, const double *b,
+        const double *speed, const double *t, double start_x, double start_y, double most, double *change,
+        double *rate, double *e_x, double *e_y, double *along, double *push)
+    {
+        const fcm_eight T = *(const fcm_eight *)t, part = 1.0 / (1.0 + T * T);
+        const fcm_eight c = (1.0 - T * T) * part, d = 2.0 * T * part;
+        const fcm_eight *D = (const fcm_eight *)columns;
+        const fcm_eight turned = (((D[0] * t[0] + D[1] * t[1]) + (D[2] * t[2] + D[3] * t[3]))
+            + ((D[4] * t[4] + D[5] * t[5]) + (D[6] * t[6] + D[7] * t[7]))) / *(const fcm_eight *)speed;
+        const fcm_eight onward = *(const fcm_eight *)a * c + *(const fcm_eight *)b * d;
+        *(fcm_eight *)change = turned, *(fcm_eight *)rate = 2.0 * turned * part;
+        *(fcm_eight *)e_x = start_x * c - start_y * d, *(fcm_eight *)e_y = start_y * c + start_x * d;
+        *(fcm_eight *)along = onward, *(fcm_eight *)push = onward - *(const fcm_eight *)(node + 40);
+        const fcm_eight_whole parts = -2.0 * onward > most * *(const fcm_eight *)r;
+        long long any = 0;
     #pragma GCC unroll 8
-            for (int k = 0; k <= i; k++)
-                matrix[8 * i + k] = lower[8 * i + k];
-        }
-    #pragma GCC unroll 8
-        for (int k = 7; k >= 0; k--) {
-            x[k] = y[k] = y[k] * lower[9 * k];
-    #pragma GCC unroll 8
-            for (int i = 0; i < k; i++)
-                y[i] -= row[i][k] * y[k];
-        }
-        return 1;
+        for (int i = 0; i < 8; i++)
+            any |= parts[i];
+        return any == 0;
     }
     #else
-    #define fcm_newton_eight(rows, columns, r, a, b, t, matrix, x) (-1)
+    #define fcm_face_eight(node, speed, e_x, e_y, a, b, r) 0
+    #define fcm_apply_eight(inverse, y, x) 0
+    #define fcm_newton_eight(columns, r, a, b, t, inverse, x, wanted) (-1)
+    #define fcm_turn_of_eight(columns, node, r, a, b, speed, t, x, y, most, change, rate, e_x, e_y, along, push) (-1)
     #endif
     """
+    bint face_eight "fcm_face_eight"(
+        const double *, const double *, double, double, double *, double *, double *) noexcept nogil
+    bint apply_eight "fcm_apply_eight"(const double *, const double *, double *) noexcept nogil
     int newton_eight "fcm_newton_eight"(
-        const double *, const double *, const double *, const double *, const double *, const double *, double *,
-        double *) noexcept nogil
+        const double *, const double *, const double *, const double *, const double *, double *, double *,
+        int) noexcept nogil
+    int turn_of_eight "fcm_turn_of_eight"(
+        const double *, const double *, const double *, const double *, const double *, const double *,
+        const double *, double, double, double, double *, double *, double *, double *, double *, double *,
+    ) noexcept nogil
 
 cdef enum:
     STAGES = 8  # as radau.py says in Python
 
 cdef class Panel:
-    cdef double converged, settled, steepest, widest, before, growth
+    cdef double converged, settled, frozen, steepest, widest, before, growth
     cdef int most_steps
     cdef readonly PlaneMotion motion
     cdef readonly double theta, length, left, fade, start_x, start_y, noise
     cdef readonly double[::1] node, weight, bary, tangent, change, rate, e_x, e_y, push, along, speed
     cdef readonly double[:, ::1] slopes, tail
-    cdef double matrix[64]
-    cdef double inner[64]
-    cdef double rows[64]
+    cdef bint exact
+    cdef double inverse[64]
+    cdef double columns[64]
     cdef double at[8]
     cdef double fall[8]
     cdef double right[8]
+    cdef double missing[8]
     cdef double a[8]
     cdef double b[8]
     cdef double r[8]
     cdef (double, double) gone(self, double part) noexcept nogil
     cdef bint solve(self, double theta, double length, double left, double e_x, double e_y, double rate, double bend) noexcept nogil
     cdef bint newton(self, double slope, double bend) noexcept nogil
-    cdef bint improve(self) noexcept nogil
+    cdef bint improve(self, bint wanted) noexcept nogil
     cdef void residual(self) noexcept nogil
-    cdef bint eliminate(self) noexcept nogil
+    cdef void apply(self) noexcept nogil
+    cdef bint invert(self) noexcept nogil
     cdef bint finish(self) noexcept nogil
     cdef double rest(self) noexcept nogil
     cdef double rest_of_variation(self) noexcept nogil

@@ -37,7 +37,13 @@ from fcm.contact.plane.radau import radau
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.motion import EPSILON, LEAST, UNKNOWN, Motion
-    from cython.cimports.fcm.contact.plane.panel import newton_eight, place_eight
+    from cython.cimports.fcm.contact.plane.panel import (
+        apply_eight,
+        face_eight,
+        newton_eight,
+        place_eight,
+        turn_of_eight,
+    )
 else:
     from fcm.contact.periodic.motion import EPSILON, LEAST, UNKNOWN, Motion
     from fcm.contact.plane.radau import STAGES
@@ -72,7 +78,9 @@ class PlaneMotion:
         By the order of a derivative: no value of that of U, of R, is greater.
     cos, sin (slot, harmonic), value (slot, 11)
         Of the angles taken by `place`: the harmonics; U_x, U_y, R, their first derivatives, their second,
-        which `bend` adds; cosine and sine of the angle.
+        which `bend` adds; cosine and sine of the angle. Of those of a panel only the last has them.
+    node (8, s), node_cos, node_sin (harmonic, s)
+        Of the nodes of a panel: U_x, U_y, R, their first derivatives, cosine and sine; the harmonics.
     """
 
     def __init__(self, harmonics: list[int], stages: int, options: PlanarOptions) -> None:
@@ -92,6 +100,9 @@ class PlaneMotion:
         self.sin = np.zeros((stages + 1, max(self.count, 1)))
         self.value = np.zeros((stages + 1, 11))
         self.line = np.zeros(2 + 4 * self.count)
+        self.node_cos, self.node_sin = np.zeros((2, max(self.count, 1), stages))
+        if not cython.compiled:
+            self.node = np.zeros(8 * stages)
         self.moving = 0
 
     def load(
@@ -212,16 +223,29 @@ class PlaneMotion:
         self.value[slot, 9], self.value[slot, 10] = c_1, s_1
 
     def place_nodes(self, theta: cython.p_double) -> None:
-        """Slots 1 to 8, at eight angles."""
+        """The nodes of a panel; the last as a slot as well."""
         i: cython.int
-        if cython.compiled and place_eight(
+        k: cython.int
+        last: cython.int = self.stages
+        if not cython.compiled or not place_eight(
             theta, cython.address(self.re[0, 0]), cython.address(self.im[0, 0]),
             cython.address(self.number[0]), self.moving, self.re.shape[1], self.mean[REACH],
-            cython.address(self.value[1, 0]), cython.address(self.cos[1, 0]), cython.address(self.sin[1, 0]),
+            cython.address(self.node[0]), cython.address(self.node_cos[0, 0]),
+            cython.address(self.node_sin[0, 0]),
         ):  # fmt: skip
+            for i in range(last):
+                self.place(last, theta[i])
+                for k in range(6):
+                    self.node[last * k + i] = self.value[last, k]
+                self.node[6 * last + i], self.node[7 * last + i] = self.value[last, 9], self.value[last, 10]
+                for k in range(self.moving):
+                    self.node_cos[k, i], self.node_sin[k, i] = self.cos[last, k], self.sin[last, k]
             return
-        for i in range(self.stages):
-            self.place(i + 1, theta[i])
+        for k in range(6):
+            self.value[last, k] = self.node[last * k + last - 1]
+        self.value[last, 9], self.value[last, 10] = self.node[7 * last - 1], self.node[8 * last - 1]
+        for k in range(self.moving):
+            self.cos[last, k], self.sin[last, k] = self.node_cos[k, last - 1], self.node_sin[k, last - 1]
 
     def bend(self, slot: cython.int) -> None:
         """The second derivatives at an angle that has its place."""
@@ -258,13 +282,16 @@ class Panel:
         The direction and e . U' at the nodes; lambda at the start and at the nodes.
     noise
         The rounding of lambda.
+    exact
+        Whether the derivatives of the equations, whose inverse is `inverse`, are to be those at the solution.
     """
 
     def __init__(self, motion: PlaneMotion) -> None:
         given = motion.options
-        self.converged, self.settled, self.most_steps, self.steepest, self.widest = (
+        self.converged, self.settled, self.frozen, self.most_steps, self.steepest, self.widest = (
             given.last_change,
             given.zero_change,
+            given.frozen_change,
             given.max_iterations,
             given.max_initial_tangent,
             given.max_tangent,
@@ -281,13 +308,14 @@ class Panel:
         self.theta = self.length = self.start_x = self.start_y = self.noise = self.left = self.fade = 0.0
         self.speed = np.zeros(STAGES)
         if not cython.compiled:
-            self.matrix, self.inner, self.rows = np.zeros((3, STAGES * STAGES))
-            self.right, self.a, self.b, self.r, self.at, self.fall = np.zeros((6, STAGES))
+            self.inverse, self.columns = np.zeros((2, STAGES * STAGES))
+            self.right, self.missing, self.a, self.b, self.r, self.at, self.fall = np.zeros((7, STAGES))
+        self.exact = True
         i: cython.int
         j: cython.int
         for i in range(STAGES):
             for j in range(STAGES):
-                self.inner[STAGES * j + i] = self.rows[STAGES * i + j] = self.slopes[i + 1, j + 1]
+                self.columns[STAGES * j + i] = self.slopes[i + 1, j + 1]
 
     def solve(
         self,
@@ -311,12 +339,15 @@ class Panel:
             self.at[i] = theta + gone
             self.fall[i] = 1.0 - gone / left if self.fade > 0.0 else 1.0
         self.motion.place_nodes(self.at)
-        for i in range(STAGES):
-            x_1: float = self.motion.value[i + 1, 3]
-            y_1: float = self.motion.value[i + 1, 4]
-            self.a[i] = e_x * x_1 + e_y * y_1
-            self.b[i] = e_x * y_1 - e_y * x_1
-            self.r[i] = 2.0 * max(self.motion.value[i + 1, 2], 0.0) / self.speed[i]
+        if not cython.compiled or not face_eight(
+            self.motion.node, cython.address(self.speed[0]), e_x, e_y, self.a, self.b, self.r
+        ):
+            for i in range(STAGES):
+                x_1: float = self.motion.node[3 * STAGES + i]
+                y_1: float = self.motion.node[4 * STAGES + i]
+                self.a[i] = e_x * x_1 + e_y * y_1
+                self.b[i] = e_x * y_1 - e_y * x_1
+                self.r[i] = 2.0 * max(self.motion.node[2 * STAGES + i], 0.0) / self.speed[i]
         if self.fade > 0.0:
             bend = self.fade * self.fade * left * (4.0 * bend * left - 2.0 * rate)
             rate *= 2.0 * self.fade * left
@@ -337,16 +368,21 @@ class Panel:
     def newton(self, slope: float, bend: float) -> bool:
         """The collocated Riccati equation by Newton's method, from a parabola on.
 
-        The last step is one more than t needs: with its matrix the derivatives are known as well.
+        After a small change its derivatives are kept, and changes fall by a factor. Where those at the
+        solution are wanted, a last step is one more than t needs.
         """
         i: cython.int
         step: cython.int
         most: float
+        ahead: float
+        before: float = 0.0
+        close: float = self.converged * self.converged
+        wanted: cython.bint = True
         last: cython.bint = False
         for i in range(STAGES + 1):
             self.tangent[i] = self.node[i] * (slope + self.node[i] * bend)
         for step in range(self.most_steps):  # noqa: B007
-            if not self.improve():
+            if not self.improve(wanted):
                 return False
             most = 0.0
             for i in range(STAGES):
@@ -354,75 +390,100 @@ class Panel:
                 most = max(most, fabs(self.right[i]))
                 if not fabs(self.tangent[i + 1]) < self.widest:
                     return False
-            if last or most < self.settled:
+            if last or (most < self.settled and (wanted or not self.exact)):
                 return True
-            last = most < self.converged
+            # of kept derivatives the next change is less by as much as this one is, else it is of its square
+            ahead = most * most if wanted else most * (most / before)
+            last = ahead < close
+            wanted = most > self.frozen or (last and self.exact)
+            before = most
         return False
 
-    def improve(self) -> bool:
-        """`right`, a step of Newton's method from t on, with the factors of its derivatives, `matrix`."""
+    def improve(self, wanted: cython.bint) -> bool:
+        """`right`, a step of Newton's method from t on, `inverse` that of its derivatives, new if wanted."""
         found: cython.int = -1
         if cython.compiled:
             found = newton_eight(
-                self.rows, self.inner, self.r, self.a, self.b, cython.address(self.tangent[1]), self.matrix,
-                self.right,
+                self.columns, self.r, self.a, self.b, cython.address(self.tangent[1]), self.inverse,
+                self.right, wanted,
             )  # fmt: skip
         if found >= 0:
             regular: bool = found > 0
             return regular
+        if wanted and not self.invert():
+            return False
         self.residual()
-        done: bool = self.eliminate()
-        return done
+        self.apply()
+        return True
 
     def residual(self) -> None:
-        """`right`, what is missing of the equation at the nodes, and its derivatives, `matrix`."""
+        """`missing`, of the equation at the nodes."""
         i: cython.int
         j: cython.int
         for i in range(STAGES):
+            slope: float = 0.0
+            for j in range(STAGES):
+                slope += self.columns[STAGES * j + i] * self.tangent[j + 1]
+            t: float = self.tangent[i + 1]
+            self.missing[i] = self.b[i] - t * (2.0 * self.a[i] + self.b[i] * t) - self.r[i] * slope
+
+    def apply(self) -> None:
+        """`right`, the inverse times what is `missing`."""
+        i: cython.int
+        j: cython.int
+        if cython.compiled and apply_eight(self.inverse, self.missing, self.right):
+            return
+        for i in range(STAGES):
             self.right[i] = 0.0
         for j in range(STAGES):
-            t: float = self.tangent[j + 1]
             for i in range(STAGES):
-                self.right[i] += self.inner[STAGES * j + i] * t
-        for i in range(STAGES):
-            r: float = self.r[i]
-            for j in range(STAGES):
-                self.matrix[STAGES * i + j] = r * self.slopes[i + 1, j + 1]
-            t = self.tangent[i + 1]
-            across: float = self.a[i] + self.b[i] * t
-            self.matrix[STAGES * i + i] += 2.0 * across
-            self.right[i] = self.b[i] - t * (self.a[i] + across) - r * self.right[i]
+                self.right[i] += self.inverse[STAGES * j + i] * self.missing[j]
 
-    def eliminate(self) -> bool:
-        """`matrix` becomes its factors L and U, the diagonal inverted, `right` the solution; False: singular.
+    def invert(self) -> bool:
+        """`inverse`, by columns, of the derivatives of the equation by t; False: singular.
 
-        Rows are not exchanged: of the derivatives of Radau's rule, and positive numbers on the diagonal, no
-        pivot is small.
+        Columns are not exchanged: of the derivatives of Radau's rule, and positive numbers on the diagonal,
+        no pivot is small.
         """
         i: cython.int
         j: cython.int
         k: cython.int
         part: float
+        for j in range(STAGES):
+            for i in range(STAGES):
+                self.inverse[STAGES * j + i] = self.r[i] * self.columns[STAGES * j + i]
+            self.inverse[STAGES * j + j] += 2.0 * (self.a[j] + self.b[j] * self.tangent[j + 1])
         for k in range(STAGES):
-            if not fabs(self.matrix[STAGES * k + k]) > 1e-300:
+            part = self.inverse[STAGES * k + k]
+            if not fabs(part) > 1e-300:
                 return False
-            self.matrix[STAGES * k + k] = 1.0 / self.matrix[STAGES * k + k]
-            for i in range(k + 1, STAGES):
-                part = self.matrix[STAGES * i + k] * self.matrix[STAGES * k + k]
-                self.matrix[STAGES * i + k] = part
-                self.right[i] -= part * self.right[k]
-                for j in range(k + 1, STAGES):
-                    self.matrix[STAGES * i + j] -= part * self.matrix[STAGES * k + j]
-        for k in range(STAGES - 1, -1, -1):
-            self.right[k] *= self.matrix[STAGES * k + k]
-            for i in range(k):
-                self.right[i] -= self.matrix[STAGES * i + k] * self.right[k]
+            self.inverse[STAGES * k + k] = 1.0
+            for i in range(STAGES):
+                self.inverse[STAGES * k + i] /= part
+            for j in range(STAGES):
+                if j == k:
+                    continue
+                part = self.inverse[STAGES * j + k]
+                self.inverse[STAGES * j + k] = 0.0
+                for i in range(STAGES):
+                    self.inverse[STAGES * j + i] -= part * self.inverse[STAGES * k + i]
         return True
 
     def finish(self) -> bool:
         """Directions and lambda at the nodes; False where directions part more than the panel can follow."""
         i: cython.int
         j: cython.int
+        found: cython.int = -1
+        if cython.compiled:
+            found = turn_of_eight(
+                self.columns, self.motion.node, self.r, self.a, self.b, cython.address(self.speed[0]),
+                cython.address(self.tangent[1]), self.start_x, self.start_y, self.growth,
+                cython.address(self.change[0]), cython.address(self.rate[0]), cython.address(self.e_x[0]),
+                cython.address(self.e_y[0]), cython.address(self.along[0]), cython.address(self.push[1]),
+            )  # fmt: skip
+        if found >= 0:
+            follows: bool = found > 0
+            return follows
         for i in range(STAGES):
             t: float = self.tangent[i + 1]
             part: float = 1.0 / (1.0 + t * t)
@@ -435,11 +496,9 @@ class Panel:
             self.rate[i] = 2.0 * self.change[i] * part
             self.e_x[i] = self.start_x * c - self.start_y * d
             self.e_y[i] = self.start_y * c + self.start_x * d
-            self.along[i] = (
-                self.e_x[i] * self.motion.value[i + 1, 3] + self.e_y[i] * self.motion.value[i + 1, 4]
-            )
-            self.push[i + 1] = self.along[i] - self.motion.value[i + 1, 5]
-            if -self.along[i] * self.speed[i] > self.growth * max(self.motion.value[i + 1, 2], 0.0):
+            self.along[i] = self.a[i] * c + self.b[i] * d
+            self.push[i + 1] = self.along[i] - self.motion.node[5 * STAGES + i]
+            if -2.0 * self.along[i] > self.growth * self.r[i]:
                 return False
         return True
 
@@ -465,17 +524,12 @@ class Panel:
         Of motion along a line the direction stays, and what turns it fades all the same.
         """
         i: cython.int
-        k: cython.int
         before: float = self.tail[0, 0]
         last: float = self.tail[1, 0]
         for i in range(STAGES):
-            self.right[i] = -self.r[i] * self.slopes[i + 1, 0]
-            for k in range(i):
-                self.right[i] -= self.matrix[STAGES * i + k] * self.right[k]
-        for i in range(STAGES - 1, -1, -1):
-            for k in range(i + 1, STAGES):
-                self.right[i] -= self.matrix[STAGES * i + k] * self.right[k]
-            self.right[i] *= self.matrix[STAGES * i + i]
+            self.missing[i] = -self.r[i] * self.slopes[i + 1, 0]
+        self.apply()
+        for i in range(STAGES):
             before += self.tail[0, i + 1] * self.fall[i] * self.right[i]
             last += self.tail[1, i + 1] * self.fall[i] * self.right[i]
         rest: float = max(fabs(last), self.before * fabs(before))

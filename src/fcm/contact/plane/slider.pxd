@@ -15,7 +15,7 @@ cdef class Slider:
     cdef readonly double[:, ::1] record
     cdef readonly double theta, w_x, w_y, e_x, e_y, gone_x, gone_y, gone
     cdef readonly double longest
-    cdef double next_length, gap, gap_slope, noise, stalled, first_step
+    cdef double next_length, gap, gap_slope, noise, stalled, first_step, last_x, last_y, last_speed, falls
     cdef public double tolerance
     cdef readonly bint sliding, varying, gathering, gradient, failed
     cdef void add(self, int state) noexcept nogil
@@ -25,7 +25,9 @@ cdef class Slider:
     cdef void slide(self, double end, bint opens) noexcept nogil
     cdef double turning(self, int slot, double rate) noexcept nogil
     cdef double scaled(self, double length, double left, double by) noexcept nogil
-    cdef double stray(self, double end) noexcept nogil
+    cdef double grown(self, double rest) noexcept nogil
+    cdef void opening(self, double end) noexcept nogil
+    cdef double stray(self) noexcept nogil
     cdef double realign(self, double push) noexcept nogil
     cdef double left_out(self, double stray, double turned, double left) noexcept nogil
     cdef void accept(self, bint carried) noexcept nogil

@@ -86,6 +86,7 @@ class Slider:
         self.theta = self.w_x = self.w_y = self.e_x = self.e_y = self.next_length = 0.0
         self.gone_x = self.gone_y = self.gone = 0.0
         self.gap = self.gap_slope = self.noise = self.stalled = 0.0
+        self.last_x = self.last_y = self.last_speed = self.falls = 0.0
         self.first_step = self.least_step
         self.tolerance = given.tolerance
         self.longest = given.panel_length / max(self.sums.highest, 1)
@@ -185,6 +186,9 @@ class Slider:
         before: cython.int = self.pieces
         tries: cython.int
         self.add(SLIP)
+        self.panel.exact = self.varying
+        if opens:
+            self.opening(end)
         self.motion.place(SCAN, begin)
         push: float = self.push()
         r: float = self.motion.value[SCAN, 2]
@@ -209,7 +213,7 @@ class Slider:
             # as it closes nothing is remembered, and no direction at the start but that is a solution
             with_turns: cython.bint = self.gathering and self.gradient and r > nothing
             turned: float = self.derivatives.greatest() if with_turns else 0.0
-            stray: float = self.stray(end) if graded else 1.0
+            stray: float = self.stray() if graded else 1.0
             if (
                 graded
                 and stray * r * left < self.ends * self.tolerance * self.motion.reach
@@ -238,7 +242,7 @@ class Slider:
                         rest = max(rest, self.varied * part * self.panel.rest_of_variation())
                     if rest <= self.tolerance or (last and length == left):
                         break
-                part = (self.tolerance / rest) ** (1.0 / STAGES) if rest < 1e300 else 0.0
+                part = self.grown(rest) if rest < 1e300 else 0.0
                 if length == left and opens:
                     graded, length = True, self.deepest * left
                     continue
@@ -246,10 +250,8 @@ class Slider:
             else:
                 self.failed = True
                 return
-            part = (self.tolerance / max(rest, 1e-300)) ** (1.0 / STAGES)
-            self.next_length = self.scaled(
-                length, left - length, min(max(self.safety * part, self.shrink), self.grow)
-            )
+            part = min(max(self.safety * self.grown(max(rest, 1e-300)), self.shrink), self.grow)
+            self.next_length = self.scaled(length, left - length, part)
             self.panel.push[0] = push
             part = self.panel.end_of_slip()
             if part <= 1.0:
@@ -292,28 +294,35 @@ class Slider:
             length *= by
         return length
 
-    def stray(self, end: float) -> float:
-        """How far the direction is from that in which it will be when the contact opens."""
+    def grown(self, rest: float) -> float:
+        """How much longer a panel with a rest of the tolerance is: rests go with the power STAGES, 8."""
+        ratio: float = sqrt(sqrt(sqrt(self.tolerance / rest)))
+        return ratio
+
+    def opening(self, end: float) -> None:
+        """`last_x`, `last_y`, `last_speed`, `falls`: direction and speed of U', and -R', where it opens."""
         self.motion.place(SCAN, end)
         x_1: float = self.motion.value[SCAN, 3]
         y_1: float = self.motion.value[SCAN, 4]
-        speed: float = hypot(x_1, y_1)
-        if not speed > 0.0:
-            return 1.0
-        stray: float = hypot(self.e_x - x_1 / speed, self.e_y - y_1 / speed)
+        self.last_speed, self.falls = hypot(x_1, y_1), -self.motion.value[SCAN, 5]
+        by: float = 1.0 / self.last_speed if self.last_speed > 0.0 else 0.0
+        self.last_x, self.last_y = by * x_1, by * y_1
+
+    def stray(self) -> float:
+        """How far the direction is from that in which it will be when the contact opens."""
+        d_x: float = self.e_x - self.last_x
+        d_y: float = self.e_y - self.last_y
+        stray: float = sqrt(d_x * d_x + d_y * d_y)
         return stray
 
     def left_out(self, stray: float, turned: float, left: float) -> float:
         """What the derivatives of the impulse have at most from directions that are followed no more.
 
-        At the angle in SCAN the contact opens, after what is left. From the derivative of the force by the
-        direction now, from an opening that moves, and from the motion.
+        From the derivative of the force by the direction now, an opening that moves, and the motion.
         """
-        falls: float = -self.motion.value[SCAN, 5]
-        if not falls > 0.0:
+        if not self.falls > 0.0:
             return 1e300
-        speed: float = hypot(self.motion.value[SCAN, 3], self.motion.value[SCAN, 4])
-        most: float = (turned + stray * speed / falls + self.motion.highest * left) * left
+        most: float = (turned + stray * self.last_speed / self.falls + self.motion.highest * left) * left
         return most
 
     def realign(self, push: float) -> float:
