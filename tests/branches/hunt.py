@@ -22,7 +22,7 @@ from fcm.time_domain import State, simulate
 from .relatives import EACH, KINDS
 
 ACCURACY = 1e-2
-NEAR = 0.03  # of an amplitude: a march this near to a branch is on it,
+NEAR = 0.03  # of the greatest amplitude: a march this near to a branch is on it,
 TIMES = 3.0  # or within so many times the error that is told there,
 UNTOLD = 0.5  # or within this, where none is
 SETTLED = 1e-4  # by which the amplitudes of the last cycles of a march differ
@@ -51,9 +51,10 @@ def passings(curve, omega):
 
 
 def on_branch(curve, omega, amplitude):
-    """Whether a branch has amplitudes (dof,) at a frequency."""
+    """Whether a branch has amplitudes (dof,) at a frequency: beside an antiresonance one of them is small,
+    and off by much of itself between two points."""
     amplitudes, near = passings(curve, omega)
-    return bool((np.abs(amplitudes / amplitude - 1.0) < near).all(axis=1).any())
+    return bool((np.abs(amplitudes - amplitude) < near * amplitude.max()).all(axis=1).any())
 
 
 def marched(scene, curve, frequencies, tries, seed=0):

@@ -84,8 +84,8 @@ class PairOptions:
         `harmonics_factor` where following it takes longer than it may: about as many evaluations as the curve
         did, for so many times as many harmonics. The first with which it does not is taken.
     following, coarse_following : FollowOptions
-        How the partner is followed; and what it has elsewhere, where corners and folds matter less, and peaks
-        not at all.
+        How the partner is followed; and what it has elsewhere, of which only the passings of frequencies
+        matter.
     max_point_seconds : float
         The same that all points may take that are moved to the partner, those that are found too.
     span_margin : float
@@ -167,6 +167,7 @@ class PairOptions:
     coarse_following: FollowOptions = field(
         default_factory=lambda: FollowOptions(
             0.2,
+            stations_only=True,
             step=StepOptions(target_turn=0.4, target_miss=0.1, target_output_error=0.5, min_cosine=0.8),
             events=EventOptions(peak_threshold=math.inf),
         )
