@@ -224,6 +224,24 @@ def test_modes_left_out_that_yield_as_much_as_contacts_are_in_the_solutions(stif
     np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected[:, :-1]).max())
 
 
+def test_a_kept_jacobian_is_that_of_the_frequency_where_it_was_factored():
+    """Modes left out answered at the frequency of the last residual: beside a resonance nothing converged."""
+    options = CondensationOptions(min_unknowns=1, max_fraction=1.0, compliance_limits=(1.0,))
+    scene = strip(kept=(1.0, 1.6, 2.7), stiff=(4.7, 5.3, 6.1))
+    condensed, whole = (System(scene, (1, 3), condensation=one).new_balance() for one in (options, WHOLE))
+    rng = np.random.default_rng(8)
+    z, row = np.append(rng.normal(size=whole.unknowns), 1.0), rng.normal(size=whole.unknowns + 1)
+    right, scale = rng.normal(size=z.size), np.ones(z.size)
+    whole.evaluate(z)
+    expected = np.linalg.solve(np.vstack((jacobian_of(whole), row)), right)
+    condensed.evaluate(z)
+    condensed.factor(row, scale)
+    assert condensed.condensed.modes < 6
+    condensed.probe(np.append(z[:-1], 1.1))
+    condensed.condensed.solve(right, step=False)
+    np.testing.assert_allclose(right, expected, atol=1e-7 * np.abs(expected).max())
+
+
 def test_what_is_not_finite_is_refused_without_a_warning():
     newton = Newton(System(strip(), (1,), condensation=CONDENSED).new_balance())
     newton.z[:] = np.append(np.full(newton.problem.unknowns, np.nan), 1.0)

@@ -159,6 +159,7 @@ class CondensedSystem:
         self.choose_modes(retained_modes(yields, answer.seen.ports, parts, options))
         self.linear_contacts = LinearContacts(answer, springs, counted)
         self.row, self.scale = np.zeros((2, tangent.shape[0] * tangent.shape[1] + 1))
+        self.omega = 0.0  # of what was factored
 
     @property
     def by_contacts(self) -> bool:
@@ -177,7 +178,7 @@ class CondensedSystem:
         by (unknown,) is the derivative by the parameter.
         """
         np.divide(row, scale, out=self.row)
-        self.scale[:] = scale
+        self.scale[:], self.omega = scale, self.answer.seen.omega
         self.equations.set_closing_row(row, by, scale)
         if self.linear_contacts.choose(self.tangent, self.equations.rank):
             self.equations.held = self.linear_contacts
@@ -190,7 +191,15 @@ class CondensedSystem:
         """Replace a right side (unknown + 1,) in units of scale by the solution in these.
 
         step: it is one of Newton's method, or a direction if the equations have no right side but the last.
+        The structure answers as where the system was factored: a right side may be that of another frequency.
         """
+        seen, now = self.answer.seen, self.answer.seen.omega
+        seen.at(self.omega)
+        self._solve_there(right, step)
+        seen.at(now)
+
+    def _solve_there(self, right: FloatArray, step: bool) -> None:
+        """`solve`, the structure at the frequency of what was factored."""
         whole, found, options = right * self.scale, np.empty_like(right), self.options
         whole[-1] = right[-1]
         self.equations.condensed(whole, found)
