@@ -60,7 +60,9 @@ class CondensationOptions:
     min_step : float
         A step, to a shorter one of which what is left is not relative.
     max_corrections : int
-        After so many that do not come to that, twice as many modes are taken.
+        So many at once. After such that do not come to that
+    max_contraction : float
+        and leave more than this part of what those before left, twice as many modes are taken.
     """
 
     min_unknowns: int = 200
@@ -72,6 +74,7 @@ class CondensationOptions:
     newton_tolerance: float = 0.1
     min_step: float = 1e-3
     max_corrections: int = 20
+    max_contraction: float = 0.1
 
 
 CONDENSATION = CondensationOptions()  # where nothing else is said
@@ -200,12 +203,12 @@ class CondensedSystem:
 
     def _solve_there(self, right: FloatArray, step: bool) -> None:
         """`solve`, the structure at the frequency of what was factored."""
-        whole, found, options = right * self.scale, np.empty_like(right), self.options
+        whole, found = right * self.scale, np.empty_like(right)
         whole[-1] = right[-1]
         self.equations.condensed(whole, found)
         enough = self._tolerance(found, step and bool(right[:-1].any()))
         while (self.by_contacts or self.modes < self.ranking.size) and np.isfinite(found).all():
-            if self.equations.correct(whole, found, enough, options.max_corrections) <= enough:
+            if self._corrected(whole, found, enough):
                 break
             if not self.by_contacts:
                 self.choose_modes(2 * self.modes)
@@ -217,6 +220,19 @@ class CondensedSystem:
                 self.equations.condensed(whole - left, change)
                 found += change
         np.divide(found, self.scale, out=right)
+
+    def _corrected(self, whole: FloatArray, found: FloatArray, enough: float) -> bool:
+        """Whether corrections of a solution, as long as they shrink, leave no more than enough.
+
+        Where a contact in a plane begins to slip its tangent has no bound: that takes some more of them, but
+        no more modes at all other points.
+        """
+        before, options = np.inf, self.options
+        while (left := self.equations.correct(whole, found, enough, options.max_corrections)) > enough:
+            if not left < options.max_contraction * before:
+                return False
+            before = left
+        return True
 
     def _tolerance(self, found: FloatArray, step: bool) -> float:
         """What a correction of a solution may leave, in units of scale; of a direction, which is no step,
