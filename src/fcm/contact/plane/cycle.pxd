@@ -22,5 +22,6 @@ cdef class Cycle:
     cdef int opening(self, bint gradient) noexcept nogil
     cdef int closed(self, bint gradient) noexcept nogil
     cdef double period(self, double begin, double w_x, double w_y) noexcept nogil
+    cdef void gather(self, bint gradient) noexcept nogil
     cdef bint bracket(self, double w_x, double w_y) noexcept nogil
     cdef bint between(self, double w_x, double w_y) noexcept nogil

@@ -189,6 +189,8 @@ class Cycle:
         self.sides = 0
         for i in range(self.most_periods):
             self.periods = i + 1
+            if i > 0:  # most often it is the steady one, as nearly all is forgotten in the first
+                self.gather(gradient)
             change = self.period(begin, w_x, w_y)
             if self.slider.failed:
                 return UNSOLVED
@@ -205,6 +207,8 @@ class Cycle:
             if change <= fine + rounding and not (
                 hardly and hypot(d * x - b * y, a * y - c * x) > (fine + rounding) * fabs(by)
             ):
+                if i > 0:
+                    return MIXED
                 w_x, w_y = w_x + x, w_y + y
                 break
             bounded: cython.bint = self.bracket(w_x, w_y)
@@ -223,10 +227,18 @@ class Cycle:
             if nearest > self.double_point * self.motion.reach:
                 return UNSOLVED
             w_x, w_y = nearest_x, nearest_y
-        self.slider.gathering, self.slider.varying, self.slider.gradient = True, gradient, gradient
-        self.slider.derivatives.take(0, self.slider.derivatives.unknowns)
+        self.gather(gradient)
         self.period(begin, w_x, w_y)
         return UNSOLVED if self.slider.failed else MIXED
+
+    def gather(self, gradient: bool) -> None:
+        """Let the next period be summed, and nothing that was before it."""
+        self.slider.sums.begin()
+        self.slider.sums.contact(0.0, TWO_PI)
+        if gradient:
+            self.slider.derivatives.fill(0.0)
+        self.slider.gathering, self.slider.varying, self.slider.gradient = True, True, gradient
+        self.slider.derivatives.take(0, self.slider.derivatives.unknowns if gradient else 2)
 
     def bracket(self, w_x: float, w_y: float) -> bool:
         """Whether two places of the slider were moved towards each other in a period; `place` lies between.
