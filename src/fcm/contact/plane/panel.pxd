@@ -118,11 +118,18 @@ cdef extern from *:
         return 1;
     }
 
-    FCM_WIDEST static int fcm_apply_eight(const double *inverse, const double *y, double *x)
+    /* A matrix (8, 8), by columns, times eight numbers. */
+    static inline __attribute__((always_inline)) void fcm_times_eight(
+        const double *matrix, const double *y, double *x)
     {
-        const fcm_eight *column = (const fcm_eight *)inverse;
+        const fcm_eight *column = (const fcm_eight *)matrix;
         *(fcm_eight *)x = ((column[0] * y[0] + column[1] * y[1]) + (column[2] * y[2] + column[3] * y[3]))
             + ((column[4] * y[4] + column[5] * y[5]) + (column[6] * y[6] + column[7] * y[7]));
+    }
+
+    FCM_WIDEST static int fcm_apply_eight(const double *inverse, const double *y, double *x)
+    {
+        fcm_times_eight(inverse, y, x);
         return 1;
     }
 
@@ -139,11 +146,12 @@ cdef extern from *:
         const fcm_eight T = *(const fcm_eight *)t, across = A + B * T;
         const fcm_eight *D = (const fcm_eight *)columns;
         double y[8], own[8];
-        *(fcm_eight *)y = B - T * (A + across)
-            - R * (((D[0] * t[0] + D[1] * t[1]) + (D[2] * t[2] + D[3] * t[3]))
-                + ((D[4] * t[4] + D[5] * t[5]) + (D[6] * t[6] + D[7] * t[7])));
-        if (!wanted)
-            return fcm_apply_eight(inverse, y, x);
+        fcm_times_eight(columns, t, y);
+        *(fcm_eight *)y = B - T * (A + across) - R * *(fcm_eight *)y;
+        if (!wanted) {
+            fcm_times_eight(inverse, y, x);
+            return 1;
+        }
         *(fcm_eight *)own = 2.0 * across;
     #pragma GCC unroll 8
         for (int j = 0; j < 8; j++) {
@@ -169,7 +177,8 @@ cdef extern from *:
     #pragma GCC unroll 8
         for (int j = 0; j < 8; j++)
             *(fcm_eight *)(inverse + 8 * j) = column[j];
-        return fcm_apply_eight(inverse, y, x);
+        fcm_times_eight(inverse, y, x);
+        return 1;
     }
 
     /* Rows of eight: directions, e . U', lambda, and how fast t and alpha turn; 0 where directions part more than
@@ -181,9 +190,9 @@ cdef extern from *:
     {
         const fcm_eight T = *(const fcm_eight *)t, part = 1.0 / (1.0 + T * T);
         const fcm_eight c = (1.0 - T * T) * part, d = 2.0 * T * part;
-        const fcm_eight *D = (const fcm_eight *)columns;
-        const fcm_eight turned = (((D[0] * t[0] + D[1] * t[1]) + (D[2] * t[2] + D[3] * t[3]))
-            + ((D[4] * t[4] + D[5] * t[5]) + (D[6] * t[6] + D[7] * t[7]))) / *(const fcm_eight *)speed;
+        double slope[8];
+        fcm_times_eight(columns, t, slope);
+        const fcm_eight turned = *(fcm_eight *)slope / *(const fcm_eight *)speed;
         const fcm_eight onward = *(const fcm_eight *)a * c + *(const fcm_eight *)b * d;
         *(fcm_eight *)change = turned, *(fcm_eight *)rate = 2.0 * turned * part;
         *(fcm_eight *)e_x = start_x * c - start_y * d, *(fcm_eight *)e_y = start_y * c + start_x * d;
