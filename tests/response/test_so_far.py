@@ -1,5 +1,6 @@
 """What a run has while it looks for more harmonics: it is told, and kept where the run is interrupted."""
 
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -144,6 +145,24 @@ def test_of_many_points_an_interrupted_curve_has_those_that_are_special_and_some
         assert thin.peaks[dof].frequency == pytest.approx(peak.frequency, rel=1e-9)
         assert np.isnan(thin.peaks[dof].error) if at == 1 else thin.peaks[dof].error == peak.error
     assert thin.folds == whole.folds
+
+
+def test_stability_that_is_known_is_kept(monkeypatch):
+    """As the curve is made of what was traced, where more harmonics may confirm it for long."""
+    whole, module = traced_curve(scene("yang1998", 5), Request((1,))), sys.modules[traced_curve.__module__]
+    made = module._curve
+
+    def interrupted(response, quick=False):
+        if not quick:
+            raise KeyboardInterrupt
+        return made(response, quick)
+
+    monkeypatch.setattr(module, "_curve", interrupted)
+    curve = _interrupted(Request((1,)))
+    known = np.isfinite(curve.stable)
+    assert known.mean() > 0.9 and set(curve.stable[known]) == {0.0, 1.0}
+    np.testing.assert_array_equal(curve.stable[known], whole.stable[known])
+    assert "its stability is not confirmed" in curve.reason and not curve.complete
 
 
 def test_before_the_first_curve_there_is_nothing():

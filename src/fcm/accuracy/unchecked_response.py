@@ -93,6 +93,12 @@ class UncheckedResponse:
         response = replace(self.traced, branches=replace(self.traced.branches, paths=tuple(few)))
         return UncheckedResponse(self.system, response, _shown(self.system, few), self.seconds)
 
+    def of_thinned(self, values: Sequence[FloatArray], most: int) -> list[FloatArray]:
+        """Values (path, point) of the points that it has when it is thinned to about so many."""
+        if points_of(self) <= most:
+            return list(values)
+        return [one[rows] for one, rows in zip(values, self._rows(most), strict=True)]
+
     def _rows(self, most: int) -> list[npt.NDArray[np.intp]]:
         """About so many points of all paths, of each path its share."""
         count = max(points_of(self), 1)

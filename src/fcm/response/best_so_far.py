@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from fcm.accuracy.refinement import RefinedResponse
 from fcm.accuracy.unchecked_response import UncheckedResponse
+from fcm.model.scene import FloatArray
 from fcm.results.result import INTERRUPTED
 from fcm.scene.errors import counted
 
@@ -15,17 +16,22 @@ Tell = Callable[[str], None]  # what there is, and what is at work
 
 class BestSoFar:
     """Is told of every response that has been traced, as `fcm.accuracy.refinement.Keep`; found is the
-    last."""
+    last, and stable (path,) whether each of its points is, once that is known."""
 
     def __init__(self, tell: Tell | None) -> None:
         self.tell, self.error, self.next = tell, math.nan, 0
         self.found: UncheckedResponse | None = None
         self.cut = False  # whether that does not come to its end
+        self.stable: list[FloatArray] = []
 
     def __call__(self, found: UncheckedResponse, error: float, more: tuple[int, ...]) -> None:
-        self.found, self.error, self.next = found, error, len(more)
+        self.found, self.error, self.next, self.stable = found, error, len(more), []
         if self.tell is not None:
             self.tell(f"{self._harmonics_reached()}; now {self._missing()}")
+
+    def judge(self, found: UncheckedResponse, stable: list[FloatArray]) -> None:
+        """The same response with its stability, which more harmonics may still confirm."""
+        self.found, self.stable = found, stable
 
     def take_part(self, found: UncheckedResponse) -> None:
         """A response that was interrupted, if there is no other."""
@@ -47,5 +53,6 @@ class BestSoFar:
         """Why the curve is not complete, and what is missing."""
         missing = f" before it was traced with {self.next}" if self.next else " before it was judged"
         missing = " before it came to its end" if self.cut else missing
+        lacks = "not confirmed by more harmonics" if self.stable else "missing"
         part, reached = "the part up to there" if self.cut else "the curve", self._harmonics_reached()
-        return f"{INTERRUPTED}{missing}: this is {part} with {reached}; its stability is missing"
+        return f"{INTERRUPTED}{missing}: this is {part} with {reached}; its stability is {lacks}"

@@ -58,16 +58,19 @@ class Refined:
     every: RefinedResponse | None = None
 
 
+Judge = Callable[[RefinedResponse, list[FloatArray]], None]  # what there is, with its stability
 # the response, the one before with fewer harmonics, the accuracy (None: the harmonics are given), the scene
 # with all degrees of freedom; to the response with more of it known, and the harmonics that this takes
 Stage = Callable[[Refined, Refined | None, float | None, Scene], tuple[Refined, Harmonics]]
 
 
-def refined(found: RefinedResponse, accuracy: float | None, scene: Scene, keep: Keep) -> Refined:
+def refined(
+    found: RefinedResponse, accuracy: float | None, scene: Scene, keep: Keep, judge: Judge
+) -> Refined:
     """A response that was traced with every branch, its events, and all degrees of freedom of a scene.
 
     With an accuracy also with the harmonics that these take, unless that takes longer than is worth it.
-    What there is is told to keep, before more is traced.
+    What there is is told to keep, before more is traced, and to judge, once its stability is known.
     """
     now, before = Refined(found), None
     stages: Sequence[Stage] = (_with_branches, _with_events, _with_all_dofs)
@@ -80,6 +83,8 @@ def refined(found: RefinedResponse, accuracy: float | None, scene: Scene, keep: 
                 again = retrace(now.found, more, accuracy)
                 if again is not None:
                     break
+            if len(now.stable) == len(now.found.shown):
+                judge(now.found, now.stable)
         if again is None:
             break
         keep(again, again.max_error, ())

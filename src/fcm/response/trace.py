@@ -91,7 +91,8 @@ def _unfinished(so_far: BestSoFar, scene: Scene, options: InterruptedOptions) ->
     assert so_far.found is not None
     whole = so_far.found
     whole.system.work.poll = int  # which interrupts no more
-    few = whole.thinned(options.max_points(len(scene.contacts)))
+    most = options.max_points(len(scene.contacts))
+    few = whole.thinned(most)
     if isinstance(few, RefinedResponse):
         found = few
     elif points_of(few) < points_of(whole):
@@ -100,6 +101,8 @@ def _unfinished(so_far: BestSoFar, scene: Scene, options: InterruptedOptions) ->
         found = with_errors(few, np.inf, options=NO_CHECKS)
         so_far.error = found.max_error
     stable = [np.full(len(path.z), np.nan) for path in found.traced.branches.paths]
+    if so_far.stable:
+        stable = whole.of_thinned(so_far.stable, most)
     every = found if found.system.scene is scene else without_errors(of_all_dofs(found, scene))
     curve = _curve(Refined(found, stable, every=every), quick=True)
     curve.complete, curve.reason, curve.cause = False, so_far.reason(), Cause.INTERRUPTED
@@ -132,7 +135,7 @@ def _traced_curve(scene: Scene, wanted: Request, poll: Callable[[], None] | None
         why = "no solution was found at either end of the range; try another range"
         return lost_curve(scene, f"{why}{FLOATING if rigid else too_stiff(system)}")
     so_far(found, found.max_error, ())
-    response = refined(found, wanted.accuracy if by_need else None, scene, so_far)
+    response = refined(found, wanted.accuracy if by_need else None, scene, so_far, so_far.judge)
     curve = _curve(response)
     if by_need and curve.complete:
         curve.short_of = shortfall(_reported(response), response.lost, wanted.accuracy)
