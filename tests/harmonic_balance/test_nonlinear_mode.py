@@ -130,6 +130,15 @@ def test_error_by_harmonics_left_out_is_what_more_of_them_change():
     assert np.isfinite(error).all() and error.max() == pytest.approx(off.max(), rel=0.1)
 
 
+def test_a_mode_that_cannot_be_begun_has_no_errors():
+    """No motion is found at its least amplitude."""
+    mode = nonlinear_mode(System(load_scene("two-contacts").in_use(), (1,)), 1, (1e-5, 1e-3), 0.05)
+    none = np.empty(0)
+    empty = replace(mode, path=mode.path.part(np.empty(0, dtype=np.intp)), omega=none, damping=none)
+    error, contacts = truncation(empty)
+    assert error.size == 0 and len(contacts) == 0
+
+
 def test_a_mode_that_is_not_there():
     with pytest.raises(ModeError, match="no mode 2; the structure has the modes 1 to 1"):
         nonlinear_mode(System(jenkins()), 2, (0.1, 1.0), 0.05)

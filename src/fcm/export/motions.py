@@ -64,7 +64,7 @@ def motions_of(
             omegas = (one * UNIT[scene.frequency_unit] for one in at)
             found += [one for omega in omegas for one in solver.passing(number, omega)]
         else:
-            found += list(solver.peaks(number, [own.reports(dof) for dof in own.modal.dofs], options))
+            found += list(solver.peaks(number, [own.asks_for(dof) for dof in own.modal.dofs], options))
     met = {one.frequency for one in found}
     for one in at:
         if one * UNIT[scene.frequency_unit] not in met:

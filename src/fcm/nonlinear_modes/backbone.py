@@ -183,7 +183,7 @@ def truncation(mode: Mode, options: NonlinearModeOptions | None = None) -> tuple
     newton.row[-1] = 1.0
     error = np.full(mode.omega.size, np.nan)
     contacts = np.zeros((mode.omega.size, finer.contact_unknowns + 1))
-    for i in _truncation_points(mode, finer.n, options.truncation):
+    for i in _truncation_points(mode, finer.n, options.truncation) if mode.omega.size else ():
         start = finer.with_harmonics_of(mode.path.z[i], old)
         finer.measure(start)
         newton.scale[:], newton.z[:] = finer.scale, start

@@ -100,7 +100,10 @@ def trace_modes(
 def check_free(scene: Scene) -> None:
     """Raise ResponseError for scenes of which no nonlinear mode is computed."""
     if any(curve.loads for curve in scene.each_curve()):
-        raise ResponseError(f"{scene.name}: load: nonlinear modes under static loads are not computed")
+        raise ResponseError(
+            f"{scene.name}: load: nonlinear modes under static loads are not computed; give each contact "
+            "as n_0 what presses it at rest, k_v times the mean of its normal displacement (contact_mean)"
+        )
     check_no_ring(scene, "nonlinear modes")
     refuse_own_laws(scene, "nonlinear modes")
     refuse_other_harmonics(scene, "what a nonlinear mode predicts")
