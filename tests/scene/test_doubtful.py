@@ -41,6 +41,12 @@ def notes(data, **more):
             ['force[1].phase: is -90 right? -90 rad are 14.3 turns; if degrees are meant, write "-90deg"'],
         ),
         (("force", 1, "phase"), "270deg", []),
+        (
+            ("contact", 0, "mu"),
+            30,
+            ["contact[0].mu: is 30 right? Friction is 30 times the normal force; if 30 % is meant"],
+        ),
+        (("contact", 0, "mu"), 2.0, []),
         (("force", 1, "phase"), 2.0 * pi, []),
         (("sweep", "force.1.phase"), [0.0, 45.0], ["if degrees are meant, write it in rad"]),
         (("sweep", "modal.damping"), [0.01, 5.0], ['sweep."modal.damping": is 5 right? It is 500 %']),

@@ -69,6 +69,7 @@ class LimitOptions:
     bytes_of_curve: float = 1000.0  # of the numbers of one curve of a sweep
     draws_timed: int = 8  # draws of a number that are timed before all are made
     draws_seconds: float = 600.0  # [s] longest time of all draws of a number
+    friction: float = 2.0  # coefficient of friction: beyond it more likely a percentage is meant
     damping_of_all: float = (
         0.2  # of every mode: from here on no resonance is seen, and a percentage may be meant
     )

@@ -21,9 +21,10 @@ def questions(top: Section, parts: Parts, swept: Sequence[Swept]) -> list[str]:
     """A question for each key whose number is hardly meant as it is; the scene is read as it says.
 
     damping ratios and loss factors of 1 and more, damping ratios of which the least is large,
-    and angles of more than a turn that are given in rad.
+    coefficients of friction above two, and angles of more than a turn that are given in rad.
     """
     found = [_of_ratio(*one) for one in _ratios(top, parts, swept)]
+    found += [_of_friction(*one) for one in _frictions(top, swept)]
     found += [_of_angle(*one) for one in _angles(top, swept)]
     return [one for one in found if one]
 
@@ -58,6 +59,15 @@ def _angles(top: Section, swept: Sequence[Swept]) -> Iterator[tuple[str, Iterabl
             yield _of_sweep(one), one.values
 
 
+def _frictions(top: Section, swept: Sequence[Swept]) -> Iterator[tuple[str, Iterable[float]]]:
+    contacts = top.data.get("contact")
+    for index, one in enumerate(contacts if isinstance(contacts, list | tuple) else ()):
+        yield f"contact[{index}].mu", _numbers(one.get("mu") if isinstance(one, Mapping) else None)
+    for varied in swept:
+        if varied.key.endswith(".mu"):
+            yield _of_sweep(varied), varied.values
+
+
 def _of_sweep(one: Swept) -> str:
     return f"sweep.{bare(one.key)}"
 
@@ -76,6 +86,14 @@ def _of_ratio(key: str, values: Iterable[float], whole: str) -> str:
         return ""
     meant = f"if {shown(value)} % is meant, write {value / 100.0:.12g}"
     return f"{key}: is {shown(value)} right? It is {100.0 * value:.12g} % of {whole}; {meant}"
+
+
+def _of_friction(key: str, values: Iterable[float]) -> str:
+    value = max(values, default=0.0)
+    if value <= LIMITS.friction:
+        return ""
+    meant = f"if {shown(value)} % is meant, write {value / 100.0:.12g}"
+    return f"{key}: is {shown(value)} right? Friction is {shown(value)} times the normal force; {meant}"
 
 
 def _of_angle(key: str, values: Iterable[float]) -> str:
