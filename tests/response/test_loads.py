@@ -286,3 +286,15 @@ def test_bolts_press_a_joint_together_where_it_does_not_open():
     assert pressed == pytest.approx(np.where(closed, k_v * v, 0.0), rel=1e-6, abs=1e-9)
     stick = np.sqrt(9.0 + closed.sum())  # of each closed contact k_u
     assert found.peak_frequency.sel(dof="x").item() == pytest.approx(stick, rel=1e-3)
+
+
+def test_no_peaks_are_looked_for_where_only_loads_work():
+    """There rounding may be all that moves; of 40 pairs under bolts a curve took 14834 points, now 124."""
+    scene = replace(YANG, reported=("u",))
+    for one, grows in ((YANG, [True, True]), (scene, [True, False])):
+        balance = System(one).new_balance()
+        z = np.append(np.full(balance.unknowns, 0.1), 1.2)
+        balance.evaluate(z)
+        balance.report(z, np.ones(z.size))
+        assert (np.asarray(balance.growth) != 0.0).tolist() == grows
+        assert (np.asarray(balance.output) > 0.0).all()

@@ -25,6 +25,7 @@ cdef class Balance(Problem):
     cdef public double load
     cdef public double share
     cdef public double[::1] rest
+    cdef public double[::1] reported
     cdef public double[::1] counted
     cdef public double[::1] force
     cdef public double[:, :, ::1] tangent

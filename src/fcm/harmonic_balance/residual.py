@@ -181,7 +181,7 @@ class Balance(Problem):
         self.group = laws[0].margins if laws else 0  # all contacts have as many
         self.rooted = layout.directions > 2  # in a plane a circle begins to slip all around at once
         self.counted, self.span, self.load, self.share = np.array(counted), span, 1.0, 1.0
-        self.rest = np.zeros(layout.ports)
+        self.rest, self.reported = np.zeros(layout.ports), np.ones(shown.dofs)
         self.force, self.now, self.rate, self.by_frequency = np.zeros((4, self.unknowns))
         self.evaluated = np.zeros(self.unknowns + 1)
         self.tangent = np.zeros((len(laws), width, width))
@@ -355,13 +355,18 @@ class Balance(Problem):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def report(self, z: cython.double[::1], direction: cython.double[::1]) -> cython.int:
-        """Amplitudes of the degrees of freedom shown, and their growth."""
+        """Amplitudes of the degrees of freedom shown, and their growth.
+
+        None of what no result has: where loads act the sum of many displacements may cancel, and its growth
+        is that of rounding. Steps would become as short as it varies.
+        """
         self.seen.at(z[self.unknowns])
         self.forces_at(z, direction)
         self.shown.at(self.load, self.now, self.rate, z, direction)
         i: cython.Py_ssize_t
         for i in range(self.outputs):
-            self.output[i], self.growth[i] = self.shown.amplitude[i], self.shown.growth[i]
+            self.output[i] = self.shown.amplitude[i]
+            self.growth[i] = self.shown.growth[i] * self.reported[i]
         return 0
 
     @cython.cfunc

@@ -214,6 +214,7 @@ class System:
         balance = Balance(
             seen, self.layout, self.laws(), shown, linear.counted, high - low, rank, self.options.units
         )
+        balance.reported = np.array([float(self.scene.reports(dof)) for dof in self.scene.modal.dofs])
         if rank:
             tangent, options = np.asarray(balance.tangent), self.condensation
             answer = ModalCompliance(seen, linear.flexibility)
