@@ -49,6 +49,19 @@ def test_what_the_scene_asks_for_is_shown():
     assert "shown" not in as_table(asked | {"output": list(peaks)}, "Hz")
 
 
+def test_pictures_show_what_the_scene_asks_for(fcm, tmp_path):
+    """As the table does, though another degree of freedom moves more, or comes first."""
+    text = SCENE.replace("RANGE", "1.2")
+    for name in ("u", "v"):
+        (tmp_path / "scene.toml").write_text(text.replace("[response]", f'[response]\noutput = ["{name}"]'))
+        done = fcm("respond", tmp_path / "scene.toml", "-o", tmp_path / "out.nc")
+        assert f"peak {name}" in done.out
+        assert "peak " + ("v" if name == "u" else "u") not in done.out
+        drawn, peaks = read_response(tmp_path / "out.nc"), read_peaks(tmp_path / "out.nc")
+        assert drawn.dofs[drawn.column(None)] == name
+        assert peaks.asked == (name,)
+
+
 def test_curves_that_an_interruption_left_out_are_counted():
     left = curve({"a": None}) | {"complete": False, "points": 0, "reason": "interrupted before it was traced"}
     broken = curve({"a": 1.0}) | {"complete": False, "reason": "interrupted at 3 rad/s"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 
 import numpy as np
@@ -32,8 +33,25 @@ def column_of(dofs: Sequence[str], dof: str | None, whose: str = "the file has")
     raise PlotError(f"no degree of freedom {dof!r}; {listed}{suggestion(dof, dofs)}")
 
 
-def leading_column(dofs: Sequence[str], dof: str | None, amplitudes: npt.NDArray[np.float64]) -> int:
+def asked_for(attribute: object, dofs: Sequence[str]) -> tuple[str, ...]:
+    """Those degrees of freedom that the scene of a file asks for, by its attribute; none where it says none.
+
+    >>> asked_for('["2x"]', ["1x", "2x"]), asked_for("", ["1x", "2x"])
+    (('2x',), ())
+    """
+    names = json.loads(str(attribute)) if attribute else []
+    return tuple(dof for dof in dofs if dof in names)
+
+
+def leading_column(
+    dofs: Sequence[str],
+    dof: str | None,
+    amplitudes: npt.NDArray[np.float64],
+    asked: Sequence[str] = (),
+) -> int:
     """As `column_of`, but by default, of more than fit on a line, that of the greatest amplitude (any, dof).
+
+    Of those that the scene asks for, where it does.
 
     Displacements come before rotations, which are of another unit.
 
@@ -42,7 +60,7 @@ def leading_column(dofs: Sequence[str], dof: str | None, amplitudes: npt.NDArray
     >>> leading_column(["1x", "1y", "1rx", "2x", "2y"], None, np.array([[1.0, 2.0, 9.0, 7.0, np.nan]]))
     3
     """
-    if dof is not None or len(dofs) <= MOST_DOFS:
+    if dof is not None or (len(dofs) <= MOST_DOFS and not asked):
         return column_of(dofs, dof)
     height = np.fmax.reduce(amplitudes, axis=0, initial=0.0)
-    return greatest_first(dofs, height)[0]
+    return next(i for i in greatest_first(dofs, height) if not asked or dofs[i] in asked)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from fcm.plot.dof import leading_column
+from fcm.plot.dof import asked_for, leading_column
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, staying, symbols, with_unit
 from fcm.plot.read import BoolArray, FloatArray, floats, opened, swept_units, swept_values
@@ -42,6 +42,7 @@ class Peaks:
     length: str = ""  # unit of displacements, if the file says it
     stable: FloatArray | None = None  # (curve, dof) 1, 0 or NaN as of a point; None: the file does not say it
     units: Mapping[str, str] = field(default_factory=dict)  # of swept keys, if the file says them
+    asked: tuple[str, ...] = ()  # degrees of freedom that the scene asks for, if it says so
 
 
 @apart
@@ -56,14 +57,16 @@ def read_peaks(path: Path) -> Peaks:
         swept = swept_values(variables)
         stable = floats(variables["peak_stable"]) if "peak_stable" in variables else None
         unit, length = getattr(data, "frequency_unit", "rad/s"), getattr(variables[_NEEDED[1]], "units", "")
-        units = swept_units(variables, swept)
-    return Peaks(dofs, str(unit), swept, amplitude, frequency, complete == 1, str(length), stable, units)
+        units, asked = swept_units(variables, swept), asked_for(getattr(data, "output", ""), dofs)
+    return Peaks(
+        dofs, str(unit), swept, amplitude, frequency, complete == 1, str(length), stable, units, asked
+    )
 
 
 def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) -> Figure:
     """The figure of one degree of freedom (by default see `leading_column`) against one swept quantity, by
     default the first."""
-    column = leading_column(peaks.dofs, dof, peaks.amplitude[peaks.complete])
+    column = leading_column(peaks.dofs, dof, peaks.amplitude[peaks.complete], peaks.asked)
     key = _key(peaks, against)
     known = np.isfinite(peaks.amplitude[:, column]) & peaks.complete
     if not known.any():

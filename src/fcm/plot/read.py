@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.files import NETCDF, no_file
-from fcm.plot.dof import leading_column
+from fcm.plot.dof import asked_for, leading_column
 from fcm.plot.errors import PlotError
 from fcm.plot.layout import check_layout, is_text
 from fcm.plot.measured import NEEDED as MEASURED
@@ -63,11 +63,13 @@ class DrawnResponse:
     drawn: tuple[str, ...] = ()  # swept keys whose values are random draws
     units: Mapping[str, str] = field(default_factory=dict)  # of swept keys, if the file says them
     measured: tuple[DrawnMeasured, ...] = ()  # points that numbers were fitted to
+    asked: tuple[str, ...] = ()  # degrees of freedom that the scene asks for, if it says so
 
     def column(self, dof: str | None) -> int:
         """The place of a degree of freedom; by default that of `leading_column`."""
         none = np.empty((0, len(self.dofs)))
-        return leading_column(self.dofs, dof, np.concatenate([none, *(c.amplitude for c in self.curves)]))
+        amplitudes = np.concatenate([none, *(c.amplitude for c in self.curves)])
+        return leading_column(self.dofs, dof, amplitudes, self.asked)
 
 
 def ends(curves: Sequence[DrawnCurve]) -> tuple[float, float]:
@@ -196,7 +198,8 @@ def _response(dataset: Any) -> DrawnResponse:
     held = _swept(variables)
     drawn = tuple(key for key in swept if getattr(held[key], "drawn", "") == "true")
     measured = measured_of(variables)
-    return DrawnResponse(dofs, unit, curves, length, drawn, swept_units(variables, swept), measured)
+    units, asked = swept_units(variables, swept), asked_for(getattr(dataset, "output", ""), dofs)
+    return DrawnResponse(dofs, unit, curves, length, drawn, units, measured, asked)
 
 
 def _curve(

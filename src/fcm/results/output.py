@@ -75,7 +75,8 @@ def without_nan(value: Any) -> Any:
 
 def attributes(response: Response) -> dict[str, str]:
     """Global attributes of the file."""
-    return {
+    asked = {"output": json.dumps(response.output)} if response.output else {}
+    return asked | {
         "title": response.title,
         "layout": LAYOUT,
         "source": f"fcm {fcm.__version__}, {_kind(response)}",

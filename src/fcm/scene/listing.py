@@ -73,7 +73,8 @@ def resonance_doubt(scene: Scene) -> str:
     places = f"the nearest mode is at {_nearest(opened, ends) / UNIT[unit]:.6g} {unit}"
     if scene.contacts:
         places += f" without contacts, at {_nearest(stuck, ends) / UNIT[unit]:.6g} {unit} while all stick"
-    slip = _slip_of_units(opened, stuck, ends, unit)
+    margin = (ends[1] / ends[0]) ** MESSAGES.range_margin  # at the very end a mode may be by chance
+    slip = _slip_of_units(opened, stuck, (ends[0] * margin, ends[1] / margin), unit)
     reciprocal = 1.0 / opened[opened > 0.0]
     if scene.of_matrices and _resonance_within(reciprocal, reciprocal, near):
         slip = "stiffness and mass may be in each other's place"
