@@ -74,7 +74,7 @@ def resonance_doubt(scene: Scene) -> str:
     if scene.contacts:
         places += f" without contacts, at {_nearest(stuck, ends) / UNIT[unit]:.6g} {unit} while all stick"
     margin = (ends[1] / ends[0]) ** MESSAGES.range_margin  # at the very end a mode may be by chance
-    slip = _slip_of_units(opened, stuck, (ends[0] * margin, ends[1] / margin), unit)
+    slip = _slip_of_units(opened[:1], stuck[:1], (ends[0] * margin, ends[1] / margin), unit)
     reciprocal = 1.0 / opened[opened > 0.0]
     if scene.of_matrices and _resonance_within(reciprocal, reciprocal, near):
         slip = "stiffness and mass may be in each other's place"
@@ -198,7 +198,7 @@ def _said_of_stuck(scene: Scene) -> str:
 
 
 def _slip_of_units(opened: FloatArray, stuck: FloatArray, ends: tuple[float, float], unit: str) -> str:
-    """By which usual slip of units the range [rad/s] would have a resonance; else ''."""
+    """By which usual slip of units the range [rad/s] would have the lowest resonance; else ''."""
     hertz = 2.0 * np.pi
     slips = {
         1.0 / hertz: 'the range would hold modes if its numbers were in Hz: frequency_unit = "Hz"',
