@@ -132,7 +132,7 @@ def retrace(found: RefinedResponse, harmonics: tuple[int, ...], accuracy: float)
     if found.seconds_with(harmonics) > found.system.options.work.max_seconds_repeated:
         return None
     nearby = prolongated_solutions(found, harmonics)
-    then = unchecked_response(found.system.with_harmonics(harmonics), None, found.traced, nearby)
+    then = unchecked_response(found.system.with_harmonics(harmonics), None, found.traced.found, nearby)
     return with_errors(then, accuracy) if then.shown else None
 
 
@@ -167,7 +167,7 @@ def _after(
     if before is None:
         return unchecked_response(system, progress)
     return unchecked_response(
-        system, progress, before.traced, prolongated_solutions(before, system.harmonics)
+        system, progress, before.traced.found, prolongated_solutions(before, system.harmonics)
     )
 
 

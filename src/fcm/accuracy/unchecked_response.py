@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.options import REFINEMENT, RefinementOptions
+from fcm.branches.force_level import LevelSolutions
 from fcm.branches.prolongation import prolongated
 from fcm.branches.trace import Traced, traced, traced_from, with_levels
 from fcm.continuation import Branches, BranchesInterrupted, Path
@@ -76,7 +77,7 @@ class UncheckedResponse:
         begin = system.work.seconds
         response = traced_from(system, self.traced, near, progress)
         if response is None or not response.branches.paths:
-            return unchecked_response(system, progress, self.traced, near)
+            return unchecked_response(system, progress, self.traced.found, near)
         levels = self._seconds_with(self.traced.work, harmonics)  # are still to be followed
         response, seconds = replace(response, work=levels), system.work.seconds - begin + levels
         return UncheckedResponse(
@@ -136,10 +137,10 @@ class ResponseInterrupted(KeyboardInterrupt):
 def unchecked_response(
     system: System,
     progress: Progress | None = None,
-    fewer: Traced | None = None,
+    fewer: tuple[LevelSolutions, ...] = (),
     near: Sequence[FloatArray] = (),
 ) -> UncheckedResponse:
-    """The response of a system; fewer and near as before and near of `traced`.
+    """The response of a system; fewer and near as of `traced`.
 
     Raises
     ------

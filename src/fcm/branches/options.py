@@ -150,8 +150,6 @@ class LevelCurveOptions:
     max_gap : float
         Relative distance of two frequencies between which a mode may resonate, from where it is open to
         where it is stuck: in wider gaps the level is followed, too.
-    distinct_peak : float
-        Relative distance from other such frequencies, from which on one of a peak of fewer harmonics is used.
     step : StepOptions
         How its steps are chosen.
     """
@@ -170,7 +168,6 @@ class LevelCurveOptions:
     level_tolerance: float = 1e-9
     resonance_offset: float = 1e-4
     max_gap: float = 0.25
-    distinct_peak: float = 0.03
     step: StepOptions = field(default_factory=StepOptions)
 
 

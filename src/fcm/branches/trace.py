@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import chain
 
 import numpy as np
 
 from fcm.branches.force_level import LevelSolutions, level_frequencies, solutions_at, solutions_in_turn
 from fcm.branches.narrow_resonances import narrow_resonances
-from fcm.continuation import Branches, Events, FollowOptions, Mark, Path, all_branches, follow
+from fcm.continuation import Branches, Events, FollowOptions, Path, all_branches, follow
 from fcm.continuation.all_branches import Follow, Following
 from fcm.continuation.follow import Progress
 from fcm.continuation.path import PathInterrupted
@@ -30,7 +29,6 @@ class Traced:
     branches whose mirror images are branches, too, and are not among them. folds_lost: frequencies [rad/s]
     from where curves of folds were not followed further, so that isolated branches may be missing.
     symmetry_lost: where a symmetric motion loses its symmetry by harmonics that are not among those balanced.
-    peaks: frequencies [rad/s] of the peaks that fewer harmonics have.
     """
 
     branches: Branches
@@ -39,46 +37,38 @@ class Traced:
     mirrored: tuple[int, ...] = ()
     folds_lost: tuple[float, ...] = ()
     symmetry_lost: tuple[float, ...] = ()
-    peaks: tuple[float, ...] = ()
-
-    @property
-    def known_peaks(self) -> tuple[float, ...]:
-        """Frequencies of the peaks of the branches, and of those with fewer harmonics."""
-        own = (path.z[path.where(Mark.PEAK), -1].tolist() for path in self.branches.paths)
-        return tuple(dict.fromkeys((*self.peaks, *chain.from_iterable(own))))
 
 
 def traced(
     system: System,
     progress: Progress | None = None,
-    before: Traced | None = None,
+    fewer: tuple[LevelSolutions, ...] = (),
     near: Sequence[FloatArray] = (),
 ) -> Traced:
     """Trace the branches through all solutions at the frequencies at which the level is followed.
 
     And through those beside where the level of the forces turned short of 1 there.
-    before: what was found with fewer harmonics, if anything: how far the levels are followed, and where.
-    near: solutions (unknown + 1,) known from elsewhere, whose branches are traced too, within the range.
+    fewer: what was found there with fewer harmonics, if anything; near: solutions (unknown + 1,) known from
+    elsewhere, whose branches are traced too if they are within the range.
     """
-    peaks, fewer = ((), ()) if before is None else (before.known_peaks, before.found)
-    levels, found, work = level_frequencies(system, peaks), list[LevelSolutions](), 0.0
+    levels, found, work = level_frequencies(system), list[LevelSolutions](), 0.0
 
     def starts() -> Iterator[FloatArray]:
         nonlocal work
         ahead = solutions_in_turn(system, levels, fewer)
         for _ in levels:  # a branch is there before the next level is followed
-            begin = system.work.seconds
+            before = system.work.seconds
             try:
                 found.append(next(ahead))
             except PathInterrupted:  # its path is one of levels, and no branch
                 raise KeyboardInterrupt from None
-            work += system.work.seconds - begin
+            work += system.work.seconds - before
             yield from found[-1].solutions
         yield from near
 
     stations = [*levels, *(float(z[-1]) for z in near)]
     branches = _branches_through(system, starts(), stations, progress)
-    return Traced(branches, tuple(found), work, peaks=peaks)
+    return Traced(branches, tuple(found), work)
 
 
 def traced_from(
@@ -89,22 +79,23 @@ def traced_from(
     if not near:
         return None
     places = [float(z[-1]) for z in near]
-    branches = _branches_through(system, near, places, progress)
-    return replace(before, branches=branches, peaks=before.known_peaks)
+    return replace(before, branches=_branches_through(system, near, places, progress))
 
 
 def with_levels(system: System, before: Traced) -> Traced:
     """With what the levels of the forces lead to, and the branches through what is on none that is known."""
     begin = system.work.seconds
-    found, passed = _level_solutions(system, before)
+    found, passed = _level_solutions(system, before.found)
     work, span = system.work.seconds - begin, system.scene.frequency_range
     inside = [z for z in passed if span[0] <= z[-1] <= span[1]]
     return replace(with_further(system, replace(before, found=()), found, inside), work=work)
 
 
-def _level_solutions(system: System, before: Traced) -> tuple[tuple[LevelSolutions, ...], list[FloatArray]]:
+def _level_solutions(
+    system: System, fewer: Sequence[LevelSolutions]
+) -> tuple[tuple[LevelSolutions, ...], list[FloatArray]]:
     """What is found where the levels are followed, with all solutions that this leads to."""
-    found = solutions_at(system, level_frequencies(system, before.peaks), before.found)
+    found = solutions_at(system, level_frequencies(system), fewer)
     return found, [z for one in found for z in one.solutions]
 
 
