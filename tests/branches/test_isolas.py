@@ -210,7 +210,7 @@ def test_closed_branches_that_marches_settle_on_are_found(name, span, harmonics,
 @pytest.mark.parametrize("harmonics", [3, None])
 def test_a_peak_that_more_harmonics_have_isolated_is_found_in_any_range(span, harmonics):
     """One harmonic has it connected, at 895 Hz. Three have it from 884.4 to 907.5 Hz, where no level of the
-    forces is followed but below the peak of one harmonic. At 886 Hz a march of the contact law by the method
+    forces is followed: the flanks of the peak lead to it. At 886 Hz a march of the contact law by the method
     of Runge and Kutta settles at 0.02561, from 14 of 96 random states."""
     (one,) = load_scene(KNOWN / "isolated_by_harmonics.toml").each_curve()
     one = replace(one, frequency_range=tuple(2.0 * np.pi * end for end in span))

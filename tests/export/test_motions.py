@@ -232,7 +232,7 @@ def test_the_fundamental_of_a_peak_is_that_of_its_curve(name):
     scene = replace(scene, curves=scene.curves[:1])
     response = trace(scene, harmonics=1)
     motions = motions_of(response, scene)
-    assert len(motions) == min(4, sum(map(scene.reports, scene.modal.dofs))) * len(response.curves)
+    assert len(motions) == min(4, sum(map(scene.asks_for, scene.modal.dofs))) * len(response.curves)
     for motion in motions[:4]:
         curve, own = response.curves[motion.curve], scene.each_curve()[motion.curve]
         dof = own.modal.dofs.index(motion.of[0])

@@ -86,6 +86,7 @@ class ProlongationOptions:
 
     max_of_a_kind: int = 8  # peaks, and folds
     spaced_points: int = 9  # points along the branch
+    flanks: tuple[float, ...] = (0.98, 0.94, 0.9, 0.8)  # of the greatest size of a branch
     max_change: float = 0.5  # of a solution's size: what moves further has come to another one
     harmonics_factor: int = 3  # as many harmonics at once, where all at once lead nowhere
     tolerance: float = 1e-6  # of a displacement, from which Newton's method ends at the precision of numbers
