@@ -31,7 +31,8 @@ def with_mode(n_0: float, frequency: float, damping: float, share: float):
         contact.mu, contact.k_u, contact.k_v, contact.n_0,
     )  # fmt: skip
     forces = tuple(replace(one, direction=np.append(one.direction, 0.0)) for one in scene.forces)
-    return replace(scene, modal=modal, contacts=(contact,), forces=forces, frequency_range=(1.25, 1.4))
+    scene = replace(scene, modal=modal, reported=modal.dofs, contacts=(contact,), forces=forces)
+    return replace(scene, frequency_range=(1.25, 1.4))
 
 
 def linear(scene, omega: float) -> float:

@@ -44,9 +44,8 @@ class MessageOptions:
     # times the structure's flexibility there: stiffnesses of contacts beyond these are asked about
     stiff_contact: float = 1e6
     soft_contact: float = 1e-4
-    range_margin: float = (
-        0.1  # of the range, logarithmic: where a slip of units would put a mode it is inside
-    )
+    # of the range, logarithmic: where a slip of units would put a mode it is so far from the ends
+    range_margin: float = 0.05
     range_near: float = 2.0  # times the range's ends: a mode within that is near it
 
 
