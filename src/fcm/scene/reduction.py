@@ -137,7 +137,7 @@ def how_far_off(matrices: Matrices, bound: float, damping: float, lost: float) -
     text = f"receptances up to the forces' highest frequency are off by at most {most}"
     if not ratio:
         return text
-    return f"{text}, the damping of a resonance by at most {_upwards(max(damping, 1e-15))} of it"
+    return f"{text}, the damping of a resonance by at most {_upwards(max(damping, 1e-15))}"
 
 
 def _upwards(bound: float) -> str:
