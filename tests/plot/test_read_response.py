@@ -124,6 +124,13 @@ def test_a_curve_without_points_is_not_drawn(path):
     assert len(draw_response(read_response(path)).axes[0].lines) == 2
 
 
+@pytest.mark.parametrize("cut", [0, 10, 1000, -100])
+def test_a_file_that_was_cut_off_is_said(path, cut):
+    path.write_bytes(path.read_bytes()[:cut])
+    with pytest.raises(PlotError, match=r"response\.nc: (not a |damaged, or cut off)"):
+        read_response(path)
+
+
 def test_what_draws_a_file_is_said_if_something_does(path):
     with (
         pytest.raises(PlotError, match="no variable sensitivity; try fcm plot response"),

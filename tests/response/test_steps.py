@@ -10,6 +10,47 @@ from fcm.continuation import Events, Mark, Status, follow
 from fcm.harmonic_balance.system import System
 from fcm.response import trace
 
+STEPS = np.geomspace(0.2, 0.005, 20)
+PRELOADS = (10.0, 5.0, 2.0, 0.0, -5.0, -20.0)
+
+
+@pytest.fixture(scope="module")
+def by_step():
+    """Every preload with every step limit, all curves in one group."""
+    scene = fcm.load_scene("yang1998-n5")
+
+    def curve(n_0: float, step: float):
+        contact = replace(scene.contacts[0], n_0=n_0)
+        return replace(scene, contacts=(contact,), max_step=step, parameters={"n_0": n_0, "step": step})
+
+    curves = tuple(curve(n_0, step) for n_0 in PRELOADS for step in STEPS)
+    response = trace(replace(scene, curves=curves), "table")
+    return {(c.parameters["n_0"], c.parameters["step"]): c for c in response.curves}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("n_0", PRELOADS)
+def test_folds_and_peaks_for_every_step(by_step, n_0):
+    finest = by_step[n_0, STEPS[-1]]
+    for step in STEPS:
+        curve = by_step[n_0, step]
+        assert curve.complete
+        assert curve.folds == pytest.approx(finest.folds, abs=1e-7)
+        for dof in ("u", "v"):
+            assert curve.peaks[dof][:2] == pytest.approx(finest.peaks[dof][:2], rel=1e-7)
+
+
+def test_a_smaller_step_gives_more_points(by_step):
+    points = [by_step[5.0, step].points for step in (STEPS[0], STEPS[10], STEPS[-1])]
+    assert points[0] < points[1] < points[2]
+
+
+def test_points_are_ordered_and_close(by_step):
+    curve = by_step[5.0, STEPS[-1]]
+    assert np.all(np.abs(np.diff(curve.frequency)) <= 0.005 * 1.5)
+    assert curve.frequency[0] == 0.7
+    assert curve.frequency[-1] == 1.7
+
 
 def test_units_do_not_matter():
     """The same scene in metres and newtons, in 1e-9 m and 1e9 N, and in milliseconds."""

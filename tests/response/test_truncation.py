@@ -14,6 +14,12 @@ def found():
     return {peak.preload: peak for peak in peaks()}
 
 
+def test_a_linear_peak_has_no_error(found):
+    for preload in (100.0, -60.0):
+        assert found[preload].truncation_error == 0.0
+        assert found[preload].true_error == pytest.approx(0.0, abs=EXACT)
+
+
 def test_a_large_error_is_predicted_within_a_factor_of_two(found):
     large = [peak for peak in found.values() if peak.true_error > SMALL]
     assert {peak.preload for peak in large} == {5.0, 2.0, 0.0, -5.0, -20.0}

@@ -29,6 +29,15 @@ def test_stability_changes_at_the_folds_and_nowhere_else(curves):
             assert min(abs(frequency[k : k + 2] - fold)) == 0.0
 
 
+def test_the_part_between_the_folds_is_unstable(curves):
+    curve = curves[5.0]
+    upper, lower = curve.folds
+    falling = np.concatenate((np.diff(curve.frequency) < 0.0, [False]))
+    assert np.all(curve.stable[1:-1][falling[:-2] & falling[1:-1]] == 0.0)
+    assert np.all(curve.stable[curve.frequency > upper + 1e-6] == 1.0)
+    assert np.all(curve.stable[curve.frequency < lower - 1e-6] == 1.0)
+
+
 def test_jumps_of_a_slow_sweep(curves):
     """Figure 14: upward the lower branch ends at the upper fold, downward the upper at the lower."""
     up, down = curves[5.0].jumps()
@@ -38,6 +47,21 @@ def test_jumps_of_a_slow_sweep(curves):
     assert up.after[0] > up.before[0]
     assert down.after[0] < down.before[0]
     assert curves[10.0].jumps() == []
+
+
+def test_the_truncation_error_vanishes_for_a_linear_response(curves):
+    linear = curves[-60.0]
+    assert set(linear.regime.ravel()) == {"S"}
+    assert np.all(linear.truncation_error == 0.0)
+
+
+def test_the_truncation_error_predicts_the_size_of_the_papers_discrepancy(curves):
+    """Time simulation gives 14.8 where single-harmonic balance gives 15.83 (figure 14)."""
+    curve = curves[5.0]
+    predicted = curve.peaks["u"].error
+    true = (15.83 - 14.8) / 14.8
+    assert true / 2.0 < predicted < 2.0 * true
+    assert curves[50.0].peaks["u"].error < 0.1 * predicted
 
 
 @pytest.mark.slow

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.io import savemat
+import scipy.sparse
+from scipy.io import mmwrite, savemat
 
 from fcm.scene import SceneError, scene_from_dict
 
@@ -39,7 +40,9 @@ for offset in range(len(whole)):
         changed = bytearray(whole)
         changed[offset] = value
         path.write_bytes(changed)
-        data = {"modal": {"file": path.name, "damping": 0.1}, "force": [{"dof": "1x", "amplitude": 1.0}],
+        structure = {"dofs": ["1x", "12z"], "stiffness": path.name, "mass": [1, 2], "damping": 0.1}
+        table = {"file": path.name, "damping": 0.1} if sys.argv[3] == "modal" else structure
+        data = {sys.argv[3]: table, "force": [{"dof": "1x", "amplitude": 1.0}],
                 "response": {"frequency": [0.5, 1.5]}}
         try:
             scene = scene_from_dict(data, "test.toml", path.parent)
@@ -53,17 +56,37 @@ print(read, refused)
 """
 
 
+def run(path, values, kind="modal"):
+    done = python("-c", DRIVER, path, ",".join(map(str, values)), kind)
+    assert done.code == 0, done.err
+    return [int(count) for count in done.out.split()]
+
+
 @pytest.mark.slow
 def test_every_byte_of_an_archive(tmp_path):
     np.savez(tmp_path / "m.npz", **MODES)
-    done = python("-c", DRIVER, tmp_path / "m.npz", "0,255")
-    assert done.code == 0, done.err
-    read, refused = (int(count) for count in done.out.split())
+    read, refused = run(tmp_path / "m.npz", (0, 255))
     assert read > 100 and refused > 500
 
 
+@pytest.mark.slow
+def test_every_byte_of_a_sparse_matrix(tmp_path):
+    scipy.sparse.save_npz(tmp_path / "K.npz", scipy.sparse.csr_array(np.array([[3.0, -1.0], [-1.0, 2.0]])))
+    read, refused = run(tmp_path / "K.npz", (255,), "structure")
+    assert read > 100 and refused > 300
+
+
+@pytest.mark.slow
+def test_every_byte_of_a_universal_file(tmp_path):
+    path = tmp_path / "m.uff"
+    path.write_bytes((HERE / "two_modes.uff").read_bytes())
+    read, refused = run(path, (0, 57))
+    assert read > 100 and refused > 100
+
+
 # The reader of .mat files may end by a signal on a damaged one: it is scipy's, and what it may do is what
-# `fcm.scene.reader_process` keeps from the program. Each changed byte has a process of its own.
+# `fcm.scene.reader_process` keeps from the program. Each changed byte has a process of its own, twice: with
+# the tags checked, as the program does it, and without.
 READER = """
 import os, sys
 from pathlib import Path
@@ -71,6 +94,8 @@ from fcm.scene import reader_process
 import scipy.io
 
 path, values = Path(sys.argv[1]), [int(value) for value in sys.argv[2].split(",")]
+if sys.argv[3] == "unchecked":
+    reader_process.check_tags = lambda *_: None
 whole = path.read_bytes()
 ends = {}
 null = os.open(os.devnull, os.O_RDWR)
@@ -92,16 +117,27 @@ print(ends)
 """
 
 
+def ends_of_reader(path, values, how):
+    """How often the reader ended with each exit code; those of signals are negative."""
+    done = python("-c", READER, path, ",".join(map(str, values)), how)
+    assert done.code == 0, done.err
+    return ast.literal_eval(done.out)
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
 @pytest.mark.parametrize("compressed", [False, True])
 def test_every_byte_of_a_matlab_file(tmp_path, compressed):
     path = tmp_path / "m.mat"
     savemat(path, MODES, do_compression=compressed)
-    done = python("-c", READER, path, "0,255")
-    assert done.code == 0, done.err
-    ends = ast.literal_eval(done.out)  # how often each exit code; those of signals are negative
+    ends = ends_of_reader(path, (0, 255), "checked")
     assert set(ends) == {0, 3} and ends[0] > 50 and ends[3] > 50
+
+
+def test_every_byte_of_a_matrix_market_file(tmp_path):
+    mmwrite(tmp_path / "K.mtx", scipy.sparse.coo_array(np.array([[3.0, -1.0], [-1.0, 2.0]])))
+    read, refused = run(tmp_path / "K.mtx", (0, 57), "structure")
+    assert read >= 3 and refused > 100
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")

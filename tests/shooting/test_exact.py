@@ -45,6 +45,16 @@ def test_folds_are_where_solutions_end():
             assert np.abs(beyond.state.q - fold.state.q).max() > 0.2 * size
 
 
+def test_folds_of_the_paper_s_preload(folded):
+    """Beside 1.2388 and 1.1875 of the single harmonic; the upper state lives at 1.195 and not at 1.190, the
+    lower one at 1.235 and not at 1.240."""
+    up, down = folded.folds
+    assert 1.235 < up < 1.240 and 1.190 < down < 1.195
+    assert [(jump.sweep, jump.frequency) for jump in folded.jumps()] == [("up", up), ("down", down)]
+    unstable = folded.frequency[folded.stable == 0.0]
+    assert unstable.min() > down and unstable.max() < up
+
+
 @pytest.mark.parametrize(
     "scene",
     [between(yang(10.0), 1.47, 1.56), between(yang(), 1.185, 1.245), between(two_contacts(), 1.045, 1.07)],

@@ -74,6 +74,15 @@ def test_a_rigid_body():
     assert motion.displacement(t)[:, 0] == pytest.approx(t - np.sin(t), abs=1e-12)
 
 
+def test_released_exactly_at_rest():
+    """Held at the slip limit with no velocity, and pushed back by the force: it sticks, or it slips."""
+    scene = one_mode(k_v=0.0)
+    for sign, expected in ((1.0, "E"), (-1.0, "N")):
+        held = replace(scene, forces=(replace(scene.forces[0], phase=np.pi / 2 * sign, amplitude=3.0),))
+        motion = simulate(held, 1.0, 0.1, State(np.zeros(1), np.zeros(1), np.array([-0.6])))
+        assert motion.cycles[0].letters[0] == expected
+
+
 def test_contact_just_touched():
     """A gap of exactly the greatest displacement is grazed, not closed; a shorter one is closed."""
     free = one_mode(n_0=-1e9)

@@ -20,6 +20,14 @@ def test_energy_balances(scene, omega):
     assert balance.error < 1e-12
 
 
+@pytest.mark.parametrize("changes", ["k_u", "k_v", "k_u k_v"])
+@pytest.mark.parametrize("stiffness", STIFFNESS)
+def test_energy_balances_at_any_stiffness(stiffness, changes):
+    scene = one_mode(n_0=1.0, **dict.fromkeys(changes.split(), stiffness))
+    balance = energy(simulate(scene, 1.1, 1.0 if stiffness > 1e7 else 3.0))
+    assert balance.error < 1e-10
+
+
 def test_what_slip_takes_of_contacts_is_that_of_the_balance_and_is_not_added_up():
     motion = simulate(two_contacts(), 1.1, 3)
     once, again = contact_loads(motion.cycles), contact_loads(motion.cycles)

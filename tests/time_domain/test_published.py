@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from fcm.response import trace
-from fcm.time_domain import simulate
+from fcm.scene import Phase
+from fcm.time_domain import simulate, simulate_phases
 
 from .cases import yang
 
@@ -39,3 +40,15 @@ def test_the_lower_state_at_n_0_5_ends_between_1235_and_1240():
     found, _ = swept(yang(), [1.2, 1.21, 1.22, 1.23, 1.235, 1.24])
     assert found[1.235] == pytest.approx(2.5641, abs=1e-3)
     assert found[1.24] > 10.0
+
+
+def test_figure_15():
+    """Upper branch at 1.195; lost at 1.190; not found again at 1.195."""
+    _, start = swept(yang(), [1.25, 1.23, 1.21, 1.2], 60)
+    phases = [Phase(1.195, 100), Phase(1.19, 120), Phase(1.195, 30)]
+    motion = simulate_phases(yang(), phases, start)
+    amplitude = [m.amplitude[0] for m in motion.measures()]
+    assert len(amplitude) == 250
+    assert amplitude[99] == pytest.approx(14.73, abs=0.02)
+    assert amplitude[219] < 2.0
+    assert amplitude[249] == pytest.approx(1.74, abs=0.03)

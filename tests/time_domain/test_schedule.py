@@ -107,6 +107,12 @@ def test_figure_15():
     assert third.amplitude == pytest.approx(lower.measure.amplitude, rel=5e-3)
 
 
+def test_the_lower_state_at_n_0_5_ends_between_1235_and_1240():
+    phases = [Phase(1.2, 60), Phase(1.22, 60), Phase(1.235, 100), Phase(1.24, 160)]
+    *_, lower, upper = record(scheduled(yang(), *phases)).phases
+    assert lower.amplitude[0] < 3.0 and upper.amplitude[0] > 10.0
+
+
 def test_plans_of_any_length_are_bounded():
     for cycles, columns in [(10, 2), (30_000, 2), (100_000, 2), (1_000_000, 2), (1000, 300), (7, 10**6)]:
         plan = Plan([Phase(1.0, cycles)], columns)
