@@ -38,7 +38,8 @@ OFF = {
         (unchecked_response, "prolongated_solutions", lambda before, harmonics: []),
         (refinement, "prolongated_solutions", lambda before, harmonics: []),
     ],
-    "levels in gaps": [(force_level, "frequencies_in_gaps", lambda system, known: ())],
+    "levels in gaps": [(force_level, "frequencies_in_gaps", lambda system, known, peaks=(): ())],
+    "levels at lost peaks": [(branch_trace.Traced, "lost_peaks", lambda found, options: ())],
     "levels below peaks": [(refined, "with_levels_below_peaks", lambda found, accuracy: found)],
     "levels where nothing is stable": [
         (refined, "with_levels_where_unstable", lambda found, stable, accuracy: (found, False))

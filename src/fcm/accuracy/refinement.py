@@ -19,6 +19,7 @@ from fcm.accuracy.unchecked_response import (
     with_more,
 )
 from fcm.branches.force_level import few_harmonics, with_low_harmonics
+from fcm.branches.trace import FoundPeak
 from fcm.continuation.follow import Progress
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
@@ -131,8 +132,9 @@ def retrace(found: RefinedResponse, harmonics: tuple[int, ...], accuracy: float)
     than is worth it."""
     if found.seconds_with(harmonics) > found.system.options.work.max_seconds_repeated:
         return None
-    nearby = prolongated_solutions(found, harmonics)
-    then = unchecked_response(found.system.with_harmonics(harmonics), None, found.traced.found, nearby)
+    nearby, traced = prolongated_solutions(found, harmonics), found.traced
+    system = found.system.with_harmonics(harmonics)
+    then = unchecked_response(system, None, traced.found, nearby, traced.peaks)
     return with_errors(then, accuracy) if then.shown else None
 
 
@@ -148,27 +150,30 @@ def with_given_harmonics(
     counts = sorted({1, few_harmonics(system), max(len(system.harmonics) // 2, few_harmonics(system))})
     if not system.scene.contacts:
         return with_estimated_errors(system, np.inf, progress)
-    before: UncheckedResponse | None = None
+    before, peaks = None, tuple[FoundPeak, ...]()
     for count in counts:
         if count < len(system.harmonics):
             before = _after(before, system.with_harmonics(system.harmonics[:count]))
+            peaks = (*before.traced.peaks, *peaks)
             if keep is not None and before.shown:
                 keep(before, np.nan, system.harmonics)
-    found = _after(before, system, progress)
+    found = _after(before, system, progress, peaks)
     if keep is not None and found.shown:
         keep(found, np.nan, ())
     return with_errors(found, np.inf)
 
 
 def _after(
-    before: UncheckedResponse | None, system: System, progress: Progress | None = None
+    before: UncheckedResponse | None,
+    system: System,
+    progress: Progress | None = None,
+    peaks: tuple[FoundPeak, ...] = (),
 ) -> UncheckedResponse:
     """The response of a system, after that with fewer harmonics."""
     if before is None:
         return unchecked_response(system, progress)
-    return unchecked_response(
-        system, progress, before.traced.found, prolongated_solutions(before, system.harmonics)
-    )
+    near = prolongated_solutions(before, system.harmonics)
+    return unchecked_response(system, progress, before.traced.found, near, peaks)
 
 
 def with_errors(

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from fcm.accuracy.options import REFINEMENT, RefinementOptions
 from fcm.branches.force_level import LevelSolutions
 from fcm.branches.prolongation import prolongated
-from fcm.branches.trace import Traced, traced, traced_from, with_levels
+from fcm.branches.trace import FoundPeak, Traced, traced, traced_from, with_levels
 from fcm.continuation import Branches, BranchesInterrupted, Path
 from fcm.continuation.follow import Progress
 from fcm.harmonic_balance.cost_model import seconds_of
@@ -77,7 +77,7 @@ class UncheckedResponse:
         begin = system.work.seconds
         response = traced_from(system, self.traced, near, progress)
         if response is None or not response.branches.paths:
-            return unchecked_response(system, progress, self.traced.found, near)
+            return unchecked_response(system, progress, self.traced.found, near, self.traced.peaks)
         levels = self._seconds_with(self.traced.work, harmonics)  # are still to be followed
         response, seconds = replace(response, work=levels), system.work.seconds - begin + levels
         return UncheckedResponse(
@@ -139,8 +139,9 @@ def unchecked_response(
     progress: Progress | None = None,
     fewer: tuple[LevelSolutions, ...] = (),
     near: Sequence[FloatArray] = (),
+    peaks: tuple[FoundPeak, ...] = (),
 ) -> UncheckedResponse:
-    """The response of a system; fewer and near as of `traced`.
+    """The response of a system; fewer, near and peaks as of `traced`.
 
     Raises
     ------
@@ -149,7 +150,7 @@ def unchecked_response(
     """
     before = system.work.seconds
     try:
-        response = traced(system, progress, fewer, near)
+        response = traced(system, progress, fewer, near, peaks)
     except BranchesInterrupted as stopped:
         paths = tuple(path for path in stopped.branches.paths if len(path.z) > 1)
         if not paths:

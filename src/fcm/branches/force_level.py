@@ -353,24 +353,28 @@ def _from_linear(system: System, omega: float) -> Iterator[FloatArray]:
             yield np.array(newton.z)
 
 
-def level_frequencies(system: System) -> tuple[float, ...]:
-    """The frequencies at which the level is followed."""
+def level_frequencies(system: System, peaks: Sequence[float] = ()) -> tuple[float, ...]:
+    """The frequencies at which the level is followed; peaks: those of a response with fewer harmonics."""
     span, inside = system.scene.frequency_range, resonances(system)
     known = np.array([span[0], *inside, span[1]])
     widest = int(np.diff(known).argmax())
     found = (*span, *inside, float(known[widest : widest + 2].mean()))
-    return *found, *frequencies_in_gaps(system, found)
+    return *found, *frequencies_in_gaps(system, found, peaks)
 
 
-def frequencies_in_gaps(system: System, known: Sequence[float]) -> Iterator[float]:
+def frequencies_in_gaps(
+    system: System, known: Sequence[float], peaks: Sequence[float] = ()
+) -> Iterator[float]:
     """Frequencies between those that are known, where these are far apart and a mode may resonate.
 
     With its amplitude a resonance moves from where the contacts stick to where they are open. Where the level
     is 1 on its way may be a closed branch. Levels that are followed far away from it tell nothing of it.
+    Where the response of fewer harmonics has a peak, that of more has it near there, and maybe isolated.
     """
     if len(system.scene.contacts) >= system.option(LEVEL_REACH).min_contacts:
         return
-    stuck, most = system.springs(stuck=True), system.option(LEVEL_CURVE).max_gap
+    stuck, options = system.springs(stuck=True), system.option(LEVEL_CURVE)
+    most, distinct = options.max_gap, options.distinct_peak
     moved = [
         band
         for harmonic in system.linear.driven
@@ -385,8 +389,12 @@ def frequencies_in_gaps(system: System, known: Sequence[float]) -> Iterator[floa
         if low <= 0.0 or not inner:
             continue
         count = math.ceil(math.log(high / low) / math.log1p(most))
-        for omega in np.geomspace(low, high, count + 1)[1:-1].tolist():
-            if any(a < omega < b for a, b in inner):
+        spaced = np.geomspace(low, high, count + 1).tolist()
+        tried = list(spaced)
+        for omega in (*spaced[1:-1], *peaks):
+            apart = omega in spaced or min(abs(omega - other) for other in tried) > distinct * omega
+            if apart and any(a < omega < b for a, b in inner):
+                tried.append(omega)
                 yield omega
 
 

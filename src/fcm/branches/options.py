@@ -86,7 +86,6 @@ class ProlongationOptions:
 
     max_of_a_kind: int = 8  # peaks, and folds
     spaced_points: int = 9  # points along the branch
-    flanks: tuple[float, ...] = (0.98, 0.94, 0.9, 0.8)  # of the greatest size of a branch
     max_change: float = 0.5  # of a solution's size: what moves further has come to another one
     harmonics_factor: int = 3  # as many harmonics at once, where all at once lead nowhere
     tolerance: float = 1e-6  # of a displacement, from which Newton's method ends at the precision of numbers
@@ -151,6 +150,12 @@ class LevelCurveOptions:
     max_gap : float
         Relative distance of two frequencies between which a mode may resonate, from where it is open to
         where it is stuck: in wider gaps the level is followed, too.
+    distinct_peak : float
+        Relative distance from other such frequencies, from which on that of a peak is used, too, that fewer
+        harmonics have and more have lost.
+    same_peak : tuple of float
+        Relative distance of the frequencies of a peak with fewer harmonics and with more, at most; and part
+        of its size that it has with more, at least.
     step : StepOptions
         How its steps are chosen.
     """
@@ -169,6 +174,8 @@ class LevelCurveOptions:
     level_tolerance: float = 1e-9
     resonance_offset: float = 1e-4
     max_gap: float = 0.25
+    distinct_peak: float = 0.01
+    same_peak: tuple[float, float] = (0.05, 0.7)
     step: StepOptions = field(default_factory=StepOptions)
 
 

@@ -119,27 +119,12 @@ def _prolongated_by_stages(
 
 
 def prolongation_points(path: Path, options: ProlongationOptions = PROLONGATION) -> list[int]:
-    """The points of a path that are prolongated: peaks, ends, folds, flanks of a peak, some between them."""
+    """The points of a path that are prolongated: its peaks, ends and folds, and some between them."""
     count = len(path.z)
     marked = [path.where(Mark.PEAK), np.array([0, count - 1]), path.where(Mark.FOLD)]
-    marked.append(_flanks(path, options.flanks))
     marked.append(np.linspace(0, count - 1, min(options.spaced_points, count)).astype(np.intp))
     every = np.concatenate([_spaced(one, options.max_of_a_kind) for one in marked])
     return list(dict.fromkeys(every.tolist()))
-
-
-def _flanks(path: Path, parts: Sequence[float]) -> npt.NDArray[np.intp]:
-    """Where the displacements have fallen to parts of their greatest, on both sides of it.
-
-    A sharp peak that more harmonics move leaves the planes normal to the curve of few at its tip, but not
-    those on its flanks.
-    """
-    size = np.linalg.norm(path.z[:, :-1], axis=1)
-    top, found = int(size.argmax()), list[int]()
-    for part in parts:
-        below = np.flatnonzero(size < part * size[top])
-        found += [*below[below > top][:1].tolist(), *below[below < top][-1:].tolist()]
-    return np.array(found, dtype=np.intp)
 
 
 def _spaced(places: npt.NDArray[np.intp], most: int) -> npt.NDArray[np.intp]:

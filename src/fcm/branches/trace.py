@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
 from fcm.branches.force_level import LevelSolutions, level_frequencies, solutions_at, solutions_in_turn
 from fcm.branches.narrow_resonances import narrow_resonances
-from fcm.continuation import Branches, Events, FollowOptions, Path, all_branches, follow
+from fcm.branches.options import LEVEL_CURVE, LevelCurveOptions
+from fcm.continuation import Branches, Events, FollowOptions, Mark, Path, all_branches, follow
 from fcm.continuation.all_branches import Follow, Following
 from fcm.continuation.follow import Progress
 from fcm.continuation.path import PathInterrupted
@@ -22,6 +24,18 @@ from fcm.harmonic_balance.well_posedness import undetermined
 from fcm.model.scene import FloatArray
 
 
+class FoundPeak(NamedTuple):
+    """Where a response has a peak: omega [rad/s], and the size of the contacts' displacements."""
+
+    omega: float
+    size: float
+
+    def is_like(self, other: FoundPeak, options: LevelCurveOptions) -> bool:
+        """Whether another response has this peak, too."""
+        near = abs(other.omega - self.omega) < options.same_peak[0] * self.omega
+        return near and other.size > options.same_peak[1] * self.size
+
+
 @dataclass(frozen=True)
 class Traced:
     """Branches, and what was found at the frequencies where solutions were looked for, maybe with fewer
@@ -29,6 +43,7 @@ class Traced:
     branches whose mirror images are branches, too, and are not among them. folds_lost: frequencies [rad/s]
     from where curves of folds were not followed further, so that isolated branches may be missing.
     symmetry_lost: where a symmetric motion loses its symmetry by harmonics that are not among those balanced.
+    fewer_peaks: those of the responses with fewer harmonics.
     """
 
     branches: Branches
@@ -37,6 +52,26 @@ class Traced:
     mirrored: tuple[int, ...] = ()
     folds_lost: tuple[float, ...] = ()
     symmetry_lost: tuple[float, ...] = ()
+    fewer_peaks: tuple[FoundPeak, ...] = ()
+
+    @property
+    def own_peaks(self) -> tuple[FoundPeak, ...]:
+        """Those of the branches."""
+        tops = (path.z[path.where(Mark.PEAK)] for path in self.branches.paths)
+        return tuple(FoundPeak(float(z[-1]), float(np.linalg.norm(z[:-1]))) for one in tops for z in one)
+
+    @property
+    def peaks(self) -> tuple[FoundPeak, ...]:
+        """Those of the branches, then those of fewer harmonics."""
+        return *self.own_peaks, *self.fewer_peaks
+
+    def lost_peaks(self, options: LevelCurveOptions) -> tuple[float, ...]:
+        """Frequencies [rad/s] of those peaks of fewer harmonics that no branch has: maybe of one that is
+        isolated with more."""
+        own = self.own_peaks
+        return tuple(
+            one.omega for one in self.fewer_peaks if not any(one.is_like(other, options) for other in own)
+        )
 
 
 def traced(
@@ -44,12 +79,14 @@ def traced(
     progress: Progress | None = None,
     fewer: tuple[LevelSolutions, ...] = (),
     near: Sequence[FloatArray] = (),
+    peaks: tuple[FoundPeak, ...] = (),
 ) -> Traced:
     """Trace the branches through all solutions at the frequencies at which the level is followed.
 
     And through those beside where the level of the forces turned short of 1 there.
     fewer: what was found there with fewer harmonics, if anything; near: solutions (unknown + 1,) known from
-    elsewhere, whose branches are traced too if they are within the range.
+    elsewhere, whose branches are traced too if they are within the range; peaks: those with fewer harmonics.
+    Where the branches have lost one, the level is followed, too.
     """
     levels, found, work = level_frequencies(system), list[LevelSolutions](), 0.0
 
@@ -68,7 +105,13 @@ def traced(
 
     stations = [*levels, *(float(z[-1]) for z in near)]
     branches = _branches_through(system, starts(), stations, progress)
-    return Traced(branches, tuple(found), work)
+    response = Traced(branches, tuple(found), work, fewer_peaks=peaks)
+    lost = response.lost_peaks(system.option(LEVEL_CURVE))
+    further = [omega for omega in level_frequencies(system, lost) if omega not in levels]
+    if not further:
+        return response
+    more = solutions_at(system, further)
+    return with_further(system, response, more, [z for one in more for z in one.solutions])
 
 
 def traced_from(
@@ -79,23 +122,23 @@ def traced_from(
     if not near:
         return None
     places = [float(z[-1]) for z in near]
-    return replace(before, branches=_branches_through(system, near, places, progress))
+    branches = _branches_through(system, near, places, progress)
+    return replace(before, branches=branches, fewer_peaks=before.peaks)
 
 
 def with_levels(system: System, before: Traced) -> Traced:
     """With what the levels of the forces lead to, and the branches through what is on none that is known."""
     begin = system.work.seconds
-    found, passed = _level_solutions(system, before.found)
+    found, passed = _level_solutions(system, before)
     work, span = system.work.seconds - begin, system.scene.frequency_range
     inside = [z for z in passed if span[0] <= z[-1] <= span[1]]
     return replace(with_further(system, replace(before, found=()), found, inside), work=work)
 
 
-def _level_solutions(
-    system: System, fewer: Sequence[LevelSolutions]
-) -> tuple[tuple[LevelSolutions, ...], list[FloatArray]]:
+def _level_solutions(system: System, before: Traced) -> tuple[tuple[LevelSolutions, ...], list[FloatArray]]:
     """What is found where the levels are followed, with all solutions that this leads to."""
-    found = solutions_at(system, level_frequencies(system), fewer)
+    lost = before.lost_peaks(system.option(LEVEL_CURVE))
+    found = solutions_at(system, level_frequencies(system, lost), before.found)
     return found, [z for one in found for z in one.solutions]
 
 
