@@ -43,6 +43,29 @@ def test_a_number_that_is_no_result_is_said(fcm, whole, kind, name, value):
     refused(fcm("plot", kind, "a.nc"), f"{name} holds {abs(value):.3g}")
 
 
+@pytest.mark.parametrize("text", ["5", '{"1x": 1}', "[", '"1x"'])
+@pytest.mark.parametrize("kind", ["response", "peak"])
+def test_an_attribute_that_is_no_list_of_names_is_refused(fcm, whole, kind, text):
+    Path("a.nc").write_bytes(whole)
+    with netCDF4.Dataset("a.nc", "a") as data:
+        data.output = text
+    refused(fcm("plot", kind, "a.nc"), "a.nc: not ")
+
+
+@pytest.mark.parametrize("text", ["5", '{"curves": [5]}', '{"curves": 5}', '{"curves": [{"mode": []}]}', "["])
+def test_a_summary_that_is_not_of_nonlinear_modes_is_refused(fcm, text):
+    with netCDF4.Dataset("a.nc", "w") as data:
+        data.createDimension("curve", 1)
+        data.createDimension("point", 2)
+        for name in ("frequency", "modal_amplitude", "damping_ratio"):
+            data.createVariable(name, "f8", ("curve", "point"))[:] = 1.0
+        data.summary = "{}"
+    assert fcm("plot", "mode", "a.nc").code == 0
+    with netCDF4.Dataset("a.nc", "a") as data:
+        data.summary = text
+    refused(fcm("plot", "mode", "a.nc"), "a.nc: not ")
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_file_that_was_cut_off_is_refused(fcm, whole, kind):

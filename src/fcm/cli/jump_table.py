@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from fcm.cli.columns import aligned, number, short, swept
+from fcm.cli.limits import SENTENCES
 
-_NARROW = 1e-3  # of the frequency: windows of unknown stability that are narrower have no line each
 _LOST = "\n- the curve has no stable part there to land on"
 Row = tuple[str, float, list[str]]  # the sweep, where it begins, the cells between swept values and sweep
 
@@ -76,7 +76,9 @@ def untold_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: li
             if not _is_narrow(one)
         ]
 
-    windows = f"window{'s' * (narrow > 1)} narrower than {100.0 * _NARROW:g} % of the frequency"
+    windows = (
+        f"window{'s' * (narrow > 1)} narrower than {100.0 * SENTENCES.narrow_window:g} % of the frequency"
+    )
     cells = _rows(curves, rows)
     if not cells:
         said = f"stability is unknown, and a sweep may jump, in {narrow} {windows}"
@@ -88,7 +90,7 @@ def untold_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: li
 
 
 def _is_narrow(window: Mapping[str, Any]) -> bool:
-    return bool(abs(window["to"] - window["from"]) < _NARROW * window["from"])
+    return bool(abs(window["to"] - window["from"]) < SENTENCES.narrow_window * window["from"])
 
 
 def _rows(

@@ -13,6 +13,7 @@ class RemarkOptions:
     folds: int = 12  # of which a line has all
     stretches: int = 3  # of frequencies in a sentence
     named: int = 3  # motions, and degrees of freedom, in a sentence
+    narrow_window: float = 1e-3  # of the frequency: narrower ones of unknown stability have no line each
     rows: int = 10  # of the table of an interface: contacts that take most
     flexible: int = 5  # modes that stand for flexibility, in a list of modes
     directions: int = 6  # whose participation fits beside each other on a line

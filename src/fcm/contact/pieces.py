@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from fcm.contact.arguments import ComplexArray, FloatArray
+from fcm.contact.kernel_arguments import ComplexArray, FloatArray
 
 
 class Pieces:

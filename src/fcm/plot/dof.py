@@ -38,8 +38,15 @@ def asked_for(attribute: object, dofs: Sequence[str]) -> tuple[str, ...]:
 
     >>> asked_for('["2x"]', ["1x", "2x"]), asked_for("", ["1x", "2x"])
     (('2x',), ())
+
+    Raises
+    ------
+    ValueError
+        If the attribute is no list of names.
     """
     names = json.loads(str(attribute)) if attribute else []
+    if not isinstance(names, list):
+        raise ValueError("its attribute output is no list of degrees of freedom")
     return tuple(dof for dof in dofs if dof in names)
 
 

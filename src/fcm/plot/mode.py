@@ -101,15 +101,18 @@ def read_modes(path: Path) -> DrawnModes:
 
 def _resonances(data: Any) -> list[tuple[tuple[float, float, float], ...]]:
     """Level, amplitude and frequency of those of each curve, as the file's summary has them."""
-    curves = json.loads(str(getattr(data, "summary", "{}"))).get("curves", ())
     keys = "level", "modal_amplitude", "frequency"
-    return [
-        tuple(
-            (float(one[keys[0]]), float(one[keys[1]]), float(one[keys[2]]))
-            for one in curve.get("mode", {}).get("resonances", ())
-        )
-        for curve in curves
-    ]
+    try:
+        curves = json.loads(str(getattr(data, "summary", "{}"))).get("curves", ())
+        return [
+            tuple(
+                (float(one[keys[0]]), float(one[keys[1]]), float(one[keys[2]]))
+                for one in curve.get("mode", {}).get("resonances", ())
+            )
+            for curve in curves
+        ]
+    except (AttributeError, LookupError, TypeError) as error:
+        raise ValueError("its attribute summary is not of nonlinear modes") from error
 
 
 def draw_modes(drawn: DrawnModes) -> Figure:

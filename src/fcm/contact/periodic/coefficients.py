@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy.typing as npt
 
-from fcm.contact.arguments import Arguments, ComplexArray, FloatArray
+from fcm.contact.kernel_arguments import ComplexArray, FloatArray, KernelArguments
 from fcm.contact.periodic.forces import PeriodicContact
 
 
@@ -84,7 +84,7 @@ def periodic_forces(
     ((0.31831-0.5j), 1.0)
     """
     numbers = {"mu": mu, "k_u": k_u, "k_v": k_v, "n_0": n_0, "start": start}
-    motion = Arguments.of({"u": u, "v": v}, harmonics, numbers)
+    motion = KernelArguments.of({"u": u, "v": v}, harmonics, numbers)
     f, n = motion.coefficients(_evaluated(motion, gradient=False)[0])
     return f, n
 
@@ -123,7 +123,7 @@ def periodic_gradients(
     -0.63662
     """
     numbers = {"mu": mu, "k_u": k_u, "k_v": k_v, "n_0": n_0, "start": start}
-    motion = Arguments.of({"u": u, "v": v}, harmonics, numbers)
+    motion = KernelArguments.of({"u": u, "v": v}, harmonics, numbers)
     forces, jacobian = _evaluated(motion, gradient=True)
     return PeriodicGradients(*motion.coefficients(forces), *motion.derivatives(jacobian))
 
@@ -132,12 +132,12 @@ def one_motion(
     u: npt.ArrayLike, v: npt.ArrayLike, **numbers: float
 ) -> tuple[PeriodicContact, FloatArray, FloatArray]:
     """A contact for one motion, its unknowns and its parameters, as the kernel takes them."""
-    motion = Arguments.of({"u": u, "v": v}, None, numbers)
+    motion = KernelArguments.of({"u": u, "v": v}, None, numbers)
     motion.check_single()
     return PeriodicContact(motion.harmonics, motion.outputs), motion.unknowns[0], motion.parameters[0]
 
 
-def _evaluated(motion: Arguments, gradient: bool) -> tuple[FloatArray, FloatArray]:
+def _evaluated(motion: KernelArguments, gradient: bool) -> tuple[FloatArray, FloatArray]:
     """Forces (point, equation), and if wanted their derivatives (point, equation, unknown)."""
     contact = PeriodicContact(motion.harmonics, motion.outputs)
     forces, jacobian = motion.room(contact.equations, gradient)

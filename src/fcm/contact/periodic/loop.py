@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from fcm.contact.arguments import ComplexArray, FloatArray
+from fcm.contact.kernel_arguments import ComplexArray, FloatArray
 from fcm.contact.options import PERIODIC
 from fcm.contact.periodic.coefficients import one_motion
 from fcm.contact.periodic.cycle import Cycle

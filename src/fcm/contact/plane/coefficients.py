@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy.typing as npt
 
-from fcm.contact.arguments import Arguments, ComplexArray, FloatArray
+from fcm.contact.kernel_arguments import ComplexArray, FloatArray, KernelArguments
 from fcm.contact.plane.forces import PlanarContact
 from fcm.contact.plane.options import FINE
 
@@ -93,7 +93,7 @@ def planar_forces(
     ((0.25+0.433013j), (0.433013-0.25j))
     """
     numbers = {"mu": mu, "k_u": k_u, "k_v": k_v, "n_0": n_0, "start_x": start_x, "start_y": start_y}
-    motion = Arguments.of({"u_x": u_x, "u_y": u_y, "v": v}, harmonics, numbers)
+    motion = KernelArguments.of({"u_x": u_x, "u_y": u_y, "v": v}, harmonics, numbers)
     f_x, f_y, n = motion.coefficients(_evaluated(motion, gradient=False)[0])
     return f_x, f_y, n
 
@@ -135,7 +135,7 @@ def planar_gradients(
     0.5
     """
     numbers = {"mu": mu, "k_u": k_u, "k_v": k_v, "n_0": n_0, "start_x": start_x, "start_y": start_y}
-    motion = Arguments.of({"u_x": u_x, "u_y": u_y, "v": v}, harmonics, numbers)
+    motion = KernelArguments.of({"u_x": u_x, "u_y": u_y, "v": v}, harmonics, numbers)
     forces, jacobian = _evaluated(motion, gradient=True)
     return PlanarGradients(*motion.coefficients(forces), *motion.derivatives(jacobian))
 
@@ -144,12 +144,12 @@ def one_motion(
     u_x: npt.ArrayLike, u_y: npt.ArrayLike, v: npt.ArrayLike, **numbers: float
 ) -> tuple[list[int], FloatArray, FloatArray]:
     """The harmonics of one motion, its unknowns and its parameters, as the kernel takes them."""
-    motion = Arguments.of({"u_x": u_x, "u_y": u_y, "v": v}, None, numbers)
+    motion = KernelArguments.of({"u_x": u_x, "u_y": u_y, "v": v}, None, numbers)
     motion.check_single()
     return motion.harmonics, motion.unknowns[0], motion.parameters[0]
 
 
-def _evaluated(motion: Arguments, gradient: bool) -> tuple[FloatArray, FloatArray]:
+def _evaluated(motion: KernelArguments, gradient: bool) -> tuple[FloatArray, FloatArray]:
     """Forces (point, equation), and if wanted their derivatives (point, equation, unknown)."""
     contact = PlanarContact(motion.harmonics, motion.outputs, options=FINE)
     forces, jacobian = motion.room(contact.equations, gradient)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
-from fcm.contact.arguments import ComplexArray, FloatArray
+from fcm.contact.kernel_arguments import ComplexArray, FloatArray
 from fcm.contact.pieces import LoadedPieces, waves_at
 from fcm.contact.plane.coefficients import one_motion
 from fcm.contact.plane.forces import PlanarContact

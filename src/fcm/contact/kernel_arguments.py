@@ -13,7 +13,7 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 
-class Arguments(NamedTuple):
+class KernelArguments(NamedTuple):
     """A row for each contact."""
 
     directions: int
@@ -26,7 +26,7 @@ class Arguments(NamedTuple):
     @classmethod
     def of(
         cls, motions: Mapping[str, npt.ArrayLike], harmonics: int | None, numbers: Mapping[str, npt.ArrayLike]
-    ) -> Arguments:
+    ) -> KernelArguments:
         """Of a motion along each direction, the normal last; forces have as many harmonics if none are given.
 
         Raises
