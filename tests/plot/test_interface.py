@@ -207,3 +207,92 @@ def test_contacts_of_node_pairs_are_drawn_where_they_are(tmp_path):
     assert between == pytest.approx(np.linalg.norm(corners[:, None] - corners, axis=2))
     with netCDF4.Dataset(output) as data:
         assert np.array_equal(data["contact_position"][:], corners)
+
+
+def line_of(nodes, rows, tmp_path, **contact):
+    """A response of node pairs at places, and what its file says of them."""
+    (tmp_path / "pairs.csv").write_text("\n".join(["node,other,x,y,z", *rows]))
+    (tmp_path / "model.toml").write_text(SCENE.format(**_dofs(nodes)))
+    assert called("respond", tmp_path / "model.toml", "-o", tmp_path / "a.nc").code == 0
+    return read_interface(tmp_path / "a.nc")
+
+
+def test_contacts_on_a_line_are_bars_along_it_with_their_names(tmp_path):
+    read = line_of(3, [f"{k + 1},,{120.0 + 10.0 * k},35.0,2.0" for k in range(3)], tmp_path)
+    (point,) = points_of(read, ())
+    figure = draw_interface(read, [point], read.places, read.axes)
+    lowest = figure.axes[-1]
+    assert lowest.get_xticks().tolist() == [120.0, 130.0, 140.0]
+    assert [one.get_text() for one in lowest.get_xticklabels()] == [
+        f"joint_{k + 1}\n{120 + 10 * k}" for k in range(3)
+    ]
+    assert lowest.get_xlabel() == "contact, at x"
+    bars = sorted((one.get_x() + 0.5 * one.get_width(), one.get_height()) for one in lowest.patches)
+    assert [at for at, _ in bars] == pytest.approx([120.0, 130.0, 140.0])
+    assert [high for _, high in bars] == pytest.approx(point.contact_loads[2].tolist())
+    assert figure.get_size_inches()[0] < 4.0  # one column of a journal
+    given = draw_interface(read, [point], np.array([[0.0, 0.0], [3.0, 4.0], [6.0, 8.0]]))
+    assert given.axes[-1].get_xlabel() == "contact, at 0.6 X + 0.8 Y"
+
+
+def test_names_that_find_no_room_give_way_to_coordinates(tmp_path):
+    read = line_of(60, [f"{k + 1},,{float(k)},0.0,0.0" for k in range(60)], tmp_path)
+    figure = draw_interface(read, points_of(read, ()), read.places, read.axes)
+    figure.draw_without_rendering()
+    assert figure.axes[-1].get_xlabel() == "x" and len(figure.axes[-1].get_xticks()) < 12
+    row = draw_interface(read, points_of(read, ()))
+    row.draw_without_rendering()
+    ticks = row.axes[-1].get_xticks()
+    assert row.axes[-1].get_xlabel() == "contact" and (ticks == np.round(ticks)).all()
+
+
+def test_few_contacts_in_a_row_have_their_names(file):
+    read = replace(read_interface(file[0]), contacts=("shroud", "platform"))
+    (point,) = points_of(read, (1.2,))
+    two = replace(point, state=point.state[:2], contact_loads=point.contact_loads[:, :2])
+    axes = draw_interface(read, [two]).axes[-1]
+    assert [one.get_text() for one in axes.get_xticklabels()] == ["shroud", "platform"]
+    assert all(bar.get_width() < 0.2 * np.ptp(axes.get_xlim()) for bar in axes.patches)
+
+
+def test_an_open_contact_and_one_without_a_value_have_marks_of_their_own(file):
+    """Both were white circles."""
+    read = read_interface(file[0])
+    (point,) = points_of(read, (1.2,))
+    loads = np.tile(np.arange(12.0), (3, 1))
+    places = np.array([(i % 4, i // 4) for i in range(12)], dtype=float)
+    opened = replace(point, state=np.full(12, 3), contact_loads=loads)
+    figure = draw_interface(read, [opened], places)
+    words = [one.get_text() for one in figure.legends[0].get_texts()]
+    assert words[-2:] == ["open (12)", "none, or below the colours"]
+    *_, ring, cross = figure.legends[0].legend_handles
+    assert ring.get_marker() == "o" and cross.get_marker() == "x"
+    (none, _) = figure.axes[1].collections
+    assert none.get_offsets().tolist() == [[0.0, 0.0]]
+    all_there = draw_interface(read, [replace(opened, contact_loads=1.0 + loads)], places)
+    assert len(all_there.legends[0].get_texts()) == 4
+
+
+def test_axes_are_the_coordinates_of_the_file(tmp_path):
+    corners = [(100.0, 20.0), (130.0, 20.0), (130.0, 60.0), (100.0, 60.0)]
+    read = line_of(4, [f"{k + 1},,{x},2.0,{z}" for k, (x, z) in enumerate(corners)], tmp_path)
+    places = dict(zip(read.axes, read.places.T, strict=True))
+    assert places["x"].tolist() == [x for x, _ in corners] and places["z"].tolist() == [z for _, z in corners]
+    figure = draw_interface(read, points_of(read, ()), read.places, read.axes)
+    assert {figure.get_supxlabel(), figure.get_supylabel()} == {"x", "z"}
+    names = {one.get_text() for one in figure.axes[0].texts}
+    assert names == {f"joint_{k}" for k in range(1, 5)}
+
+
+def test_the_page_has_names_of_contacts_and_coordinates_at_its_axes(file, tmp_path):
+    pytest.importorskip("plotly")
+    from fcm.plot.interactive import contacts_page
+
+    read = read_interface(file[0])
+    points, places = points_of(read, (1.2,)), np.array([(i % 4, i // 4) for i in range(12)], dtype=float)
+    contacts_page(read, points, places, tmp_path / "a.html", ("x", "z"))
+    contacts_page(read, points, None, tmp_path / "b.html")
+    plane, row = ((tmp_path / name).read_text(encoding="utf-8") for name in ("a.html", "b.html"))
+    assert '"title":{"text":"x"}' in plane and '"title":{"text":"z"}' in plane
+    names = ",".join(f'"{name}"' for name in read.contacts)
+    assert f'"ticktext":[{names}]' in row

@@ -20,14 +20,14 @@ def alone(folder):
 
 def test_partners_are_joined_and_nodes_alone_are_crosses(tmp_path):
     (interface,) = alone(tmp_path).interfaces
-    along, centre = view_of(interface)
+    along = view_of(interface)
     assert np.abs(along @ NORMAL).max() < 1e-12
     figure = draw_pairs([interface], "mm")
     axes = figure.axes[0]
     ends = np.array([line.get_xydata() for line in axes.get_lines()])
     assert ends.shape == (12, 2, 2)
     assert np.abs(ends[:, 0] - ends[:, 1]).max() < 1e-12  # a gap along the normal is seen end on
-    assert ends[:, 0] == pytest.approx((interface.first - centre) @ along.T)
+    assert ends[:, 0] == pytest.approx(interface.first @ along.T)
     crosses = [one.get_label() for one in axes.collections if one.get_label().endswith("(1)")]
     assert crosses == ["LEFT, alone (1)", "RIGHT, alone (1)"]
     marks = axes.collections[0]
@@ -38,18 +38,27 @@ def test_partners_are_joined_and_nodes_alone_are_crosses(tmp_path):
 def test_a_line_of_nodes_is_drawn_as_well():
     line = np.array([[float(k), 0.0, 0.0] for k in range(4)])
     interface = Interface("edge", line, line + np.array([0.0, 0.1, 0.0]), ("A", "B"))
-    along, _ = view_of(interface)
+    along = view_of(interface)
     assert along @ along.T == pytest.approx(np.eye(2))
     assert draw_pairs([interface]).axes
+
+
+def test_coordinates_are_those_of_the_file():
+    flat = np.array([[120.0 + 10.0 * i, 35.0 + 4.0 * j, 2.0] for i in range(3) for j in range(2)])
+    axes = draw_pairs([Interface("lap", flat, flat + np.array([0.0, 0.0, 0.1]), ("A", "B"))], "mm").axes[0]
+    assert np.asarray(axes.collections[0].get_offsets()).tolist() == flat[:, :2].tolist()
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("x (mm)", "y (mm)")
+    bar = draw_pairs([Interface("lap", flat, flat + np.array([0.0, 0.0, 0.1]), ("A", "B"))], "mm").axes[1]
+    assert bar.get_ylabel() == "Distance between the nodes of a pair (mm)"
 
 
 def test_partners_that_touch_have_no_bar_and_axes_go_forward():
     first, _ = places(0.0)
     interface = Interface("lap", first, first.copy(), ("A", "B"))
-    along, _ = view_of(interface)
+    along = view_of(interface)
     assert (along[np.arange(2), np.abs(along).argmax(axis=1)] > 0.0).all()
     figure = draw_pairs([interface])
-    assert len(figure.axes) == 1 and figure.axes[0].get_title() == "lap: 12 pairs, which touch"
+    assert len(figure.axes) == 1 and figure.axes[0].get_title() == "lap: 12 pairs of coincident nodes"
     apart = Interface("lap", first, first + np.array([0.0, 0.0, 0.02]), ("A", "B"))
     _, bar = draw_pairs([apart]).axes
     assert bar.get_ylim() == pytest.approx((0.0, 0.02))

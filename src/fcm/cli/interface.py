@@ -55,7 +55,9 @@ def contacts(
         raise click.UsageError(f"{options} ask for {count} points; a picture has room for {LAYOUT.panels}.")
     read = read_interface(file)
     points = [point for curve in curves for point in points_of(read, at, curve)]
-    where = read.places if places is None else read_places(places, read.contacts)
+    where, axes = read.places, read.axes
+    if places is not None:
+        where, axes = read_places(places, read.contacts), type(read).axes
     each = [curve for curve in curves for _ in at or (0.0,)]
     for point, curve in zip(points, each, strict=True):
         takers = greatest_takers(read, point, SENTENCES.rows)
@@ -71,7 +73,7 @@ def contacts(
         from fcm.plot.interactive import contacts_page
 
         with drawing(), replacing(output) as partial:
-            contacts_page(read, points, where, partial)
+            contacts_page(read, points, where, partial, axes)
     else:
-        save_picture_of(lambda: draw_interface(read, points, where), output)
+        save_picture_of(lambda: draw_interface(read, points, where, axes), output)
     messages.info(f"wrote {output}")

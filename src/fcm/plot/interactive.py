@@ -16,7 +16,7 @@ from fcm.plot.interface import CONTACT_LOADS, STATES_OF_CONTACTS, InterfaceFile,
 from fcm.plot.labels import short_names, with_unit
 from fcm.plot.peak import Peaks
 from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, FloatArray, wide
-from fcm.plot.style import has_decades, sequence_colours
+from fcm.plot.style import LAYOUT, has_decades, sequence_colours
 
 STATES = ("stable", "unstable", "stability unknown")
 DASHES = dict(zip(STATES, ("solid", "dash", "dot"), strict=True))
@@ -86,7 +86,11 @@ def peak_page(peaks: Peaks, dof: str | None, against: str | None, path: Path) ->
 
 
 def contacts_page(
-    file: InterfaceFile, points: Sequence[InterfacePoint], places: FloatArray | None, path: Path
+    file: InterfaceFile,
+    points: Sequence[InterfacePoint],
+    places: FloatArray | None,
+    path: Path,
+    axes: tuple[str, str] = InterfaceFile.axes,
 ) -> None:
     """Write the page of contacts at points of a curve.
 
@@ -96,6 +100,8 @@ def contacts_page(
     ----------
     places : ndarray, optional
         Where each contact is (contact, 2): it is coloured by what is shown. Else its height is that.
+    axes : tuple of str
+        What these two coordinates are.
     """
     go = _plotly()
     figure, names = go.Figure(), np.array(file.contacts)
@@ -122,10 +128,12 @@ def contacts_page(
             + "<extra></extra>",
         )  # fmt: skip
     if places is None:
-        figure.update_xaxes(title="Contact")
+        named = {"tickvals": number, "ticktext": names} if len(names) <= LAYOUT.named_contacts else {}
+        figure.update_xaxes(title="Contact", **named)
         figure.update_yaxes(title=heads[0])
     else:
-        figure.update_yaxes(scaleanchor="x")
+        figure.update_xaxes(title=with_unit(axes[0], file.units[1]))
+        figure.update_yaxes(title=with_unit(axes[1], file.units[1]), scaleanchor="x")
     shown = [_of_contacts(points, k, head, tops[k], places is None) for k, head in enumerate(heads)]
     frequencies = [
         {

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from fcm.mesh.pairing import PAIRING
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, short_names, with_unit
-from fcm.plot.pairs import plane_view
+from fcm.plot.pairs import direction_name, plane_view
 from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
-from fcm.plot.style import LAYOUT, TWO_COLUMNS, house_style, new_figure
+from fcm.plot.style import COLUMN, LAYOUT, TWO_COLUMNS, house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,6 +36,8 @@ _SIZE = (4.0, 60.0)  # [point^2] of a mark, for many contacts and for few
 _SHARE = 0.7  # of the distance of two marks is filled by them
 _BAR, _ABOVE = 1.2, 0.35  # [inch] beside the panels for a bar of colours, and above each
 _HEIGHTS = (3.5, 11.0)  # [inch] of a figure
+_ROW = "contact"  # the axis of contacts without places
+NONE = ("#808080", "x")  # colour and mark of a contact whose value is none
 
 
 @dataclass(frozen=True)
@@ -52,6 +55,7 @@ class InterfaceFile:
     contact_loads: FloatArray  # (3, curve, point, contact): energy, slip path, greatest normal force
     units: tuple[str, str, str]  # of these, where the file says them
     places: FloatArray | None = None  # (contact, 2) in the plane of the contacts, where the file says them
+    axes: tuple[str, str] = ("X", "Y")  # what these two coordinates are
     names: tuple[str, ...] = ()  # of the curves of a sweep: the values of each
     swept: tuple[Mapping[str, float], ...] = ()  # these values, by their short names
     forced: bool = True  # whether its curves are no nonlinear modes
@@ -87,7 +91,7 @@ def read_interface(path: Path) -> InterfaceFile:
         contact_loads = np.stack([floats(variables[name]) for name in names])
         stable = floats(variables["stable"]) if "stable" in variables else np.full(frequency.shape, np.nan)
         unit = str(getattr(data, "frequency_unit", "rad/s"))
-        places = _places(variables)
+        places, axes = _places(variables)
         energy, slip, normal = (str(getattr(variables[name], "units", "")) for name in names)
         swept, forced = swept_values(variables), "modal_amplitude" not in variables
         units_of = swept_units(variables, swept)
@@ -96,22 +100,34 @@ def read_interface(path: Path) -> InterfaceFile:
     units = energy, slip, normal
     values = [{key: float(one[k]) for key, one in swept.items()} for k in range(len(frequency))]
     curves = tuple(curve_label(one, units=units_of) for one in values) if swept else ()
-    of_contacts = contacts, dofs, frequency, amplitude, stable, states, contact_loads, units, places, curves
+    of_contacts = (
+        contacts,
+        dofs,
+        frequency,
+        amplitude,
+        stable,
+        states,
+        contact_loads,
+        units,
+        places,
+        axes,
+        curves,
+    )
     short = short_names(swept)
     named = tuple({short[key]: value for key, value in one.items()} for one in values) if swept else ()
     return InterfaceFile(path, unit, *of_contacts, named, forced)
 
 
-def _places(variables: Any) -> FloatArray | None:
-    """Where the contacts are in their plane; None where the file does not say that of all."""
+def _places(variables: Any) -> tuple[FloatArray | None, tuple[str, str]]:
+    """Coordinates of the contacts in their plane, and their names; none where the file lacks that of one."""
     if "contact_position" not in variables:
-        return None
+        return None, InterfaceFile.axes
     found = floats(variables["contact_position"])
     if not np.isfinite(found).all() or not len(found):
-        return None
-    along, centre = plane_view(found)
-    places: FloatArray = (found - centre) @ along.T
-    return places
+        return None, InterfaceFile.axes
+    along = plane_view(found)
+    places: FloatArray = found @ along.T
+    return places, (direction_name(along[0]), direction_name(along[1]))
 
 
 def points_of(file: InterfaceFile, at: Sequence[float], curve: int = 0) -> list[InterfacePoint]:
@@ -221,52 +237,159 @@ def read_places(path: Path, contacts: Sequence[str]) -> FloatArray:
 
 
 def draw_interface(
-    file: InterfaceFile, points: Sequence[InterfacePoint], places: FloatArray | None = None
+    file: InterfaceFile,
+    points: Sequence[InterfacePoint],
+    places: FloatArray | None = None,
+    axes: tuple[str, str] = InterfaceFile.axes,
 ) -> Figure:
-    """The figure: a column for each point; a row for the states, and for energy, slip path and normal force.
+    """The figure: panels for the states, and for energy, slip path and normal force; a column for each point.
 
-    places (contact, 2): where each contact is; None: in a row, in their order.
+    places (contact, 2): where each contact is, and what the two coordinates are; None: in a row, in their
+    order. Contacts on a line have bars along it; others marks, whose colours are the values.
     """
-    count, titles = len(points), [f"{name}" for _, name in CONTACT_LOADS]
+    line = None if places is None else _line(places, axes)
     with house_style():
-        width = TWO_COLUMNS if count > 1 else LAYOUT.width
-        figure = new_figure(width, 6.4 if places is None else _height(places, width, count))
-        grid = figure.subplots(
-            1 + len(CONTACT_LOADS),
-            count,
-            sharex=True,
-            sharey="row" if places is None else True,
-            squeeze=False,
-        )
-        size = _size(len(file.contacts), places, width, count)
-        for column, point in enumerate(points):
-            _states(grid[0, column], point, places, size)
-            unknown = ", stability unknown" if point.forced else ""
-            stays = {0.0: ", unstable", 1.0: ""}.get(point.stable, unknown)
-            head = f"{point.curve}\n" if point.curve else ""
-            grid[0, column].set_title(f"{head}{point.frequency:.6g} {file.unit}{stays}", fontsize=8)
-        for row, (title, unit) in enumerate(zip(titles, file.units, strict=True)):
-            values = np.array([point.contact_loads[row] for point in points])
-            top = float(np.nanmax(values, initial=0.0)) or 1.0
-            scale = _scale(values)
-            label = f"{title} [{unit}]" if unit else title
-            for column in range(count):
-                axes = grid[1 + row, column]
-                if places is None:
-                    axes.bar(np.arange(1, len(file.contacts) + 1), values[column], width=0.8, color="#404040")
-                    axes.set_ylim(0.0, 1.05 * top)
-                else:
-                    _valued(axes, places, values[column], scale, size)
-            if places is None:
-                grid[1 + row, 0].set_ylabel(label, parse_math=False)
-            else:
-                _bar(figure, grid[1 + row, -1], scale)
-                grid[1 + row, 0].set_title(label, loc="left", fontsize=8, parse_math=False)
-        _finish(figure, grid, points, places)
-        if places is not None and places is file.places:
-            where = with_unit("Distance from the middle of the contacts, in their plane", file.units[1])
-            figure.supxlabel(where, fontsize=8)
+        if places is None:
+            return _in_row(file, points, np.arange(1.0, len(file.contacts) + 1.0), _ROW)
+        if line is not None:
+            return _in_row(file, points, line[0], with_unit(line[1], file.units[1]))
+        return _in_plane(file, points, places, axes)
+
+
+def _line(places: FloatArray, axes: tuple[str, str]) -> tuple[FloatArray, str] | None:
+    """Coordinates along the line that all contacts are on, and the name of it; None if they are on none."""
+    _, sizes, directions = np.linalg.svd(places - places.mean(axis=0), full_matrices=True)
+    if len(places) > 2 and sizes[1] > PAIRING.line_tolerance * sizes[0]:
+        return None
+    along = directions[0] * np.sign(directions[0][np.abs(directions[0]).argmax()])
+    along = np.where(np.abs(along) < PAIRING.normal_tolerance, 0.0, along)
+    return places @ along, direction_name(along, axes)
+
+
+def _in_row(file: InterfaceFile, points: Sequence[InterfacePoint], at: FloatArray, label: str) -> Figure:
+    """Contacts on a line: their states on levels, their values as bars."""
+    count = len(points)
+    few = count == 1 and len(at) <= LAYOUT.few_contacts
+    width = TWO_COLUMNS if count > 1 else COLUMN if few else LAYOUT.width
+    figure = new_figure(width, LAYOUT.row_of_contacts)
+    grid = figure.subplots(1 + len(CONTACT_LOADS), count, sharex=True, sharey="row", squeeze=False)
+    between = np.diff(np.unique(at))
+    step = float(between.min()) if between.size else 1.0
+    low, high = float(at.min()) - step, float(at.max()) + step
+    thick = min(0.8 * step, LAYOUT.thickest_bar * (high - low))
+    size = float(np.clip((_SHARE * 72.0 * (width - _BAR) / count * step / (high - low)) ** 2, *_SIZE))
+    for column, point in enumerate(points):
+        for k, (_, colour, mark) in enumerate(STATES_OF_CONTACTS):
+            here = point.state == k
+            grid[0, column].scatter(
+                at[here], np.full(here.sum(), k), c=colour, marker=mark, s=size, edgecolors="black",
+                linewidths=0.4,
+            )  # fmt: skip
+        grid[0, column].set_title(_head(file, point), fontsize=8)
+    for row, ((_, title), unit) in enumerate(zip(CONTACT_LOADS, file.units, strict=True)):
+        values = np.array([point.contact_loads[row] for point in points])
+        top = float(np.nanmax(values, initial=0.0)) or 1.0
+        for column in range(count):
+            grid[1 + row, column].bar(at, values[column], width=thick, color="#404040")
+            grid[1 + row, column].set_ylim(0.0, 1.05 * top)
+        grid[1 + row, 0].set_ylabel("\n".join((title, f"({unit})" * bool(unit))), parse_math=False)
+    grid[0, 0].set_yticks(range(len(STATES_OF_CONTACTS)), [word for word, *_ in STATES_OF_CONTACTS])
+    grid[0, 0].set_ylim(-0.6, len(STATES_OF_CONTACTS) - 0.4)
+    grid[0, 0].set_xlim(low, high)
+    room = 72.0 * (width - _BAR) / count * step / (high - low)  # [point] from one contact to the next
+    _name_contacts(grid, file.contacts, at, room, label)
     return figure
+
+
+def _name_contacts(grid: Any, names: Sequence[str], at: FloatArray, room: float, label: str) -> None:
+    """Ticks at the contacts with their names, upright or turned as they find room; else those of numbers."""
+    from matplotlib.ticker import MaxNLocator
+
+    height, of_line = float(LAYOUT.small_text), label != _ROW
+    ticks = [f"{name}\n{place:.4g}" for name, place in zip(names, at.tolist(), strict=True)]
+    ticks = ticks if of_line else list(names)
+    longest = max(len(line) for tick in ticks for line in tick.split("\n"))
+    upright = LAYOUT.letter_width * height * (longest + 1) <= room
+    turned = LAYOUT.line_distance * height * (2 if of_line else 1) <= room
+    for axes in grid[-1]:
+        if upright or turned:
+            axes.set_xticks(at, ticks, rotation=0 if upright else 90, fontsize=height, parse_math=False)
+        elif not of_line:
+            axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+        axes.set_xlabel(f"{_ROW}, at {label}" if of_line and (upright or turned) else label)
+
+
+def _head(file: InterfaceFile, point: InterfacePoint) -> str:
+    """Which point of which curve it is."""
+    unknown = ", stability unknown" if point.forced else ""
+    stays = {0.0: ", unstable", 1.0: ""}.get(point.stable, unknown)
+    return (f"{point.curve}\n" if point.curve else "") + f"{point.frequency:.6g} {file.unit}{stays}"
+
+
+def _in_plane(
+    file: InterfaceFile, points: Sequence[InterfacePoint], places: FloatArray, names: tuple[str, str]
+) -> Figure:
+    """Contacts in a plane: marks at their places; a point alone has its four panels in a square."""
+    count = len(points)
+    rows, columns = (2, 2) if count == 1 else (1 + len(CONTACT_LOADS), count)
+    figure = new_figure(TWO_COLUMNS, _height(places, TWO_COLUMNS, rows, columns))
+    grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    panels = grid.reshape(-1, count)  # (quantity, point)
+    size, none = _size(places, TWO_COLUMNS, columns), False
+    for column, point in enumerate(points):
+        for k, (_, colour, mark) in enumerate(STATES_OF_CONTACTS):
+            panels[0, column].scatter(
+                *places[point.state == k].T, c=colour, marker=mark, s=size, edgecolors="black", linewidths=0.4
+            )
+        panels[0, column].set_title(_head(file, point), fontsize=8)
+        if len(places) <= LAYOUT.named_contacts:
+            _write_names(panels[0, column], file.contacts, places, size)
+    for row, ((_, title), unit) in enumerate(zip(CONTACT_LOADS, file.units, strict=True)):
+        values = np.array([point.contact_loads[row] for point in points])
+        scale = _scale(values)
+        for axes, one in zip(panels[1 + row], values, strict=True):
+            none |= _valued(axes, places, one, scale, size)
+        _bar(figure, panels[1 + row, -1], scale)
+        panels[1 + row, 0].set_title(with_unit(title, unit), loc="left", fontsize=8, parse_math=False)
+    (left, lower), (right, upper) = _limits(places)
+    for axes in grid.flat:
+        axes.set_aspect("equal")
+        axes.set_xlim(left, right)
+        axes.set_ylim(lower, upper)
+    for direction, name in zip("xy", names, strict=True):
+        getattr(figure, f"sup{direction}label")(with_unit(name, file.units[1]), fontsize=8)
+    _legend(figure, points, none)
+    return figure
+
+
+def _write_names(axes: Axes, names: Sequence[str], places: FloatArray, size: float) -> None:
+    """The names of contacts above or below their marks, towards the middle of the panel."""
+    low, high = _limits(places)
+    beside = 0.5 * size**0.5 + 2.0  # [point]
+    for name, place in zip(names, places, strict=True):
+        across, up = ((place - low) / (high - low)).tolist()
+        axes.annotate(
+            name, place, (0.0, beside if up < 0.5 else -beside), textcoords="offset points",
+            ha="left" if across < 0.2 else "right" if across > 0.8 else "center",
+            va="bottom" if up < 0.5 else "top", fontsize=LAYOUT.small_text, parse_math=False,
+        )  # fmt: skip
+
+
+def _legend(figure: Figure, points: Sequence[InterfacePoint], none: bool) -> None:
+    """The states, with the number of contacts where there is one point; and the mark of no value."""
+    from matplotlib.lines import Line2D
+
+    edge: dict[str, Any] = {"markeredgecolor": "black", "markeredgewidth": 0.4}
+    marks, words = list[Line2D](), list[str]()
+    for k, (word, colour, mark) in enumerate(STATES_OF_CONTACTS):
+        number = int(sum((point.state == k).sum() for point in points))
+        marks.append(Line2D([], [], color=colour, marker=mark, linestyle="", **edge))
+        words.append(f"{word} ({number})" if len(points) == 1 else word)
+    if none:
+        colour, mark = NONE
+        marks.append(Line2D([], [], color=colour, marker=mark, linestyle=""))
+        words.append("none, or below the colours")
+    figure.legend(marks, words, loc="outside upper center", ncols=len(words))
 
 
 def _scale(values: FloatArray) -> Normalize:
@@ -283,13 +406,17 @@ def _scale(values: FloatArray) -> Normalize:
     return LogNorm(min(least, 0.1 * top), top)
 
 
-def _valued(axes: Axes, places: FloatArray, values: FloatArray, scale: Normalize, size: float) -> None:
-    """Marks coloured by their values; those below the scale are white."""
-    seen = values >= (scale.vmin or 0.0)
-    edge: dict[str, Any] = {"edgecolors": "#808080", "linewidths": 0.3, "s": size}
+def _valued(axes: Axes, places: FloatArray, values: FloatArray, scale: Normalize, size: float) -> bool:
+    """Marks coloured by their values; whether some have a cross, as they are 0 or below the scale."""
+    seen = (values > 0.0) & (values >= (scale.vmin or 0.0))
     x, y = places.T
-    axes.scatter(x[~seen], y[~seen], c="white", **edge)
-    axes.scatter(x[seen], y[seen], c=values[seen], cmap="viridis", norm=scale, **edge)
+    colour, mark = NONE
+    axes.scatter(x[~seen], y[~seen], c=colour, marker=mark, s=0.5 * size, linewidths=0.8)
+    axes.scatter(
+        x[seen], y[seen], c=values[seen], cmap="viridis", norm=scale, edgecolors="#808080", linewidths=0.3,
+        s=size,
+    )  # fmt: skip
+    return not seen.all()
 
 
 def _bar(figure: Figure, beside: Axes, scale: Normalize) -> None:
@@ -303,61 +430,23 @@ def _bar(figure: Figure, beside: Axes, scale: Normalize) -> None:
 def _limits(places: FloatArray) -> tuple[FloatArray, FloatArray]:
     """The lower left and the upper right of the interface with room for marks around it."""
     low, high = places.min(axis=0), places.max(axis=0)
-    room = LAYOUT.interface_room * float((high - low).max()) or 1.0
+    room = LAYOUT.interface_room * float((high - low).max())
     return low - room, high + room
 
 
-def _size(contacts: int, places: FloatArray | None, width: float, count: int) -> float:
-    """Of a mark [point^2]: so that those in a row, or next to one another in the plane, do not touch."""
-    panel = 72.0 * (width - _BAR) / count  # its width [point]
-    if places is None or len(places) < 2:
-        apart = panel / contacts
-    else:
-        low, high = _limits(places)
-        between = np.linalg.norm(places[:, None] - places, axis=-1)
-        np.fill_diagonal(between, np.inf)
-        apart = panel * float(np.median(between.min(axis=1)) / (high - low)[0])
+def _size(places: FloatArray, width: float, columns: int) -> float:
+    """Of a mark [point^2], so that those next to one another do not touch."""
+    low, high = _limits(places)
+    between = np.linalg.norm(places[:, None] - places, axis=-1)
+    np.fill_diagonal(between, np.inf)
+    panel = 72.0 * (width - _BAR) / columns  # its width [point]
+    apart = panel * float(np.median(between.min(axis=1)) / (high - low)[0])
     return float(np.clip((_SHARE * apart) ** 2, *_SIZE))
 
 
-def _height(places: FloatArray, width: float, count: int) -> float:
+def _height(places: FloatArray, width: float, rows: int, columns: int) -> float:
     """Of the figure [inch], so that panels of one scale in both directions fill it."""
     low, high = _limits(places)
     across, up = (high - low).tolist()
-    panel = (width - _BAR) / count * up / across
-    return float(np.clip((panel + _ABOVE) * (1 + len(CONTACT_LOADS)) + _ABOVE, *_HEIGHTS))
-
-
-def _states(axes: Axes, point: InterfacePoint, places: FloatArray | None, size: float) -> None:
-    """Marks by state; in a row one level for each."""
-    number = np.arange(1, len(point.state) + 1)
-    for k, (_, colour, mark) in enumerate(STATES_OF_CONTACTS):
-        here = point.state == k
-        x, y = (number[here], np.full(here.sum(), k)) if places is None else places[here].T
-        axes.scatter(x, y, c=colour, marker=mark, s=size, edgecolors="black", linewidths=0.4)
-
-
-def _finish(figure: Figure, grid: Any, points: Sequence[InterfacePoint], places: FloatArray | None) -> None:
-    from matplotlib.lines import Line2D
-
-    if places is not None:
-        (left, lower), (right, upper) = _limits(places)
-        for axes in grid.flat:
-            axes.set_aspect("equal")
-            axes.set_xlim(left, right)
-            axes.set_ylim(lower, upper)
-    if places is None:
-        grid[0, 0].set_yticks(range(len(STATES_OF_CONTACTS)), [word for word, *_ in STATES_OF_CONTACTS])
-        grid[0, 0].set_ylim(-0.6, len(STATES_OF_CONTACTS) - 0.4)
-        for axes in grid[-1]:
-            axes.set_xlabel("contact")
-        return
-    marks = [
-        Line2D([], [], color=colour, marker=mark, linestyle="", markeredgecolor="black", markeredgewidth=0.4)
-        for _, colour, mark in STATES_OF_CONTACTS
-    ]
-    words = [
-        f"{word} ({int(sum((point.state == k).sum() for point in points))})" if len(points) == 1 else word
-        for k, (word, *_) in enumerate(STATES_OF_CONTACTS)
-    ]
-    figure.legend(marks, words, loc="outside upper center", ncols=len(STATES_OF_CONTACTS))
+    panel = (width - _BAR) / columns * up / across
+    return float(np.clip((panel + _ABOVE) * rows + 2.0 * _ABOVE, *_HEIGHTS))

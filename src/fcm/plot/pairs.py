@@ -22,34 +22,48 @@ _ALONE = ("#D55E00", "#0072B2")  # of the first set, of the second
 _SIZE = (4.0, 60.0)  # [point^2] of a mark, for many pairs and for few
 
 
-def view_of(interface: Interface) -> tuple[FloatArray, FloatArray]:
-    """Two directions (2, 3) in the plane of an interface, and its centre; see `plane_view`."""
+def view_of(interface: Interface) -> FloatArray:
+    """Two directions (2, 3) in the plane of an interface; see `plane_view`."""
     if interface.plane is not None:
-        return _forward(interface.plane.first, interface.plane.second), interface.plane.centre
+        return _forward(interface.plane.first, interface.plane.second)
     places = (interface.first, interface.second, interface.alone, interface.other_alone)
-    along, centre = plane_view(np.concatenate(places))
-    return _forward(*along), centre
+    return plane_view(np.concatenate(places))
 
 
-def _forward(*directions: FloatArray) -> FloatArray:
-    """Directions along the axes of the mesh and not against them, by their greatest component."""
-    return np.stack([one * np.sign(one[np.abs(one).argmax()]) for one in directions])
+def plane_view(places: FloatArray) -> FloatArray:
+    """Two directions (2, 3) in the plane of some places (place, 3); of a line, along and beside it.
 
+    They go along the axes of the coordinates and not against them, by their greatest component.
 
-def plane_view(places: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Two directions (2, 3) in the plane of some places (place, 3), and their centre; of a line, along and
-    beside it.
-
-    >>> along, centre = plane_view(np.array([[0.0, 0, 1], [0, 2, 1]]))
-    >>> np.abs(along[0]).tolist(), centre.tolist()
-    ([0.0, 1.0, 0.0], [0.0, 1.0, 1.0])
+    >>> along = plane_view(np.array([[0.0, 0, 1], [0, 2, 1]]))
+    >>> along[0].tolist()
+    [0.0, 1.0, 0.0]
     """
     try:
         plane = fitted_plane(places)
     except MeshError:
         _, _, axes = np.linalg.svd(places - places.mean(axis=0), full_matrices=True)
-        return axes[:2], places.mean(axis=0)
-    return np.stack((plane.first, plane.second)), plane.centre
+        return _forward(*axes[:2])
+    return _forward(plane.first, plane.second)
+
+
+def _forward(*directions: FloatArray) -> FloatArray:
+    return np.stack([one * np.sign(one[np.abs(one).argmax()]) for one in directions])
+
+
+def direction_name(direction: FloatArray, axes: Sequence[str] = "xyz") -> str:
+    """As "x", or "0.6 x − 0.8 z".
+
+    >>> direction_name(np.array([1.0, 0.0, 0.0])), direction_name(np.array([0.6, 0.0, -0.8]))
+    ('x', '0.6 x − 0.8 z')
+    """
+    there = [
+        (float(w), axis) for w, axis in zip(direction, axes, strict=True) if abs(w) > LAYOUT.least_weight
+    ]
+    if len(there) == 1 and there[0][0] > 0.0:
+        return there[0][1]
+    words = [f"{'−' if weight < 0.0 else '+'} {abs(weight):.3g} {axis}" for weight, axis in there]
+    return " ".join(words).removeprefix("+ ")
 
 
 def draw_pairs(interfaces: Sequence[Interface], length: str = "") -> Figure:
@@ -84,8 +98,8 @@ def draw_pairs(interfaces: Sequence[Interface], length: str = "") -> Figure:
 
 def _draw(figure: Figure, axes: Any, one: Interface, length: str) -> None:
     """One contact."""
-    along, centre = view_of(one)
-    seen = [(side - centre) @ along.T for side in (one.first, one.second)]
+    along = view_of(one)
+    seen = [side @ along.T for side in (one.first, one.second)]
     apart = np.linalg.norm(one.second - one.first, axis=1)
     size = float(np.clip(1500.0 / max(len(apart), 1), *_SIZE))
     for start, end in zip(*seen, strict=True):
@@ -103,25 +117,13 @@ def _draw(figure: Figure, axes: Any, one: Interface, length: str) -> None:
     for side, colour, name in zip((one.alone, one.other_alone), _ALONE, one.sets[:2], strict=False):
         if len(side):
             label = f"{name}, alone ({len(side)})".replace("$", r"\$")
-            axes.scatter(*((side - centre) @ along.T).T, c=colour, marker="x", s=size, label=label)
+            axes.scatter(*(side @ along.T).T, c=colour, marker="x", s=size, label=label)
     if axes.get_legend_handles_labels()[0]:
         axes.legend()
     if len(one.sets) == 2 and not touch:
-        figure.colorbar(marks, ax=axes, label=with_unit("Distance of partners", length))
+        figure.colorbar(marks, ax=axes, label=with_unit("Distance between the nodes of a pair", length))
     axes.set_aspect("equal", adjustable="datalim")
-    what = "nodes" if len(one.sets) == 1 else "pairs, which touch" if touch else "pairs"
+    what = "nodes" if len(one.sets) == 1 else "pairs of coincident nodes" if touch else "pairs"
     axes.set_title(f"{one.name}: {len(apart)} {what}", parse_math=False)
     for direction, name in zip(along, ("x", "y"), strict=True):
-        getattr(axes, f"set_{name}label")(with_unit(_named(direction), length))
-
-
-def _named(direction: FloatArray) -> str:
-    """As "x", or "0.6 x + 0.8 y".
-
-    >>> _named(np.array([1.0, 0.0, 0.0])), _named(np.array([0.6, 0.0, -0.8]))
-    ('x', '+0.6 x -0.8 z')
-    """
-    there = [(float(w), axis) for w, axis in zip(direction, "xyz", strict=True) if abs(w) > 1e-9]
-    if len(there) == 1 and there[0][0] > 0.0:
-        return there[0][1]
-    return " ".join(f"{weight:+.3g} {axis}" for weight, axis in there)
+        getattr(axes, f"set_{name}label")(with_unit(direction_name(direction), length))

@@ -55,6 +55,7 @@ class Layout:
     least_colour: float = 1e-4  # of the greatest value: less has no colour on a logarithmic scale
     line_places: int = 16  # of a smooth line, between two points
     touch_roundings: float = 8.0  # of a coordinate, by which partners at one place are apart at most
+    least_weight: float = 1e-9  # of an axis in the name of a direction; less is a rounding error
     name_leader: int = 10  # [point] a name this far from its peak has a thin line to it
     name_margin: float = 2.0  # [pixel] around a name, at 100 to the inch
     name_points: int = 12  # points between two of a curve at which a touch is looked for
@@ -70,6 +71,12 @@ class Layout:
     history_boundaries: int = 40  # between phases: of more the lines would be a solid area, too
     letter: float = 0.026  # width of a letter of a label and of some space, relative to the axes
     interface_room: float = 0.06  # around the interface, as part of its greater extent
+    few_contacts: int = 6  # in a row: up to so many have a picture of one column
+    named_contacts: int = 20  # in a plane: up to so many have their names
+    row_of_contacts: float = 5.6  # [inch] height of a picture of contacts on a line
+    thickest_bar: float = 0.12  # of the axis: a bar of one contact in a row
+    line_distance: float = 1.3  # of two lines of text, relative to its size
+    letter_width: float = 0.55  # of the size of a text: that of a letter in the mean
     panels: int = 6  # points of an interface, or contacts, in a picture
     loop_columns: int = 4  # of loops beside one another
     small_text: int = 7  # [point] texts within a picture
