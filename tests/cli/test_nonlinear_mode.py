@@ -130,3 +130,12 @@ def test_an_interruption_keeps_the_modes_that_are_finished(fcm, scene):
     # and so, if the error with more is not known
     first = json.loads(fcm(*fine, messages=Interrupting("error with 3 harmonics")).out)["curves"][0]
     assert first["mode"] == every[0]["mode"] and first["harmonics"] == [1]
+
+
+def test_loads_that_nothing_holds_are_said(fcm, scene):
+    """The first mode has no stiffness, and the contact holds it by its friction alone."""
+    text = scene.read_text().replace("frequency = [1.0, 10.0]", "frequency = [0.0, 10.0]")
+    text = text.replace("[[0.707, 0.707], [1.0, -0.5]]", "[[1.0, 0.0], [0.0, 1.0]]")
+    scene.write_text(text + '\n[[load]]\ndof = "u"\nforce = 5.0\n')
+    done = fcm("respond", scene, "--mode", 1, "--level", "0.1:10")
+    assert done.code == 3 and "does not come to rest" in done.err + done.out

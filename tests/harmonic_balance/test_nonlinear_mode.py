@@ -14,6 +14,8 @@ from fcm.harmonic_balance.system import System
 from fcm.nonlinear_modes.backbone import ModeError, linear_modes, nonlinear_mode, truncation
 from fcm.nonlinear_modes.extended_periodic_motion import AutonomousProblem
 from fcm.nonlinear_modes.forced_response import flanks, resonances, resonant_level
+from fcm.response.request import Request
+from fcm.response.trace import traced_curve
 from fcm.scene.load import scene_from_dict
 
 
@@ -46,11 +48,13 @@ def test_one_mass_on_a_friction_element_against_its_describing_function():
     assert mode.path.where(Mark.CORNER).size == 1  # and so is the onset of slip
 
 
-def test_jacobian_against_differences():
-    system = System(load_scene("two-contacts").in_use(), (1, 2, 3))
+@pytest.mark.parametrize("loaded", [False, True])
+def test_jacobian_against_differences(loaded):
+    scene = pressed({"u": 0.5, "v": 2.0}, 0.2) if loaded else load_scene("two-contacts").in_use()
+    system = System(scene, (1, 2, 3))
     problem = AutonomousProblem(system, linear_modes(system, 2)[0])
     rng = np.random.default_rng(1)
-    z = problem.start(np.log(2e-4))
+    z = problem.start(np.log(1.0 if loaded else 2e-4))
     problem.measure(z)
     unit = np.array(problem.scale)
     z += 0.05 * unit * rng.uniform(-1.0, 1.0, z.size)
@@ -177,3 +181,89 @@ def test_it_is_the_response_to_forces_that_do_what_its_negative_damping_does():
         ends = np.concatenate([path.z[path.parameter == omega] for path in paths])
         off = np.abs(ends - mode.contacts[i]).max(axis=1) / a
         assert off.min() < 1e-8
+
+
+def pressed(loads, n_0):
+    """Two masses, whose contact leans, with a preload and under static loads (u, v)."""
+    normal = {"u": 0.6, "v": 0.8}
+    return scene_from_dict(
+        {
+            "modal": {
+                "dofs": ["u", "v"],
+                "frequency": [1.0, 2.5],
+                "damping": [0.01, 0.01],
+                "shapes": [[1.0, 0.0], [0.0, 1.0]],
+            },
+            "contact": [
+                {
+                    "name": "c",
+                    "tangential": {"u": 0.8, "v": -0.6},
+                    "normal": normal,
+                    "mu": 0.4,
+                    "k_u": 0.5,
+                    "k_v": 0.7,
+                    "n_0": n_0,
+                }
+            ],
+            "force": [{"dof": "u", "amplitude": 1.0}],
+            "load": [{"dof": dof, "force": force} for dof, force in loads.items()],
+            "response": {"frequency": [0.5, 4.0], "harmonics": 3},
+        }
+    )
+
+
+def test_what_loads_press_a_contact_with_is_a_preload_to_the_mode():
+    """Loads that leave the contact without a tangential displacement: (u, v) at rest is along its normal."""
+    w = 3.0
+    rest = w * np.array([0.6, 0.8])
+    loads = np.array([1.0, 2.5**2]) * rest + 0.7 * w * np.array([0.6, 0.8])
+    loaded, preloaded = (
+        nonlinear_mode(System(pressed(*one), (1, 2, 3)), 1, (0.1, 30.0), 0.05)
+        for one in ((dict(zip("uv", loads.tolist(), strict=True)), 0.2), ({}, 0.2 + 0.7 * w))
+    )
+    at = np.log(preloaded.amplitude)
+    for name in ("omega", "damping"):
+        theirs, expected = (
+            np.interp(at, np.log(loaded.amplitude), getattr(loaded, name)),
+            getattr(preloaded, name),
+        )
+        assert np.abs(theirs - expected).max() < 2e-3 * expected.max()
+    means = loaded.displacements()[1] - preloaded.displacements()[1][0]
+    assert means[0] == pytest.approx(rest, rel=1e-9)
+    assert loaded.contacts[0, :2] == pytest.approx([0.0, w], abs=1e-9)
+
+
+@pytest.mark.parametrize("load", [0.25, -0.35, 2.0])
+def test_a_mode_under_a_load_is_the_response_to_a_force_that_its_damping_needs(load):
+    """Of one mass and one harmonic: at the mode's frequency, to the force 2 D omega^2 a. Its contact is
+    sheared at rest, and slides there under the greatest load."""
+    table = {
+        "modal": {"dofs": ["u"], "frequency": [1.0], "damping": [0.02], "shapes": [[1.0]]},
+        "contact": [
+            {
+                "name": "c",
+                "tangential": "u",
+                "normal": {"u": 0.2},
+                "mu": 0.5,
+                "k_u": 0.3,
+                "k_v": 0.4,
+                "n_0": 0.6,
+            }
+        ],
+        "load": [{"dof": "u", "force": load}],
+        "force": [{"dof": "u", "amplitude": 1.0}],
+        "response": {"frequency": [0.8, 1.6], "harmonics": 1},
+    }
+    mode = nonlinear_mode(System(scene_from_dict(table)), 1, (0.01, 20.0), 0.05)
+    assert mode.path.status is Status.COMPLETE
+    X, mean = mode.displacements()
+    for i in range(0, len(mode.omega), 20):
+        needed = 2.0 * mode.damping[i] * mode.omega[i] ** 2 * mode.amplitude[i]
+        table["force"][0]["amplitude"] = needed
+        table["response"]["frequency"] = [float(mode.omega[i]), 1.001 * float(mode.omega[i])]
+        curve = traced_curve(scene_from_dict(table), Request((1,), 1e-2))
+        there = np.flatnonzero(np.abs(curve.frequency - mode.omega[i]) < 1e-9)
+        amplitude, means = curve.amplitude[there, 0], curve.mean[there, 0]
+        k = int(np.abs(amplitude - mode.amplitude[i]).argmin())
+        assert amplitude[k] == pytest.approx(abs(X[i, 0, 0]), rel=1e-6)
+        assert means[k] == pytest.approx(mean[i, 0], rel=1e-6, abs=1e-6 * mode.amplitude[i])

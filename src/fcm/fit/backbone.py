@@ -15,6 +15,7 @@ from fcm.continuation.corrector import Newton
 from fcm.fit.forced import NoMotionError
 from fcm.fit.least_squares_rows import Rows
 from fcm.fit.options import BACKBONE, FitOptions
+from fcm.harmonic_balance.static_equilibrium import RestError
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Measured, Scene
 from fcm.nonlinear_modes.backbone import Mode, linear_modes, nonlinear_mode
@@ -31,18 +32,21 @@ def backbone_rows(
     Raises
     ------
     NoMotionError
-        If the mode is not found at the least amplitude.
+        If the mode is not found at the least amplitude, or there is no rest under the static loads.
     ModeError
         If there is no such mode.
     """
     system = System(scene, harmonics)
-    found = _Followed(system, data)
+    try:
+        found = _Followed(system, data)
+        moved = [_moved(scene, number, harmonics, found.problem) for number in numbers]
+    except RestError:
+        raise NoMotionError from None
     assert data.damping is not None
     units = backbone_errors(data, options)
     y = np.column_stack((data.frequency, data.damping))
     residual, rates = np.zeros(y.shape), np.zeros((*y.shape, len(numbers)))
     unreached = np.zeros(data.points)
-    moved = [_moved(scene, number, harmonics, found.problem) for number in numbers]
     known = np.isfinite(y)
     for i, amplitude in enumerate(data.amplitude.tolist()):
         z, reached = found.at(amplitude)

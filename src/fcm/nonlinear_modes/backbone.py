@@ -33,19 +33,27 @@ class Mode:
     amplitude: FloatArray  # (point,) a, the root of sum_i |a Q_i|^2 over the modes, of mass 1
     omega: FloatArray  # (point,)
     damping: FloatArray  # (point,)
-    mean: FloatArray  # (point, mode)
+    mean: FloatArray  # (point, mode) from rest
     Q: ComplexArray  # (point, harmonic, mode)
 
     @property
     def contacts(self) -> FloatArray:
         """Unknowns of the contacts as in `law`, and the frequency, (point, unknown + 1)."""
-        z = self.path.z[:, : self.problem.contact_unknowns] * self.amplitude[:, None]
-        return np.column_stack((z, self.omega))
+        count = self.problem.contact_unknowns
+        z = [self.problem.contact_motion(z) for z in self.path.z]
+        return np.column_stack((np.reshape(z, (-1, count)), self.omega))
 
     def displacements(self) -> tuple[ComplexArray, FloatArray]:
         """Amplitudes (point, harmonic, dof) and means (point, dof) of the degrees of freedom."""
-        shapes, a = self.system.linear.dofs, self.amplitude
-        return a[:, None, None] * (self.Q @ shapes), a[:, None] * (self.mean @ shapes)
+        linear, a = self.system.linear, self.amplitude
+        return a[:, None, None] * (self.Q @ linear.dofs), self.rest + a[:, None] * (self.mean @ linear.dofs)
+
+    @property
+    def rest(self) -> FloatArray:
+        """Displacements of the degrees of freedom under the static loads, (dof,)."""
+        linear, force = self.system.linear, self.problem.contacts.means_at_rest()
+        found: FloatArray = (linear.flexibility @ (linear.load - linear.ports @ force)) @ linear.dofs
+        return found
 
 
 def nonlinear_mode(
@@ -58,12 +66,14 @@ def nonlinear_mode(
     """The mode with a number, from the linear one at the least amplitude of the span.
 
     Modes are counted from 1, the lowest, as those of the structure with its contacts as they are at rest:
-    stuck where there is a preload, else open; without rigid-body modes.
+    stuck where they are pressed, else open; without rigid-body modes.
 
     Raises
     ------
     ModeError
         If there are fewer modes.
+    RestError
+        If there is no equilibrium with the static loads.
     """
     guesses, followed = linear_modes(system, number, options), without_even(system)
     low, high = (float(np.log(a)) for a in span)
@@ -88,11 +98,12 @@ def nonlinear_mode(
 def without_even(system: System) -> System:
     """The system without harmonics that the mode has not: those of a motion whose halves are opposite.
 
-    Where no contact's load varies, opposite motions have opposite forces, and from the linear mode on all
-    even harmonics are 0. Other motions with the same friction branch off, where steps would come to nothing.
+    Where no contact's load varies, and none is strained at rest, opposite motions have opposite forces, and
+    from the linear mode on all even harmonics are 0. Other motions with the same friction branch off, where
+    steps would come to nothing.
     """
     odd = tuple(h for h in system.harmonics if h % 2)
-    symmetric = all(contact.k_v == 0.0 for contact in system.scene.contacts)
+    symmetric = all(contact.k_v == 0.0 for contact in system.scene.contacts) and not system.rest.any()
     return system.with_harmonics(odd) if symmetric and odd != system.harmonics else system
 
 
@@ -131,11 +142,12 @@ def damping_rounding(
 
 def linear_modes(system: System, number: int, options: NonlinearModeOptions = NONLINEAR_MODE) -> list[Guess]:
     """The mode at very small amplitude; where a contact just touches, and may open, three guesses."""
-    linear, contacts = system.linear, system.scene.contacts
-    touching = any(contact.n_0 == 0.0 for contact in contacts)
+    linear = system.linear
+    loads = system.loads_at_rest
+    touching = any(load == 0.0 for load in loads)
     d = system.layout.directions
     halves = options.linear.contact_shares[: None if touching else 1]
-    shares = [np.repeat([_closed(c.n_0, half) for c in contacts], d) for half in halves]
+    shares = [np.repeat([_closed(load, half) for load in loads], d) for half in halves]
     squares, _ = _squares(system, shares[0])
     elastic = np.flatnonzero(squares > options.linear.rigid_tolerance * squares.max(initial=0.0))
     if not 1 <= number <= elastic.size:
@@ -153,9 +165,9 @@ def linear_modes(system: System, number: int, options: NonlinearModeOptions = NO
     return guesses
 
 
-def _closed(n_0: float, half: float) -> float:
-    """The share of its springs that a contact has at rest."""
-    return half if n_0 == 0.0 else float(n_0 > 0.0)
+def _closed(load: float, half: float) -> float:
+    """The share of its springs that a contact has at rest, by its normal load there."""
+    return half if load == 0.0 else float(load > 0.0)
 
 
 def _squares(system: System, share: FloatArray | bool) -> tuple[FloatArray, FloatArray]:
@@ -193,7 +205,7 @@ def truncation(mode: Mode, options: NonlinearModeOptions | None = None) -> tuple
                 mode.damping.max(), options.truncation.damping_floor
             )
             error[i] = max(abs(omega - mode.omega[i]) / mode.omega[i], of_damping)
-            contacts[i] = *(mode.amplitude[i] * np.asarray(newton.z)[: finer.contact_unknowns]), omega
+            contacts[i] = *finer.contact_motion(np.asarray(newton.z)), omega
     contact_loads = contact_loads_along(larger, contacts)
     contact_loads[np.isnan(error)] = np.nan
     return error, contact_loads

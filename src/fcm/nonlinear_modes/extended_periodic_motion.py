@@ -11,6 +11,7 @@ own. With modes of mass 1 the receptance at the harmonic h has the denominators
 
     e_i = w_i^2 - (h omega)^2 + 2 i h omega (zeta_i w_i - D omega)
 
+x is counted from rest, where static loads are balanced by the contacts, and f from its value there.
 All amplitudes are divided by that of the mode, a: sum_i |Q_i|^2 = 1 for the fundamental's modal amplitudes
 a Q_i, so that a linear motion is the same at all a. The parameter is ln a. The modes whose frequency the
 motion may come to have no receptance there; their Q are unknowns beside the displacements of the contacts.
@@ -50,7 +51,7 @@ class Guess:
 
 @dataclass(frozen=True)
 class Motion:
-    """Of a point: a, omega, D, and modal amplitudes over a: mean (mode,), harmonics (harmonic, mode)."""
+    """Of a point: a, omega, D, modal amplitudes over a: from rest (mode,), harmonics (harmonic, mode)."""
 
     amplitude: float
     omega: float
@@ -105,6 +106,10 @@ class AutonomousProblem(Problem):
     def modal_amplitude(self, z: FloatArray) -> float:
         """a; where a step leads astray, what can still be calculated with."""
         return exp(min(max(z[self.n], -self.units.max_log_amplitude), self.units.max_log_amplitude))
+
+    def contact_motion(self, z: FloatArray) -> FloatArray:
+        """Displacements of the contacts as in `law`, those at rest among them, (unknown,)."""
+        return self.contacts.rest + self.modal_amplitude(z) * z[: self.contact_unknowns]
 
     def evaluate(self, z: Any) -> int:
         z = np.asarray(z)
@@ -213,7 +218,7 @@ class AutonomousProblem(Problem):
         if self.margins == 0:
             return 0
         z = np.asarray(z)
-        x, at = self.modal_amplitude(z) * z[: self.contact_unknowns], 0
+        x, at = self.contact_motion(z), 0
         for c, law in enumerate(self.contacts.laws):
             law.bound(x, c * self.contacts.width)
             for i in range(law.margins):

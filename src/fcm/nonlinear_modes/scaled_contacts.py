@@ -1,4 +1,4 @@
-"""The contacts of a free motion, whose displacements and forces are divided by the amplitude of its mode."""
+"""The contacts of a free motion, their displacements and forces from rest divided by its amplitude."""
 
 from __future__ import annotations
 
@@ -10,7 +10,15 @@ from fcm.model.scene import FloatArray
 
 class ScaledContacts:
     """Unknowns laid out as in `fcm.structure.layout`; mean_rows (port,) and rows (harmonic, port) say
-    which they are of each displacement, the latter that of its Re, before that of its Im."""
+    which they are of each displacement, the latter that of its Re, before that of its Im.
+
+    rest (unknown,): displacements under the static loads, about which the contacts move.
+
+    Raises
+    ------
+    RestError
+        If there is no equilibrium with these loads.
+    """
 
     def __init__(self, system: System) -> None:
         self.laws, self._contacts, self._counted = system.laws(), system.scene.contacts, system.linear.counted
@@ -20,30 +28,47 @@ class ScaledContacts:
         self._springs = np.zeros(self.unknowns)  # of each unknown's displacement, where all stick
         self._springs[self.mean_rows] = system.springs(stuck=True)
         self._springs[self.rows] = self._springs[self.rows + 1] = system.springs(stuck=True)
+        self.rest = np.zeros(self.unknowns)
+        self.rest[self.mean_rows] = system.rest
+        self._force_at_rest = np.zeros(self.unknowns)
+        if self.rest.any():
+            for c, law in enumerate(self.laws):
+                law.evaluate(self.rest, c * self.width)
+                self._force_at_rest[c * self.width : (c + 1) * self.width] = law.force
         self.force = np.zeros(self.unknowns)
         self.tangent = np.zeros((len(self.laws), self.width, self.width))  # of each contact by its own
 
     def evaluate(self, x: FloatArray, a: float) -> None:
-        """Forces over a and their tangents at displacements a x, without those counted to the structure."""
-        w, normal, whole = self.width, self.directions - 1, a * x
+        """Forces over a and their tangents at displacements a x from rest, without what they are there, and
+        without those counted to the structure."""
+        w, normal, whole = self.width, self.directions - 1, self.rest + a * x
         for c, law in enumerate(self.laws):
             here = slice(c * w, (c + 1) * w)
-            if self._is_linear(c, whole[here]):
+            if self._is_linear(c, a * x[here]):
                 self.force[here] = self._springs[here] * x[here]
                 self.tangent[c] = np.diag(self._springs[here])
             else:
                 law.evaluate(whole, c * w)
-                self.force[here] = np.asarray(law.force) / a
+                self.force[here] = (np.asarray(law.force) - self._force_at_rest[here]) / a
                 self.tangent[c] = law.tangent
             at = c * w + normal
             self.force[at] -= self._counted[c] * x[at]
             self.tangent[c, normal, normal] -= self._counted[c]
+
+    def means_at_rest(self) -> FloatArray:
+        """Forces at rest, (port,), without those counted to the structure."""
+        found = self._force_at_rest[self.mean_rows]
+        found[self.directions - 1 :: self.directions] -= (
+            self._counted * self.rest[self.mean_rows][self.directions - 1 :: self.directions]
+        )
+        return found
 
     def _is_linear(self, c: int, x: FloatArray) -> bool:
         """Whether a contact surely neither slips nor opens: then two springs, without rounding by n_0."""
         contact, d = self._contacts[c], self.directions
         size = np.hypot(x[d::2], x[d + 1 :: 2]).reshape(-1, d)
         *along, v = (np.abs(x[:d]) + size.sum(axis=0)).tolist()
-        u = float(np.linalg.norm(along))
-        least = contact.n_0 - contact.k_v * v
+        *stretched, pressed = self.rest[c * self.width : c * self.width + d].tolist()
+        u = float(np.linalg.norm(along)) + float(np.linalg.norm(stretched))
+        least = contact.n_0 + contact.k_v * (pressed - v)
         return bool(least > 0.0 and (contact.mu == 0.0 or contact.k_u * u < contact.mu * least))

@@ -15,6 +15,7 @@ from fcm.continuation import Mark, Status
 from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.cost_model import with_twice_as_many
 from fcm.harmonic_balance.response_quantities import cycles, loops
+from fcm.harmonic_balance.static_equilibrium import RestError
 from fcm.harmonic_balance.wave_extremes import half_peak_to_peak
 from fcm.model.scene import FloatArray, Scene
 from fcm.nonlinear_modes.backbone import Mode, ModeError, nonlinear_mode, truncation
@@ -99,11 +100,6 @@ def trace_modes(
 
 def check_free(scene: Scene) -> None:
     """Raise ResponseError for scenes of which no nonlinear mode is computed."""
-    if any(curve.loads for curve in scene.each_curve()):
-        raise ResponseError(
-            f"{scene.name}: load: nonlinear modes under static loads are not computed; give each contact "
-            "as n_0 what presses it at rest, k_v times the mean of its normal displacement (contact_mean)"
-        )
     check_no_ring(scene, "nonlinear modes")
     refuse_own_laws(scene, "nonlinear modes")
     refuse_other_harmonics(scene, "what a nonlinear mode predicts")
@@ -119,7 +115,10 @@ def _curve(
 ) -> Curve:
     begin = time.perf_counter()
     system = wanted.system(scene)
-    mode = nonlinear_mode(system, number, span, scene.max_step)
+    try:
+        mode = nonlinear_mode(system, number, span, scene.max_step)
+    except RestError as nowhere:
+        return lost_curve(scene, str(nowhere))
     (error, theirs), stopped = truncation(mode), ""
     while wanted.harmonics is None and not _worst(error) <= wanted.accuracy:
         enlarged = with_twice_as_many(mode.system, mode.path.evaluations)
