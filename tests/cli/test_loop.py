@@ -191,6 +191,40 @@ def test_one_of_them(fcm, folded):
     assert one["solution"] == 2 and not one["stable"]
 
 
+OUTPUT = """
+modal = { dofs = ["u", "v"], frequency = [1, 2], damping = [0.02, 0.02], shapes = [[1, 0.05], [-0.05, 1]] }
+force = [{ dof = "u", amplitude = 1.0 }, { dof = "v", amplitude = 1.0 }]
+contact = [{ name = "pad", tangential = "u", normal = "v", mu = 0.4, k_u = 0.2, k_v = 0.1, n_0 = 3.0 }]
+units = { length = "mm", force = "N" }
+[response]
+frequency = [0.7, 2.5]
+harmonics = 1
+"""
+
+
+@pytest.mark.parametrize("output", [(), ("v",)])
+def test_without_a_frequency_it_is_the_peak_of_the_output_and_named_so(fcm, tmp_path, output):
+    """The contact moves most at the peak of u; the peak of v is elsewhere."""
+    (tmp_path / "a.toml").write_text(
+        OUTPUT + (f"output = {list(output)}\n".replace("'", '"') if output else "")
+    )
+    assert fcm("respond", "a.toml", "-o", "a.nc").code == 0
+    done = fcm("plot", "loop", "a.nc", "--json", "-o", "a.svg")
+    (one,) = loops(done)
+    with netCDF4.Dataset(tmp_path / "a.nc") as data:
+        amplitude, omega = data["amplitude"][0].filled(np.nan), data["frequency"][0].filled(np.nan)
+        names = data["dof"][:].tolist()
+    dof = "v" if output else "u"
+    top = amplitude[:, names.index(dof)]
+    assert one["frequency"] == omega[np.nanargmax(top)]
+    assert (one["output"], one["output_amplitude"], one["peak"]) == (dof, np.nanmax(top), True)
+    assert f"peak of {dof} = {np.nanmax(top):.4g} mm, {one['frequency']:.5g} rad/s" in done.err
+    peaks = {name: omega[np.nanargmax(amplitude[:, names.index(name)])] for name in "uv"}
+    assert abs(peaks["u"] - peaks["v"]) > 0.5
+    chosen = fcm("plot", "contacts", "a.nc", "-o", "b.svg").err
+    assert f"at {one['frequency']:.6g} rad/s; 1 contact" in chosen
+
+
 @pytest.mark.slow
 def test_without_a_frequency_it_is_the_peak(fcm, folded, tmp_path):
     found = loops(fcm("plot", "loop", folded, "--curve", 0, "--curve", 1, "--json", "-o", "a.png"))
@@ -314,7 +348,9 @@ def test_a_file_without_loops(fcm, folded, tmp_path):
     with netCDF4.Dataset(tmp_path / "b.nc", "a") as data:
         for name, values in loops.items():
             data[name][:] = 0.0 if name == "tangential_amplitude" else values
-    assert "no tangential motion at 0.7 rad/s" in fcm("plot", "loop", "b.nc", "--curve", 0).err
+    assert "no tangential motion at 0.7 rad/s" in fcm("plot", "loop", "b.nc", "--curve", 0, "--at", 0.7).err
+    said = fcm("plot", "loop", "b.nc", "--curve", 0).err
+    assert "that is the peak of u; choose another by --at" in said
     with netCDF4.Dataset(tmp_path / "b.nc", "a") as data:
         data["tangential_amplitude"][:] = np.nan
     assert "exact motions" in fcm("plot", "loop", "b.nc", "--curve", 0).err

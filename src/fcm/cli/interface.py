@@ -20,7 +20,8 @@ HEAD = ("contact", "state", "energy", "of all", "slip path", "normal force")
 @draws_file("-contacts.png", page=True)
 @click.option(
     "--at", type=FiniteRange(min=0.0), multiple=True, metavar="F",
-    help="The frequency, in the file's unit; several make a film strip.  [default: of the greatest peak]",
+    help="The frequency, in the file's unit; several make a film strip.  "
+    "[default: of the greatest peak of the scene's output]",
 )  # fmt: skip
 @click.option(
     "--curve", "curves", type=click.IntRange(min=0), multiple=True, metavar="K", default=(0,),

@@ -122,7 +122,7 @@ def _parameters(command: Any) -> Any:
 @click.option(
     "--at", type=float, multiple=True, metavar="FREQUENCY", callback=_number(0.0),
     help="Of FILE: the frequency, or the level; the nearest points are drawn, on a folded curve all.  "
-    "[default: the peak]",
+    "[default: the peak of the scene's output]",
 )  # fmt: skip
 @click.option("--contact", metavar="NAME", help="Of FILE: the contact.  [default: the only one]")
 @click.option(

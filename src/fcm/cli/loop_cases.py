@@ -15,6 +15,7 @@ from fcm.cli.columns import ranges
 from fcm.cli.drawing import shorten
 from fcm.cli.limits import SENTENCES
 from fcm.cli.loop_names import Harmonic, Name, named, phase_of, unit_of
+from fcm.rotational_dofs import unit_of as dof_unit
 
 if TYPE_CHECKING:
     from fcm.contact import Loop, PeriodicLoop
@@ -210,6 +211,7 @@ def _said(point: LoopPoint, file: LoopFile) -> tuple[tuple[Name, ...], str, dict
     names: tuple[Name, ...] = (
         Name(shorten(point.contact, SENTENCES.contact_name).replace("$", r"\$"), point.contact),
         Name(curve_label(point.parameters, units=file.units), swept),
+        *((_peak(point, file),) if point.peak else ()),
         Name(f"{symbol} = {at}", f"level {at}" if unit == "level" else at),
     )
     if point.fundamental:
@@ -220,10 +222,18 @@ def _said(point: LoopPoint, file: LoopFile) -> tuple[tuple[Name, ...], str, dict
         "curve": point.curve, "parameters": point.parameters, "contact": point.contact,
         ("level" if unit == "level" else "frequency"): point.frequency,
         "solution": point.solution, "solutions": point.solutions,
+        "output": point.output, "output_amplitude": point.displacement, "peak": point.peak,
         "stable": point.stable, "a": point.amplitude, "k_u a": point.force,
         "harmonics": point.harmonics, "states": point.states,
     }  # fmt: skip
     return names, (several + stable).strip(", "), facts
+
+
+def _peak(point: LoopPoint, file: LoopFile) -> Name:
+    """The degree of freedom whose peak it is, and its amplitude."""
+    unit = dof_unit(point.output, file.dimensions[0] if file.dimensions else "")
+    text = f"peak of {point.output} = {point.displacement:.4g} {unit}".rstrip()
+    return Name(text.replace("$", r"\$"), text)
 
 
 def _in_plane(point: LoopPoint, plane: PlanePoint, file: LoopFile) -> PlanarCase:

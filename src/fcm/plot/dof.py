@@ -69,5 +69,17 @@ def leading_column(
     """
     if dof is not None or (len(dofs) <= MOST_DOFS and not asked):
         return column_of(dofs, dof)
+    return greatest_column(dofs, amplitudes, asked)
+
+
+def greatest_column(
+    dofs: Sequence[str], amplitudes: npt.NDArray[np.float64], asked: Sequence[str] = ()
+) -> int:
+    """That of the greatest amplitude (any, dof), of those that the scene asks for where it does.
+
+    >>> amplitudes = np.array([[1.0, 3.0], [2.0, np.nan]])
+    >>> greatest_column(["1x", "2x"], amplitudes), greatest_column(["1x", "2x"], amplitudes, ["1x"])
+    (1, 0)
+    """
     height = np.fmax.reduce(amplitudes, axis=0, initial=0.0)
     return next(i for i in greatest_first(dofs, height) if not asked or dofs[i] in asked)

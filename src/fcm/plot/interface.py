@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.mesh.pairing import PAIRING
+from fcm.plot.dof import asked_for, greatest_column
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, short_names, with_unit
 from fcm.plot.pairs import direction_name, plane_view
@@ -59,6 +60,7 @@ class InterfaceFile:
     names: tuple[str, ...] = ()  # of the curves of a sweep: the values of each
     swept: tuple[Mapping[str, float], ...] = ()  # these values, by their short names
     forced: bool = True  # whether its curves are no nonlinear modes
+    asked: tuple[str, ...] = ()  # degrees of freedom that the scene asks for, if it says so
 
 
 @dataclass(frozen=True)
@@ -94,6 +96,7 @@ def read_interface(path: Path) -> InterfaceFile:
         places, axes = _places(variables)
         energy, slip, normal = (str(getattr(variables[name], "units", "")) for name in names)
         swept, forced = swept_values(variables), "modal_amplitude" not in variables
+        asked = asked_for(getattr(data, "output", ""), dofs)
         units_of = swept_units(variables, swept)
     if not contacts:
         raise PlotError(f"{path}: its scene has no contacts")
@@ -115,7 +118,7 @@ def read_interface(path: Path) -> InterfaceFile:
     )
     short = short_names(swept)
     named = tuple({short[key]: value for key, value in one.items()} for one in values) if swept else ()
-    return InterfaceFile(path, unit, *of_contacts, named, forced)
+    return InterfaceFile(path, unit, *of_contacts, named, forced, asked)
 
 
 def _places(variables: Any) -> tuple[FloatArray | None, tuple[str, str]]:
@@ -132,7 +135,8 @@ def _places(variables: Any) -> tuple[FloatArray | None, tuple[str, str]]:
 
 def points_of(file: InterfaceFile, at: Sequence[float], curve: int = 0) -> list[InterfacePoint]:
     """The point of a curve nearest to each frequency; of several solutions there the highest that is not
-    unstable, or the highest. Without a frequency the point of the greatest amplitude.
+    unstable, or the highest. Without a frequency the point of the greatest amplitude, of the scene's output
+    where it has one.
 
     Raises
     ------
@@ -147,7 +151,8 @@ def points_of(file: InterfaceFile, at: Sequence[float], curve: int = 0) -> list[
     if not np.isfinite(frequency).any():
         raise PlotError(f"{file.path}: curve {curve} has no points")
     if not at:
-        return [_point(file, curve, int(height.argmax()))]
+        column = greatest_column(file.dofs, file.amplitude.reshape(-1, len(file.dofs)), file.asked)
+        return [_point(file, curve, int(np.nanargmax(file.amplitude[curve, :, column])))]
     low, high = float(np.nanmin(frequency)), float(np.nanmax(frequency))
     found = []
     for one in at:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from fcm.plot.dof import greatest_column
 from fcm.plot.errors import PlotError
 from fcm.plot.options import READ
 from fcm.plot.read import FloatArray, floats, opened, read_response
@@ -97,6 +98,9 @@ class LoopPoint:
     states: str  # with all of them
     fundamental: bool  # whether the loop is that of the first of them, as the file has not the others
     motion: PlanePoint | LinePoint | None = None  # in a plane, or in several harmonics
+    output: str = ""  # the degree of freedom whose peak is the default; see `LoopFile.column`
+    displacement: float = float("nan")  # its amplitude
+    peak: bool = False  # whether the point is this peak
 
 
 @dataclass(frozen=True)
@@ -115,6 +119,9 @@ class LoopFile:
     states: npt.NDArray[np.str_]  # (curve, point, contact)
     units: Mapping[str, str]  # of swept keys, if the file says them
     dimensions: tuple[str, str] | None  # units of length and force, if it says both
+    dofs: tuple[str, ...]
+    amplitude: FloatArray  # (curve, point, dof)
+    column: int  # of the greatest amplitude, of the degrees of freedom that the scene asks for if it does
     motions: MotionFile | None = None
 
 
@@ -136,7 +143,8 @@ def read_loops(path: Path) -> LoopFile:
         if not orders.size or orders[0] != 1.0 or not (np.diff(orders) > 0.0).all() or (orders % 1.0).any():
             raise ValueError("its harmonics are not 1 and others above, one after the other")
         states = np.asarray(data["regime"][:]).astype(str) if "regime" in data.variables else None
-        motions = _motions(data)
+        motions, amplitude = _motions(data), floats(data["amplitude"])
+    column = greatest_column(response.dofs, amplitude.reshape(-1, len(response.dofs)), response.asked)
     shape = (*frequency.shape, len(contacts))
     swept = tuple(curve.parameters for curve in response.curves)
     if states is None:
@@ -145,7 +153,7 @@ def read_loops(path: Path) -> LoopFile:
         path, response.frequency_unit, contacts, swept, frequency, stable, np.stack(parts),
         _greatest(energy, len(contacts)),
         tuple(int(h) for h in orders), states, response.units, (length, force) if length and force else None,
-        motions,
+        response.dofs, amplitude, column, motions,
     )  # fmt: skip
 
 
@@ -167,7 +175,7 @@ def _motions(data: Any) -> MotionFile | None:
 def points_at(file: LoopFile, curve: int | None, contact: str | None, at: float | None) -> list[LoopPoint]:
     """The points of a curve nearest to a frequency, one for each solution there, greatest amplitude first.
 
-    Without a frequency it is the point of the greatest tangential amplitude.
+    Without a frequency it is the peak of the scene's output, see `LoopFile.column`.
 
     Raises
     ------
@@ -181,7 +189,9 @@ def points_at(file: LoopFile, curve: int | None, contact: str | None, at: float 
             f"{file.path}: curve {row} holds no loops: no points at all, or exact motions, not harmonic ones"
         )
     if at is None:
-        found = [int(np.nanargmax(amplitude))]
+        found = [
+            int(np.nanargmax(np.where(np.isfinite(amplitude), file.amplitude[row, :, file.column], np.nan)))
+        ]
     else:
         found = _solutions(frequency, at)
         found.sort(key=lambda k: -amplitude[k])
@@ -190,7 +200,7 @@ def points_at(file: LoopFile, curve: int | None, contact: str | None, at: float 
         raise PlotError(
             f"{file.path}: curve {row} goes from {low:.6g} to {high:.6g} {file.unit}, not to {at:.6g}"
         )
-    return [_point(file, row, column, k, i + 1, len(found)) for i, k in enumerate(found)]
+    return [_point(file, row, column, k, i + 1, len(found), at is None) for i, k in enumerate(found)]
 
 
 def _solutions(frequency: FloatArray, at: float) -> list[int]:
@@ -203,13 +213,16 @@ def _solutions(frequency: FloatArray, at: float) -> list[int]:
     return sorted(set(nearer.tolist()))
 
 
-def _point(file: LoopFile, row: int, column: int, k: int, solution: int, solutions: int) -> LoopPoint:
+def _point(
+    file: LoopFile, row: int, column: int, k: int, solution: int, solutions: int, peak: bool
+) -> LoopPoint:
     n0_bar, b_bar, phi, amplitude, force = file.loop[:, row, k, column].tolist()
     frequency, stable = float(file.frequency[row, k]), float(file.stable[row, k])
     name = file.contacts[column]
     if not amplitude > 0.0:
         raise PlotError(
             f"{file.path}: {name} has no tangential motion at {frequency:.6g} {file.unit}, and so no loop"
+            + (f": that is the peak of {file.dofs[file.column]}; choose another by --at" if peak else "")
         )
     motion = None if file.motions is None else file.motions.at(row, k, column, name)
     if n0_bar == b_bar == 0.0:
@@ -219,6 +232,7 @@ def _point(file: LoopFile, row: int, column: int, k: int, solution: int, solutio
         None if np.isnan(stable) else stable != 0.0, n0_bar, b_bar, phi, amplitude, force,
         file.harmonics, str(file.states[row, k, column]),
         file.motions is None and len(file.harmonics) > 1, motion,
+        file.dofs[file.column], float(file.amplitude[row, k, file.column]), peak,
     )  # fmt: skip
 
 
