@@ -1,5 +1,6 @@
 """The [fit] table of a scene, and the files of measured points that it names."""
 
+import csv
 import struct
 
 import numpy as np
@@ -10,6 +11,7 @@ from fcm.scene import SceneError
 from fcm.scene.load import load_scene
 
 from ..oscillator import oscillator
+from ..program import called
 
 RANGE = "[response]\nfrequency = [0.7, 1.7]\n"
 FIT = '[fit]\nvary = ["contact.shroud.mu"]\n[[fit.data]]\nfile = "a.csv"\ndof = "u"\n'
@@ -84,6 +86,57 @@ def test_a_backbone(written):
         written(fit, "amplitude,damping,frequency\n1,0.01,1.2\n2,0.02,1.1\n", "b.csv")
     ).fit.data
     assert one.damping.tolist() == [0.01, 0.02] and one.mode == 2 and one.dof == ""
+
+
+BACKBONE = '[fit]\nvary = "contact.shroud.k_u"\n[[fit.data]]\nbackbone = "a.csv"\n'
+
+
+def test_columns_may_have_the_names_that_fcm_gives_them(written):
+    points = "curve,frequency [Hz],modal_amplitude,damping_ratio,amplitude u,regime shroud\n"
+    points += "0,0.2,1,0.01,0.7,E\n0,0.19,2,0.02,1.4,EPEN\n"
+    (one,) = load_scene(written(BACKBONE, points)).fit.data
+    assert one.frequency == pytest.approx([0.4 * np.pi, 0.38 * np.pi])
+    assert one.amplitude.tolist() == [1.0, 2.0] and one.damping.tolist() == [0.01, 0.02]
+    (one,) = load_scene(written(BACKBONE + 'dof = "u"\n', points)).fit.data
+    assert one.amplitude.tolist() == [0.7, 1.4] and one.dof == "u"
+    (one,) = load_scene(written(FIT, points)).fit.data
+    assert one.amplitude.tolist() == [0.7, 1.4]
+    own = points.replace("curve", "amplitude").replace("\n0,", "\n5,")
+    (one,) = load_scene(written(BACKBONE, own)).fit.data
+    assert one.amplitude.tolist() == [5.0, 5.0]  # a column of the documented name goes before another
+
+
+def test_names_that_are_accepted_are_said(written):
+    said = mistakes(written(BACKBONE, "frequency,amplitude,zeta\n1,1,0.01\n0.9,2,0.02\n"))
+    assert 'has no column "damping" (or "damping_ratio"); it has "frequency", "amplitude", "zeta"' in said
+    several = "curve,frequency,amplitude u\n0,1,2\n1,1,3\n"
+    assert "column curve: it has 2 curves; leave the points of one" in mistakes(written(FIT, several))
+    of_others = "frequency [kHz],amplitude\n1,1\n2,3\n"
+    assert 'its frequency is in "kHz"; known are "rad/s", "Hz"' in mistakes(written(FIT, of_others))
+    in_mm = "frequency,amplitude u [mm]\n1,1\n2,3\n"
+    metres = oscillator(RANGE) + '[units]\nlength = "m"\nforce = "N"\n'
+    said = mistakes(written(FIT, in_mm, scene=metres))
+    assert "its amplitude is in mm, lengths of the scene are in m" in said
+    (one,) = load_scene(written(FIT, in_mm.replace("mm", "m"), scene=metres)).fit.data
+    assert one.amplitude.tolist() == [1.0, 3.0]
+
+
+@pytest.mark.parametrize("of", ["response", "backbone"])
+def test_what_fcm_wrote_is_read(tmp_path, of):
+    """The points of a CSV file of its own are those that it computed."""
+    (tmp_path / "scene.toml").write_text(oscillator(RANGE))
+    mode = ("--mode", "1", "--level", "1:5") if of == "backbone" else ()
+    done = called("respond", tmp_path / "scene.toml", "--harmonics", 1, *mode, "--csv", tmp_path / "a.csv")
+    assert done.code == 0, done.err
+    with (tmp_path / "a.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    (tmp_path / "scene.toml").write_text(oscillator(RANGE) + (BACKBONE if mode else FIT))
+    (one,) = load_scene(tmp_path / "scene.toml").fit.data
+    assert one.frequency.tolist() == [float(row["frequency [rad/s]"]) for row in rows]
+    amplitude = "modal_amplitude" if mode else "amplitude u"
+    assert one.amplitude.tolist() == [float(row[amplitude]) for row in rows]
+    if mode:
+        assert one.damping.tolist() == [float(row["damping_ratio"]) for row in rows]
 
 
 @pytest.mark.parametrize(

@@ -71,7 +71,7 @@ def read_measured_points(path: Path, unit: str) -> DrawnMeasured:
         raise PlotError(f"{path}: {error}") from None
     if "angular_frequency" in found:
         found["frequency"] = found["angular_frequency"] / UNIT.get(unit, 1.0)
-        if found["per_force"].any():
+        if "per_force" in found and found["per_force"].any():
             raise PlotError(f"{path}: its amplitudes are per unit of force: they are no displacements")
         if "power" in found:
             found["amplitude"] = found["amplitude"] / found["angular_frequency"] ** found["power"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -53,7 +53,9 @@ def read_fit(top: Section, files: Files, draft: Draft, reported: Sequence[str], 
     sections = section.tables("data")
     if not sections and section.mistakes.count == before:
         section.wrong("data", "missing; give [[fit.data]] with the file of measured points")
-    data = [_data(one, files, draft, reported, UNITS[unit]) for one in sections]
+    units = top.data.get("units")
+    length = str(units.get("length", "")) if isinstance(units, Mapping) else ""
+    data = [_data(one, files, draft, reported, UNITS[unit], length) for one in sections]
     if section.mistakes.count > before:
         return None
     known = tuple(one for one in data if one)
@@ -82,7 +84,7 @@ def _bounds(section: Section, numbers: Sequence[Number | None]) -> list[tuple[fl
 
 
 def _data(
-    section: Section, files: Files, draft: Draft, reported: Sequence[str], unit: float
+    section: Section, files: Files, draft: Draft, reported: Sequence[str], unit: float, length: str
 ) -> Measured | None:
     """One set of measured points."""
     before = section.mistakes.count
@@ -108,7 +110,9 @@ def _data(
     mode = section.number("mode", MODE, 1.0)
     name = section.text("backbone" if backbone else "file")
     column = level if isinstance(level, str) else ""
-    columns = _columns(section, files, name, backbone, column) if name else None
+    others = {"damping": "damping_ratio"} if backbone else {}
+    others["amplitude"] = f"amplitude {dof}" if dof else "modal_amplitude"
+    columns = _columns(section, files, name, backbone, column, others, length) if name else None
     if columns is None or section.mistakes.count > before:
         return None
     scaled = columns["angular_frequency"] if "angular_frequency" in columns else unit * columns["frequency"]
@@ -145,13 +149,20 @@ def _quantity(section: Section, name: str, given: str, power: float) -> str:
 
 
 def _columns(
-    section: Section, files: Files, name: str, backbone: bool, level: str
+    section: Section,
+    files: Files,
+    name: str,
+    backbone: bool,
+    level: str,
+    others: Mapping[str, str],
+    length: str,
 ) -> dict[str, FloatArray] | None:
     """The columns of a file; None after a mistake."""
     key = "backbone" if backbone else "file"
     wanted = ["frequency", "amplitude", *(["damping"] if backbone else []), *([level] if level else [])]
     try:
-        found = read_measured(name, files, wanted, ("weight",) if backbone else ("phase", "weight"))
+        optional = ("weight",) if backbone else ("phase", "weight")
+        found = read_measured(name, files, wanted, optional, others, length)
     except DataFileError as error:
         for fault in error.faults:
             section.wrong(key, fault)

@@ -1,13 +1,14 @@
 """Files of measured points: columns of a CSV file, arrays of .mat or .npz, functions of a universal file.
 
 The columns of a response are frequency, amplitude, and any of phase (rad), weight, and one of levels; those
-of a backbone amplitude, frequency, damping (ratios), weight.
+of a backbone amplitude, frequency, damping (ratios), weight. A CSV file that ``fcm respond --csv`` wrote has
+other names for some, and units behind them, as in ``frequency [Hz]``.
 """
 
 from __future__ import annotations
 
 import csv
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -21,14 +22,22 @@ from fcm.scene.number_text import fault_of_number, number_in
 from fcm.scene.options import MESSAGES
 from fcm.scene.reader_process import NAMES, read_apart
 from fcm.scene.uff_functions import read_functions
+from fcm.units import UNIT
 
 
 def read_measured(
-    name: str, files: Files, wanted: Sequence[str], optional: Collection[str]
+    name: str,
+    files: Files,
+    wanted: Sequence[str],
+    optional: Collection[str],
+    others: Mapping[str, str] | None = None,
+    length: str = "",
 ) -> dict[str, FloatArray]:
     """The columns of a file, (point,) each: all that are wanted, and those of the optional that it has.
 
-    A universal file is in Hz: it has angular_frequency [rad/s] in place of frequency, and per_force (point,)
+    others: the names that wanted columns have in files of ``fcm respond``. length: unit of amplitudes, where
+    known; a column that says another is refused. A file that says the unit of its frequencies, as a universal
+    file, which is in Hz, does: it has angular_frequency [rad/s] in place of frequency, and per_force (point,)
     1 where amplitudes are those per unit of force, and power (point,) of the frequency that they have over
     displacements, where the file says it.
 
@@ -37,6 +46,7 @@ def read_measured(
     DataFileError
         If it cannot be read, or a column is missing or holds something that is no number.
     """
+    others = others or {}
     ending = Path(name).suffix.lower()
     if ending not in MEASURED:
         raise DataFileError(f"{quoted(name)}: measured points are read from {choices(MEASURED)}")
@@ -44,13 +54,15 @@ def read_measured(
         if ending in (".uff", ".unv"):
             return read_functions(path)
         if ending in (".mat", ".npz"):
-            found, named = _arrays(path, [*wanted, *optional], files)
+            found, named = _arrays(path, [*wanted, *others.values(), *optional], files)
+            chosen = _chosen(found, wanted, optional, others)
+            found = {key: found[its] for key, its in chosen.items()}
         else:
-            found, named = _csv(path)
-    missing = [one for one in wanted if one not in found]
-    if missing:
-        raise DataFileError(f"{quoted(name)} has no column {choices(missing)}; it has {choices(named)}")
-    found = {key: value for key, value in found.items() if key in (*wanted, *optional)}
+            found, named = _csv(path, wanted, optional, others, length)
+    there = {*found, *(["frequency"] if "angular_frequency" in found else [])}
+    if missing := [one for one in wanted if one not in there]:
+        heads = [quoted(one) + (f" (or {quoted(others[one])})" if one in others else "") for one in missing]
+        raise DataFileError(f"{quoted(name)} has no column {', '.join(heads)}; it has {choices(named)}")
     sizes = {value.size for value in found.values()}
     if len(sizes) > 1:
         each = ", ".join(f"{key} {value.size}" for key, value in found.items())
@@ -58,6 +70,15 @@ def read_measured(
     if sizes == {0}:
         raise DataFileError(f"{quoted(name)} holds no points")
     return found
+
+
+def _chosen(
+    heads: Collection[str], wanted: Collection[str], optional: Collection[str], others: Mapping[str, str]
+) -> dict[str, str]:
+    """Of each column that is read its name in the file; one that has its own name goes before another."""
+    names = {key: [key, *([others[key]] if key in others else [])] for key in (*wanted, *optional)}
+    found = {key: next((one for one in every if one in heads), None) for key, every in names.items()}
+    return {key: one for key, one in found.items() if one is not None}
 
 
 def _arrays(path: Path, wanted: Sequence[str], files: Files) -> tuple[dict[str, FloatArray], list[str]]:
@@ -80,8 +101,13 @@ def _arrays(path: Path, wanted: Sequence[str], files: Files) -> tuple[dict[str, 
     return found, named
 
 
-def _csv(path: Path) -> tuple[dict[str, FloatArray], list[str]]:
-    """The columns of a text file, whose first line names them; lines that begin with # are passed over."""
+def _csv(
+    path: Path, wanted: Sequence[str], optional: Collection[str], others: Mapping[str, str], length: str
+) -> tuple[dict[str, FloatArray], list[str]]:
+    """Columns of a text file, whose first line names them; lines that begin with # are passed over.
+
+    What is no number is a fault in those that are read.
+    """
     text = path.read_text(encoding="utf-8-sig")
     lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip(" ,;\t")]
     lines = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
@@ -98,23 +124,68 @@ def _csv(path: Path) -> tuple[dict[str, FloatArray], list[str]]:
     twice = [name for name in dict.fromkeys(header) if header.count(name) > 1]
     if twice:
         raise DataFileError(f"{quoted(path.name)}: its first line names {choices(twice)} twice")
+    heads = [_name_and_unit(word) for word in header]
+    places = {name: i for i, (name, _) in reversed(list(enumerate(heads)))}
+    chosen = {key: places[its] for key, its in _chosen(places, wanted, optional, others).items()}
     rows, faults = [], []
     for number, line in lines[1:]:
         words = _words(line, between)
         if len(words) != len(header):
             faults.append(f"line {number} has {len(words)} entries; the first line names {len(header)}")
             continue
-        values = [number_in(word) for word in words]
+        values = {key: number_in(words[i]) for key, i in chosen.items()}
         faults += [
-            f"line {number}: {name}: {fault_of_number(word)}"
-            for name, word, value in zip(header, words, values, strict=True)
+            f"line {number}: {header[chosen[key]]}: {fault_of_number(words[chosen[key]])}"
+            for key, value in values.items()
             if value is None
         ]
-        rows.append(values)
+        rows.append((words, list(values.values())))
+    faults += _curves([words for words, _ in rows], heads, chosen, others)
     if faults:
         raise DataFileError(*(f"{quoted(path.name)}, {fault}" for fault in faults[: MESSAGES.faults]))
-    table = np.array(rows, dtype=np.float64).reshape(len(rows), len(header))
-    return dict(zip(header, table.T.copy(), strict=True)), header
+    table = np.array([values for _, values in rows], dtype=np.float64).reshape(len(rows), len(chosen))
+    found = dict(zip(chosen, table.T.copy(), strict=True))
+    return _in_units(found, {key: heads[i] for key, i in chosen.items()}, path.name, length), header
+
+
+def _name_and_unit(head: str) -> tuple[str, str]:
+    """Of a column.
+
+    >>> _name_and_unit("frequency [rad/s]"), _name_and_unit("frequency")
+    (('frequency', 'rad/s'), ('frequency', ''))
+    """
+    name, opened, unit = head.partition(" [")
+    return (name, unit[:-1]) if opened and unit.endswith("]") else (head, "")
+
+
+def _curves(
+    rows: Sequence[Sequence[str]],
+    heads: Sequence[tuple[str, str]],
+    chosen: Mapping[str, int],
+    others: Mapping[str, str],
+) -> list[str]:
+    """What is wrong with a file of ``fcm respond`` that has several curves: they are no one response."""
+    own = any(heads[i][0] == others.get(key) for key, i in chosen.items())
+    places = [i for i, (name, _) in enumerate(heads) if name == "curve"]
+    found = len({row[places[0]] for row in rows}) if own and places else 1
+    return [f"column curve: it has {found} curves; leave the points of one"] if found > 1 else []
+
+
+def _in_units(
+    found: dict[str, FloatArray], heads: Mapping[str, tuple[str, str]], file: str, length: str
+) -> dict[str, FloatArray]:
+    """Frequencies in rad/s where the file says their unit; DataFileError of another unit of amplitudes."""
+    _, unit = heads.get("frequency", ("", ""))
+    if unit in UNIT:
+        found["angular_frequency"] = UNIT[unit] * found.pop("frequency")
+    elif unit:
+        raise DataFileError(f"{quoted(file)}: its frequency is in {quoted(unit)}; known are {choices(UNIT)}")
+    _, unit = heads.get("amplitude", ("", ""))
+    if unit and length and unit != length:
+        raise DataFileError(
+            f"{quoted(file)}: its amplitude is in {unit}, lengths of the scene are in {length}"
+        )
+    return found
 
 
 def _words(line: str, between: str | None) -> list[str]:
