@@ -225,3 +225,39 @@ def test_stiffness_and_mass_in_each_others_place(tmp_path):
         (tmp_path / "scene.toml").write_text(text)
         said = called("respond", tmp_path / "scene.toml").err
         assert ("stiffness and mass may be in each other's place" in said) == amiss
+        if amiss:  # the frequency is that of the exchanged, and nothing else is said of the structure
+            K, M = (np.array(json.loads(text)) for text in (soft, light))
+            first = np.sqrt(np.linalg.eigvals(np.linalg.solve(M, K)).real.min()) / (2.0 * np.pi)
+            assert f"there is one at {first:.6g} Hz" in said
+            assert "structure:" not in said and "times as stiff" not in said
+
+
+def test_a_structure_below_the_range_whose_contacts_reach_it_is_in_place(tmp_path):
+    """Two soft bodies of 1 and 2 kg that a contact joins: resonance by its stiffness alone.
+
+    Their own frequencies are below the range, and the exchanged ones within it.
+    """
+    text = """
+    [structure]
+    dofs = ["u", "v"]
+    stiffness = [[1e-6, 0.0], [0.0, 1e-6]]
+    mass = [[1.0, 0.0], [0.0, 2.0]]
+    damping = 0.01
+    [[contact]]
+    name = "joint"
+    tangential = { u = 1.0, v = -1.0 }
+    normal = "v"
+    mu = 0.5
+    k_u = 1e6
+    k_v = 0.0
+    n_0 = 10.0
+    [[force]]
+    dof = "u"
+    amplitude = 1.0
+    [response]
+    frequency = [900.0, 1500.0]
+    harmonics = 1
+    """
+    (tmp_path / "scene.toml").write_text(text)
+    done = called("respond", tmp_path / "scene.toml")
+    assert done.code == 0 and "each other's place" not in done.err and "structure: 2 modes" in done.err

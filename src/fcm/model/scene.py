@@ -242,6 +242,7 @@ class Scene:
     optimum: Optimum | None = None
     fit: Fit | None = None
     of_matrices: bool = False  # whether its modes are those of [structure]; if not, they are of [modal]
+    exchanged: float = 0.0  # [rad/s] of a mode if stiffness and mass are; see `scene.reduction.exchanged`
     files: tuple[Path, ...] = field(default=(), compare=False)  # that were read for it
     interfaces: tuple[Interface, ...] = field(default=(), repr=False, compare=False)  # where pairs are
     held: tuple[Held, ...] = ()  # that are not among the contacts: springs, or nothing, in their places

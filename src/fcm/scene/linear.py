@@ -52,7 +52,7 @@ def with_modes(
     top: Section, parts: Parts, matrices: Matrices, output: list[str], ends: tuple[float, float], unit: str
 ) -> tuple[Parts, list[str]]:
     """The parts with the modes of matrices at all rows, and what is to be said of them."""
-    from fcm.scene.reduction import modal_of_matrices
+    from fcm.scene.reduction import exchanged, modal_of_matrices
     from fcm.structure.eigen import unit_columns
 
     if parts["cyclic"]:
@@ -70,6 +70,9 @@ def with_modes(
     )
     if draft is None:
         return parts, notes
+    draft["exchanged"] = exchanged(
+        matrices, draft["frequency"][: draft["frequency"].size - draft["added"]], ends
+    )
     draft |= {"dofs": dofs, "frequency": draft["frequency"] / UNITS[unit], "shapes": shapes.T}
     columns = {name: shapes.T @ load for name, load in over_rows.items()}
     return with_displacements(parts | {"modal": draft}, columns), notes
@@ -112,14 +115,15 @@ def _of_ring(
     top: Section, parts: Parts, matrices: Matrices, output: list[str], ends: tuple[float, float], unit: str
 ) -> tuple[Parts, list[str]]:
     """As `with_modes`, with the modes of every nodal diameter."""
-    from fcm.scene.ring_reduction import LoadedRing, mass_of_all_alike, modal_of_ring
+    from fcm.scene.reduction import exchanged
+    from fcm.scene.ring_reduction import LoadedRing, all_alike, modal_of_ring
     from fcm.structure.eigen import unit_columns
 
     dofs, own = parts["modal"]["dofs"], parts["modal"]["dofs"].own
     swept = [dofs.place[name] for name in sorted(_swept(top, dofs))]
     if not _room_for(top, len(_directions(parts)) + len(swept), len(dofs)):
         return parts, []
-    over_rows = distributions(parts, mass_of_all_alike(matrices))
+    over_rows = distributions(parts, all_alike(matrices).M)
     pushed = np.concatenate((_columns(_directions(parts), len(dofs)), unit_columns(len(dofs), swept)), axis=1)
     distributed = _columns([*over_rows.values()], len(own))
     only = [own.place[name] for name in output]
@@ -135,6 +139,7 @@ def _of_ring(
     if "mistuning" in parts["cyclic"][0]:
         found = parts["cyclic"][0]["mistuning"]
         draft["energy"] = energy_of_matrices(found, matrices.K, draft["shapes"])
+    draft["exchanged"] = exchanged(all_alike(matrices), draft["frequency"][~draft["flexible"]], ends)
     of_next = np.zeros_like(draft["shapes"])  # what they are follows from the sector's own
     columns = {name: draft["shapes"] @ load for name, load in over_rows.items()}
     shapes = np.concatenate((draft["shapes"], of_next), axis=1)

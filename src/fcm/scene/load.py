@@ -189,6 +189,7 @@ def _read(top: Section, files: Files, reading: _Reading) -> dict[str, Any]:
         "accuracy": accuracy,
         "schedule": schedule,
         "of_matrices": "structure" in top.data,
+        "exchanged": parts["modal"].get("exchanged", 0.0),
         "start": start,
         "reported": reported,
         "output": asked,
@@ -219,6 +220,8 @@ def _made(name: str, fields: dict[str, Any], told: Told | None) -> Scene:
         told.curves(scene, curves_of(draft.swept))
     curves = tuple(draft.curve(scene, values) for values in combinations(draft.swept))
     scene = replace(scene, curves=curves)
+    if scene.exchanged and _in_doubt(scene):  # which is all that is to be said of such a structure
+        return replace(scene, notes=tuple(one for one in scene.notes if not one.startswith("structure: ")))
     return replace(
         scene,
         notes=(
@@ -232,6 +235,12 @@ def _made(name: str, fields: dict[str, Any], told: Told | None) -> Scene:
             *notes_of_stiffness(scene),
         ),
     )
+
+
+def _in_doubt(scene: Scene) -> bool:
+    from fcm.scene.listing import resonance_doubt  # scipy, which other scenes do without
+
+    return bool(resonance_doubt(scene))
 
 
 def _tuned(name: str, fields: dict[str, Any]) -> Scene | None:

@@ -65,6 +65,27 @@ def modal_of_matrices(
     )
 
 
+def exchanged(matrices: Matrices, kept: FloatArray, ends: tuple[float, float]) -> float:
+    """A frequency [rad/s] that a mode near the range has with stiffness and mass in each other's place.
+
+    Only where the structure as it is given has no mode near the range or above it: the highest is the
+    reciprocal of the lowest elastic one of the exchanged. Else 0. kept (mode,) [rad/s] are those it has.
+    """
+    if not (np.isfinite(ends).all() and ends[0] > 0.0):
+        return 0.0
+    low, high = ends[0] / MESSAGES.range_near, ends[1] * MESSAGES.range_near
+    if kept.max(initial=0.0) >= low:
+        return 0.0
+    nothing = np.zeros((len(matrices.dofs), 0))
+    try:
+        other = reduced(matrices.M, matrices.K, nothing, ends[1], ModeSelection(max(kept.size, 1), False))
+    except StructureError:
+        return 0.0
+    elastic = np.sqrt(other.modes.stiffness[other.rigid :])
+    near = elastic[(elastic >= low) & (elastic <= high)]
+    return float(near[0]) if near.size and 1.0 / elastic[0] < low else 0.0
+
+
 def split(loads: FloatArray, outputs: list[int]) -> tuple[FloatArray, list[int]]:
     """Directions whose flexibility is kept, and outputs that are too many for that."""
     few = len(outputs) if len(outputs) <= LIMITS.outputs else 0

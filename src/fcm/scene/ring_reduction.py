@@ -73,9 +73,9 @@ def modal_of_ring(
     return draft, [first, *at_many(matrices, len(outputs), _error_at_other_rows(diameters), lost), *others]
 
 
-def mass_of_all_alike(matrices: Matrices) -> Any:
-    """The mass of a sector whose neighbours move as it does."""
-    return _at_diameter(matrices, 1.0).M
+def all_alike(matrices: Matrices) -> Matrices:
+    """The matrices of a sector whose neighbours move as it does."""
+    return _at_diameter(matrices, 1.0)
 
 
 def _error_at_other_rows(diameters: list[Diameter]) -> tuple[float, float]:
