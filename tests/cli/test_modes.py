@@ -228,7 +228,7 @@ def test_stiffness_and_mass_in_each_others_place(tmp_path):
         if amiss:  # the frequency is that of the exchanged, and nothing else is said of the structure
             K, M = (np.array(json.loads(text)) for text in (soft, light))
             first = np.sqrt(np.linalg.eigvals(np.linalg.solve(M, K)).real.min()) / (2.0 * np.pi)
-            assert f"there is one at {first:.6g} Hz" in said
+            assert f"they have one at {first:.6g} Hz" in said
             assert "structure:" not in said and "times as stiff" not in said
 
 
