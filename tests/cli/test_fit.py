@@ -179,3 +179,62 @@ def test_work_that_no_search_can_have_left_is_passed_over(measured, tmp_path):
     assert not any(is_search_result(2, [one]) for one in [*wrong, good.x, None]) and not is_search_result(
         2, good
     )
+
+
+JENKINS = """
+[modal]
+dofs = ["u"]
+frequency = [1.0]
+damping = [0.02]
+shapes = [[2.0]]
+
+[[contact]]
+name = "c"
+tangential = "u"
+normal = "u"
+mu = 0.4
+k_u = 0.1
+k_v = 0.0
+n_0 = 0.6
+
+[[force]]
+dof = "u"
+amplitude = 0.05
+
+[response]
+frequency = [0.8, 1.4]
+harmonics = 1
+
+[fit]
+vary = ["contact.c.mu", "contact.c.k_u"]
+
+[[fit.data]]
+backbone = "backbone.csv"
+dof = "u"
+"""
+
+
+def test_backbones_are_answered_by_the_nonlinear_mode(tmp_path):
+    """Data are of a friction element that slips at 1, by its describing function; the mode's shape is 2."""
+    zeta, k, A = 0.02, 0.3, np.geomspace(0.5, 20.0, 12)
+    part = np.arccos(np.clip(1.0 - 2.0 / A, -1.0, 1.0))
+    stiff = 4.0 * np.where(A > 1.0, k / np.pi * (part - 0.5 * np.sin(2.0 * part)), k)
+    loss = 4.0 * np.where(A > 1.0, 4.0 * k * (A - 1.0) / (np.pi * A**2), 0.0)
+    omega = np.sqrt(1.0 + stiff)
+    table = np.column_stack((A, omega, (2.0 * zeta * omega + loss) / (2.0 * omega**2)))
+    np.savetxt(
+        tmp_path / "backbone.csv", table, delimiter=",", header="amplitude,frequency,damping", comments=""
+    )
+    path, out = tmp_path / "scene.toml", tmp_path / "fitted.nc"
+    path.write_text(JENKINS)
+    done = called("respond", path, "-o", out, "--json")
+    assert done.code == 0, done.err
+    result = json.loads(done.out)
+    found = {key: one["value"] for key, one in result["fitted"]["numbers"].items()}
+    assert found == pytest.approx({"contact.c.mu": 0.5, "contact.c.k_u": k}, rel=1e-4)
+    assert [one["mode"]["number"] for one in result["curves"]] == [1]
+    with xarray.open_dataset(out) as data:
+        assert data.data_modal_amplitude[0].values == pytest.approx(A / 2.0, rel=1e-3)
+        assert data.modal_amplitude.min() < A[0] / 2.0 and data.modal_amplitude.max() > A[-1] / 2.0
+    picture = tmp_path / "fitted.png"
+    assert called("plot", "mode", out, "-o", picture).code == 0 and picture.stat().st_size > 0

@@ -69,23 +69,35 @@ def backbone_errors(data: Measured, options: FitOptions) -> FloatArray:
     return found
 
 
+def modal_span(system: System, data: Measured) -> tuple[float, float]:
+    """Modal amplitudes over which a mode is followed for what was measured of it, and somewhat beyond.
+
+    What is modal for a displacement, the shape of the mode at other amplitudes decides: then further beyond.
+
+    Raises
+    ------
+    NoMotionError
+        If the degree of freedom does not move with the linear mode.
+    ModeError
+        If there is no such mode.
+    """
+    low, high = float(data.amplitude.min()), float(data.amplitude.max())
+    if not data.dof:
+        return low / BACKBONE.modal_amplitude_factor, high * BACKBONE.modal_amplitude_factor
+    dof = list(system.scene.modal.dofs).index(data.dof)
+    shape = abs(float(linear_modes(system, data.mode)[0].Q @ system.linear.dofs[:, dof]))
+    if not shape > 0.0:
+        raise NoMotionError
+    return low / (shape * BACKBONE.amplitude_factor), high * BACKBONE.amplitude_factor / shape
+
+
 class _Followed:
     """A mode of the model over the amplitudes that were measured."""
 
     def __init__(self, system: System, data: Measured) -> None:
         self.dof = list(system.scene.modal.dofs).index(data.dof) if data.dof else None
         self.system = system
-        low, high, beyond = (
-            float(data.amplitude.min()),
-            float(data.amplitude.max()),
-            BACKBONE.modal_amplitude_factor,
-        )
-        if self.dof is not None:  # what is modal for a displacement, its shape at other amplitudes decides
-            low, high = self._modal_span(low, high, data.mode)
-            beyond = BACKBONE.amplitude_factor
-        self.mode: Mode = nonlinear_mode(
-            system, data.mode, (low / beyond, high * beyond), system.scene.max_step
-        )
+        self.mode: Mode = nonlinear_mode(system, data.mode, modal_span(system, data), system.scene.max_step)
         if not len(self.mode.path.z):
             raise NoMotionError
         self.problem: AutonomousProblem = self.mode.problem
@@ -94,13 +106,6 @@ class _Followed:
             self.mode.amplitude if self.dof is None else np.array([self._size(z) for z in self.mode.path.z])
         )
         self.logs = np.log(sizes)
-
-    def _modal_span(self, low: float, high: float, number: int) -> tuple[float, float]:
-        """Modal amplitudes of displacements, as in the linear mode."""
-        shape = abs(float(linear_modes(self.system, number)[0].Q @ self.system.linear.dofs[:, self.dof]))
-        if not shape > 0.0:
-            raise NoMotionError
-        return low / shape, high / shape
 
     def _size(self, z: FloatArray, problem: AutonomousProblem | None = None) -> float:
         """The amplitude that was measured: modal, or the fundamental of a displacement."""

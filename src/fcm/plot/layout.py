@@ -34,6 +34,7 @@ _LAYOUT = {
     "displacement": ("curve", "instant", "dof"),
     **dict.fromkeys(("cycle_mean", "cycle_greatest", "cycle_least"), _OF_CYCLE),
     **dict.fromkeys(("data_frequency", "data_displacement", "data_level"), ("data", "measured")),
+    **dict.fromkeys(("data_modal_amplitude", "data_damping"), ("data", "measured")),
     "data_dof": ("data",),
     "track_what": ("track",),
     "tracked_amplitude": (*_TRACKED, "dof"),

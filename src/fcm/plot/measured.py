@@ -1,4 +1,4 @@
-"""Measured points over the curves of a response: those that were fitted, or of a file."""
+"""Measured points over the curves of a response or a mode: those that were fitted, or of a file."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 NEEDED = ("data_frequency", "data_displacement", "data_level", "data_dof")
+BACKBONE = ("data_frequency", "data_modal_amplitude", "data_damping")
 SIZE, NEUTRAL = 4.0, "#404040"
 WORD = "measured"
 
@@ -34,6 +35,37 @@ class DrawnMeasured:
     frequency: FloatArray
     amplitude: FloatArray
     level: FloatArray | None = None  # of the forces; None where it is not known
+
+
+@dataclass(frozen=True)
+class MeasuredBackbone:
+    """Points (point,) of a backbone: modal amplitude, frequency in the unit of the modes, damping ratio."""
+
+    amplitude: FloatArray
+    frequency: FloatArray
+    damping: FloatArray
+
+
+def backbones_of(variables: Any) -> tuple[MeasuredBackbone, ...]:
+    """The backbones that a fit was made to, of the variables of a file of modes; none where it has none."""
+    if not all(name in variables for name in BACKBONE):
+        return ()
+    from fcm.plot.read import floats
+
+    frequency, amplitude, damping = (floats(variables[name]) for name in BACKBONE)
+    known = np.isfinite(amplitude)
+    return tuple(
+        MeasuredBackbone(amplitude[i, there], frequency[i, there], damping[i, there])
+        for i, there in enumerate(known)
+        if there.any()
+    )
+
+
+def draw_backbones(upper: Axes, lower: Axes, measured: Sequence[MeasuredBackbone]) -> None:
+    """Mark the points of backbones: frequencies above, damping in percent below."""
+    for one in measured:
+        for axes, values in ((upper, one.frequency), (lower, 100.0 * one.damping)):
+            axes.plot(one.amplitude, values, "+", markersize=SIZE, label=f"_{WORD}", color=NEUTRAL)
 
 
 def measured_of(variables: Any) -> tuple[DrawnMeasured, ...]:

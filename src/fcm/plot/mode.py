@@ -14,6 +14,7 @@ from fcm.plot.curve_names import name_at_side
 from fcm.plot.error_panel import RANGE
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label
+from fcm.plot.measured import BACKBONE, MeasuredBackbone, backbones_of, draw_backbones, name_measured
 from fcm.plot.options import READ
 from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
@@ -65,13 +66,14 @@ class DrawnModes:
     frequency_unit: str
     modes: tuple[DrawnMode, ...]
     units: Mapping[str, str] = field(default_factory=dict)  # of swept keys, if the file says them
+    measured: tuple[MeasuredBackbone, ...] = ()  # that numbers were fitted to
 
 
 @apart
 def read_modes(path: Path) -> DrawnModes:
     """Read what ``fcm respond --mode -o`` has written; PlotError if the file is something else."""
     what = "a file of nonlinear modes (fcm respond --mode)"
-    with opened(path, what, _NEEDED, (_ERROR,)) as data:
+    with opened(path, what, _NEEDED, (_ERROR, *BACKBONE)) as data:
         frequency, amplitude, damping = (floats(data.variables[name]) for name in _NEEDED)
         told = _ERROR in data.variables
         error = floats(data.variables[_ERROR]) if told else np.full(frequency.shape, np.nan)
@@ -96,6 +98,7 @@ def read_modes(path: Path) -> DrawnModes:
             unit,
             tuple(found),
             swept_units(data.variables, swept),
+            backbones_of(data.variables),
         )
 
 
@@ -139,9 +142,12 @@ def draw_modes(drawn: DrawnModes) -> Figure:
         lower.set_ylim(bottom=0.0)
         for axes in panels:
             axes.margins(x=0.0)
+        draw_backbones(upper, lower, drawn.measured)
         lower.set_ylim(top=1.12 * lower.get_ylim()[1])
         if len(modes) == 1:
             _mark_resonances(upper, lower, modes[0])
+        if drawn.measured:
+            name_measured(figure)
         name_at_side(figure, upper.get_lines(), [one.parameters for one in modes], drawn.units)
     return figure
 

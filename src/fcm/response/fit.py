@@ -1,4 +1,4 @@
-"""The numbers of a scene fitted to measured data, and its response with them at the levels of the data."""
+"""The numbers of a scene fitted to measured data, and its response or nonlinear mode with them."""
 
 from __future__ import annotations
 
@@ -10,15 +10,16 @@ from typing import Any
 import numpy as np
 
 from fcm.fit.advice import advice
-from fcm.fit.backbone import backbone_errors
+from fcm.fit.backbone import backbone_errors, modal_span
 from fcm.fit.estimate import Estimate, estimated
 from fcm.fit.forced import errors_of
 from fcm.fit.options import FIT
 from fcm.fit.parameters import FitError, Parameters, parameters_of
 from fcm.fit.solve import Searches, SearchResult, Solved, solved
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Measured, Scene
 from fcm.nonlinear_modes.backbone import ModeError
-from fcm.response.mode import check_free
+from fcm.response.mode import check_free, trace_modes
 from fcm.response.options import FITTED_RESPONSE, ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
@@ -42,6 +43,8 @@ def fit(
     options: ResponseOptions | None = None,
 ) -> Response:
     """The numbers of a scene with a [fit], and its response with them, a curve for each level of the data.
+
+    If all data are backbones of one mode, it is this nonlinear mode instead.
 
     With an accuracy the fit begins with one harmonic, and is repeated with as many as the response at the
     numbers found takes.
@@ -91,11 +94,9 @@ def _fit(scene: Scene, method: str | Table, wanted: Request, execution: Executio
         fitted = (*found, chosen)
         if found[1].interrupted:
             break
-        there = _at_levels(*found, scene.fit.data)
-        given, accuracy = (chosen, None) if wanted.harmonics else (None, wanted.accuracy)
         stage = execution.stage(FITTED_RESPONSE.fit_share, 1.0)
         try:
-            response = trace(there, method, stage, harmonics=given, accuracy=accuracy, options=wanted.options)
+            response = _model_response(found, scene.fit.data, chosen, method, wanted, stage)
         except KeyboardInterrupt:
             response = Response.without_curves(plain)
             response.fitted = _fitted(*fitted, advise=False, untraced=True)
@@ -106,7 +107,46 @@ def _fit(scene: Scene, method: str | Table, wanted: Request, execution: Executio
         chosen = more
     assert fitted is not None
     response.fitted = _fitted(*fitted, advise=not (fitted[1].interrupted or response.interrupted))
+    response.fitted.data = [_on_mode(one, response) for one in response.fitted.data]
     return response
+
+
+def _model_response(
+    found: tuple[Parameters, Solved],
+    data: Sequence[Measured],
+    harmonics: tuple[int, ...],
+    method: str | Table,
+    wanted: Request,
+    execution: Execution,
+) -> Response:
+    """What the data were measured of, with the numbers found: the responses at their levels, or the mode of
+    which all are backbones."""
+    given, accuracy = (harmonics, None) if wanted.harmonics else (None, wanted.accuracy)
+    parameters, numbers = found
+    modes = {one.mode if one.damping is not None else None for one in data}
+    number = modes.pop()
+    if modes or number is None:
+        there = _at_levels(parameters, numbers, data)
+        return trace(there, method, execution, harmonics=given, accuracy=accuracy, options=wanted.options)
+    scene = parameters.at(numbers.values)
+    spans = [modal_span(System(scene, harmonics), one) for one in data]
+    span = min(low for low, _ in spans), max(high for _, high in spans)
+    return trace_modes(
+        scene, number, span, execution, harmonics=given, accuracy=accuracy, options=wanted.options
+    )
+
+
+def _on_mode(data: FittedData, response: Response) -> FittedData:
+    """With the modal amplitudes at which a mode that was followed has the amplitudes measured."""
+    curve = response.curves[0] if response.curves else None
+    if curve is None or curve.mode is None or not curve.points:
+        return data
+    along, dof = curve.mode.amplitude, data.measured.dof
+    size = curve.fundamental[:, list(response.dofs).index(dof)] if dof else along
+    rising = np.flatnonzero(size == np.maximum.accumulate(size))
+    sizes, modal = np.log(size[rising]), np.log(along[rising])
+    found = np.interp(np.log(data.measured.amplitude), sizes, modal, left=np.nan, right=np.nan)
+    return replace(data, modal_amplitude=np.exp(found))
 
 
 def _fitted_parameters(

@@ -324,6 +324,11 @@ def fitted_fields(response: Response, fitted: Fitted) -> dict[str, Field]:
     add("data_phase", points, padded(phase), "measured phase", units="rad")
     damping = [n if one.damping is None else one.damping for n, one in zip(nothing, data, strict=True)]
     add("data_damping", points, padded(damping), "measured damping ratio", units="1")
+    modal = [
+        n if one.modal_amplitude is None else one.modal_amplitude
+        for n, one in zip(nothing, fitted.data, strict=True)
+    ]
+    add("data_modal_amplitude", points, padded(modal), "modal amplitude on the mode of the model")
     off = [np.sqrt((one.residual**2).sum(axis=1)) for one in fitted.data]
     add("data_residual", points, padded(off), "distance to the model, in units of the errors", units="1")
     return out

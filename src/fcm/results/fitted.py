@@ -29,12 +29,15 @@ class FittedData:
 
     residual (point, component): model less measured, at the nearest point, in units of the errors; error
     (point, component): these, of the amplitude, or of frequency and damping ratio of a backbone.
+    modal_amplitude (point,): of a backbone's points on the mode of the model, NaN where it does not come to
+    them; None where no mode was followed.
     """
 
     measured: Measured
     residual: FloatArray
     error: FloatArray
     unreached: int  # points that the model's curve does not come to
+    modal_amplitude: FloatArray | None = None
 
     @property
     def misfit(self) -> float:
