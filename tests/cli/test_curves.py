@@ -99,6 +99,22 @@ def test_where_a_peak_does_not_stay_the_greatest_motion_that_does_is_shown():
     assert "stay, where" not in as_table({"curves": [two]}, "Hz")
 
 
+def test_an_error_greater_than_the_peak_is_said_to_be_so_and_what_helps():
+    """It stood there with its digits, as 3.4e+05, which tell nothing."""
+    one = curve({"u": 1.0, "v": 2.0}) | {"harmonics": [1]}
+    one["peak"]["u"]["error"], one["peak"]["v"]["error"] = 3.4e5, 1.0
+    _, row, said = as_table({"curves": [one]}, "Hz").splitlines()
+    assert "> 100 %" in row and "1.0e+00" in row and "e+05" not in row
+    assert said.startswith("> 100 % the error is more than the peak") and "--harmonics" in said
+    one["peak"]["u"]["error"] = 0.5
+    assert "100 %" not in as_table({"curves": [one]}, "Hz")
+    worse = one | {"truncation_error": 9.0, "points": 3}
+    worse["peak"]["u"]["error"] = 3.0
+    assert "more than 100 % of peaks and 9.0e+00 of any point" in cost_and_error(
+        {"curves": [worse], "seconds": 1.0, "method": "table"}
+    )
+
+
 def test_a_peak_where_the_range_ends_is_marked():
     text = as_table({"curves": [curve({"u": 1.0, "v": 2.0}, edge=("v",))]}, "Hz")
     assert text.splitlines()[1].split()[:6] == ["1.00000", "1.50000", "-", "2.00000", "1.50000*", "-"]

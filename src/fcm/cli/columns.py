@@ -26,9 +26,18 @@ def aligned(rows: Sequence[Sequence[str]], left: int) -> str:
     return "\n".join(line.rstrip() for line in lines)
 
 
+BEYOND = "> 100 %"  # an error that is greater than what it is the error of
+
+
 def short(value: float | None) -> str:
-    """An error, two digits, or a dash where it is not known."""
-    return "-" if value is None else f"{value:.1e}"
+    """A relative error, two digits, or a dash where it is not known.
+
+    Beyond 1 it is no measure any more, and its digits tell nothing.
+
+    >>> short(0.0123), short(1.7), short(None)
+    ('1.2e-02', '> 100 %', '-')
+    """
+    return "-" if value is None else BEYOND if value > 1.0 else f"{value:.1e}"
 
 
 def share_of(change: float) -> str:

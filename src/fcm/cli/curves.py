@@ -5,7 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from fcm.cli.columns import UNKNOWN, UNSTABLE, aligned, number, ranges, share_of, short, stopped_early, swept
+from fcm.cli.columns import (
+    BEYOND,
+    UNKNOWN,
+    UNSTABLE,
+    aligned,
+    number,
+    ranges,
+    share_of,
+    short,
+    stopped_early,
+    swept,
+)
 from fcm.cli.jump_table import jump_table, stable_table, untold_table
 from fcm.cli.limits import SENTENCES
 from fcm.rotational_dofs import MOST_DOFS, greatest_first, is_rotation, unit_of
@@ -16,6 +27,10 @@ _AT_REST = "0 the degree of freedom does not move, beside rounding"
 _EDGE = "*"  # beside the frequency of a peak where the range ends
 _UNTOLD = "- unknown error: with more harmonics no peak is near this one, or a higher one is elsewhere"
 _OF_LEVELS = "- unknown error: what more harmonics would change could not be estimated at this peak"
+_BEYOND = (
+    f"{BEYOND} the error is more than the peak, which these harmonics do not tell: give more by --harmonics, "
+    "or leave them to --accuracy"
+)
 _RESIDUAL = "residual"  # heads a column of shares
 _OF_RESIDUAL = "residual: up to this share of it the friction that stuck contacts keep may change the peak"
 
@@ -152,6 +167,8 @@ def _curves(
     if ranges_of:
         unknown = any(_residual(curve, dof) == "-" for curve in curves for dof in ranges_of)
         lines.append(_OF_RESIDUAL + (", - unknown" if unknown else ""))
+    if any(((curve["peak"].get(dof) or {}).get("error") or 0.0) > 1.0 for curve in curves for dof in dofs):
+        lines.append(_BEYOND)
     if any(_untold(curve, dof) for curve in curves for dof in dofs if curve.get("cause") != "interrupted"):
         lines.append(_OF_LEVELS if "level_folds" in curves[0] else _UNTOLD)
     return "\n".join(lines)
@@ -259,8 +276,10 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
         harmonic = max([harmonic, *(error for error, _ in told)])  # also where what lies around is not told
         if harmonic > 0.0 or not untold:  # the 0 of a motion at rest tells nothing of peaks
             of_all = f"{harmonic:.1e}"
-            if peaks and max(peaks) < harmonic:
-                of_all = f"{max(peaks):.1e} of peaks and {of_all} of any point"
+            if peaks:
+                of_peaks = short(max(peaks)).replace(BEYOND, "more than 100 %")
+                below = max(peaks) < harmonic
+                of_all = f"{of_peaks} of peaks and {of_all} of any point" if below else of_peaks
             but = ", and of some peaks unknown" if untold else ""
             errors.append(f"{of_all} by leaving out higher harmonics{but}")
     return (

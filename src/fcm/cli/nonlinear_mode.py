@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.columns import aligned, number, ranges, short, swept
+from fcm.cli.columns import BEYOND, aligned, number, ranges, short, swept
 
 if TYPE_CHECKING:
     from fcm.model.scene import Scene
@@ -95,4 +95,6 @@ def as_table(summary: Mapping[str, Any], names: list[str], unit: str) -> str:
     unmet = Counter(f"force level {one['level']:g}: {one['why']}" for found in every for one in found)
     of = f" of {len(curves)} curves" if len(curves) > 1 else ""
     told = [f"{what}, in {count}{of}" if of else what for what, count in unmet.items()]
+    if any((curve.get("truncation_error") or 0.0) > 1.0 for curve in curves):
+        told.append(f"{BEYOND} the error is more than the amplitude: give more by --harmonics")
     return "\n".join([aligned([header, *rows], left=2), *told])
