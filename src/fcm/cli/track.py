@@ -148,7 +148,8 @@ def _optimum(one: Mapping[str, Any], unit: str) -> str:
     swept = ", ".join(f"{plain(key)} = {value:g}" for key, value in one["parameters"].items())
     kind = {
         "smooth": "", "kink": ", where peaks are equal", "corner": ", at a corner of the response",
-        "end": ", where a higher peak ends", "bound": ", at a bound: beyond it there may be less", "flat": "",
+        "end": ", where a higher peak ends: on one side the peak jumps up, so keep a margin",
+        "bound": ", at a bound: beyond it there may be less", "flat": "",
         "trials": "", "unfinished": ", the least so far: the search was interrupted",
     }[one["kind"]]  # fmt: skip
     if one["between"]:
