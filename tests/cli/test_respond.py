@@ -90,6 +90,19 @@ def test_files_hold_the_points_that_were_reported(fcm, scene, tmp_path):
     assert "wrote a.nc" in done.err and "wrote a.csv" in done.err
 
 
+def test_a_file_that_was_there_is_said_to_be_replaced(fcm, scene, tmp_path):
+    """Also one that a command names itself, as a picture beside its file."""
+    first = fcm("respond", scene, "-o", "a.nc", "--csv", "a.csv").err.splitlines()
+    assert "wrote a.nc" in first and "wrote a.csv" in first
+    (tmp_path / "a.csv").unlink()
+    again = fcm("respond", scene, "-o", "a.nc", "--csv", "a.csv").err.splitlines()
+    assert "wrote a.nc (replaced)" in again and "wrote a.csv" in again
+    assert [fcm("plot", "response", "a.nc").err for _ in range(2)] == [
+        "wrote a.png\n",
+        "wrote a.png (replaced)\n",
+    ]
+
+
 def test_without_output_options_nothing_is_written(fcm, scene, tmp_path):
     assert fcm("respond", scene).code == 0
     assert files(tmp_path) == ["scene.toml"]

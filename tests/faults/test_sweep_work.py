@@ -224,6 +224,38 @@ def test_a_plain_rerun_moves_aside_what_was_kept_and_says_so(program):
     assert "a.nc.unfinished" not in program.files
 
 
+def test_what_was_moved_aside_goes_when_its_work_is_written_and_not_before(tmp_path):
+    """Work of the same scene is in the result; that of another scene, and other files, are somebody's."""
+    path, own, other = tmp_path / "kept", bytes(range(32)), bytes(range(1, 33))
+    asides = [tmp_path / f"kept.{number}" for number in (1, 2, 3)]
+
+    def run(mark, ends):
+        with Checkpoint(path) as kept:
+            kept.results(mark, (), lambda *_: True).add(0, [1.0])
+            return kept.done() if ends else None
+
+    run(other, ends=False)
+    with pytest.warns(UserWarning, match=r"without --resume it is not continued; moved to kept\.1"):
+        run(own, ends=False)
+    with pytest.warns(UserWarning, match=r"moved to kept\.2"):
+        run(own, ends=False)
+    asides[2].write_bytes(b"a novel, " * 50)
+    assert path.exists() and all(aside.exists() for aside in asides)
+    with pytest.warns(UserWarning, match=r"moved to kept\.4"):
+        removed = run(own, ends=True)
+    assert removed == [asides[1], tmp_path / "kept.4"]
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["kept.1", "kept.3"]
+
+
+@pytest.mark.slow
+def test_a_plain_rerun_of_the_same_scene_leaves_only_its_result(program):
+    assert interrupted(program).returncode == 3
+    done = program("respond", "sweep.toml", "-o", "a.nc", before=ALONE)
+    assert done.returncode == 0 and "moved to a.nc.unfinished.1" in done.err
+    assert "removed a.nc.unfinished.1: all that it kept is written" in done.err
+    assert program.files == ["a.nc", "one.toml", "sweep.toml"]
+
+
 def test_records_are_appended_and_damage_is_passed_over(tmp_path):
     path, mark = tmp_path / "kept", bytes(range(32))
     with Checkpoint(path) as kept:

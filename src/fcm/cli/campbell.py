@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fcm.cli.drawing import ENDINGS, picture_of, save_picture
-from fcm.cli.files import largest_file_option, output_option
+from fcm.cli.files import largest_file_option, output_option, wrote
 from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.options import scene_argument
@@ -51,7 +51,7 @@ def campbell(messages: Messages, scene: str, output: Path | None, to_json: bool,
     if not to_json or output is not None:
         output = picture_of(Path(scene), output, "-campbell.png", *loaded.files)
         save_picture(_picture(found), output)
-        messages.info(f"wrote {output}")
+        messages.info(wrote(output))
 
 
 def numbers(scene: Scene) -> dict[str, Any]:

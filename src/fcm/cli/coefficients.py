@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fcm.cli.drawing import ENDINGS, angles, save_picture, shorten
-from fcm.cli.files import check_not_read, output_option
+from fcm.cli.files import check_not_read, output_option, wrote
 from fcm.cli.limits import REQUESTS
 from fcm.cli.messages import Messages, pass_messages
 
@@ -127,7 +127,7 @@ def surface(
     else:
         figure = draw_surfaces(surfaces)
     save_picture(figure, output)
-    messages.info(f"wrote {output}: from {table or 'the closed form'}")
+    messages.info(f"{wrote(output)}: from {table or 'the closed form'}")
 
 
 @click.command()
@@ -161,7 +161,7 @@ def error(
     worst = max(maps, key=lambda one: one.largest)
     n0, b = worst.worst
     messages.info(
-        f"wrote {output}: greatest error {worst.largest:.1e}, of {worst.coefficient} "
+        f"{wrote(output)}: greatest error {worst.largest:.1e}, of {worst.coefficient} "
         f"at n0_bar {n0:.4g}, b_bar {b:.4g}, phi {worst.plane.phi:.4g} rad"
     )
 
@@ -181,7 +181,7 @@ def normal(messages: Messages, output: Path) -> None:
 
     n0_star = np.linspace(*NORMAL_RANGE, NORMAL_POINTS)
     save_picture(draw_normal(n0_star, *normal_coefficients(n0_star)), output)
-    messages.info(f"wrote {output}")
+    messages.info(wrote(output))
 
 
 def _opened(table: str | None) -> Any:

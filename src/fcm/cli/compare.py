@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fcm.cli.columns import aligned
+from fcm.cli.files import wrote
 from fcm.cli.guard import NOT_COMPLETED
 from fcm.cli.messages import Messages
 
@@ -69,7 +70,7 @@ def write_comparison(
     try:
         if output is not None:
             write_netcdf(comparison, output)
-            messages.info(f"wrote {output}")
+            messages.info(wrote(output))
     finally:  # a full disk does not take the result away
         click.echo(json.dumps(result, indent=2, allow_nan=False) if to_json else as_text(result))
     _close(messages, result)

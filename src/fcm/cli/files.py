@@ -12,8 +12,11 @@ from typing import Any
 import click
 
 from fcm.cli.options import FiniteRange
+from fcm.cli.terminal import plain
 from fcm.files import NOT_THERE, no_file, partial_of, real, same_file
 from fcm.signals import undisturbed
+
+_BEFORE = "fcm.cli.files.before"  # of a click context: outputs that were there before its command
 
 
 def output_option(*names: str, endings: tuple[str, ...], **attributes: Any) -> Callable[..., Any]:
@@ -37,6 +40,19 @@ def check_output(path: Path, endings: tuple[str, ...]) -> None:
         problem = f"it cannot be written: {error.strerror}"
     if problem:
         raise click.BadParameter(f"{str(path)!r}: {problem}.")
+    context = click.get_current_context(silent=True)
+    if context is not None and path.exists():
+        context.meta.setdefault(_BEFORE, set()).add(path)
+
+
+def wrote(path: Path, since_then: bool = False) -> str:
+    """That a file is written, and whether one that was there before the command has been replaced.
+
+    since_then: whether it is an earlier part of the same result.
+    """
+    context = click.get_current_context(silent=True)
+    before = set() if context is None else context.meta.get(_BEFORE, set())
+    return f"wrote {plain(path)}" + (" (replaced)" if path in before and not since_then else "")
 
 
 def check_different(paths: dict[str, Path | None]) -> None:

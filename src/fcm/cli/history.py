@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from fcm.cli.drawing import draws_file, picture_of, save_picture_of
+from fcm.cli.files import wrote
 from fcm.cli.messages import Messages, pass_messages
 
 if TYPE_CHECKING:
@@ -55,7 +56,7 @@ def history(
     if curves:
         read = replace(read, motions=_chosen(read.motions, curves))
     save_picture_of(lambda: draw_history(read, window), output)
-    messages.info(f"wrote {output}")
+    messages.info(wrote(output))
 
 
 def _chosen(motions: tuple[DrawnMotion, ...], curves: tuple[int, ...]) -> tuple[DrawnMotion, ...]:

@@ -8,6 +8,7 @@ import click
 
 from fcm.cli.columns import aligned
 from fcm.cli.drawing import drawing, draws_file, is_page, picture_of, save_picture_of
+from fcm.cli.files import wrote
 from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.options import FiniteRange
@@ -77,4 +78,4 @@ def contacts(
             contacts_page(read, points, where, partial, axes)
     else:
         save_picture_of(lambda: draw_interface(read, points, where, axes), output)
-    messages.info(f"wrote {output}")
+    messages.info(wrote(output))

@@ -14,7 +14,7 @@ import click
 from click.core import ParameterSource
 
 from fcm.cli.drawing import ENDINGS, angle, angles, save_picture, save_picture_of
-from fcm.cli.files import check_not_read, check_output, output_option
+from fcm.cli.files import check_not_read, check_output, output_option, wrote
 from fcm.cli.limits import REQUESTS
 from fcm.cli.messages import Messages, pass_messages
 
@@ -187,7 +187,7 @@ def loop(
     seconds = time.perf_counter() - begin
     located = any(not isinstance(case.loop, Loop) for case in cases)
     how = "from events located exactly" if located else "from the closed form"
-    messages.info(f"wrote {output}: {how}, in {seconds:.2f} s")
+    messages.info(f"{wrote(output)}: {how}, in {seconds:.2f} s")
 
 
 def _cases(

@@ -13,7 +13,7 @@ import click
 from fcm import signals
 from fcm.cli import fit, schedule, track
 from fcm.cli.curves import as_table
-from fcm.cli.files import alone
+from fcm.cli.files import alone, wrote
 from fcm.cli.messages import Messages
 from fcm.cli.terminal import plain
 
@@ -81,7 +81,8 @@ class Outputs:
                 "interrupted; what is finished is kept", "interrupted; nothing is kept to go on from"
             )
         elif self.checkpoint is not None:
-            self.checkpoint.done()
+            for path in self.checkpoint.done():
+                self.messages.info(f"removed {plain(path)}: all that it kept is written")
         return result
 
     def _files(self, response: Response) -> list[tuple[Path, Callable[[Response, Path], None]]]:
@@ -107,11 +108,12 @@ class Outputs:
             if before is None or points < before:
                 self.messages.info(f"{plain(path)} is left as it was")
                 return
+        earlier = self.checkpoint is not None and self.checkpoint.written(path) is not None
         write(response, path)
         self.written = True
         if part is not None:
             part.wrote(path, points)
-        self.messages.info(f"wrote {plain(path)}")
+        self.messages.info(wrote(path, since_then=earlier))
 
     def _say_kept(self, what: str, nothing: str) -> None:
         """Where the work is kept that can be gone on from; that there is none, if that is to be said."""

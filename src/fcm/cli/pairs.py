@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from fcm.cli.drawing import ENDINGS, picture_of, save_picture_of
-from fcm.cli.files import largest_file_option, output_option
+from fcm.cli.files import largest_file_option, output_option, wrote
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.options import scene_argument
 
@@ -46,4 +46,4 @@ def pairs(
     for note in loaded.notes:
         messages.info(note)
     save_picture_of(lambda: draw_pairs(chosen, loaded.length), output)
-    messages.info(f"wrote {output}")
+    messages.info(wrote(output))

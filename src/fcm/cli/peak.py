@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from fcm.cli.drawing import drawing, draws_file, is_page, picture_of, save_picture_of
+from fcm.cli.files import wrote
 from fcm.cli.messages import Messages, pass_messages
 from fcm.files import replacing
 
@@ -41,7 +42,7 @@ def peak(
 
         with drawing(), replacing(output) as partial:
             peak_page(read_peaks(file), dof, against, partial)
-        messages.info(f"wrote {output}")
+        messages.info(wrote(output))
         return
     if tracked is not None and against is None:
         save_picture_of(lambda: draw_tracked(tracked, dof=dof, folds=folds), output)
@@ -50,4 +51,4 @@ def peak(
     else:
         peaks = read_peaks(file)
         save_picture_of(lambda: draw_peak(peaks, dof=dof, against=against), output)
-    messages.info(f"wrote {output}")
+    messages.info(wrote(output))

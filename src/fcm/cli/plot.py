@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from fcm.cli.drawing import drawing, draws_file, is_page, picture_of, save_picture_of
+from fcm.cli.files import wrote
 from fcm.cli.lazy import LazyGroup
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.options import FiniteRange
@@ -95,11 +96,11 @@ def response(
 
         with drawing(), replacing(output) as partial:
             response_page(read_response(file), dof, log, partial)
-        messages.info(f"wrote {output}")
+        messages.info(wrote(output))
         return
     if band is not None:
         save_picture_of(lambda: _bands(file, dof, log, points, band), output)
-        messages.info(f"wrote {output}")
+        messages.info(wrote(output))
         return
     read = read_response(file)
     marked = None
@@ -109,7 +110,7 @@ def response(
     elif points is not None:
         marked = read_points(points)
     save_picture_of(lambda: draw_response(read, dof=dof, log=log, errors=errors, points=marked), output)
-    messages.info(f"wrote {output}")
+    messages.info(wrote(output))
 
 
 def _bands(
@@ -148,7 +149,7 @@ def mode(messages: Messages, file: Path, output: Path | None) -> None:
     output = picture_of(file, output, "-mode.png")
     read = read_modes(file)
     save_picture_of(lambda: draw_modes(read), output)
-    messages.info(f"wrote {output}")
+    messages.info(wrote(output))
 
 
 @click.command()
@@ -167,7 +168,7 @@ def sensitivity(messages: Messages, file: Path, output: Path | None, dof: str | 
     output = picture_of(file, output, "-sensitivity.png")
     read = read_sensitivity(file)
     save_picture_of(lambda: draw_sensitivity(read, dof=dof, curve=curve), output)
-    messages.info(f"wrote {output}")
+    messages.info(wrote(output))
 
 
 @click.command()
@@ -189,4 +190,4 @@ def accuracy(messages: Messages, file: Path, output: Path | None, quantity: str)
     output = picture_of(file, output, ".png")
     read = read_accuracy(file, quantity.replace("-", "_"))
     save_picture_of(lambda: draw_accuracy(read), output)
-    messages.info(f"wrote {output}")
+    messages.info(wrote(output))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.files import alone, output_option
+from fcm.cli.files import alone, output_option, wrote
 from fcm.cli.guard import NOT_COMPLETED
 from fcm.cli.interruptible import Interruptible
 from fcm.cli.limits import REQUESTS, SENTENCES
@@ -146,7 +146,7 @@ def _build(
         result["part"], sentence = saving(output, part)
         messages.info(sentence)
     click.echo(json.dumps(result, indent=2, allow_nan=False) if to_json else _as_table(table.error))
-    messages.info(f"wrote {output}: {size / 1e6:.1f} MB in {seconds:.1f} s; {_error_line(table.error)}")
+    messages.info(f"{wrote(output)}: {size / 1e6:.1f} MB in {seconds:.1f} s; {_error_line(table.error)}")
 
 
 def _verify(messages: Messages, path: Path, to_json: bool) -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import pickle
 import platform
+import stat
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -62,6 +63,7 @@ class Checkpoint:
     def __init__(self, path: Path, resume: bool = False, options: RunOptions = RUN) -> None:
         self.options = options
         self.path, self.failed, self.used, self.spent = path, False, False, False
+        self._marks = {_WRITTEN}  # of all that this run has worked on
         self._file = -1
         try:
             self._file = locked(path)
@@ -93,6 +95,7 @@ class Checkpoint:
             self._empty("it is of another scene, other options or another state of fcm")
             self._sign()
         self.used = True
+        self._marks.add(mark)
         return found
 
     def append(self, mark: bytes, number: int, results: Any) -> None:
@@ -121,10 +124,30 @@ class Checkpoint:
         """An output is written, with so many points of what is kept here."""
         self.append(_WRITTEN, points, output.name)
 
-    def done(self) -> None:
-        """The output is written: nothing is to be kept any more."""
+    def done(self) -> list[Path]:
+        """The output is written: nothing is to be kept any more, and those that were moved aside neither.
+
+        Of these the ones that are removed: all their work is of this run. Others are somebody's.
+        """
+        aside = [path for path in _aside(self.path, self.options.max_set_aside) if self._has(path)]
+        for path in aside:
+            path.unlink(missing_ok=True)
         self.spent = True
         self.close()
+        return aside
+
+    def _has(self, path: Path) -> bool:
+        """Whether a file that was moved aside kept nothing but work that this run has done."""
+        try:
+            file = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+        except OSError:
+            return False
+        try:
+            size = os.fstat(file).st_size if stat.S_ISREG(os.fstat(file).st_mode) else 0
+            marks = {record.fingerprint for record in whole(file, size, LENGTH)}
+            return size > LENGTH and os.pread(file, len(TITLE), 0) == TITLE and marks <= self._marks
+        finally:
+            os.close(file)
 
     def close(self) -> None:
         """Let go of the file; one that holds no work is removed."""
@@ -194,10 +217,14 @@ def _write(file: int, data: bytes) -> None:
         view = view[os.write(file, view) :]
 
 
+def _aside(path: Path, most: int) -> list[Path]:
+    """Where files of its name are moved aside, so many."""
+    return [path.with_name(f"{path.name}.{number}") for number in range(1, most)]
+
+
 def _free(path: Path, most: int) -> Path:
     """A name beside it that nobody has, of so many."""
-    for number in range(1, most):
-        aside = path.with_name(f"{path.name}.{number}")
+    for aside in _aside(path, most):
         if not os.path.lexists(aside):
             return aside
     raise CheckpointError(f"{path}: there are {most} of them already; remove some")
