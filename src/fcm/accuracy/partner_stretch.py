@@ -17,7 +17,6 @@ from fcm.branches.force_level import solutions
 from fcm.branches.options import LEVEL_CURVE
 from fcm.continuation import Events, Path, Status
 from fcm.continuation.follow import Follower
-from fcm.continuation.step_control import Stepper
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
@@ -71,7 +70,6 @@ class StretchFollower:
         self.finer, self.lifted, self.curve, self.options = finer, lifted, curve, options
         self.each = seconds_of(finer, 1, len(finer.harmonics))
         self.budget, self.evaluations = budget, 0
-        self._stepper: Stepper | None = None
 
     def between(self, first: int, last: int) -> list[PartnerPiece]:
         """The partner between point first and point last of the curve, which may be beyond its ends.
@@ -202,7 +200,7 @@ class StretchFollower:
         forward: bool,
     ) -> Path:
         """The partner from a point, as far as the work allows."""
-        stepper, known = self.stepper, 0
+        balance, stepper, known = self.finer.reset_balance(), self.finer.shared_stepper, 0
 
         def pay(_: float) -> None:
             nonlocal known
@@ -212,20 +210,13 @@ class StretchFollower:
             if self.budget.seconds < 0.0:
                 raise BudgetSpentError
 
-        follower = Follower(stepper.problem, span, wanted, self.options.following, pay, stepper)
+        follower = Follower(balance, span, wanted, self.options.following, pay, stepper)
         if not follower.begin(start, forward, direction):
             return follower.path(Status.STALLED)
         try:
             return follower.run(None)
         except BudgetSpentError:
             return follower.path(Status.INTERRUPTED)
-
-    @property
-    def stepper(self) -> Stepper:
-        """Of a balance of its own."""
-        if self._stepper is None:
-            self._stepper = Stepper(self.finer.new_balance())
-        return self._stepper
 
 
 def _part(path: Path, rows: slice) -> Path:

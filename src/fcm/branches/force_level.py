@@ -389,7 +389,7 @@ def frequencies_in_gaps(
         if low <= 0.0 or not inner:
             continue
         count = math.ceil(math.log(high / low) / math.log1p(most))
-        spaced = np.geomspace(low, high, count + 1).tolist()
+        spaced = [low, *(low * (high / low) ** (k / count) for k in range(1, count)), high]
         tried = list(spaced)
         for omega in (*spaced[1:-1], *peaks):
             apart = omega in spaced or min(abs(omega - other) for other in tried) > distinct * omega

@@ -107,7 +107,7 @@ def traced(
     branches = _branches_through(system, starts(), stations, progress)
     response = Traced(branches, tuple(found), work, fewer_peaks=peaks)
     lost = response.lost_peaks(system.option(LEVEL_CURVE))
-    further = [omega for omega in level_frequencies(system, lost) if omega not in levels]
+    further = [omega for omega in level_frequencies(system, lost) if omega not in levels] if lost else []
     if not further:
         return response
     more = solutions_at(system, further)

@@ -209,7 +209,7 @@ class WorkspaceOptions:
     """
 
     max_size: int = 20
-    max_count: int = 4
+    max_count: int = 16
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,6 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Mark, Path, Segment
-from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.bifurcation_functions import MultiplierSample, multiplier_sample
@@ -151,13 +150,9 @@ class PathVerdicts:
         """[rad] by how much multipliers turn, about, between points around two places."""
         return float(self.rotation[math.ceil(b)] - self.rotation[int(a)])
 
-    @cached_property
-    def _balance(self) -> Balance:
-        return self._system.new_balance()
-
     def curve(self, k: int) -> Segment:
         """From a point to the next."""
-        return Segment(self._balance, self.path, k)
+        return Segment(self._system.reset_balance(), self.path, k)
 
     def find(self, length: float, enough: Sequence[float] = ()) -> float | None:
         """The place at a length, if it is found between two points; it has a verdict then."""

@@ -125,8 +125,7 @@ class Multipliers:
 
     def of(self, z: FloatArray) -> list[complex] | None:
         """The multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""
-        self.finer.at(z)
-        self._seen = None
+        self._add_further(z)
         return self._values(self.fine, z[-1]) if self.find_states(self.fine.states, self.finer.x) else None
 
     def find_states(self, states: BalancedSequence | PlanarSequence, x: FloatArray) -> bool:
@@ -291,7 +290,16 @@ class Multipliers:
 
     def refined(self, z: FloatArray, persistent: bool) -> Verdict | None:
         """Of the solution with the harmonics of the finer motion balanced; None where there is none near."""
-        self._look_again(z)
+        self._add_further(z)
+        return self._rebalanced(z, persistent)
+
+    def _add_further(self, z: FloatArray) -> None:
+        """Let the finer motion be that of a solution; the states of its contacts are not known then."""
+        self.finer.at(z)
+        self._seen = None
+
+    def _rebalanced(self, z: FloatArray, persistent: bool) -> Verdict | None:
+        """As `refined`, where the finer motion is that of the solution."""
         refined, judge = self._further()
         self.beside = there = refined.rebalance(z, self.finer.x, persistent)
         return None if there is None else judge.verdict(there)._replace(rebalanced=True)
@@ -311,22 +319,20 @@ class Multipliers:
 
     def confirms(self, z: FloatArray, stable: float) -> bool:
         """Whether a solution is as stable as told (1 or 0) with the further harmonics balanced, too."""
-        self.finer.at(z)
-        self._seen = None  # whose states are not known
+        self._add_further(z)
         if self.finer.shift == 0.0:  # it has none
             return True
-        found = self.refined(z, persistent=True)
+        found = self._rebalanced(z, persistent=True)
         return found is not None and found.stable == stable
 
     def confirmation(self, z: FloatArray, most: float) -> Verdict:
         """Of a solution with the further harmonics balanced, too: unknown where there is none near, or those
         beyond them add more than the most to it, as `EnrichedMotion.shift` says it."""
-        self.finer.at(z)
-        self._seen = None  # whose states are not known
+        self._add_further(z)
         self.beside = None
         if self.finer.shift == 0.0:  # it has none
             return self.verdict(z)
-        found = self.refined(z, persistent=True)
+        found = self._rebalanced(z, persistent=True)
         return UNKNOWN if found is None else self._if_enough(found, most)
 
     def continued(self, z: FloatArray, motion: FloatArray, most: float) -> Verdict:
