@@ -8,6 +8,7 @@ import pytest
 
 from fcm.cli.messages import Messages
 from fcm.cli.sensitivity import added
+from fcm.plot.sensitivity import draw_sensitivity, read_sensitivity
 from fcm.response import trace
 from fcm.results.cause import Cause
 from fcm.scene import load_scene
@@ -40,6 +41,22 @@ def test_the_file_and_json_hold_the_derivative_of_each_peak_by_each_number(fcm, 
 def test_the_picture(fcm, result, tmp_path):
     done = fcm("plot", "sensitivity", result, "--dof", "v")
     assert (done.code, done.err) == (0, f"wrote {tmp_path / 'result-sensitivity.png'}\n")
+
+
+def test_modes_are_counted_as_in_the_table_of_modes(fcm, scene, result):
+    """Paths count from 0: the picture says which mode it is, and the table has its numbers."""
+    drawn = read_sensitivity(result)
+    figure = draw_sensitivity(drawn)
+    names = [one.get_text() for one in figure.axes[0].get_yticklabels()]
+    ofmode = {name for name in names if "mode" in name.split("(")[-1]}
+    assert ofmode == {name for name in names if name.startswith("modal.")} != set()
+    with netCDF4.Dataset(result) as data:
+        values = dict(zip(data["number"][:].tolist(), data["number_value"][0].tolist(), strict=True))
+    listed = json.loads(fcm("plot", "modes", scene, "--json").out)["modes"]
+    for name in ofmode:
+        key, _, mode = name.removesuffix(")").partition(" (mode ")
+        kind = key.split(".")[1]
+        assert values[key] == pytest.approx(listed[int(mode) - 1][kind])
 
 
 @pytest.mark.parametrize(

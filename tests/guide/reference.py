@@ -39,7 +39,8 @@ def scene() -> str:
     parts = [
         "# Keys of a scene\n",
         f"{MADE}`fcm respond --keys` prints the same. A number of the scene is named by its path, as in\n"
-        "`[sweep]`: `contact.NAME.n_0`, `force.DOF.amplitude`, `modal.damping.0` and the like.\n",
+        "`[sweep]`: `contact.NAME.n_0`, `force.DOF.amplitude`, `modal.damping.0` and the like.\n"
+        "Entries of lists count from 0 there, and modes in tables from 1: `modal.damping.0` is of mode 1.\n",
     ]
     for name, keys in TABLES.items():
         written = f"`[[{name}]]`" if name in LISTS else f"`[{name}]`" if name else "Top level"

@@ -46,6 +46,8 @@ def fitted(
 
 def as_table(result: Mapping[str, Any]) -> str:
     """The numbers, then the data."""
+    from fcm.plot.labels import with_mode
+
     found = result["fitted"]
     percent = f"{100.0 * found['confidence']:g} % interval"
     rows = [["value", "standard error", percent, "began at", "fitted"]]
@@ -54,7 +56,7 @@ def as_table(result: Mapping[str, Any]) -> str:
         low, high = one["interval"]
         within = f"{low:.5g} to {high:.5g}" if None not in (low, high) else "-"
         error = f"{one['standard_error']:.2g}" if told else "-"
-        rows.append([f"{one['value']:.6g}", error, within, f"{one['start']:.6g}", plain(key)])
+        rows.append([f"{one['value']:.6g}", error, within, f"{one['start']:.6g}", plain(with_mode(key))])
     data = [["points", "misfit", "of damping", "level", "data"]]
     for one in found["data"]:
         low, high = one["level"]

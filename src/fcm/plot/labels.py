@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
 
 _POWER = re.compile(r"10\^\{(-?\d+)\}")  # in what an axis is multiplied by
+_OF_MODE = re.compile(r"modal\.\w+\.(\d+)(?:\.|$)")
 _SYMBOLS = {"n_0": "$n_{0}$", "k_u": "$k_{u}$", "k_v": "$k_{v}$", "mu": "$\\mu$"}
 _WORDS = {*_SYMBOLS, "gap", "amplitude", "phase", "mass", "frequency", "damping", "level"}
 
@@ -27,6 +28,18 @@ def short_names(keys: Iterable[str]) -> dict[str, str]:
     last = {key: key.rpartition(".")[2] for key in keys}
     several = list(last.values())
     return {key: name if name in _WORDS and several.count(name) == 1 else key for key, name in last.items()}
+
+
+def with_mode(key: str) -> str:
+    """A number of the scene by its path; of a mode with its number, which counts from 1 as in every table.
+
+    Entries of lists count from 0 in a path.
+
+    >>> with_mode("modal.damping.0"), with_mode("modal.shapes.11.u"), with_mode("contact.shroud.mu")
+    ('modal.damping.0 (mode 1)', 'modal.shapes.11.u (mode 12)', 'contact.shroud.mu')
+    """
+    found = _OF_MODE.match(key)
+    return f"{key} (mode {int(found[1]) + 1})" if found else key
 
 
 def symbols(keys: Iterable[str], units: Mapping[str, str] | None = None) -> list[str]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
-from fcm.plot.labels import staying
+from fcm.plot.labels import staying, with_mode
 from fcm.plot.options import READ
 from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
@@ -83,7 +83,7 @@ def draw_sensitivity(drawn: DrawnSensitivity, dof: str | None = None, curve: int
     shown = _greatest(height, frequency)
     if shown.size == 0:
         raise PlotError(f"the sensitivities of {drawn.dofs[column]} on curve {curve} are not known")
-    names = [drawn.numbers[i] for i in shown]
+    names = [with_mode(drawn.numbers[i]) for i in shown]
     with house_style():
         figure = new_figure(LAYOUT.width, 0.9 + 0.24 * len(names))
         left, right = figure.subplots(1, 2, sharey=True)

@@ -200,7 +200,9 @@ def sensitivity_fields(response: Response) -> dict[str, Field]:
     by = ("curve", "dof", "number")
     return {
         "number": Field(
-            ("number",), np.array(numbers), {"long_name": "number of the scene, by its key path"}
+            ("number",),
+            np.array(numbers),
+            {"long_name": "number of the scene, by its path; modal.damping.0 is that of mode 1"},
         ),
         "number_value": Field(("curve", "number"), values, {"long_name": "value of the number"}),
         "sensitivity": Field(by, height, {"long_name": "derivative of the greatest amplitude by the number"}),
