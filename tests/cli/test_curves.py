@@ -304,3 +304,18 @@ def test_the_greatest_error_of_a_peak_stands_beside_the_greatest_of_any_point():
     curve = {"points": 3, "harmonics": [1, 3], "truncation_error": 3.0, "peak": peak}
     said = cost_and_error({"curves": [curve], "seconds": 1.0, "method": "table"})
     assert said.endswith("2.0e-02 of peaks and 3.0e+00 of any point by leaving out higher harmonics")
+
+
+def test_marks_of_lower_peaks_are_explained():
+    one = curve({"u": 2.0, "v": 1.0})
+    lower = {"amplitude": 1.0, "frequency": 1.0, "error": 7.0, "stable": False, "at_edge": False}
+    one["peaks"] = {"u": [lower, one["peak"]["u"]]}
+    text, table = as_table({"curves": [one]}, "Hz").split("\n\n")
+    assert "! unstable" in text and "> 100 % the error is more than the peak" in text
+    said, header, *rows = table.splitlines()
+    assert said == "every peak, in order of frequency:"
+    assert header.split() == ["peak", "u", "at", "Hz", "error"]
+    assert [row.split() for row in rows] == [
+        ["1.00000!", "1.00000", ">", "100", "%"],
+        ["2.00000", "1.50000", "-"],
+    ]

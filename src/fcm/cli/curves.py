@@ -31,6 +31,7 @@ _BEYOND = (
     f"{BEYOND} the error is more than the peak, which these harmonics do not tell: give more by --harmonics, "
     "or leave them to --accuracy"
 )
+_EVERY = "every peak, in order of frequency:"
 _RESIDUAL = "residual"  # heads a column of shares
 _OF_RESIDUAL = "residual: up to this share of it the friction that stuck contacts keep may change the peak"
 
@@ -50,11 +51,43 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
     dofs, length = shown_dofs(summary), summary.get("units", {}).get("length", "")
     shown = _which_are_shown(summary, dofs)
     parts = [_curves(curves, names, dofs, unit, length, shown)]
+    parts += filter(None, [_every_peak(curves, names, dofs, unit, length)])
     parts += [_blades(curves, names, unit, length)] if "blades" in curves[0] else []
     tables = (stable_table, jump_table, untold_table)
     parts += filter(None, [table(curves, names, dofs, unit) for table in tables])
     parts += [_scatter(one, dofs, unit) for one in summary.get("scatter", ())]
     return "\n\n".join(parts)
+
+
+def _every_peak(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: str, length: str) -> str:
+    """The peaks of curves that have several of a degree of freedom, in order of frequency; empty if none has.
+
+    Columns are those of the highest peaks.
+    """
+    rows = []
+    for curve in curves:
+        every = [curve.get("peaks", {}).get(dof, []) for dof in dofs]
+        for k in range(max(map(len, every), default=0)):
+            cells = swept(curve)
+            for peaks in every:
+                cells += _cells_of_peak(peaks[k]) if k < len(peaks) else ["", "", ""]
+            rows.append(cells)
+    if not rows:
+        return ""
+    kept = [i for i in range(len(dofs)) if any(row[len(names) + 3 * i] for row in rows)]
+    columns = [*range(len(names)), *(len(names) + 3 * i + j for i in kept for j in range(3))]
+    header = [*names, *(text for dof in dofs for text in _peak_heads(dof, unit, length))]
+    return f"{_EVERY}\n" + aligned([[row[i] for i in columns] for row in [header, *rows]], left=0)
+
+
+def _peak_heads(dof: str, unit: str, length: str) -> tuple[str, str, str]:
+    return f"peak {_with_unit(dof, length)}", f"at {unit}", "error"
+
+
+def _cells_of_peak(peak: Mapping[str, Any]) -> list[str]:
+    """Amplitude, frequency and error, with their marks."""
+    at = number(peak.get("frequency")) + (_EDGE if peak.get("at_edge") else "")
+    return [number(peak.get("amplitude")) + _mark_of(peak), at, short(peak.get("error"))]
 
 
 def _blades(curves: Sequence[Curve], names: list[str], unit: str, length: str) -> str:
@@ -143,7 +176,7 @@ def _curves(
     peaks = []
     for dof in dofs:
         more = [_RESIDUAL] if dof in ranges_of else []
-        peaks += [f"peak {_with_unit(dof, length)}", f"at {unit}", "error", *more]
+        peaks += [*_peak_heads(dof, unit, length), *more]
     balanced = ["harmonics"] if any("harmonics" in curve for curve in curves) else []
     folds = "folds at level" if "level_folds" in curves[0] else f"folds at {unit}"
     header = [*names, *peaks, *balanced, "points", "time [s]", folds, ""]
@@ -159,7 +192,8 @@ def _curves(
     if any(_at_edge(curve, dof) for curve in curves for dof in dofs):
         beyond = "beyond it the curve may rise further; fcm plot modes SCENE: resonances"
         lines.append(f"{_EDGE} at an end of the range: {beyond}")
-    marks = {_stability(curve, dof) for curve in curves for dof in dofs}
+    lower = [one for curve in curves for dof in dofs for one in curve.get("peaks", {}).get(dof, ())]
+    marks = {_stability(curve, dof) for curve in curves for dof in dofs} | set(map(_mark_of, lower))
     if UNSTABLE in marks:
         lines.append(f"{UNSTABLE} unstable: the motion is not stable there: none stays at this peak")
     if UNKNOWN in marks:
@@ -167,7 +201,8 @@ def _curves(
     if ranges_of:
         unknown = any(_residual(curve, dof) == "-" for curve in curves for dof in ranges_of)
         lines.append(_OF_RESIDUAL + (", - unknown" if unknown else ""))
-    if any(((curve["peak"].get(dof) or {}).get("error") or 0.0) > 1.0 for curve in curves for dof in dofs):
+    each = [*((curve["peak"].get(dof) or {}) for curve in curves for dof in dofs), *lower]
+    if any((one.get("error") or 0.0) > 1.0 for one in each):
         lines.append(_BEYOND)
     if any(_untold(curve, dof) for curve in curves for dof in dofs if curve.get("cause") != "interrupted"):
         lines.append(_OF_LEVELS if "level_folds" in curves[0] else _UNTOLD)
@@ -202,8 +237,11 @@ def _at_rest(curve: Curve, dof: str) -> bool:
 
 
 def _stability(curve: Curve, dof: str) -> str:
-    """A mark beside a peak of which it is not known that it is stable."""
-    peak = curve["peak"].get(dof) or {}
+    """A mark beside the highest peak of a degree of freedom of which it is not known that it is stable."""
+    return _mark_of(curve["peak"].get(dof) or {})
+
+
+def _mark_of(peak: Mapping[str, Any]) -> str:
     if not peak.get("amplitude") or "stable" not in peak or peak["stable"]:
         return ""
     return UNKNOWN if peak["stable"] is None else UNSTABLE
@@ -231,9 +269,7 @@ def _curve_row(curve: Curve, dofs: list[str], ranges_of: list[str], balanced: bo
         if _at_rest(curve, dof):
             cells += ["0", "-", "-", *(["0"] if dof in ranges_of else [])]
             continue
-        at = number(peak.get("frequency")) + (_EDGE if peak.get("at_edge") else "")
-        height = number(peak.get("amplitude")) + _stability(curve, dof)
-        cells += [height, at, short(peak.get("error"))]
+        cells += _cells_of_peak(peak)
         if dof in ranges_of:
             cells.append(_residual(curve, dof))
     if balanced:

@@ -60,7 +60,8 @@ def _at_rest(curve: Curve, options: RestOptions) -> BoolArray:
 
 
 def _condensed(condensed: CondensedCurve, rest: BoolArray) -> CondensedCurve:
-    return replace(condensed, swept=_swept(condensed.swept, rest))
+    lower = condensed.lower_peaks[~rest[condensed.lower_peaks[:, 0].astype(np.intp)]]
+    return replace(condensed, swept=_swept(condensed.swept, rest), lower_peaks=lower)
 
 
 def _mode(mode: NonlinearMode, rest: Collection[str]) -> NonlinearMode:

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
 from fcm.results.jumps import Swept
+from fcm.results.local_maxima import lower_peaks, rise_beside
 from fcm.stability.unstable_ranges import Stretch, unstable_stretches
 
 if TYPE_CHECKING:
@@ -32,10 +33,16 @@ class CondensedCurve:
     # (dof, 3): amplitude, frequency [rad/s] and error of the greatest motion that is stable; NaN without one
     stable_peaks: FloatArray
     linear: str  # how the response is that of a linear structure; empty if it is not
+    # (peak, 5): dof, amplitude, frequency [rad/s], error and stability of peaks that are not the highest
+    lower_peaks: FloatArray
 
     def at(self, shown: npt.NDArray[np.bool_]) -> CondensedCurve:
         """At some of the degrees of freedom."""
-        return replace(self, swept=self.swept.at(shown), stable_peaks=self.stable_peaks[shown])
+        lower = self.lower_peaks[shown[self.lower_peaks[:, 0].astype(np.intp)]]
+        lower[:, 0] = (np.cumsum(shown) - 1)[lower[:, 0].astype(np.intp)]
+        return replace(
+            self, swept=self.swept.at(shown), stable_peaks=self.stable_peaks[shown], lower_peaks=lower
+        )
 
 
 def condense(curve: Curve) -> CondensedCurve:
@@ -51,6 +58,7 @@ def condense(curve: Curve) -> CondensedCurve:
         truncation_error=worst(curve.truncation_error),
         stable_peaks=_stable_peaks(curve),
         linear=_linear(curve),
+        lower_peaks=_lower_peaks(curve),
     )
 
 
@@ -95,6 +103,27 @@ def _stable_peaks(curve: Curve) -> FloatArray:
     return found
 
 
+def _lower_peaks(curve: Curve) -> FloatArray:
+    """Peaks beside the highest, of a curve over all of the frequency; errors are those of the points, at
+    least what may be between them."""
+    if curve.level is not None or curve.mode is not None or _is_partial(curve):
+        return np.empty((0, 5))
+    d, k = lower_peaks(curve.amplitude).T
+    height = curve.amplitude[k, d]
+    beside = [
+        rise_beside(curve.frequency, curve.amplitude[:, dof], at)
+        for dof, at in zip(d, k.tolist(), strict=True)
+    ]
+    error = np.maximum(curve.error[k, d], beside)
+    return np.transpose((d, height, curve.frequency[k], error, curve.stable[k])).astype(np.float64)
+
+
+def _is_partial(curve: Curve) -> bool:
+    """Whether exact motions were visited at some frequencies alone, or sought at peaks and folds alone."""
+    orbits = curve.orbits
+    return orbits is not None and (orbits.swept is not None or orbits.span is not None)
+
+
 def _linear(curve: Curve) -> str:
     """At all points of a curve: "all_stick", "all_open", or where each contact does one of these
     "all_stick_or_open"."""
@@ -107,9 +136,7 @@ def _linear(curve: Curve) -> str:
 
 def _unstable(curve: Curve) -> list[Stretch]:
     """Where no motion that was found is stable, of a curve that has all of its range."""
-    orbits = curve.orbits
-    partly = orbits is not None and (orbits.swept is not None or orbits.span is not None)
-    if not curve.complete or partly or curve.level is not None or curve.mode is not None:
+    if not curve.complete or _is_partial(curve) or curve.level is not None or curve.mode is not None:
         return []
     there = np.isfinite(curve.frequency)
     span = _ends(curve, curve.frequency[there])

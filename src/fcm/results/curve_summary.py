@@ -59,6 +59,8 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
         dof: _peak(curve, peak, condensed, unit) | _stable_peak(peak, stays, unit)
         for (dof, peak), stays in zip(curve.peaks.items(), condensed.stable_peaks.tolist(), strict=True)
     }
+    if peaks := _every_peak(out["peak"], condensed, unit):
+        out["peaks"] = peaks
     if curve.greatest is not None and contacts:
         out["contacts"] = _contacts(curve.greatest, contacts, unit)
     out["folds"] = in_unit(curve.folds, unit).tolist()
@@ -111,6 +113,22 @@ def _peak(curve: Curve, peak: Peak, condensed: CondensedCurve, unit: str) -> dic
         "at_edge": bool(at_edge),
         "residual_change": peak.residual,
     }
+
+
+def _every_peak(
+    highest: dict[str, dict[str, Any]], condensed: CondensedCurve, unit: str
+) -> dict[str, list[dict[str, Any]]]:
+    """All peaks in order of frequency, of the degrees of freedom that have more than the highest."""
+    keys = ("amplitude", "frequency", "error", "stable", "at_edge")
+    found: dict[str, list[dict[str, Any]]] = {}
+    dofs = list(highest)
+    for d, amplitude, omega, error, stable in condensed.lower_peaks.tolist():
+        dof = dofs[int(d)]
+        every = found.setdefault(dof, [{key: highest[dof][key] for key in keys}])
+        told = None if np.isnan(stable) else bool(stable)
+        values = (amplitude, float(in_unit(omega, unit)), error, told, False)
+        every.append(dict(zip(keys, values, strict=True)))
+    return {dof: sorted(every, key=lambda one: one["frequency"]) for dof, every in found.items()}
 
 
 def _stable_peak(peak: Peak, stays: Sequence[float], unit: str) -> dict[str, Any]:

@@ -59,18 +59,35 @@ class FileOptions:
 
 
 @dataclass(frozen=True)
+class PeakOptions:
+    """Which local maxima of a curve are peaks that are told beside the highest.
+
+    Attributes
+    ----------
+    least_share : float
+        Of the highest amplitude of the degree of freedom: lower ones are not told.
+    least_prominence : float
+        Relative to its height: what rises by less above the curve on either side is a ripple.
+    """
+
+    least_share: float = 1e-3
+    least_prominence: float = 0.01
+
+
+@dataclass(frozen=True)
 class ResultOptions:
     """What is told of curves.
 
     Attributes
     ----------
-    jumps, draws, file : JumpOptions, DrawOptions, FileOptions
+    jumps, draws, file, peaks : JumpOptions, DrawOptions, FileOptions, PeakOptions
         Of the parts.
     """
 
     jumps: JumpOptions = field(default_factory=JumpOptions)
     draws: DrawOptions = field(default_factory=DrawOptions)
     file: FileOptions = field(default_factory=FileOptions)
+    peaks: PeakOptions = field(default_factory=PeakOptions)
 
 
 RESULTS = ResultOptions()  # where nothing else is said

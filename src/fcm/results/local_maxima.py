@@ -1,0 +1,113 @@
+"""Peaks of a curve beside its highest: the local maxima of each degree of freedom along it."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import copysign, isfinite, sqrt
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.contact.limits import FloatArray
+from fcm.results.options import RESULTS, PeakOptions
+
+_PARABOLA, _BEFORE, _BEHIND = (-1, 0, 1), (-2, -1, 0, 1), (-1, 0, 1, 2)  # points that polynomials go through
+
+
+def lower_peaks(amplitude: FloatArray, options: PeakOptions = RESULTS.peaks) -> npt.NDArray[np.intp]:
+    """Places (peak, 2) of local maxima that are not the highest of their degree of freedom: dof and point.
+
+    amplitude (point, dof) has rows of NaN between branches, whose ends are no maxima.
+
+    >>> u, v = [0.0, 2.0, 1.0, 5.0, 0.0], [0.0, 1.0, 2.0, 3.0, 4.0]
+    >>> lower_peaks(np.transpose((u, v))).tolist()
+    [[0, 1]]
+    """
+    if len(amplitude) < 3:
+        return np.empty((0, 2), dtype=np.intp)
+    top = np.fmax.reduce(amplitude, axis=0)
+    inner = amplitude[1:-1]
+    rises = (inner > amplitude[:-2]) & (inner >= amplitude[2:]) & (inner > options.least_share * top)
+    points, dofs = np.nonzero(rises)
+    several = np.bincount(dofs, minlength=top.size) > 1
+    several |= ~rises.any(axis=0) | (
+        np.where(rises, inner, 0.0).max(axis=0) < top
+    )  # the highest is at an end
+    found = [
+        (d, k + 1)
+        for d, k in zip(dofs.tolist(), points.tolist(), strict=True)
+        if several[d]
+        and k + 1 != np.nanargmax(amplitude[:, d])
+        and _prominence(amplitude[:, d], k + 1) > options.least_prominence * amplitude[k + 1, d]
+    ]
+    return np.array(sorted(found), dtype=np.intp).reshape(-1, 2)
+
+
+def rise_beside(frequency: FloatArray, amplitude: FloatArray, k: int) -> float:
+    """By how much polynomials through a local maximum k of points and its neighbours rise above it, relative.
+
+    Only the highest peaks are located on the curve: another may be between two points by about so much. That
+    is the greatest of a parabola and of the cubics with one more point on either side.
+
+    >>> x = np.array([0.0, 1.0, 3.0])
+    >>> round(rise_beside(x, 4.0 - (x - 1.5) ** 2, 1), 3)
+    0.067
+    """
+    first, end = max(k - 2, 0), min(k + 3, len(amplitude))
+    x = _place_along(frequency[first:end], amplitude[first:end], k - first)
+    y = (amplitude[first:end] / amplitude[k] - 1.0).tolist()
+    top = k - first
+    sets = [rows for rows in (_PARABOLA, _BEFORE, _BEHIND) if 0 <= top + rows[0] and top + rows[-1] < len(y)]
+    return max(_rise([x[top + i] for i in rows], [y[top + i] for i in rows]) for rows in sets)
+
+
+def _place_along(x: FloatArray, y: FloatArray, top: int) -> list[float]:
+    """The frequency where it goes one way, else, beside a fold, the length of the chords; 0 at the top."""
+    steps = np.abs(np.diff(x))
+    if not ((np.diff(x) > 0.0).all() or (np.diff(x) < 0.0).all()):
+        steps = np.hypot(*(np.diff(one) / (np.ptp(one) or 1.0) for one in (x, y)))
+    place = np.concatenate(([0.0], np.cumsum(steps)))
+    found: list[float] = (place - place[top]).tolist()
+    return found
+
+
+def _rise(x: list[float], y: list[float]) -> float:
+    """The greatest value between the neighbours of 0 of the polynomial through three or four points; not
+    where points are one, or not there."""
+    if not all(one < other for one, other in pairwise(x)) or not all(map(isfinite, y)):
+        return 0.0
+    differences = list(y)  # Newton's divided differences
+    for order in range(1, len(x)):
+        for i in range(len(x) - 1, order - 1, -1):
+            differences[i] = (differences[i] - differences[i - 1]) / (x[i] - x[i - order])
+    coefficients = [differences[-1]]  # by powers, the highest first
+    for node, value in zip(x[-2::-1], differences[-2::-1], strict=True):
+        shifted = [-node * one for one in coefficients]
+        coefficients = [p + q for p, q in zip([*coefficients, 0.0], [0.0, *shifted], strict=True)]
+        coefficients[-1] += value
+    d, c, b, a = [0.0] * (4 - len(coefficients)) + coefficients
+    top = x.index(0.0)
+    turns = _roots(3.0 * d, 2.0 * c, b)
+    inside = [t for t in turns if x[top - 1] < t < x[top + 1]]
+    return max((a + t * (b + t * (c + t * d)) for t in inside), default=0.0)
+
+
+def _roots(a: float, b: float, c: float) -> list[float]:
+    """Real roots of a x^2 + b x + c."""
+    square = b * b - 4.0 * a * c
+    if square < 0.0:
+        return []
+    far = -0.5 * (b + copysign(sqrt(square), b))  # of the two signs, that without cancellation
+    return [one / other for one, other in ((far, a), (c, far)) if other]
+
+
+def _prominence(heights: FloatArray, k: int) -> float:
+    """By how much a point is above the deeper of the two ways to what is higher, or to the branch's end."""
+    sides = (heights[k::-1], heights[k:])
+    return float(heights[k] - max(_lowest(side) for side in sides))
+
+
+def _lowest(side: FloatArray) -> float:
+    """The lowest of a way that begins at a peak, as far as nothing is higher and the branch does not end."""
+    ends = np.flatnonzero(~(side <= side[0]))
+    return float(side[: ends[0] if ends.size else side.size].min())
