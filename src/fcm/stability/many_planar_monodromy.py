@@ -13,9 +13,14 @@ through the cycle:
     slip         g = k_u (e . du - dr) e + k_u s e_perp
     separation   g = K d
 
-What depends on one angle alone is found at each point by itself: e . du - dr of the contacts that slip, and d
-of those that are open, of (q, s). Then q of s at all points, as modes are few; what is left of a step are
-equations of s, one unknown for each contact that slips and point.
+One that is open is linear as long as it stays so: with T = (K_o^-1 - (R^-1 S)_oo)^-1 of these it is put into
+the structure, until another one opens or closes:
+
+    d = (R^-1 P^T + (R^-1 S)_o T (R^-1 P^T)_o) q + (R^-1 S + (R^-1 S)_o T (R^-1 S)_o) g
+
+What depends on one angle alone is found at each point by itself: e . du - dr of the contacts that slip, of
+(q, s). Then q of s at all points, as modes are few; what is left of a step are equations of s, one unknown
+for each contact that slips and point.
 """
 
 from __future__ import annotations
@@ -70,7 +75,7 @@ class ManyPlanarMonodromy(VariationalSteps):
             return False
         self._structure(omega)
         self.q, self.p = np.eye(m, columns), np.eye(m, columns, m)
-        # (contact, number, disturbance), and the forces g (contact, direction, disturbance)
+        # (contact, number, disturbance), and the forces g (contact, direction, disturbance) of closed ones
         self.memory, self.g = (np.zeros((self.moving.size, n, columns)) for n in (2, 3))
         self.remembered = [(k, i) for k, n in enumerate(held.tolist()) for i in range(n)]
         for column, (k, i) in enumerate(self.remembered, 2 * m):
@@ -98,9 +103,25 @@ class ManyPlanarMonodromy(VariationalSteps):
             found = np.asarray(np.linalg.solve(R, np.concatenate((seen, soft), axis=1)), dtype=np.float64)
             seen, soft = found[:, :m], found[:, m:]
         self.C = 2.0 * self.damping * self.natural / omega
-        self.K = ((self.shapes * every) @ seen + np.diag(self.natural**2)) / omega**2
-        self.seen, self.soft = seen[ports], soft[ports]
-        self.push = self.seen.T / omega**2
+        self.omega = omega
+        self.K_closed = ((self.shapes * every) @ seen + np.diag(self.natural**2)) / omega**2
+        self.seen_closed, self.soft_closed = seen[ports], soft[ports]
+        self.open = np.full(1, -1)  # of no contact yet
+
+    def _open(self, contacts: npt.NDArray[np.intp]) -> None:
+        """Put contacts that are open into the structure with the springs of all."""
+        self.open, ports = contacts, _ports(contacts)
+        seen, soft, K = self.seen_closed, self.soft_closed, self.K_closed
+        if ports.size:
+            springs = self.springs[contacts].ravel()
+            freed = np.eye(ports.size) - soft[np.ix_(ports, ports)] * springs
+            both = np.concatenate((seen[ports], soft[ports]), axis=1)
+            force = springs[:, None] * np.asarray(np.linalg.solve(freed, both), dtype=np.float64)
+            m = self.natural.size
+            K = K - seen[ports].T @ force[:, :m] / self.omega**2
+            seen, soft = seen + soft[:, ports] @ force[:, :m], soft + soft[:, ports] @ force[:, m:]
+        self.K, self.seen, self.soft = K, seen, soft
+        self.push = self.seen.T / self.omega**2
 
     def disturbances(self) -> FloatArray:
         """The rows (q, q', memory) now."""
@@ -110,30 +131,22 @@ class ManyPlanarMonodromy(VariationalSteps):
     def _arrange(self) -> None:
         """Which contacts slip, are open, and stick, and what those do to one another."""
         state, columns = np.asarray(self.state)[self.moving], self.q.shape[1]
-        self.slips, self.open = np.flatnonzero(state == SLIP), np.flatnonzero(state == SEPARATION)
-        sticks = np.flatnonzero(state == STICK)
-        n, s = self.slips.size, self.stages
-        slide, apart, rest = _ports(self.slips), _ports(self.open), _ports(sticks, 2)
+        self.slips, sticks = np.flatnonzero(state == SLIP), np.flatnonzero(state == STICK)
+        opened = np.flatnonzero(state == SEPARATION)
+        if not np.array_equal(opened, self.open):
+            self._open(opened)
+        n = self.slips.size
+        slide, rest = _ports(self.slips), _ports(sticks, 2)
         # what the memory of those that stick pushes on the modes, and moves the others by
         still = self.g[sticks, :2].reshape(rest.size, columns)
         self.held_push = self.push[:, rest] @ still
-        by_slip, by_open = self.soft[slide[:, None], apart], self.soft[apart[:, None], slide]
-        self.springs_open = self.springs[self.open].ravel()
         moved = self.soft[slide[:, None], rest] @ still
-        by = np.concatenate((self.seen[slide], by_slip * self.springs_open, moved), axis=1)
+        by = np.concatenate((self.seen[slide], moved), axis=1)
         # of contacts that slip, by their directions: (direction, contact, what by)
         self.by = by.reshape(n, 3, by.shape[1]).transpose(1, 0, 2).copy()
         soft = self.soft[slide[:, None], slide].reshape(n, 3, n, 3)
         self.of_slips = soft[..., :2].transpose(1, 3, 0, 2).copy()
-        self.from_slips = by_open.reshape(apart.size, n, 3)[..., :2].transpose(2, 0, 1).copy()
         self.pushes = self.push[:, slide].reshape(self.natural.size, n, 3)[..., :2].transpose(2, 0, 1).copy()
-        self.push_open = np.broadcast_to(
-            self.push[:, apart] * self.springs_open, (s, self.natural.size, apart.size)
-        )
-        of_open = self.soft[apart[:, None], apart] * self.springs_open
-        moved = self.soft[apart[:, None], rest] @ still
-        self.of_open = np.broadcast_to(of_open, (s, *of_open.shape))
-        self.open_by = np.concatenate((self.seen[apart], np.zeros((apart.size, n)), moved), axis=1)
         self.arranged = True
 
     def _slip(self, theta: float, h: float) -> None:
@@ -162,33 +175,23 @@ class ManyPlanarMonodromy(VariationalSteps):
     def _at_each_node(self) -> tuple[FloatArray, FloatArray]:
         """By (q, s, each disturbance), at each node: what s feels, and the forces on the modes.
 
-        `at_end`: e . du - dr, and d of the contacts that are open, at the last.
+        `at_end`: e . du - dr at the last.
         """
-        m, n, o, s = self.natural.size, self.slips.size, self.springs_open.size, self.stages
+        m, n = self.natural.size, self.slips.size
         k_u = self.k_u[self.slips, None]
         along, aside = ((k_u * e).transpose(2, 0, 1)[..., None, :] for e in (self.e, self.aside))
         # of both rows of a contact, e . du - dr and what s feels: (2, s, slip, what by)
         by: FloatArray = sum(self.sees[..., d, None] * self.by[d] for d in range(3))
         half = [sum(self.sees[..., d, None] * self.of_slips[d, j] for d in range(3)) for j in range(2)]
         by_gamma, by_s = (half[0] * force[0] + half[1] * force[1] for force in (along, aside))
-        right = np.concatenate((by[..., :m], by_s, by[..., m + o :]), axis=-1)
-        at_once = np.concatenate((by_gamma, by[..., m : m + o]), axis=-1)
-        system, known = at_once[0], right[0]
-        if o:
-            open_gamma, open_s = (
-                self.from_slips[0] * force[0] + self.from_slips[1] * force[1] for force in (along, aside)
-            )
-            system = np.concatenate((system, np.concatenate((open_gamma, self.of_open), axis=-1)), axis=-2)
-            below = np.repeat(self.open_by[None], s, axis=0)
-            below[..., m : m + n] += open_s
-            known = np.concatenate((known, below), axis=-2)
-        found = np.linalg.solve(np.eye(n + o) - system, known)
+        right = np.concatenate((by[..., :m], by_s, by[..., m:]), axis=-1)
+        found = np.linalg.solve(np.eye(n) - by_gamma[0], right[0])
         self.at_end = found[-1]
         on_gamma, on_s = (self.pushes[0] * force[0] + self.pushes[1] * force[1] for force in (along, aside))
-        pushed = np.concatenate((on_gamma, self.push_open), axis=-1) @ found
+        pushed = on_gamma @ found
         pushed[..., m : m + n] += on_s
         pushed[..., m + n :] += self.held_push
-        return right[1] + at_once[1] @ found, pushed
+        return right[1] + by_gamma[1] @ found, pushed
 
     def step(self, theta: float, h: float) -> float:
         """A step from an angle on; what it leaves out beside a disturbance, infinity where it is singular."""
@@ -245,10 +248,7 @@ class ManyPlanarMonodromy(VariationalSteps):
         k_u = self.k_u[self.slips, None, None]
         along, across = self.e[-1, :, :, None], self.aside[-1, :, :, None]
         self.g[self.slips] = 0.0
-        self.g[self.slips, :2] = k_u * (along * found[:n, None] + across * self.s_new[:, None])
-        self.g[self.open] = (self.springs_open[:, None] * found[n:]).reshape(
-            self.open.size, 3, self.q.shape[1]
-        )
+        self.g[self.slips, :2] = k_u * (along * found[:, None] + across * self.s_new[:, None])
         self.memory[self.slips, 0] = self.s_new
         np.asarray(self.fresh)[:] = 0
         return 0
@@ -260,12 +260,14 @@ class ManyPlanarMonodromy(VariationalSteps):
         np.asarray(self.state)[c] = now
         np.asarray(self.fresh)[c] = now == SLIP and before == SEPARATION
         w, made = self.memory[k], np.zeros_like(self.memory[k])
+        if self.arranged:  # several events at one angle see the displacements before them all
+            self.g_before = self.g.copy()
         if {before, now} == {STICK, SLIP}:
             e = sequence.slip_at(c, np.array([angle]), now == STICK)[0, :2]
             aside = np.array([-e[1], e[0]])
         if now == STICK:
             ports = slice(3 * k, 3 * k + 3)
-            du = self.seen[ports] @ self.q + self.soft[ports] @ self.g.reshape(-1, self.q.shape[1])
+            du = self.seen[ports] @ self.q + self.soft[ports] @ self.g_before.reshape(-1, self.q.shape[1])
         if now == SLIP and before == STICK:
             made[0] = aside @ w
         elif now == STICK and before == SLIP:
@@ -274,8 +276,7 @@ class ManyPlanarMonodromy(VariationalSteps):
             rate = sequence.slip_at(c, np.array([angle]))[0, 2:5]
             made = du[:2] - np.outer(rate[:2], self.ratio[k] * du[2] / rate[2])
         self.memory[k] = made
-        if now == STICK:
-            self.g[k, :2], self.g[k, 2] = self.k_u[k] * made, 0.0
+        self.g[k, :2] = self.k_u[k] * made if now == STICK else 0.0
         self.arranged = False
         return 0
 
