@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from fcm.accuracy.embedded_pair import errors_along
 from fcm.branches.trace import traced
 from fcm.harmonic_balance.residual_spectrum import enriched_harmonics
 from fcm.harmonic_balance.system import System
@@ -11,6 +12,7 @@ from fcm.shooting import periodic
 from fcm.stability.bifurcations import stability
 from fcm.stability.confirmation import ConfirmedPoints, confirmed_stable
 from fcm.stability.floquet import multipliers_of
+from fcm.stability.known_motions import KnownMotions
 from fcm.stability.options import STABILITY
 from fcm.stability.rebalanced import Rebalancing
 
@@ -106,6 +108,31 @@ def test_a_motion_that_is_far_is_found_from_beside_the_next_points():
     assert found[way[1:]].tolist() == (path.parameter[way[1:]] >= reached).tolist()
     alone = ConfirmedPoints(system, path.z, STABILITY)
     assert found[way[1:]].tolist() == [alone.confirms(int(i)) for i in way[1:]]
+
+
+def test_what_tells_the_error_leads_to_the_motion_that_confirms():
+    """The same is confirmed, down to 11.64 rad/s, where the upper branch of more harmonics ends."""
+    system = System(elastic_strip((11.3, 20.0)), (1,))
+    path = traced(system).branches.paths[-1]
+    motions = errors_along(system, path).motions
+    inside = np.flatnonzero((path.parameter > 11.35) & (path.parameter < 13.0))
+    looks = ConfirmedPoints(system, path.z, STABILITY, np.ones(len(path.z), dtype=bool), motions)
+    found = np.array([looks.confirms(int(i)) for i in inside])
+    assert not found[path.parameter[inside] < 11.64].any()
+    assert found[path.parameter[inside] > 11.75].all()
+
+
+def test_of_known_motions_the_nearest_at_the_frequency_is_taken():
+    """Between two of each piece, on a curve that passes the frequency twice."""
+    system = System(strip(), (1,))
+    size = system.new_balance().unknowns
+    z = np.append(np.full(size, 0.4), 1.05)
+    up = np.column_stack((np.outer([0.0, 1.0], np.ones(size)), [1.0, 1.1]))
+    down = np.column_stack((np.outer([2.0, 1.0], np.ones(size)), [1.0, 1.1]))
+    known = KnownMotions((1,), (np.concatenate((up, down[::-1])), down[:1]))
+    np.testing.assert_allclose(known.beside(system, z), np.append(np.full(size, 0.5), 1.05))
+    np.testing.assert_allclose(known.beside(system, z + 1.2 * (z < 1.0)), np.append(np.full(size, 1.5), 1.05))
+    assert known.beside(system, np.append(np.full(size, 0.4), 1.2)) is None
 
 
 def test_close_to_the_last_solution_the_same_is_found_sooner():

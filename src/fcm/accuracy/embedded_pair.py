@@ -33,6 +33,7 @@ from fcm.harmonic_balance.response_quantities import ContactRecord
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.scene.options import LIMITS
+from fcm.stability.known_motions import KnownMotions
 
 Mask = npt.NDArray[np.bool_]
 
@@ -57,7 +58,7 @@ class Errors:
     contact_loads (point, contact, 4): of what the contacts bear, see `response_quantities.cycles`, each
     relative to itself; infinite where it is nothing, and something in the partner. greatest (contact, 4): of
     the greatest of each along the path. contacts: what those of the path itself do and bear. pieces: what
-    is known of the partner's curve.
+    is known of the partner's curve; motions: those of the partner that were found.
     """
 
     amplitude: FloatArray
@@ -73,6 +74,7 @@ class Errors:
     greatest: FloatArray
     contacts: ContactRecord
     pieces: tuple[CurvePiece, ...] = field(default=(), repr=False)
+    motions: KnownMotions | None = field(default=None, repr=False)
 
     def part(self, rows: npt.NDArray[np.intp]) -> Errors:
         """Those of some points of the path."""
@@ -182,6 +184,7 @@ def errors_along(
         greatest=greatest,
         contacts=contacts,
         pieces=partner.pieces(compared, followed),
+        motions=partner.motions(followed),
     )
 
 

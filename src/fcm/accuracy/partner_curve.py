@@ -39,6 +39,7 @@ from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.harmonic_balance.response_quantities import contact_loads_along
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
+from fcm.stability.known_motions import KnownMotions
 
 Indices = npt.NDArray[np.intp]
 Mask = npt.NDArray[np.bool_]
@@ -457,6 +458,12 @@ class PartnerCurve:
         through = [self._displaced(compared, slice(first, end)) for first, end in runs(~missed)]
         along = [self._of_piece(piece) for one in followed for piece in one.pieces]
         return tuple(one for one in (*through, *along) if one is not None)
+
+    def motions(self, followed: list[FollowedStretch]) -> KnownMotions:
+        """All motions of the partner that were found, in order along its curve."""
+        found = [self.theirs[np.isfinite(self.theirs).all(axis=1)]]
+        found += [piece.path.z for one in followed for piece in one.pieces]
+        return KnownMotions(self.stretches.finer.harmonics, tuple(one for one in found if len(one) > 1))
 
     def _displaced(self, compared: ComparedQuantities, rows: slice) -> CurvePiece | None:
         """The partner at some points, all of them displaced to it."""

@@ -170,7 +170,8 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
     beside = (doubted | np.isnan(stable)) & np.isfinite(np.concatenate(believed))
     for k in np.unique(points.path[doubted | beside]).tolist() if not quick else ():
         of = points.path == k
-        sure = confirmed_stable(system, points.z[of], doubted[of], beside[of], system.option(STABILITY))
+        own = points.z[of], doubted[of], beside[of]
+        sure = confirmed_stable(system, *own, system.option(STABILITY), found.errors[k].motions)
         stable[of] = np.where(sure, 1.0, stable[of])
         doubted[of] &= ~sure
     stable[doubted] = np.nan

@@ -6,7 +6,8 @@ balanced itself, at the same frequency. If that is near, stable, and hardly anot
 those, the solution is what it is taken for.
 
 Where the error is told and great, the motion with further harmonics is far, and no Newton method leads there
-from the solution. But the curve of these motions does, from beside the solutions next to it.
+from the solution. But what told the error does, a motion with more harmonics at that frequency; or the curve
+of these motions, from beside the solutions next to it.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from fcm.harmonic_balance.consecutive_points import runs
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.floquet import multipliers_of
+from fcm.stability.known_motions import KnownMotions
 from fcm.stability.multipliers import Multipliers
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.verdict import Verdict, growth_is_linear
@@ -34,6 +36,7 @@ def confirmed_stable(
     doubted: Mask,
     far: Mask | None = None,
     options: StabilityOptions = STABILITY,
+    motions: KnownMotions | None = None,
 ) -> Mask:
     """Which of the doubted points (point,) have a stable motion with further harmonics near them.
 
@@ -51,11 +54,13 @@ def confirmed_stable(
         Of a row of them some are looked at, `ConfirmationOptions.point_interval` apart, and between two of
         these the middle, until all three agree and their growths lie on a line: then so does what is between
         them. None is where a contact has a law of its own.
+    motions : KnownMotions, optional
+        Of the same branch with more harmonics, from which those of the far points are sought first.
     """
     found = np.zeros(len(z), dtype=np.bool_)
     far = np.zeros_like(doubted) if far is None else far
     if (doubted | far).any() and not system.own_laws:
-        looks = ConfirmedPoints(system, z, options)
+        looks = ConfirmedPoints(system, z, options, far, motions)
         for first, end in runs(doubted):
             parts = -(-(end - 1 - first) // options.confirmation.point_interval) or 1
             nodes = sorted({first + k * (end - 1 - first) // parts for k in range(parts + 1)})
@@ -73,12 +78,21 @@ def confirmed_stable(
 class ConfirmedPoints:
     """Points that are looked at, each once."""
 
-    def __init__(self, system: System, z: FloatArray, options: StabilityOptions) -> None:
+    def __init__(
+        self,
+        system: System,
+        z: FloatArray,
+        options: StabilityOptions,
+        far: Mask | None = None,
+        motions: KnownMotions | None = None,
+    ) -> None:
         found = multipliers_of(system, float(z[:, -1].max()), options)
         assert isinstance(found, Multipliers)
         self.multipliers, self.options = found, options
         self.many = len(system.scene.contacts) >= options.structure.many_contacts
-        self.work, self.z, self.known = system.work, z, dict[int, Verdict]()
+        self.system, self.work, self.z, self.motions = system, system.work, z, motions
+        self.far = np.zeros(len(z), dtype=np.bool_) if far is None else far
+        self.known = dict[int, tuple[Verdict, FloatArray | None]]()  # verdicts, and of what
 
     def confirms(self, i: int) -> bool:
         """Whether the motion with further harmonics is found, and stable."""
@@ -92,8 +106,18 @@ class ConfirmedPoints:
         """Of the motion with further harmonics."""
         if i not in self.known:
             self._poll()
-            self.known[i] = self.multipliers.confirmation(self.z[i], self.options.confirmation.max_addition)
-        return self.known[i]
+            self.known[i] = self._look(i), self.multipliers.beside
+        return self.known[i][0]
+
+    def _look(self, i: int) -> Verdict:
+        """The verdict of the motion that the one known at the frequency of a point leads to, or the point."""
+        most, z = self.options.confirmation.max_addition, self.z[i]
+        motion = self.motions.beside(self.system, z) if self.motions is not None and self.far[i] else None
+        if self.motions is not None and motion is not None:
+            found = self.multipliers.continued(z, motion, most, self.motions.harmonics)
+            if not math.isnan(found.growth):
+                return found
+        return self.multipliers.confirmation(z, most)
 
     def _poll(self) -> None:
         """Of many contacts, as a look takes long: multipliers of few may be those of another curve then."""
@@ -120,10 +144,10 @@ class ConfirmedPoints:
         motion is found, and lengthened then.
         """
         options, way = self.options.confirmation, 1 if last >= near else -1
-        at = next((i for i in self._away(near, -way) if self._confirms_anew(i)), None)
+        at = next((i for i in self._away(near, -way) if self.confirms(i)), None)
         if at is None:
             return
-        last, motion = self._before_turn(at, last), self.multipliers.beside
+        last, motion = self._before_turn(at, last), self.known[at][1]
         step = options.point_interval
         while motion is not None and (last - at) * way > 0:
             self._poll()
@@ -150,10 +174,3 @@ class ConfirmedPoints:
         change = np.sign(np.diff(self.z[at : last + way if last + way >= 0 else None : way, -1]))
         turns = np.flatnonzero(change != change[0]) if change.size else change
         return at + way * int(turns[0]) if turns.size else last
-
-    def _confirms_anew(self, i: int) -> bool:
-        """As `confirms`, with the motion held that does."""
-        if i in self.known and not self.confirms(i):
-            return False
-        self.known.pop(i, None)
-        return self.confirms(i) and self.multipliers.beside is not None

@@ -335,9 +335,13 @@ class Multipliers:
         found = self._rebalanced(z, persistent=True)
         return UNKNOWN if found is None else self._if_enough(found, most)
 
-    def continued(self, z: FloatArray, motion: FloatArray, most: float) -> Verdict:
-        """The same of the motion to which one with the further harmonics leads, from another frequency."""
+    def continued(
+        self, z: FloatArray, motion: FloatArray, most: float, harmonics: tuple[int, ...] | None = None
+    ) -> Verdict:
+        """The same of the motion to which another one with further harmonics leads, or with some others."""
         refined, judge = self._further()
+        if harmonics is not None:
+            motion = refined.system.extended(motion, harmonics)
         self.beside = there = refined.continue_to(z, motion)
         return UNKNOWN if there is None else self._if_enough(judge.verdict(there), most)
 

@@ -66,7 +66,7 @@ class Rebalancing:
         return np.array(newton.z) if by_parts and self._by_homotopy(here, lack) else None
 
     def continue_to(self, z: FloatArray, motion: FloatArray) -> FloatArray | None:
-        """The same from a motion of more harmonics that was found at another frequency near."""
+        """The same from a motion of more harmonics near, or at a frequency near."""
         here = self.system.extended(z, self.harmonics)
         self.balance.measure(here)
         self.balance.probe(here)
