@@ -21,6 +21,7 @@ from fcm.stability.floquet import multipliers_of
 from fcm.stability.inserted_points import InsertedPoint
 from fcm.stability.multipliers import quasi_static_modes
 from fcm.stability.options import STABILITY, StabilityOptions
+from fcm.stability.spaced_points import path_lengths
 from fcm.stability.verdict import Verdict, meeting_angle
 
 Mask = npt.NDArray[np.bool_]
@@ -54,7 +55,7 @@ class PathVerdicts:
     @cached_property
     def length(self) -> FloatArray:
         """Way along the path up to each point, which only where a window may be hidden is asked for."""
-        return _lengths(self.path)
+        return path_lengths(self.path.z)
 
     def __getitem__(self, t: float) -> Verdict:
         return self._verdicts[t]
@@ -164,14 +165,6 @@ class PathVerdicts:
         verdict = self._keep(t, self.judge(curve.z, enough))
         self.between[t] = InsertedPoint(t, curve.z, curve.direction, curve.orientation, verdict.stable)
         return t
-
-
-def _lengths(path: Path) -> FloatArray:
-    """Way along the path up to each point, relative to the size of the solution and to the frequency."""
-    x, omega = path.z[:, :-1], path.parameter
-    size = np.abs(x).max(axis=1, initial=np.finfo(float).tiny)[1:]
-    steps = np.abs(np.diff(x, axis=0)).max(axis=1, initial=0.0) / size + np.abs(np.diff(omega)) / omega[1:]
-    return np.concatenate(([0.0], np.cumsum(steps)))
 
 
 def _rotation(system: System, path: Path, options: StabilityOptions = STABILITY) -> FloatArray:

@@ -25,6 +25,7 @@ from fcm.stability.along_branch import PathVerdicts
 from fcm.stability.bifurcation_functions import predicted_minimum
 from fcm.stability.inserted_points import Crossing, InsertedPoint, with_points
 from fcm.stability.options import STABILITY, StabilityOptions
+from fcm.stability.spaced_points import SpacedPoints
 from fcm.stability.verdict import Bifurcation, flip_function, growth_is_linear
 
 IntArray = npt.NDArray[np.intp]
@@ -73,6 +74,7 @@ class _BifurcationSearch:
         self.path, self.options = path, options
         self.verdicts = PathVerdicts(system, path, alone, options)
         self.many = len(system.scene.contacts) >= self.options.structure.many_contacts
+        self.spaced = SpacedPoints(path.z, self.many)
         self.step_span = (
             options.sampling.interval_many_contacts
             if self.many
@@ -113,10 +115,9 @@ class _BifurcationSearch:
 
     def _judge(self, first: int, last: int) -> None:
         """Enough points of a run."""
-        parts = max(-(-(last - first) // self.step_span), 1)
         angle = self.verdicts.rotation[first : last + 1]
         passed = np.floor((angle - angle[0]) / self.options.sampling.max_phase)
-        some = (first + k * (last - first) // parts for k in range(parts + 1))
+        some = self.spaced.nodes(first, last, self.step_span)
         nodes = {*some, *(first + 1 + (passed[1:] != passed[:-1]).nonzero()[0]).tolist()}
         if self.many:  # of a fold no doubt is told: its neighbour is looked at, too
             beside = (i + way for i, way in ((first, 1), (last, -1)) if self.verdicts.fold[i])
@@ -210,7 +211,7 @@ class _BifurcationSearch:
         """
         seen = self.verdicts
         while ways:
-            wide = [(a, (a + b) // 2, b) for a, b in ways if b - a > 1 and self._may_differ(a, b)]
+            wide = [(a, self.spaced.middle(a, b), b) for a, b in ways if b - a > 1 and self._may_differ(a, b)]
             alike = {middle for a, middle, b in wide if self.many and seen[a].stable == seen[b].stable == 1.0}
             seen.look_at(sorted(alike), (1.0,))
             seen.look_at([middle for _, middle, _ in wide])

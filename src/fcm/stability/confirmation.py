@@ -25,6 +25,7 @@ from fcm.stability.floquet import multipliers_of
 from fcm.stability.known_motions import KnownMotions
 from fcm.stability.multipliers import Multipliers
 from fcm.stability.options import STABILITY, StabilityOptions
+from fcm.stability.spaced_points import SpacedPoints
 from fcm.stability.verdict import Verdict, growth_is_linear
 
 Mask = npt.NDArray[np.bool_]
@@ -62,8 +63,7 @@ def confirmed_stable(
     if (doubted | far).any() and not system.own_laws:
         looks = ConfirmedPoints(system, z, options, far, motions)
         for first, end in runs(doubted):
-            parts = -(-(end - 1 - first) // options.confirmation.point_interval) or 1
-            nodes = sorted({first + k * (end - 1 - first) // parts for k in range(parts + 1)})
+            nodes = looks.spaced.nodes(first, end - 1, options.confirmation.point_interval)
             found[nodes[0]] = looks.confirms(nodes[0])
             for a, b in itertools.pairwise(nodes):
                 looks.between(a, b, found)
@@ -91,6 +91,7 @@ class ConfirmedPoints:
         self.multipliers, self.options = found, options
         self.many = len(system.scene.contacts) >= options.structure.many_contacts
         self.system, self.work, self.z, self.motions = system, system.work, z, motions
+        self.spaced = SpacedPoints(z, self.many)
         self.far = np.zeros(len(z), dtype=np.bool_) if far is None else far
         self.known = dict[int, tuple[Verdict, FloatArray | None]]()  # verdicts, and of what
 
@@ -129,7 +130,7 @@ class ConfirmedPoints:
         if b - a == 1:
             found[b] = self.confirms(b)
             return
-        middle = (a + b) // 2
+        middle = self.spaced.middle(a, b)
         if growth_is_linear(self.at(a), self.at(middle), self.at(b), self.many, self.options):
             found[a + 1 : b + 1] = self.confirms(middle)
         else:
