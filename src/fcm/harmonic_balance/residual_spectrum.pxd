@@ -25,6 +25,7 @@ cdef class EnrichedMotion:
     cdef int[::1] place
     cdef double[:, ::1] force, matrix
     cdef double[:, :, ::1] resistance
+    cdef object stiffness
     cdef double[::1] right
     cdef int[::1] swapped
     cpdef int at(self, double[::1] z) except -1

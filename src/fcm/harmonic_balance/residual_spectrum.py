@@ -259,6 +259,7 @@ class EnrichedMotion:
         where = [harmonics.index(h) if h in harmonics else -1 for h in finer]
         self.place, self.shift = np.array(where, dtype=np.intc), 0.0
         self.resistance = np.zeros((self.contacts, self.directions, self.directions))
+        self.stiffness: npt.NDArray[np.float64] | None = None  # the same by modes, for all harmonics
         size = 2 * seen.ports if self.few else 0
         self.matrix, self.right = np.zeros((size, size)), np.zeros(size)
         self.swapped = np.zeros(size, dtype=np.intc)
@@ -282,6 +283,7 @@ class EnrichedMotion:
                 for k in range(self.directions):
                     self.resistance[c, i, k] = law.resistance[i, k]
         self.unknowns(z)
+        self.stiffness = None
         for h in range(self.place.shape[0]):
             if self.place[h] < 0 and self.few:
                 self.displace(h)
@@ -405,8 +407,9 @@ class EnrichedMotion:
             c = np.asarray(seen.c_re)[h] + 1j * np.asarray(seen.c_im)[h]
             q = -c * (P @ F)
             if (np.abs(c @ np.square(P)) * spring > 1.0).any():
-                PK = (P.reshape(-1, self.contacts, 1, each) @ K).reshape(P.shape)
-                q = np.linalg.solve(np.eye(len(c)) + c[:, None] * (PK @ P.T), q)
+                if self.stiffness is None:
+                    self.stiffness = (P.reshape(-1, self.contacts, 1, each) @ K).reshape(P.shape) @ P.T
+                q = np.linalg.solve(np.eye(len(c)) + c[:, None] * self.stiffness, q)
             X = q @ P
         x = np.asarray(self.x)
         x[at], x[at + 1] = X.real, X.imag

@@ -94,17 +94,18 @@ cdef void add_products(
 
 cdef class ManyMonodromy:
     cdef public StateSequence sequence
-    cdef readonly int modes, follows, contacts, columns, first
+    cdef readonly int modes, contacts, columns, moving, first
+    cdef bint soft
     cdef double rate, omega, step_radians, series_tolerance
-    cdef object slow, fast, natural, ratio, far
+    cdef object shapes, natural, ratio, all_stuck
     cdef public list remembering
-    cdef double[:, ::1] contact, by_slow, by_fast, K, lower, upper, left, right, changed
-    cdef double[:, ::1] q, v, tq, tv, work, g, w, phi_f, port, followed, row, pushed
+    cdef double[:, ::1] contact, K, lower, upper, left, right, changed, pulled
+    cdef double[:, ::1] q, v, tq, tv, work, g, w, phi, port, followed, row
     cdef double[::1] damping
-    cdef int[::1] state
+    cdef int[::1] state, number
     cpdef int follow(self, double omega) except -1
     cdef int apply_event(self, int e) except -1
-    cdef int find_products(self, int c) except -1
+    cdef int find_products(self, Py_ssize_t one) except -1
     cdef void find_rate(self) noexcept
     cdef void propagate(self, double length) noexcept
     cdef void apply(self, double h) noexcept

@@ -20,20 +20,23 @@ behind, obey the same equations again: that map, n times over, is the monodromy,
 
 With many contacts (`ManyMonodromy`) the events of a period are many, and each changes the state of one
 contact alone. So what the contacts add to the modes is not put together anew for every state, but changed by
-a matrix of rank two. With modes of mass 1, of which those far above the excitation, f, follow without delay,
-shapes P on the ports and the contacts' stiffness S (port, port) of a state,
+a matrix of rank two. The modes far above the excitation, f, follow without delay: they are a flexibility
+S = P_f^T W_f^-2 P_f between the ports. With modes of mass 1, shapes P on the ports and the contacts'
+stiffness D (port, port) of a state, the displacements d of the ports under forces phi = k_u w of the sliders
+that rest are
 
-    q'' + D q' + K q = phi - R phi_f,    q_f = G phi_f - L q,
-    G = (W_f^2 + P_f S P_f^T)^-1,   L = G P_f S P^T,   R = P S P_f^T G,   K = W^2 + P S P^T - R P_f S P^T
+    q'' + C q' + K q = V phi,   d = U q + G phi,
+    U = (1 + S D)^-1 P^T,   G = (1 + S D)^-1 S,   V = P (1 + D S)^-1,   K = W^2 + P D U
 
-where phi are the forces k_u w of the sliders that rest. Where a contact with shapes a, a_f on its two ports
-changes its stiffness by s (2, 2) they change (Sherman, Morrison, Woodbury), with
-d = (1 + s a_f^T G a_f)^-1 s, by
+Where a contact changes its stiffness by s (2, 2) between its two ports, c, they change (Sherman, Morrison,
+Woodbury), with e = (1 + s G_cc)^-1 s, by
 
-    -G a_f d a_f^T G,    G a_f d o,    i d a_f^T G,    i d o,    o = a^T - a_f^T L,   i = a - R a_f.
+    -G_c e G^c,    -G_c e U^c,    -V_c e G^c,    V_c e U^c
 
-Together K, -R, L and G are one matrix [[K, -R], [L, G]], which changes by [i, G a_f] d [o, -a_f^T G]. What
-the sliders push the modes with, phi - R phi_f, changes along i alone, too.
+with _c the columns and ^c the rows of its ports: together they are one matrix [[-K, V], [U, G]], which
+changes by a product of its columns and rows. What the sliders push the modes with, V phi, changes along V_c
+alone, too. Contacts that keep their state through the period are no ports. All is told from the state where
+every contact sticks, which is put together once.
 
 The period begins after the event at which the fewest sliders remember where they rest: so many disturbances
 less are to be followed.
@@ -314,27 +317,40 @@ class ManyMonodromy:
         options: PropagationOptions = STABILITY.propagation,
     ) -> None:
         self.step_radians, self.series_tolerance = options.step_radians_of_many, options.series_tolerance
-        self.slow, self.fast = shapes[~far], shapes[far]
-        modes, follow, contacts = len(self.slow), len(self.fast), contact.shape[0]
-        self.modes, self.follows, self.contacts = modes, follow, contacts
+        self.shapes, self.natural, self.ratio = shapes[~far], natural[~far], damping[~far]
+        self.modes, self.contacts = len(self.shapes), contact.shape[0]
         self.contact, self.sequence = np.ascontiguousarray(contact), sequence
-        # by ports, so that what an event needs stands together
-        self.by_slow, self.by_fast = np.ascontiguousarray(self.slow.T), np.ascontiguousarray(self.fast.T)
-        self.natural, self.ratio, self.far = natural[~far], damping[~far], natural[far]
-        self.K = np.zeros((modes, modes))
-        self.lower, self.upper = np.zeros((2, follow, modes + follow))  # [L, G], [-R, G] by columns
-        self.left, self.right, self.changed = np.zeros((3, 2, modes + follow))
-        self.damping, self.state = np.zeros(modes), np.zeros(contacts, dtype=np.intc)
-        self.columns, self.first, self.rate, self.omega = 2 * modes, 0, 1.0, 1.0
+        self.all_stuck: npt.NDArray[np.float64] | None = None
+        self.soft = bool(far.any())
+        if self.soft:
+            self.all_stuck = self.with_springs((shapes[far].T * natural[far] ** -2.0) @ shapes[far])
+        self.K = np.zeros((self.modes, self.modes))
+        self.damping, self.state = np.zeros(self.modes), np.zeros(self.contacts, dtype=np.intc)
+        self.first, self.rate, self.omega = 0, 1.0, 1.0
+        self.number = np.zeros(self.contacts, dtype=np.intc)  # among the contacts that move
         self.remembering: list[int] = []
-        self.allocate(2 * modes)
+        self.allocate(2 * self.modes, 0)
 
-    def allocate(self, columns: int) -> None:
-        """Arrays for so many disturbances."""
-        self.columns, wide = columns, -(-columns // LANES) * LANES
+    def with_springs(self, flexibility: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """[[-K, V], [U, G]] where all contacts stick, of modes and then tangential and normal ports."""
+        order, m = _by_direction(np.arange(self.contacts)), self.modes
+        k_u, k_v = np.asarray(self.contact).T[1:3]
+        springs, P = np.concatenate((k_u, k_v)), self.shapes[:, order]
+        S = flexibility[np.ix_(order, order)]
+        R = np.eye(len(S)) + S * springs
+        found = np.asarray(np.linalg.solve(R, np.concatenate((P.T, S), axis=1)), dtype=np.float64)
+        K = np.diag(self.natural**2) + (P * springs) @ found[:, :m]
+        return np.block([[-K, found[:, :m].T], [found]])
+
+    def allocate(self, columns: int, moving: int) -> None:
+        """Arrays for so many disturbances, and contacts that move."""
+        self.columns, self.moving, wide = columns, moving, -(-columns // LANES) * LANES
         self.q, self.v, self.tq, self.tv, self.work, self.g = np.zeros((6, self.modes, wide))
-        self.w, self.phi_f = np.zeros((self.contacts, wide)), np.zeros((self.follows, wide))
-        self.port, self.followed, self.row, self.pushed = np.zeros((4, 2, wide))
+        self.w, self.phi = np.zeros((self.contacts, wide)), np.zeros((moving, wide))
+        self.port, self.followed, self.row = np.zeros((3, 2, wide))
+        ports = 2 * moving if self.soft else 0
+        self.left, self.right, self.changed = np.zeros((3, 2, self.modes + ports))
+        self.pulled = np.zeros((2, self.modes))
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -375,7 +391,7 @@ class ManyMonodromy:
         s = self.sequence
         order, whose = np.asarray(s.order)[: s.events], np.asarray(s.whose)[: s.events]
         into = np.asarray(s.into)[: s.events]
-        moving = np.unique(whose)
+        moving = np.unique(whose).astype(np.intp)
         state = np.array(s.state)
         i: cython.int
         resting = int((state[moving] == STICK).sum())
@@ -391,47 +407,58 @@ class ManyMonodromy:
             state[whose[e]] = into[e]
         np.asarray(self.state)[:] = state
         self.remembering = [c for c in moving.tolist() if state[c] == STICK]
-        if 2 * self.modes + len(self.remembering) != self.columns:
-            self.allocate(2 * self.modes + len(self.remembering))
-        self.assemble(state)
+        columns = 2 * self.modes + len(self.remembering)
+        if (columns, len(moving)) != (self.columns, self.moving):
+            self.allocate(columns, len(moving))
+        np.asarray(self.number)[moving] = np.arange(len(moving))
+        self.assemble(state, moving)
         self.q[:, :] = 0.0
         self.v[:, :] = 0.0
         self.w[:, :] = 0.0
         self.g[:, :] = 0.0
-        self.phi_f[:, :] = 0.0
+        self.phi[:, :] = 0.0
         m = np.arange(self.modes)
         np.asarray(self.q)[m, m] = np.asarray(self.v)[m, self.modes + m] = 1.0
         column: cython.Py_ssize_t = 2 * self.modes
         one: cython.Py_ssize_t
         for one in self.remembering:
-            k_u = self.contact[one, 1] / self.omega**2
-            on_fast = np.asarray(self.by_fast)[2 * one]
-            on_slow = np.asarray(self.by_slow)[2 * one] + on_fast @ np.asarray(self.upper)[:, : self.modes]
+            force = self.contact[one, 1] / self.omega**2
             self.w[one, column] = 1.0
-            np.asarray(self.g)[:, column] = k_u * on_slow
-            np.asarray(self.phi_f)[:, column] = k_u * on_fast
+            self.phi[self.number[one], column] = force
+            np.asarray(self.g)[:, column] = force * np.asarray(self.upper)[:, self.number[one]]
             column += 1
 
-    def assemble(self, state: npt.NDArray[np.intc]) -> None:
-        """All of the matrices, for states of the contacts; stiffnesses over omega^2: all is by the angle."""
-        unit, modes = 1.0 / self.omega**2, self.modes
-        mu, k_u, k_v = np.asarray(self.contact).T[:3] * np.array([[1.0], [unit], [unit]])
-        slow, fast = self.slow, self.fast
+    def assemble(self, state: npt.NDArray[np.intc], moving: npt.NDArray[np.intp]) -> None:
+        """All of the matrices, for states of the contacts; stiffnesses over omega^2: all is by the angle.
+
+        lower is [U, G], and upper V, of the ports of moving contacts.
+        """
+        unit, m, n = 1.0 / self.omega**2, self.modes, self.contacts
+        mu, k_u, k_v = np.asarray(self.contact).T[:3]
         u, v = np.where(state == STICK, k_u, 0.0), np.where(state != SEPARATION, k_v, 0.0)
         across = np.where(state == POSITIVE, mu * k_v, np.where(state == NEGATIVE, -mu * k_v, 0.0))
-
-        def between(left: npt.NDArray[np.float64], right: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-            pushed = (left[:, ::2] * u) @ right[:, ::2].T + (left[:, 1::2] * v) @ right[:, 1::2].T
-            return pushed + (left[:, ::2] * across) @ right[:, 1::2].T
-
-        G = np.linalg.inv(np.diag(unit * self.far**2) + between(fast, fast))
-        along = between(fast, slow)
-        R = between(slow, fast) @ G
-        lower, upper = np.asarray(self.lower), np.asarray(self.upper)
-        lower[:, :modes], lower[:, modes:] = G @ along, G
-        upper[:, :modes], upper[:, modes:] = -R.T, G.T
-        np.asarray(self.K)[:] = np.diag(unit * self.natural**2) + between(slow, slow) - R @ along
         np.asarray(self.damping)[:] = 2.0 * self.ratio * self.natural / self.omega
+        ports = _by_direction(moving)
+        if self.all_stuck is None:
+            P, Q = self.shapes[:, ::2], self.shapes[:, 1::2]
+            K = np.diag(self.natural**2) + (P * u) @ P.T + (Q * v) @ Q.T + (P * across) @ Q.T
+            np.asarray(self.K)[:] = unit * K
+            self.upper = np.ascontiguousarray(self.shapes[:, ports])
+            self.lower = np.ascontiguousarray(np.asarray(self.upper).T)
+            return
+        other = np.flatnonzero(state != STICK)
+        at, k = m + np.concatenate((other, n + other)), len(other)
+        s = np.diag(np.concatenate((u[other] - k_u[other], v[other] - k_v[other])))
+        s[np.arange(k), k + np.arange(k)] = across[other]
+        kept = np.concatenate((np.arange(m), m + np.concatenate((moving, n + moving))))
+        every: npt.NDArray[np.float64] = self.all_stuck
+        rows = every[np.ix_(at, kept)]
+        e = np.linalg.solve(np.eye(2 * k) + s @ every[np.ix_(at, at)], s)
+        found = every[np.ix_(kept, kept)] - every[np.ix_(kept, at)] @ (e @ rows)
+        np.asarray(self.K)[:] = -unit * found[:m, :m]
+        self.upper = np.ascontiguousarray(found[:m, m:])
+        found[m:, m:] *= self.omega**2
+        self.lower = np.ascontiguousarray(found[m:])
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -447,17 +474,14 @@ class ManyMonodromy:
         k_u: cython.double = self.contact[c, 1] * unit
         k_v: cython.double = self.contact[c, 2] * unit
         mu: cython.double = self.contact[c, 0]
-        self.find_products(c)
+        n: cython.Py_ssize_t = self.moving
+        one: cython.Py_ssize_t = self.number[c]
+        self.find_products(one)
         # G between the ports, and (1 + s G)^-1 s with the change s of the stiffness
-        G_uu: cython.double = 0.0
-        G_uv: cython.double = 0.0
-        G_vu: cython.double = 0.0
-        G_vv: cython.double = 0.0
-        for k in range(self.follows):
-            G_uu += self.by_fast[2 * c, k] * self.left[0, m + k]
-            G_uv += self.by_fast[2 * c, k] * self.left[1, m + k]
-            G_vu += self.by_fast[2 * c + 1, k] * self.left[0, m + k]
-            G_vv += self.by_fast[2 * c + 1, k] * self.left[1, m + k]
+        G_uu: cython.double = self.right[0, m + one] if self.soft else 0.0
+        G_uv: cython.double = self.right[0, m + n + one] if self.soft else 0.0
+        G_vu: cython.double = self.right[1, m + one] if self.soft else 0.0
+        G_vv: cython.double = self.right[1, m + n + one] if self.soft else 0.0
         s_uu: cython.double = (k_u if to == STICK else 0.0) - (k_u if was == STICK else 0.0)
         s_vv: cython.double = (k_v if to != SEPARATION else 0.0) - (k_v if was != SEPARATION else 0.0)
         s_uv: cython.double = mu * k_v * (_side(to) - _side(was))
@@ -490,40 +514,48 @@ class ManyMonodromy:
                     + weight * (self.port[1, k] - self.followed[1, k])
                 )  # fmt: skip
             new = after * self.w[c, k]
-            self.pushed[0, k], self.pushed[1, k] = new - old, 0.0
+            self.phi[one, k] = new
             self.row[0, k] = d_uu * f_u + d_uv * f_v + share * new - old
             self.row[1, k] = d_vu * f_u + d_vv * f_v + other * new
         add_products(self.g, self.left[0], self.row[0], self.left[1], self.row[1])
-        add_products(self.phi_f, self.by_fast[2 * c], self.pushed[0], self.by_fast[2 * c], self.pushed[1])
         self.state[c] = to
         if was == to:
             return 0
         for k in range(self.changed.shape[1]):
-            self.changed[0, k] = self.left[0, k] * d_uu + self.left[1, k] * d_vu
-            self.changed[1, k] = self.left[0, k] * d_uv + self.left[1, k] * d_vv
+            self.changed[0, k] = -self.left[0, k] * d_uu - self.left[1, k] * d_vu
+            self.changed[1, k] = -self.left[0, k] * d_uv - self.left[1, k] * d_vv
+        for k in range(m):
+            self.pulled[0, k], self.pulled[1, k] = -self.right[0, k], -self.right[1, k]
         p, q, x, y = self.changed[0], self.changed[1], self.right[0], self.right[1]
-        add_products(self.K, p, x, q, y)
-        add_products(self.lower, p[m:], x, q[m:], y)
-        add_products(self.upper, x[m:], p, y[m:], q)
+        add_products(self.K, p[:m], self.pulled[0], q[:m], self.pulled[1])
+        if self.soft:
+            add_products(self.lower, p[m:], x, q[m:], y)
+            add_products(self.upper, p[:m], x[m:], q[:m], y[m:])
         return 0
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def find_products(self, c: cython.int) -> cython.int:
-        """left, [i, G a_f], and right, [o, -a_f^T G], of the two ports of a contact; its displacements, from
-        port less followed, with followed, -a_f^T G phi_f, by the modes that follow."""
+    def find_products(self, one: cython.Py_ssize_t) -> cython.int:
+        """left, the columns of V and G, and right, the rows of U and G, of the two ports of a moving contact;
+        its displacements, from port less followed, with followed, -G phi, by the modes that follow."""
         i: cython.Py_ssize_t
         r: cython.Py_ssize_t
+        at: cython.Py_ssize_t
+        m: cython.Py_ssize_t = self.modes
         for r in range(2):
-            sum_of_rows(self.by_fast[2 * c + r], self.upper, self.left[r])
-            sum_of_rows(self.by_fast[2 * c + r], self.lower, self.right[r])
-            for i in range(self.modes + self.follows):
-                self.right[r, i] = -self.right[r, i]
-            for i in range(self.modes):
-                self.left[r, i] += self.by_slow[2 * c + r, i]
-                self.right[r, i] += self.by_slow[2 * c + r, i]
-            sum_of_rows(self.right[r, : self.modes], self.q, self.port[r])
-            sum_of_rows(self.right[r, self.modes :], self.phi_f, self.followed[r])
+            at = one + r * self.moving
+            for i in range(m):
+                self.left[r, i] = self.upper[i, at]
+            for i in range(self.lower.shape[1]):
+                self.right[r, i] = self.lower[at, i]
+            sum_of_rows(self.right[r, :m], self.q, self.port[r])
+            if not self.soft:
+                continue
+            for i in range(self.lower.shape[0]):
+                self.left[r, m + i] = self.lower[i, m + at]
+            sum_of_rows(self.right[r, m : m + self.moving], self.phi, self.followed[r])
+            for i in range(self.followed.shape[1]):
+                self.followed[r, i] = -self.followed[r, i]
         return 0
 
     @cython.cfunc
@@ -590,3 +622,13 @@ class ManyMonodromy:
 def _side(state: cython.int) -> cython.double:
     """By which sign the load adds to the friction force."""
     return 1.0 if state == POSITIVE else -1.0 if state == NEGATIVE else 0.0
+
+
+def _by_direction(contacts: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+    """The tangential ports of some contacts, then the normal ones, where each has both in turn.
+
+    >>> _by_direction(np.array([0, 2])).tolist()
+    [0, 4, 1, 5]
+    """
+    found: npt.NDArray[np.intp] = np.concatenate((2 * contacts, 2 * contacts + 1))
+    return found

@@ -51,10 +51,11 @@ class VariationalProblem(NamedTuple):
 
 
 class _Look(NamedTuple):
-    """A solution that was looked at: whether it is a fold, and alone; how much its finer motion adds,
-    contacts of that which are held, see `Verdict`, and the monodromy matrix of that."""
+    """A solution that was looked at, and its finer motion x: whether it is a fold, and alone; how much the
+    finer motion adds, contacts of that which are held, see `Verdict`, and the monodromy matrix of that."""
 
     z: FloatArray
+    x: FloatArray
     turning: bool
     alone: bool
     shift: float
@@ -94,12 +95,11 @@ class Multipliers:
         self.fine, self.plain = self._followed()
         self.further: tuple[Rebalancing, Multipliers] | None = None
         self.beside: FloatArray | None = None  # the motion with further harmonics that was found last
-        self._seen: FloatArray | None = None  # the solution whose finer motion was looked at last
 
     def take(self, system: System) -> None:
         """A system with the same structure and harmonics, whose contacts may be others."""
         same = system.scene.frequency_range == self.system.scene.frequency_range and not system.scene.loads
-        self.system, self.further, self._seen = system, self.further if same else None, None
+        self.system, self.further = system, self.further if same else None
         before = self.contact[:, :3].copy()
         for row, c in zip(self.contact, system.scene.contacts, strict=True):
             row[:] = c.mu, c.k_u, c.k_v, c.n_0
@@ -125,7 +125,7 @@ class Multipliers:
 
     def of(self, z: FloatArray) -> list[complex] | None:
         """The multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""
-        self._add_further(z)
+        self.finer.at(z)
         return self._values(self.fine, z[-1]) if self.find_states(self.fine.states, self.finer.x) else None
 
     def find_states(self, states: BalancedSequence | PlanarSequence, x: FloatArray) -> bool:
@@ -172,23 +172,16 @@ class Multipliers:
             self.system.work.poll()
         fine, plain = self.fine.states, self.plain.states
         self.finer.at(z)
-        self._seen = z
         if self.finer.shift < self.options.confirmation.min_addition:
             if not self.find_states(plain, z):
                 return UNKNOWN
             if plain.moving == 0:  # nor does the finer motion, which has no further harmonics
                 return PASSIVE._replace(held=plain.held) if plain.held else PASSIVE
-        if not self.find_states(fine, self.finer.x):
+        x = np.array(self.finer.x)
+        if not self.find_states(fine, x):
             return UNKNOWN
         matrix = self._matrix(self.fine, float(z[-1]))
-        return UNKNOWN if matrix is None else _Look(z, turning, alone, self.finer.shift, fine.held, matrix)
-
-    def _look_again(self, z: FloatArray) -> None:
-        """At a solution that others may have been looked at since."""
-        if self._seen is not z:
-            self.finer.at(z)
-            self.find_states(self.fine.states, self.finer.x)
-            self._seen = z
+        return UNKNOWN if matrix is None else _Look(z, x, turning, alone, self.finer.shift, fine.held, matrix)
 
     def _verdicts_of(self, looks: Sequence[_Look | Verdict], enough: Sequence[float]) -> list[Verdict]:
         """The verdicts, which the motion of the balanced harmonics alone confirms where that may matter."""
@@ -206,7 +199,7 @@ class Multipliers:
             known[id(one)] = self._of_both(one, fine[id(one)], plain)
         for one in seen:
             if one.held and fine[id(one)] is not None:
-                resting = self._with_sliders_at_rest(one.z)
+                resting = self._with_sliders_at_rest(one)
                 known[id(one)] = either_slider(known[id(one)], resting)._replace(held=one.held)
         return [known[id(one)] if isinstance(one, _Look) else one for one in looks]
 
@@ -235,37 +228,37 @@ class Multipliers:
         """
         if fine is None or plain is None:
             return UNKNOWN
-        z, options = one.z, self.options.confirmation
+        options = self.options.confirmation
         found = even_verdict(fine, plain, one.turning, self.options)
         if one.turning:
             return found
         if self.last:
-            doubt = self._doubtful(found, fine, plain, 1.0, z)
+            doubt = self._doubtful(found, fine, plain, 1.0, one)
             return found._replace(stable=math.nan) if doubt else found
         slight = 0.0 < found.growth < max(options.doubtful_decay, options.growth_ratio * one.shift)
-        if slight or self._doubtful(found, fine, plain, options.growth_ratio, z):
-            better = None if one.alone else self.refined(z, persistent=found.stable == 1.0)
+        if slight or self._doubtful(found, fine, plain, options.growth_ratio, one):
+            better = None if one.alone else self._rebalanced(one.z, one.x, persistent=found.stable == 1.0)
             return better or found._replace(stable=math.nan)
         return found
 
     def _doubtful(
-        self, found: Verdict, fine: MultiplierSpectrum, plain: MultiplierSpectrum, times: float, z: FloatArray
+        self, found: Verdict, fine: MultiplierSpectrum, plain: MultiplierSpectrum, times: float, one: _Look
     ) -> bool:
         """As `doubtful`, but for a pair that decays also where it meets at -1."""
         if not doubtful(found, fine, plain, times, options=self.options):
             return False
         return doubtful(found, fine, plain, times, False, self.options) or not self._pair_decays_at_flip(
-            found.values, z
+            found.values, one
         )
 
-    def _pair_decays_at_flip(self, values: Sequence[complex], z: FloatArray) -> bool:
+    def _pair_decays_at_flip(self, values: Sequence[complex], one: _Look) -> bool:
         """Whether the pair nearest to -1, of values of the finer motion, decays where it meets there.
 
         The same motion is taken at frequencies at which the pair comes to -1: as far as it parts there, the
         changing contacts drive it.
         """
-        self._look_again(z)
-        at, seen, omega = [0.0], [flip_distance(values, self.options)], float(z[-1])
+        self.find_states(self.fine.states, one.x)
+        at, seen, omega = [0.0], [flip_distance(values, self.options)], float(one.z[-1])
         ahead = self.options.confirmation.frequency_step
         for _ in range(self.options.confirmation.max_evaluations):
             there = self._values(self.fine, omega * (1.0 + ahead))
@@ -288,20 +281,11 @@ class Multipliers:
         least = level - 0.25 * tilt**2 / bend if bend > 0.0 else -math.inf
         return bool(math.sqrt(max(-least, 0.0)) + seen[-1][1] < -self.options.confirmation.meeting_decay)
 
-    def refined(self, z: FloatArray, persistent: bool) -> Verdict | None:
-        """Of the solution with the harmonics of the finer motion balanced; None where there is none near."""
-        self._add_further(z)
-        return self._rebalanced(z, persistent)
-
-    def _add_further(self, z: FloatArray) -> None:
-        """Let the finer motion be that of a solution; the states of its contacts are not known then."""
-        self.finer.at(z)
-        self._seen = None
-
-    def _rebalanced(self, z: FloatArray, persistent: bool) -> Verdict | None:
-        """As `refined`, where the finer motion is that of the solution."""
+    def _rebalanced(self, z: FloatArray, x: FloatArray, persistent: bool) -> Verdict | None:
+        """Of the solution with the harmonics of the finer motion x balanced; None where there is none
+        near."""
         refined, judge = self._further()
-        self.beside = there = refined.rebalance(z, self.finer.x, persistent)
+        self.beside = there = refined.rebalance(z, x, persistent)
         return None if there is None else judge.verdict(there)._replace(rebalanced=True)
 
     def _further(self) -> tuple[Rebalancing, Multipliers]:
@@ -319,20 +303,20 @@ class Multipliers:
 
     def confirms(self, z: FloatArray, stable: float) -> bool:
         """Whether a solution is as stable as told (1 or 0) with the further harmonics balanced, too."""
-        self._add_further(z)
+        self.finer.at(z)
         if self.finer.shift == 0.0:  # it has none
             return True
-        found = self._rebalanced(z, persistent=True)
+        found = self._rebalanced(z, np.array(self.finer.x), persistent=True)
         return found is not None and found.stable == stable
 
     def confirmation(self, z: FloatArray, most: float) -> Verdict:
         """Of a solution with the further harmonics balanced, too: unknown where there is none near, or those
         beyond them add more than the most to it, as `EnrichedMotion.shift` says it."""
-        self._add_further(z)
+        self.finer.at(z)
         self.beside = None
         if self.finer.shift == 0.0:  # it has none
             return self.verdict(z)
-        found = self._rebalanced(z, persistent=True)
+        found = self._rebalanced(z, np.array(self.finer.x), persistent=True)
         return UNKNOWN if found is None else self._if_enough(found, most)
 
     def continued(
@@ -378,14 +362,13 @@ class Multipliers:
                 values.remove(nearest)
         return values
 
-    def _with_sliders_at_rest(self, z: FloatArray) -> Verdict:
+    def _with_sliders_at_rest(self, one: _Look) -> Verdict:
         """With the sliders that an extreme of a limit holds left where they are."""
-        self._look_again(z)
         states = self.fine.states
         states.yielding = False
-        self.find_states(states, self.finer.x)
-        values = self._values(self.fine, float(z[-1])) if states.moving else []
-        states.yielding, self._seen = True, None
+        self.find_states(states, one.x)
+        values = self._values(self.fine, float(one.z[-1])) if states.moving else []
+        states.yielding = True
         return UNKNOWN if values is None else MultiplierSpectrum(values, self.options).verdict()
 
 
@@ -414,9 +397,9 @@ def _many_contacts(
     states: Sequence[BalancedSequence],
     options: StabilityOptions,
 ) -> list[VariationalProblem]:
-    """Each change of one contact's state as that, without far modes that hardly yield beside the contacts."""
-    linear, kept = system.linear, ~far | (system.modal_compliance > options.structure.min_displacement)
-    shown = linear.ports[kept], linear.natural[kept], linear.damping[kept], far[kept]
+    """Each change of one contact's state as that."""
+    linear = system.linear
+    shown = linear.ports, linear.natural, linear.damping, far
     return [
         VariationalProblem(one, ManyMonodromy(*shown, contact, one, options.propagation)) for one in states
     ]

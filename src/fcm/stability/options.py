@@ -48,8 +48,6 @@ class StructureOptions:
         With more, those far above the excitation follow without delay.
     many_contacts : int
         From so many on a change of one's state is followed as that.
-    min_displacement : float
-        Part of the contacts' displacement that a far mode gives; one that gives less is left out.
     above_excitation, above_harmonics : float
         Times the excitation, and times the highest harmonic, from where modes are far.
     above_of_few : float
@@ -64,7 +62,6 @@ class StructureOptions:
 
     many_modes: int = 24
     many_contacts: int = 12
-    min_displacement: float = 1e-3
     above_excitation: float = 6.0
     above_harmonics: float = 1.5
     above_of_few: float = 2.0

@@ -71,7 +71,6 @@ class RingMultipliers(Multipliers):
     ) -> None:
         self.options = options
         self.system, self.highest, self.last, self.further = system, highest, last, None
-        self._seen = None
         linear, ring = system.linear, system.scene.ring
         assert isinstance(linear, RingLinear) and ring is not None
         n = ring.period
