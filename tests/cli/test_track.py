@@ -13,6 +13,7 @@ import fcm as package
 from fcm.plot.tracked import DrawnTrack, DrawnTracking, draw_tracked, read_tracked
 from fcm.response.track import track
 from fcm.scene import load_scene
+from fcm.tracking import lowest_peak, minimax
 
 from ..interrupted import Interrupting
 
@@ -281,7 +282,7 @@ def test_the_least_so_far_of_an_interrupted_search_is_kept(fcm, scene, wanted):
     done = fcm("respond", scene, *options, messages=Interrupting("optimum", 2))
     assert done.code == 3 and "the least so far" in done.out and "the optimum was sought for" in done.err
     assert done.err.endswith("; what was traced is reported and written\n")
-    assert "--resume" not in done.err  # nothing is kept from which the search could go on
+    assert "what is finished is kept in best.nc.unfinished: continue with --resume" in done.err
     with netCDF4.Dataset("best.nc") as data:
         numbers, peak = np.array(data["optimum_number"][0]), float(data["optimum_peak"][0])
         assert data["optimum_kind"][0] == "unfinished" and np.ma.is_masked(data["optimum_error"][0])
@@ -292,6 +293,30 @@ def test_the_least_so_far_of_an_interrupted_search_is_kept(fcm, scene, wanted):
     scene.write_text(text)
     (there,) = json.loads(fcm("respond", scene, "--harmonics", "1", "--json").out)["curves"]
     assert peak == pytest.approx(there["peak"]["u"]["amplitude"], rel=1e-9)
+
+
+@pytest.mark.parametrize("wanted", [OPTIMUM, TWO], ids=["one number", "two"])
+def test_an_interrupted_search_goes_on_to_the_same_optimum(fcm, scene, wanted, monkeypatch):
+    """No response that was traced before is traced again, and the result is that of a run in one go."""
+    scene.write_text(scene.read_text() + wanted)
+    traced = []
+    for module in (lowest_peak, minimax):
+
+        def special(system, *others, original=module.special_points):
+            traced.append(system.scene)
+            return original(system, *others)
+
+        monkeypatch.setattr(module, "special_points", special)
+    options = ("--harmonics", "1", "--json")
+    whole = json.loads(fcm("respond", scene, *options).out)["optimum"]
+    once = len(traced)
+    traced.clear()
+    stopped = fcm("respond", scene, *options, "-o", "best.nc", messages=Interrupting("optimum", 2))
+    before = len(traced)
+    assert stopped.code == 3 and 0 < before < once
+    done = fcm("respond", scene, *options, "-o", "best.nc", "--resume")
+    assert done.code == 0 and json.loads(done.out)["optimum"] == whole
+    assert len(traced) == once and not Path("best.nc.unfinished").exists()
 
 
 def test_of_a_search_that_found_nothing_before_it_was_interrupted_nothing_is_said(fcm, optimum):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from fcm.results.tracked import Optimal, TrackedCurve
 from fcm.run import Progress
 from fcm.run.progress import part
 from fcm.scene.draft import Number
+from fcm.tracking.kept_steps import KeptSteps
 from fcm.tracking.lowest_peak import LowestPeak, LowestPeakSearch
 from fcm.tracking.minimax import PeakEnvelope, descend
 from fcm.tracking.parameter_line import along
@@ -51,6 +53,7 @@ class PeakTask:
         self.targets = [Target(dofs.index(aim.dof), aim.ends) for aim in scene.optimum.minimise]
         self.seeking: LowestPeakSearch | PeakEnvelope | None = None  # what is at work,
         self.fewer: Optimal | None = None  # and what was found before, with fewer harmonics
+        self.steps = KeptSteps()  # of it
 
     def system(self, scene: Scene, harmonics: tuple[int, ...]) -> System:
         """The balance of a scene."""
@@ -95,7 +98,11 @@ def _optimum(task: PeakTask, harmonics: tuple[int, ...] | None, progress: Progre
             found = _downhill(task, chosen, _sharing(shown))
         if harmonics:
             break
-        more, taken = _harmonics_for_peaks(task, found[0], chosen, seconds)
+        more, taken = task.steps(
+            f"{chosen} harmonics at {found[0].values}",
+            tuple,
+            partial(_harmonics_for_peaks, task, found[0], chosen, seconds),
+        )
         if more == chosen:
             break
         chosen, seconds, task.fewer = more, seconds - taken, found[0]
@@ -133,7 +140,7 @@ def _harmonics_for_peaks(
 def _search(task: PeakTask, harmonics: tuple[int, ...]) -> LowestPeakSearch:
     (number,), span = task.numbers, (float(task.bounds[0, 0]), float(task.bounds[0, 1]))
     system, options = task.system(task.scene, harmonics), task.options.optimum.search
-    return LowestPeakSearch(system, along(number), span, task.targets, options)
+    return LowestPeakSearch(system, along(number), span, task.targets, options, task.steps)
 
 
 def _on_line(task: PeakTask, found: LowestPeak, harmonics: tuple[int, ...]) -> Found:
@@ -148,7 +155,7 @@ def _on_line(task: PeakTask, found: LowestPeak, harmonics: tuple[int, ...]) -> F
 def _downhill(task: PeakTask, harmonics: tuple[int, ...], progress: Callable[[float], None] | None) -> Found:
     """Of several numbers; from what was found with fewer harmonics."""
     task.seeking = valley = PeakEnvelope(
-        task.system(task.scene, harmonics), task.numbers, task.bounds, task.targets
+        task.system(task.scene, harmonics), task.numbers, task.bounds, task.targets, steps=task.steps
     )
     start = None if task.fewer is None else np.array(list(task.fewer.values.values()))
     found = descend(valley, start, progress)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from fcm.response.options import OPTIMUM, ResponseOptions
 from fcm.response.request import ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.sweep import trace
+from fcm.response.tracked_work import STATES
 from fcm.results.condensed_curves import condense, without_points
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import INTERRUPTED, Curve, Response
@@ -25,6 +27,7 @@ from fcm.scene.address import replaced
 from fcm.scene.draft import Draft, Number, number_of
 from fcm.scene.errors import counted
 from fcm.table import Table
+from fcm.tracking.kept_steps import KeptSteps, steps_of
 from fcm.tracking.options import SEARCH
 from fcm.tracking.peak_envelope import INCOMPLETE
 
@@ -252,11 +255,15 @@ def _optima(
     checkpoint: Checkpoint | None,
     progress: Progress | None,
 ) -> Iterator[Found]:
-    """That of each task, kept as soon as it is found; an optimum that is kept already is as it was."""
+    """That of each task, kept as soon as it is found, and so is each response and curve that leads to it.
+
+    What is kept already is as it was.
+    """
     kept = Results() if checkpoint is None else _kept(tasks, harmonics, checkpoint)
     for i, task in enumerate(tasks):
         if i not in kept.finished:
             shown = part(progress, i / len(tasks), (i + 1) / len(tasks))
+            task.steps = KeptSteps(steps_of(kept.states.get(i, ())), partial(kept.save, i))
             kept.add(i, [task.optimum(harmonics, shown)])
         yield kept.finished[i][0]
 
@@ -267,7 +274,7 @@ def _kept(tasks: list[PeakTask], harmonics: tuple[int, ...] | None, checkpoint: 
     mark = fingerprint(
         "optima", harmonics, [(task.numbers, task.accuracy, task.options) for task in tasks], scenes
     )
-    return checkpoint.results(mark, KINDS, lambda i, found: _fits(tasks, i, found))
+    return checkpoint.results(mark, (*KINDS, *STATES), lambda i, found: _fits(tasks, i, found))
 
 
 def _fits(tasks: list[PeakTask], number: int, results: Any) -> bool:

@@ -10,8 +10,10 @@ be believed, see `by_trials`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
+from typing import TypeVar
 
 import numpy as np
 
@@ -21,6 +23,7 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.tracking.curve import SpecialPointCurve, both_ways
 from fcm.tracking.extended_system import Condition, Kind
+from fcm.tracking.kept_steps import KeptSteps
 from fcm.tracking.known_curves import passes
 from fcm.tracking.nonsmooth_continuation import land
 from fcm.tracking.options import SEARCH, SearchOptions
@@ -35,9 +38,10 @@ from fcm.tracking.peak_envelope import (
     pieces_of,
     uncovered_values,
 )
-from fcm.tracking.start_points import for_scene, special_points
+from fcm.tracking.start_points import SpecialPoints, for_scene, special_points
 from fcm.tracking.tracked_point import TrackedPoint, TrackingRun
 
+T = TypeVar("T")
 MIN_HEIGHT = PieceHeight(0.0, 0.0, np.zeros(0), -1)
 
 
@@ -60,6 +64,7 @@ class LowestPeakSearch:
     span: tuple[float, float]
     targets: Sequence[Target]
     options: SearchOptions = SEARCH
+    steps: KeptSteps = field(default_factory=KeptSteps)
     curves: list[SpecialPointCurve] = field(default_factory=list)
     visited_values: dict[float, PieceHeight] = field(
         default_factory=dict
@@ -176,7 +181,11 @@ class LowestPeakSearch:
         """What may be greatest of the response at a value, with its heights."""
         if value not in self.known_points:
             here = for_scene(self.system, self.line.scene(self.system.scene, value))
-            points = special_points(here, self.conditions(), self.way.options).points
+            points = self._step(
+                f"points at {value!r}",
+                SpecialPoints,
+                partial(special_points, here, self.conditions(), self.way.options),
+            ).points
             self.known_points[value] = found = [
                 (one, self.height(one, np.append(z, value))) for one, z in points
             ]
@@ -188,7 +197,13 @@ class LowestPeakSearch:
     def follow(self, condition: Condition, spot: TrackedPoint) -> None:
         """The curve through a spot, if it is not known."""
         if not any(passes(curve, condition, spot, self.way) for curve in self.curves):
-            self.curves.append(both_ways(self.way, condition, spot))
+            key = f"curve of {condition} through {spot.z.tolist()}"
+            self.curves.append(
+                self._step(key, SpecialPointCurve, partial(both_ways, self.way, condition, spot))
+            )
+
+    def _step(self, key: str, kind: type[T], step: Callable[[], T]) -> T:
+        return self.steps(f"{self.system.harmonics} {key}", kind, step)
 
     def height(self, condition: Condition, z: FloatArray) -> PieceHeight:
         """The greatest of the targets at a place; 0 where it is none of them."""

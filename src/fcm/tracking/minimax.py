@@ -16,6 +16,7 @@ long as that finds less.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from itertools import product
 from typing import NamedTuple
 
@@ -27,12 +28,13 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.scene.draft import Number
 from fcm.tracking.extended_system import Condition, Kind
+from fcm.tracking.kept_steps import KeptSteps
 from fcm.tracking.lowest_peak import LowestPeakSearch
 from fcm.tracking.nonsmooth_continuation import follow_special_point, land
 from fcm.tracking.options import DESCENT, DescentOptions
 from fcm.tracking.parameter_line import ParameterLine
 from fcm.tracking.peak_envelope import INCOMPLETE, EnvelopeMinimum, PieceHeight, Target
-from fcm.tracking.start_points import for_scene, special_points
+from fcm.tracking.start_points import SpecialPoints, for_scene, special_points
 from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingRun
 from fcm.tracking.trials import by_trials
 
@@ -62,7 +64,9 @@ class PeakEnvelope:
         bounds: FloatArray,
         targets: Sequence[Target],
         options: DescentOptions = DESCENT,
+        steps: KeptSteps | None = None,
     ) -> None:
+        self.steps = steps or KeptSteps()
         self.system, self.numbers, self.targets, self.options = system, tuple(numbers), targets, options
         self.low, self.width = bounds[:, 0], bounds[:, 1] - bounds[:, 0]
         self.lowest: tuple[FloatArray, float, Member] | None = None  # of all that were traced until now
@@ -89,7 +93,12 @@ class PeakEnvelope:
         way, found = self.way(q, np.zeros(q.size)), []
         for target in self.targets:
             conditions = [Condition(Kind.PEAK, target.dof), *(ends if target.ends else [])]
-            for condition, z in special_points(here, conditions, self.options.search.tracking).points:
+            special = self.steps(
+                f"{self.system.harmonics} {target} at {q.tolist()}",
+                SpecialPoints,
+                partial(special_points, here, conditions, self.options.search.tracking),
+            )
+            for condition, z in special.points:
                 if (spot := land(way, condition, np.append(z, 0.0))) is not None:
                     found.append((condition, target.dof, spot))
         return [(condition, dof, spot.z[:-1]) for condition, dof, spot in found]
@@ -218,7 +227,8 @@ def _along(valley: PeakEnvelope, q: FloatArray, k: int) -> LineMinimum:
     origin, direction = np.array(q), np.eye(q.size)[k]
     origin[k] = 0.0
     line, options = valley.line(origin, direction), valley.options.search
-    search = LowestPeakSearch(valley.system, line, (0.0, 1.0), valley.targets, options)
+    steps = valley.steps.of(f"from {origin.tolist()} along {k}")
+    search = LowestPeakSearch(valley.system, line, (0.0, 1.0), valley.targets, options, steps)
     found = search.run()
     best = found.best if found.checked else by_trials(search)
     if best is None:

@@ -1,0 +1,52 @@
+"""Costly steps of a search, each known by what it is of: what an earlier run has taken is not taken again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any, TypeVar
+
+T = TypeVar("T")
+
+
+class KeptSteps:
+    """What comes of steps, by their keys.
+
+    Parameters
+    ----------
+    known : iterable of (str, object)
+        Keys and results of an earlier run.
+    save : callable, optional
+        Keeps a key with its result as soon as the step is taken.
+
+    Examples
+    --------
+    >>> steps = KeptSteps([("a", 1.0)])
+    >>> steps("a", float, lambda: 2.0), steps("b", float, lambda: 3.0)
+    (1.0, 3.0)
+    """
+
+    def __init__(
+        self, known: Iterable[tuple[str, Any]] = (), save: Callable[[tuple[str, Any]], None] | None = None
+    ) -> None:
+        self._known, self._save = dict(known), save
+
+    def of(self, what: str) -> KeptSteps:
+        """Those of a part of the search, which have keys of their own."""
+        start, save = f"{what}: ", self._save
+        known = [(key.removeprefix(start), one) for key, one in self._known.items() if key.startswith(start)]
+        return KeptSteps(known, None if save is None else lambda step: save((start + step[0], step[1])))
+
+    def __call__(self, key: str, kind: type[T], step: Callable[[], T]) -> T:
+        """The result of a step; of another kind than it has, a known one is none."""
+        known = self._known.get(key)
+        if isinstance(known, kind):
+            return known
+        found = self._known[key] = step()
+        if self._save is not None:
+            self._save((key, found))
+        return found
+
+
+def steps_of(states: Iterable[Any]) -> list[tuple[str, Any]]:
+    """The keys and results among what was read from a file."""
+    return [one for one in states if isinstance(one, tuple) and len(one) == 2 and isinstance(one[0], str)]
