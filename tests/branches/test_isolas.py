@@ -112,6 +112,40 @@ def test_where_two_curves_of_folds_touch_the_one_leads_to_the_other(preload, con
     assert len(turns) == 2 and all(np.abs(met / level - 1.0).min() < 1e-2 for level in turns)
 
 
+@pytest.mark.parametrize(
+    ("mu", "preload", "frequencies"),
+    [
+        (0.3219, 4.768, (1.15, 1.2)),  # passes close by a closed curve of folds, which is another
+        (0.4386, 5.568, (1.2, 1.245, 1.28, 1.315)),  # two strips beside it end
+    ],
+)
+@pytest.mark.parametrize("condensation", [CONDENSATION, EVERY_MODE])
+def test_a_curve_of_folds_along_thin_strips_meets_every_turn_of_the_level(
+    mu, preload, frequencies, condensation
+):
+    """Up to the greatest level that is looked at, and no other."""
+    one = load_scene("yang1998").each_curve()[0]
+    contact = replace(one.contacts[0], mu=mu, n_0=preload)
+    system = System(replace(one, contacts=(contact,), forces=one.forces[:1]), condensation=condensation)
+    (curve,) = (curve for turn, curve in folds_of(system, 1.20695) if turn.unfinished)
+    assert curve is not None and curve.endings == (Ending.LEVEL, Ending.LEVEL)
+    for omega in frequencies:
+        turns = sorted(turn.level for turn in solutions(system, omega, np.inf).folds)
+        assert sorted(levels_at(curve, omega)) == pytest.approx(turns, rel=5e-3)
+
+
+def test_a_closed_curve_of_folds_beside_another_is_followed_once_round():
+    """It turns the level where the other does not, at 1.28 rad/s."""
+    one = load_scene("yang1998").each_curve()[0]
+    contact = replace(one.contacts[0], mu=0.3219, n_0=4.768)
+    system = System(replace(one, contacts=(contact,), forces=one.forces[:1]))
+    turns = sorted(turn.level for turn in solutions(system, 1.28, np.inf).folds)
+    assert len(turns) == 2
+    for _, curve in folds_of(system, 1.28):
+        assert curve is not None and curve.endings == (Ending.CLOSED, Ending.CLOSED)
+        assert sorted(levels_at(curve, 1.28)) == pytest.approx(turns, rel=1e-3)
+
+
 def test_folds_in_corners_are_followed_round_a_closed_curve():
     """From a corner, through others, back to it: each of its points has a fold there by its level curve."""
     system = System(scene("closed_two_modes"), (1, 2, 3, 4, 5))

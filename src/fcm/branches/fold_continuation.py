@@ -7,7 +7,8 @@ corrector on the surface of all solutions: the zero of g on an arc of a circle a
 (1988) 165, for the local axes of a surface). Only the sign of g counts, so that nothing is differentiated
 twice, and a fold that lies in a corner of the solutions, where g jumps, is followed like any other. Cusps,
 where two folds meet, are ordinary places of such a curve; where their curves touch on the surface, and the
-strip between them vanishes, the curve goes back on the other side of the strip.
+strip between them vanishes, the curve goes back on the other side of the strip. A place is found to a small
+part of the width of such a strip, and steps are short beside wider ones: a curve would else go on as another.
 """
 
 from __future__ import annotations

@@ -33,12 +33,12 @@ class FoldOptions:
     min_level: float = 0.25  # level at which a curve of folds is left, being too far below 1,
     max_level: float = 4.0  # and above it
     initial_step: float = 0.01  # step,
-    max_step: float = 0.3
-    min_step: float = 1e-4  # with which no fold was found any more
-    strip_width: float = 3e-3  # strip between two curves of folds that meet
+    max_step: float = 0.1
+    min_step: float = 1e-4  # with which no fold was found any more; of half that width, a strip has ended
+    strip_width: float = 3e-3  # widest strip between two curves of folds of which the end is looked for
     target_turn: float = 0.25  # [rad] by which the chord of a step is to leave the tangent,
     max_turn: float = 0.9  # and by which it may at most
-    angle_tolerance: float = 0.02  # [rad] to which the direction of the chord is found
+    angle_tolerance: float = 0.005  # [rad] to which the direction of the chord is found
     max_tangent: float = 100.0  # times the axes: tangents longer than this are of another part of the surface
     start_circles: tuple[float, ...] = (
         1.0,

@@ -414,7 +414,7 @@ class FoldSteps:
         if not surface.recentre(way.along, way.across):
             return [], Ending.STALLED
         points = [(np.array(surface.centre), np.array(way.across))]
-        first, turned, retreats = np.array(surface.centre), False, options.max_retreats
+        first, retreats = np.array(surface.centre), options.max_retreats
         before, taken = first, way
         step: cython.double = options.initial_step
         bend: cython.double = 0.0
@@ -425,8 +425,12 @@ class FoldSteps:
                 step, bend = 0.3 * step, 0.0
                 if step < 10.0 * off and self.correct_centre(off, way.left):
                     off *= self.angle_tolerance
-                if step < options.strip_width and not turned and self.cross_strip(options.strip_width):
-                    turned, step = True, options.strip_width
+                aside = self.other_side(options.strip_width, way.left) if step < options.strip_width else 0.0
+                if aside:  # the strip ends where, seen at its own width, it does not go on
+                    step = 2.0 * abs(aside)
+                    found = None if step < options.min_step else self.next_departure(step, 0.0, way.left)
+                    if found is not None or not self.cross_strip(aside):
+                        break
                 found = self.next_departure(step, bend, way.left) or self.around_corner(step, way.left)
             if found is None and retreats and len(points) > 1:  # the last step led to another part
                 retreats, way, step, bend = retreats - 1, taken, 0.3 * way.radius, 0.0
@@ -546,7 +550,7 @@ class FoldSteps:
         other: Side = Side(self.n)
         self.surface.z[:] = self.surface.centre
         self.test_value(one, step, min(max(bend, -most), most))
-        width: cython.double = max(0.5 * fabs(one.angle), self.target_turn)
+        width: cython.double = 2.0 * self.angle_tolerance  # wider ones would miss a thin strip
         while isfinite(one.value):
             sign: cython.double = one.value * left
             then: cython.double = one.angle - (width if sign > 0.0 else -width if sign < 0.0 else 0.0)
@@ -586,39 +590,42 @@ class FoldSteps:
                 high = middle
         return bool(surface.recentre(axes[0], axes[1]))
 
-    def cross_strip(self, thin: float) -> bool:
-        """Cross the strip beside the curve if it is as thin as that: take for the centre the place of the
-        curve on its other side, with the way back ahead. Whether it is that thin."""
+    def other_side(self, thin: float, left: float) -> float:
+        """How far to the left of the centre the strip beside the curve has its other side, negative to the
+        right; zero if it is no strip, or not so thin."""
         surface: Surface = self.surface
-        axes = np.array(surface.axes) * np.asarray(surface.scale)
         side: Side = Side(self.n)
         surface.z[:] = surface.centre
         self.test_value(side, thin, 0.5 * PI)
-        here: cython.double = side.value
+        beyond: cython.double = side.value
         self.test_value(side, thin, -0.5 * PI)
-        if not here * side.value > 0.0:
-            return False
-        for angle in (0.5 * PI, -0.5 * PI):
-            surface.z[:] = surface.centre
-            high: cython.double = thin
-            low: cython.double = thin
-            while low > self.angle_tolerance * self.angle_tolerance * thin:
-                low *= 0.7
-                self.test_value(side, low, angle)
-                if side.value * here < 0.0:
-                    break
-                high = low
+        if not beyond * side.value > 0.0:
+            return 0.0
+        angle: cython.double = -0.5 * PI if beyond * left > 0.0 else 0.5 * PI
+        surface.z[:] = surface.centre
+        high: cython.double = thin
+        low: cython.double = thin
+        while not side.value * beyond < 0.0:
+            if low < self.angle_tolerance * self.angle_tolerance * thin:
+                return 0.0
+            high = low
+            low *= 0.7
+            self.test_value(side, low, angle)
+        while high - low > self.angle_tolerance * low:
+            middle: cython.double = 0.5 * (low + high)
+            self.test_value(side, middle, angle)
+            if side.value * beyond < 0.0:
+                low = middle
             else:
-                continue
-            while high - low > self.angle_tolerance * low:
-                middle: cython.double = 0.5 * (low + high)
-                self.test_value(side, middle, angle)
-                if side.value * here < 0.0:
-                    low = middle
-                else:
-                    high = middle
-            return bool(surface.recentre(-axes[0], axes[1]))
-        return False
+                high = middle
+        return float(low if angle > 0.0 else -low)
+
+    def cross_strip(self, aside: float) -> bool:
+        """Take for the centre the place of the curve on the other side, with the way back ahead."""
+        surface: Surface = self.surface
+        axes = np.array(surface.axes) * np.asarray(surface.scale)
+        surface.z[:] = surface.centre
+        return bool(surface.find(0.0, aside) and surface.recentre(-axes[0], axes[1]))
 
     def around_corner(self, step: float, left: float) -> Departure | None:
         """The way nearest ahead with the same sign on its left, on all of a circle but the way back."""
