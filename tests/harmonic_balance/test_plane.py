@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import tomllib
 from dataclasses import replace
 from importlib.resources import files
@@ -23,6 +24,7 @@ from fcm.response.exact import trace_exact
 from fcm.response.level import trace_levels
 from fcm.response.mode import trace_modes
 from fcm.response.track import track
+from fcm.results.csv_file import write_csv
 from fcm.scene import scene_from_dict
 from fcm.stability.floquet import multipliers
 from fcm.tracking.onset_functions import onset
@@ -256,6 +258,22 @@ def test_what_the_file_says_of_a_contact_in_a_plane():
     f_x, f_y, _ = fcm.planar_forces(loop.u_x, loop.u_y, loop.v, loop.mu, loop.k_u, loop.k_v, loop.n_0)
     assert response.friction_x.isel(**point).item() == pytest.approx(abs(f_x[1]), rel=1e-9)
     assert response.friction_y.isel(**point).item() == pytest.approx(abs(f_y[1]), rel=1e-9)
+
+
+def test_each_quantity_of_a_contact_in_a_plane_has_one_column(tmp_path):
+    response = trace_levels(ELLIPSE.scene((0.9, 1.1)), [1.0], (0.5, 1.0), harmonics=(1,))
+    write_csv(response, tmp_path / "plane.csv")
+    with (tmp_path / "plane.csv").open(newline="", encoding="utf-8") as file:
+        heads, *rows = csv.reader(file)
+    assert len(heads) == len(set(heads))
+    (curve,) = response.curves
+    friction = [heads.index(f"friction_{axis} pad") for axis in "xy"]
+    work = heads.index("dissipated_energy pad")
+    assert len(rows) == curve.frequency.size
+    for k in (0, len(rows) - 1):
+        assert [float(rows[k][i]) for i in friction] == curve.across.friction[k, 0].tolist()
+        assert float(rows[k][work]) == curve.cycle[k, 0, 3]
+    assert float(rows[-1][work]) > 0.0
 
 
 @pytest.mark.slow

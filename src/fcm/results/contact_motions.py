@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -75,27 +74,14 @@ def motions_across(curves: Sequence[Curve]) -> dict[str, Field]:
     }
 
 
-def csv_columns(contacts: Sequence[str], planar: Sequence[str], units: tuple[str, str]) -> list[str]:
-    """Heads of the columns of `csv_values`."""
-    length, force = units
-    work = f" [{force} {length}]" if length and force else ""
-    of_force, of_length = (f" [{unit}]" if unit else "" for unit in (force, length))
-    return [
-        f"{name} {contact}{unit}"
-        for contact in contacts
-        if contact in planar
-        for name, unit in (
-            ("friction_x", of_force), ("friction_y", of_force), ("slip_path", of_length),
-            ("dissipated_energy", work),
-        )
-    ]  # fmt: skip
+def csv_columns(contacts: Sequence[str], planar: Sequence[str], force: str) -> list[str]:
+    """Heads of the columns of `csv_values`, with the unit of force."""
+    unit = f" [{force}]" if force else ""
+    return [f"friction_{axis} {contact}{unit}" for contact in contacts if contact in planar for axis in "xy"]
 
 
 def csv_values(curve: Curve, point: int, which: Sequence[int]) -> list[str]:
-    """Of a point the amplitudes of friction, way of the slip and energy of some contacts."""
+    """Of a point the amplitudes of friction of some contacts."""
     if curve.across is None or curve.across.friction is None:
-        return ["nan"] * (4 * len(which))
-    found: list[Any] = []
-    for i in which:
-        found += [*curve.across.friction[point, i].tolist(), *curve.cycle[point, i, 2:].tolist()]
-    return [repr(float(value)) for value in found]
+        return ["nan"] * (2 * len(which))
+    return [repr(float(value)) for value in curve.across.friction[point, list(which)].ravel()]

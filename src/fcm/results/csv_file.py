@@ -51,7 +51,7 @@ def _columns(response: Response) -> list[str]:
     for name in response.contacts:
         for (kind, _), own in zip(CYCLE, of_contact, strict=True):
             columns += [f"{kind} {name}{f' [{own}]' if own else ''}", f"{kind}_error {name}"]
-    columns += csv_columns(response.contacts, tuple(response.directions), response.units)
+    columns += csv_columns(response.contacts, tuple(response.directions), response.units[1])
     return [*columns, *LAST_COLUMNS, *(ORBIT_COLUMNS if exact else ())]
 
 
