@@ -3,14 +3,20 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
+from fcm.accuracy.embedded_pair import errors_along
+from fcm.accuracy.options import OF_GIVEN
 from fcm.accuracy.refinement import with_given_harmonics
+from fcm.branches.trace import traced
 from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.response.exact import trace_exact
 from fcm.scene import scene_from_dict
 from fcm.shooting import periodic
 from fcm.shooting.harmonic_balance_state import state_of
+
+from ..harmonic_balance.strips import planar_strip
 
 
 def test_errors_where_a_corner_has_moved_are_those_at_the_same_frequency():
@@ -75,3 +81,23 @@ def test_a_wide_stretch_whose_error_is_not_known_is_not_called_stable():
 
     assert exact.complete and stable_at(exact).max() < 0.2
     assert np.nanmax(curve.amplitude) > 10.0 and stable_at(curve).max(initial=0.0) < 0.2
+
+
+def test_each_look_at_the_partner_of_many_contacts_may_interrupt():
+    system = System(planar_strip(frequency=(1.0, 1.1)), (1,))
+    path = traced(system).branches.paths[0]
+    polled = []
+    system.work.poll = lambda: polled.append(1)
+    few = errors_along(system, path, options=replace(OF_GIVEN, point_interval=len(path.z)))
+    assert np.isfinite(few.truncation).any()
+    assert len(polled) > 8  # of the ends, and of peaks
+
+    def interrupt():
+        raise KeyboardInterrupt
+
+    system.work.poll = interrupt
+    with pytest.raises(KeyboardInterrupt):
+        errors_along(system, path)
+    system.work.poll = int
+    again = errors_along(system, path, options=replace(OF_GIVEN, point_interval=len(path.z)))
+    np.testing.assert_allclose(again.truncation, few.truncation, rtol=1e-6)

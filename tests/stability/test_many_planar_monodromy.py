@@ -98,6 +98,25 @@ def test_contacts_that_mirror_one_another_take_no_more_steps_for_rounding_errors
     assert found[1] == pytest.approx(found[0], abs=1e-6)
 
 
+def test_each_event_of_many_contacts_may_interrupt():
+    x, contact = motion(ALL)
+    sequence = PlanarSequence(contact, (1, 2), STABILITY.planar)
+    assert sequence.find_events(x)
+    events = sum(count for count in np.asarray(sequence.count).tolist() if count > 1)
+    polled = []
+    structural = *structure(len(ALL), 6), np.zeros(6, dtype=bool), sequence
+    ManyPlanarMonodromy(*structural, lambda: polled.append(1)).follow(OMEGA)
+    assert len(polled) > 0.5 * events
+
+    def interrupt():
+        polled.pop()
+        if len(polled) < 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        ManyPlanarMonodromy(*structural, interrupt).follow(OMEGA)
+
+
 def marched(scene, omega, steps=500, cycles=30):
     """Of the motion from rest (q, q' / omega) after each cycle; the slider is drawn back to its disc."""
     modal, law = scene.modal, scene.contacts[0]

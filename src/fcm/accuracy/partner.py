@@ -66,19 +66,22 @@ def prolongation_to(system: System, more: tuple[int, ...]) -> Prolongation:
     others. Nobody else has it until it is given back, see `give_back`."""
     made = _BALANCES.by_key.pop(_key(system, more), None) if _is_shareable(system) else None
     if made is None:
-        return Prolongation(
+        made = Prolongation(
             system.with_harmonics(more).new_balance(),
             list(system.harmonics),
             list(more),
             PAIR.newton_tolerance,
         )
-    contacts = system.scene.contacts
-    made.reset(list(system.harmonics), [(c.mu, c.k_u, c.k_v, c.n_0) for c in contacts])
+    else:
+        contacts = system.scene.contacts
+        made.reset(list(system.harmonics), [(c.mu, c.k_u, c.k_v, c.n_0) for c in contacts])
+    made.newton.poll = system.work.poll
     return made
 
 
 def give_back(lifted: Prolongation, system: System, more: tuple[int, ...]) -> None:
     """Keep what `prolongation_to` the same has made for the next curve."""
+    lifted.newton.poll = None
     if _is_shareable(system):
         _BALANCES.by_key[_key(system, more)] = lifted
         if len(_BALANCES.by_key) > PAIR.max_kept:

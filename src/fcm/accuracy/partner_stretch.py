@@ -211,12 +211,16 @@ class StretchFollower:
                 raise BudgetSpentError
 
         follower = Follower(balance, span, wanted, self.options.following, pay, stepper)
-        if not follower.begin(start, forward, direction):
-            return follower.path(Status.STALLED)
-        try:
-            return follower.run(None)
-        except BudgetSpentError:
-            return follower.path(Status.INTERRUPTED)
+        with self.finer.exclusive_balance():
+            stepper.newton.poll = self.finer.work.poll
+            try:
+                if not follower.begin(start, forward, direction):
+                    return follower.path(Status.STALLED)
+                return follower.run(None)
+            except BudgetSpentError:
+                return follower.path(Status.INTERRUPTED)
+            finally:
+                stepper.newton.poll = None
 
 
 def _part(path: Path, rows: slice) -> Path:

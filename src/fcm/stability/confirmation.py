@@ -116,7 +116,7 @@ class ConfirmedPoints:
         motion = self.motions.beside(self.system, z) if self.motions is not None and self.far[i] else None
         if self.motions is not None and motion is not None:
             found = self.multipliers.continued(z, motion, most, self.motions.harmonics)
-            if not math.isnan(found.growth):
+            if self.multipliers.beside is not None:
                 return found
         return self.multipliers.confirmation(z, most)
 

@@ -25,6 +25,8 @@ for each contact that slips and point.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import numpy.typing as npt
 
@@ -45,6 +47,8 @@ class ManyPlanarMonodromy(VariationalSteps):
         Of all modes, of mass 1; three ports for each contact; natural frequencies in rad/s.
     far : (mode,) bool
         Which follow without delay.
+    poll : callable, optional
+        Called at every event, which it may interrupt.
     """
 
     def __init__(
@@ -54,8 +58,10 @@ class ManyPlanarMonodromy(VariationalSteps):
         damping: FloatArray,
         far: npt.NDArray[np.bool_],
         sequence: PlanarSequence,
+        poll: Callable[[], object] = int,
     ) -> None:
-        self.options = options = sequence.options
+        self.poll, self.options = poll, sequence.options
+        options = self.options
         VariationalSteps.__init__(self, sequence, options.stages_of_many, options.tolerance_of_many)
         self.shapes, self.natural, self.damping = shapes[~far], natural[~far], damping[~far]
         self.all_soft = (shapes[far].T * natural[far] ** -2.0) @ shapes[far]
@@ -130,6 +136,7 @@ class ManyPlanarMonodromy(VariationalSteps):
 
     def _arrange(self) -> None:
         """Which contacts slip, are open, and stick, and what those do to one another."""
+        self.poll()
         state, columns = np.asarray(self.state)[self.moving], self.q.shape[1]
         self.slips, sticks = np.flatnonzero(state == SLIP), np.flatnonzero(state == STICK)
         opened = np.flatnonzero(state == SEPARATION)

@@ -119,9 +119,12 @@ class Multipliers:
         linear = self.system.linear
         structure = linear.ports, linear.natural, linear.damping, self.far
         planar = (one for one in self.states if isinstance(one, PlanarSequence))
-        many = len(self.contact) >= self.options.structure.many_contacts
-        carried = ManyPlanarMonodromy if many else PlanarMonodromy
-        return [VariationalProblem(one, carried(*structure, one)) for one in planar]
+        if len(self.contact) < self.options.structure.many_contacts:
+            return [VariationalProblem(one, PlanarMonodromy(*structure, one)) for one in planar]
+        return [VariationalProblem(one, ManyPlanarMonodromy(*structure, one, self._poll)) for one in planar]
+
+    def _poll(self) -> None:
+        self.system.work.poll()  # of now, which may be another later
 
     def of(self, z: FloatArray) -> list[complex] | None:
         """The multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""
@@ -167,9 +170,6 @@ class Multipliers:
 
     def _look(self, z: FloatArray, turning: bool, alone: bool) -> _Look | Verdict:
         """At a solution and its finer motion; the verdict where no multipliers are needed for it."""
-        # a look at many contacts takes long; what looks at few is shared, and what is polled may look with it
-        if self.contacts >= self.options.structure.many_contacts:
-            self.system.work.poll()
         fine, plain = self.fine.states, self.plain.states
         self.finer.at(z)
         if self.finer.shift < self.options.confirmation.min_addition:
@@ -316,8 +316,9 @@ class Multipliers:
         self.beside = None
         if self.finer.shift == 0.0:  # it has none
             return self.verdict(z)
-        found = self._rebalanced(z, np.array(self.finer.x), persistent=True)
-        return UNKNOWN if found is None else self._if_enough(found, most)
+        refined, judge = self._further()
+        self.beside = there = refined.rebalance(z, np.array(self.finer.x), persistent=True)
+        return UNKNOWN if there is None else self._if_enough(judge, there, most)._replace(rebalanced=True)
 
     def continued(
         self, z: FloatArray, motion: FloatArray, most: float, harmonics: tuple[int, ...] | None = None
@@ -327,14 +328,19 @@ class Multipliers:
         if harmonics is not None:
             motion = refined.system.extended(motion, harmonics)
         self.beside = there = refined.continue_to(z, motion)
-        return UNKNOWN if there is None else self._if_enough(judge.verdict(there), most)
+        return UNKNOWN if there is None else self._if_enough(judge, there, most)
 
-    def _if_enough(self, found: Verdict, most: float) -> Verdict:
-        assert self.further is not None
-        return found if self.further[1].finer.shift <= most else UNKNOWN
+    @staticmethod
+    def _if_enough(judge: Multipliers, z: FloatArray, most: float) -> Verdict:
+        """Of a motion to which the harmonics beyond its own add no more than the most."""
+        judge.finer.at(z)
+        return judge.verdict(z) if judge.finer.shift <= most else UNKNOWN
 
     def _matrix(self, followed: VariationalProblem, omega: float) -> FloatArray | None:
         """The monodromy matrix of the motion that was looked at."""
+        # that of many contacts takes long; what looks at few is shared, and what is polled may look with it
+        if self.contacts >= self.options.structure.many_contacts:
+            self.system.work.poll()
         followed.monodromy.follow(omega)
         found: FloatArray = followed.monodromy.matrix()
         return found

@@ -30,9 +30,14 @@ class Rebalancing:
         self.newton = Newton(self.homotopy)
         self.newton.row[:] = 0.0
         self.newton.row[-1] = 1.0  # holds the frequency
+        for newton in (self.newton, *((self.damped.newton,) if self.damped is not None else ())):
+            newton.poll = self._poll
         balanced = np.isin(self.system.layout.harmonic_of(self.more), [0, *self.harmonics])
         self.balanced = np.tile(balanced, len(system.scene.contacts))
         self.last: tuple[FloatArray, FloatArray] | None = None  # of many contacts: z there, what was added
+
+    def _poll(self) -> None:
+        self.fewer.work.poll()  # of now, which may be another later
 
     def take(self, system: System) -> None:
         """A system with the same structure and harmonics, whose contacts may be others."""
