@@ -101,6 +101,21 @@ def test_each_look_at_a_motion_of_many_contacts_may_interrupt():
     assert 0 < stability(of, found).evaluations <= len(polled)
 
 
+def test_of_what_further_harmonics_are_to_confirm_the_finer_motion_is_enough():
+    """The same is told, by fewer motions: that of the balanced harmonics is not looked at besides."""
+    of, found = path(strip(), 1, (0.9, 1.5))
+    told, looks = [], []
+    for doubted in (False, True):
+        polled = []
+        of.work.poll = lambda polled=polled: polled.append(1)
+        told.append(stability(of, found, doubted=np.full(len(found.z), doubted)).stable)
+        looks.append(len(polled))
+    both = ~np.isnan(told[0])
+    assert both.any()
+    np.testing.assert_array_equal(told[0][both], told[1][both])
+    assert looks[1] < looks[0]
+
+
 @pytest.mark.parametrize(("preload", "looks"), [(5.0, 0.6), (0.0, 0.8), (-5.0, 0.6)])
 def test_few_points_tell_the_stability_of_three_harmonics(preload, looks):
     """Beside the multipliers of every point: without preload a pair leaves, and comes back."""

@@ -155,7 +155,8 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
     for path, seen, error in zip(every[known:], found.shown[known:], found.errors[known:], strict=True):
         beyond = on_other_branch(error.on_same_branch, options) if short else None
         alone = without_neighbour(error.truncation, error.is_same_curve, options)
-        judged = stability(found.system, path, beyond, alone=alone)
+        doubted = error.on_same_branch > options.max_error
+        judged = stability(found.system, path, beyond, alone=alone, doubted=doubted)
         inserted = judged.inserted
         bifurcations += [(one.kind.value, one.frequency) for one in judged.crossings]
         if accuracy is not None and not short:

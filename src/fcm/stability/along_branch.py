@@ -31,15 +31,22 @@ EITHER = (0.0, 1.0)  # what the finer motion says is enough, stable or not
 class PathVerdicts:
     """The verdicts of places, those between the points of the path, and how many were calculated.
 
-    alone (point,): beside which no solution with more harmonics is near.
+    alone (point,): beside which no solution with more harmonics is near. doubted (point,): of which it is
+    enough that the finer motion says that they are stable.
     rotation (point,) [rad]: by how much multipliers that are not small have turned up to each point, about.
     """
 
     def __init__(
-        self, system: System, path: Path, alone: Mask | None = None, options: StabilityOptions = STABILITY
+        self,
+        system: System,
+        path: Path,
+        alone: Mask | None = None,
+        options: StabilityOptions = STABILITY,
+        doubted: Mask | None = None,
     ) -> None:
         self.path, self.evaluations, self.options = path, 0, options
         self.alone = np.zeros(len(path.z), dtype=np.bool_) if alone is None else alone
+        self.doubted = np.zeros(len(path.z), dtype=np.bool_) if doubted is None else doubted
         self._verdicts: dict[float, Verdict] = {}
         self.between: dict[float, InsertedPoint] = {}
         self._places: list[float] = []  # with a verdict, in order
@@ -69,12 +76,18 @@ class PathVerdicts:
     def look_at(self, points: Sequence[int], enough: Sequence[float] = ()) -> None:
         """At several points, which have verdicts then; `enough` as of `Multipliers.verdict`."""
         new = [i for i in points if i not in self._verdicts]
-        if not new:
-            return
-        self.evaluations += len(new)
-        z, fold, alone = [self.path.z[i] for i in new], self.fold[new].tolist(), self.alone[new].tolist()
-        for i, verdict in zip(new, self.multipliers.verdicts(z, fold, alone, enough), strict=True):
-            self._keep(i, verdict)
+        doubted = [i for i in new if self.doubted[i]]
+        for some, sufficient in (
+            ([i for i in new if not self.doubted[i]], enough),
+            (doubted, (*enough, 1.0)),
+        ):
+            if not some:
+                continue
+            self.evaluations += len(some)
+            z, fold = [self.path.z[i] for i in some], self.fold[some].tolist()
+            found = self.multipliers.verdicts(z, fold, self.alone[some].tolist(), sufficient)
+            for i, verdict in zip(some, found, strict=True):
+                self._keep(i, verdict)
 
     def _keep(self, t: float, verdict: Verdict) -> Verdict:
         if t not in self._verdicts:

@@ -54,6 +54,7 @@ def stability(
     beyond: npt.NDArray[np.bool_] | None = None,
     options: StabilityOptions = STABILITY,
     alone: npt.NDArray[np.bool_] | None = None,
+    doubted: npt.NDArray[np.bool_] | None = None,
 ) -> Stability:
     """Stability of the points of a path followed in the frequency, and where it changes between folds.
 
@@ -61,18 +62,18 @@ def stability(
     not with the next ones that their forces make, or the other way round, is nan; and so is what is
     beyond (point,), too far from the motion, and that the determinant allows to be stable. Beside what is
     alone (point,) it is known that there is no solution with more harmonics: there a doubt remains one.
+    What is doubted (point,) is not believed to be stable unless further harmonics, balanced, confirm it (see
+    `fcm.stability.confirmation`): that the finer motion says so is enough here.
     """
     none = np.zeros(path.z.shape[0], dtype=np.bool_)
-    search = _BifurcationSearch(system, path, options, none if alone is None else alone)
+    known = PathVerdicts(system, path, none if alone is None else alone, options, doubted)
+    search = _BifurcationSearch(system, path, options, known)
     return search.run(none if beyond is None else beyond)
 
 
 class _BifurcationSearch:
-    def __init__(
-        self, system: System, path: Path, options: StabilityOptions, alone: npt.NDArray[np.bool_]
-    ) -> None:
-        self.path, self.options = path, options
-        self.verdicts = PathVerdicts(system, path, alone, options)
+    def __init__(self, system: System, path: Path, options: StabilityOptions, verdicts: PathVerdicts) -> None:
+        self.path, self.options, self.verdicts = path, options, verdicts
         self.many = len(system.scene.contacts) >= self.options.structure.many_contacts
         self.spaced = SpacedPoints(path.z, self.many)
         self.step_span = (
