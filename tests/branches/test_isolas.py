@@ -202,6 +202,7 @@ def test_a_closed_curve_of_folds_has_lost_nothing_and_others_their_open_ends():
     assert Folds(z, z, (Ending.STALLED, Ending.LEVEL)).lost == [1.0]
     assert Folds(z, z, (Ending.RANGE, Ending.LONG)).lost == [3.0]
     assert Folds(z, z, (Ending.STALLED, Ending.CLOSED)).lost == []
+    assert Folds(z, z, (Ending.CLOSED, Ending.LEVEL)).lost == [1.0]
 
 
 def test_where_folds_are_lost_a_response_says_from_where_on():

@@ -47,10 +47,13 @@ class Folds:
 
     @property
     def lost(self) -> list[float]:
-        """Frequencies [rad/s] of those ends from which the curve would go on; none where it is closed."""
-        if Ending.CLOSED in self.endings:
+        """Frequencies [rad/s] of those ends from which the curve would go on; none where it is closed. If one
+        end comes back to the start and the other leaves what is looked at, the one has come to another curve.
+        """
+        open_ends = {Ending.RANGE, Ending.LEVEL} & set(self.endings)
+        if Ending.CLOSED in self.endings and not open_ends:
             return []
-        short = (Ending.STALLED, Ending.LONG)
+        short = (Ending.STALLED, Ending.LONG, Ending.CLOSED)
         ends = zip(self.endings, self.frequency[[0, -1]].tolist(), strict=True)
         return [omega for ending, omega in ends if ending in short]
 
