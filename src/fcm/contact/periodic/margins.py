@@ -349,7 +349,7 @@ class Measures:
         for i in range(parts):
             c, s = cos(self.cycle.begin[p] + step * i), sin(self.cycle.begin[p] + step * i)
             for j in range(POINTS):
-                rate, load = self.motion.rate_and_value(
+                _, rate, load = self.motion.derivatives(
                     row,
                     REACH,
                     c * self.turn_cos[j] - s * self.turn_sin[j],

@@ -23,9 +23,8 @@ cdef class Motion(Nodes):
     cdef void bound(self) noexcept nogil
     cdef void sample(self) noexcept nogil
     cdef (double, double) evaluate(self, int row, double theta) noexcept nogil
-    cdef (double, double) rate_and_value(self, int row, int other, double c_1, double s_1) noexcept nogil
+    cdef (double, double, double) derivatives(self, int row, int other, double c_1, double s_1) noexcept nogil
     cdef int node_before(self, double theta) noexcept nogil
-    cdef double bend(self, int row, double c_1, double s_1) noexcept nogil
 
 cdef int CLOSES, OPENS, TOP, BOTTOM, MEETS
 

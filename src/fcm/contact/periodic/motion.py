@@ -257,16 +257,19 @@ class Motion(Nodes):
         """Value and slope of a row at an angle."""
         slope: float
         value: float
-        slope, value = self.rate_and_value(row, row, cos(theta), sin(theta))
+        _, slope, value = self.derivatives(row, row, cos(theta), sin(theta))
         return value, slope
 
-    def rate_and_value(
+    def derivatives(
         self, row: cython.int, other: cython.int, c_1: float, s_1: float
-    ) -> tuple[float, float]:
-        """Slope of a row and value of another at an angle, of which the cosine and the sine are given."""
+    ) -> tuple[float, float, float]:
+        """Second derivative and slope of a row, and value of another, at an angle, of which the cosine and
+        the sine are given."""
         c: float = c_1
         s: float = s_1
         turned: float
+        order: float
+        bend: float = 0.0
         slope: float = 0.0
         value: float = self.mean[other]
         h: cython.int = 1
@@ -277,26 +280,11 @@ class Motion(Nodes):
                 s = s * c_1 + c * s_1
                 c = turned
                 h += 1
-            slope -= self.order[k] * (self.re[row, k] * s + self.im[row, k] * c)
+            order = self.order[k]
+            bend -= order * order * (self.re[row, k] * c - self.im[row, k] * s)
+            slope -= order * (self.re[row, k] * s + self.im[row, k] * c)
             value += self.re[other, k] * c - self.im[other, k] * s
-        return slope, value
-
-    def bend(self, row: cython.int, c_1: float, s_1: float) -> float:
-        """Second derivative of a row at an angle, of which the cosine and the sine are given."""
-        c: float = c_1
-        s: float = s_1
-        turned: float
-        bend: float = 0.0
-        h: cython.int = 1
-        k: cython.int
-        for k in range(self.moving):
-            while h < self.number[k]:
-                turned = c * c_1 - s * s_1
-                s = s * c_1 + c * s_1
-                c = turned
-                h += 1
-            bend -= self.order[k] * self.order[k] * (self.re[row, k] * c - self.im[row, k] * s)
-        return bend
+        return bend, slope, value
 
     def node_before(self, theta: float) -> cython.int:
         """Number of the last node at or before an angle; not reduced to one turn."""
@@ -455,7 +443,7 @@ class Crossings:
         third: float = 2.0 * self.motion.highest  # derivative, relative to the second: twice its bound
         for _ in range(100):
             c, s = cos(x), sin(x)
-            slope, value = self.motion.rate_and_value(row, row, c, s)
+            bend, slope, value = self.motion.derivatives(row, row, c, s)
             value -= level
             if value == 0.0:
                 return x
@@ -466,7 +454,7 @@ class Crossings:
             step: float = high - low
             if (slope > 0.0) == up and slope != 0.0:
                 step = -value / slope
-                part: float = 0.5 * step * self.motion.bend(row, c, s) / slope
+                part: float = 0.5 * step * bend / slope
                 step /= 1.0 + part if fabs(part) < 0.5 else 1.0
             rest: float = (3.0 * self.curvature + third * fabs(slope)) * fabs(step) * step * step
             if not low < x + step < high:
