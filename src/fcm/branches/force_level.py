@@ -148,7 +148,7 @@ def _found(system: System, omega: float, linear: float, top: float) -> LevelSolu
     if len(system.scene.contacts) >= options.min_contacts and linear < near < top:
         path = _coarse_curve(system, omega, linear, near, (1.0,))
         again = path.status is not Status.COMPLETE or turned_back(path, options)
-        path = None if again and path.status is not Status.EVENT else path
+        path = None if again and path.status not in (Status.EVENT, Status.REVERSED) else path
     path = path or _coarse_curve(system, omega, linear, top, (1.0,))
     found = path.z[path.parameter == 1.0]
     found[:, -1] = omega
@@ -203,6 +203,8 @@ def _coarse_curve(
     options = system.option(LEVEL_CURVE)
     for step, over_corners in ((options.max_step_stations, True), (options.max_step, False)):
         path = level_curve(system, omega, LevelRange((0.0, top), step, stations, linear, True, over_corners))
+        if path.status is Status.REVERSED:
+            return path
         if path.status in (Status.COMPLETE, Status.EVENT) and not _skips_station(path, stations):
             return path
     for step in (options.max_step, options.stalled_fraction * options.max_step):
@@ -280,8 +282,10 @@ def level_curve(system: System, omega: float, levels: LevelRange) -> Path:
             start = np.append(x, level)
             path = _follow_level(system, start, omega, whole)
             if _comes_back(path, low):
-                path = _follow_level(system, start, omega, carefully)
-                path = replace(path, status=Status.STALLED) if _comes_back(path, low) else path
+                path, top = _follow_level(system, start, omega, carefully), path.parameter.max()
+                if _comes_back(path, low):
+                    same = abs(path.parameter.max() - top) < options.reversal_tolerance * top
+                    path = replace(path, status=Status.REVERSED if same else Status.STALLED)
             if path.z.shape[0]:
                 return path
     assert path is not None

@@ -133,6 +133,9 @@ class LevelCurveOptions:
         Part of the longest step, where a curve has stalled,
     reversed_fraction : float
         and where it has gone back on itself.
+    reversal_tolerance : float
+        Relative difference of the levels from which both go back, up to which they are at one corner. Then no
+        other step goes on.
     few_harmonics : int
         Harmonics whose curve tells those of more how far they are to be followed,
     few_unknowns : int
@@ -166,6 +169,7 @@ class LevelCurveOptions:
     max_step_stations: float = 1.0
     stalled_fraction: float = 0.5
     reversed_fraction: float = 0.25
+    reversal_tolerance: float = 1e-6
     few_harmonics: int = 5
     few_unknowns: int = 64
     reliable_harmonics: int = 3

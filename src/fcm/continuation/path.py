@@ -21,6 +21,7 @@ class Status(Enum):
     UNBOUNDED = "the amplitude grows without limit, at a resonance that hardly anything damps; add damping"
     TOO_LONG = "the curve did not leave the range within the number of steps allowed; try a larger --max-step"
     AROUND = "the curve was lost to a closed one, and went around that; try a smaller --max-step"
+    REVERSED = "the curve goes back on itself at a corner, by short steps, too"
     EVENT = "the curve came to an event at which it was to end"
     INTERRUPTED = "interrupted"
 
