@@ -25,10 +25,11 @@ class Budget:
         >>> work.add(1.0)
         >>> Budget.of(work, PairOptions(work_fraction=0.3, min_seconds=0.1)).seconds
         0.3
+        >>> Budget.of(work, PairOptions(work_fraction=2.0, max_seconds=0.5, long_fraction=0.8)).seconds
+        0.8
         """
-        return cls(
-            part * min(max(options.work_fraction * work.seconds, options.min_seconds), options.max_seconds)
-        )
+        most = max(options.max_seconds, options.long_fraction * work.seconds)
+        return cls(part * min(max(options.work_fraction * work.seconds, options.min_seconds), most))
 
     @classmethod
     def elsewhere(cls, work: WorkCount, options: PairOptions, part: float = 1.0) -> Budget:

@@ -67,7 +67,9 @@ class PairOptions:
         Of work, as of `fcm.harmonic_balance.cost_model`, that following the partner may take where no
         point of it lies normal to the curve; as much again for points that are not found;
     work_fraction, min_seconds : float
-        but no more than this part of the work that the response itself took, or so many seconds.
+        but no more than this part of the work that the response itself took, or so many seconds;
+    long_fraction : float
+        and, where that took long, this part of it.
     max_seconds_elsewhere, work_fraction_elsewhere, min_seconds_elsewhere : float
         The same of what the partner has elsewhere.
     piece_fraction : float
@@ -83,9 +85,11 @@ class PairOptions:
     fewer_factors : tuple of int
         `harmonics_factor` where following it takes longer than it may: about as many evaluations as the curve
         did, for so many times as many harmonics. The first with which it does not is taken.
-    following, coarse_following : FollowOptions
-        How the partner is followed; and what it has elsewhere, of which only the passings of frequencies
-        matter.
+    following, following_of_many, coarse_following : FollowOptions
+        How the partner is followed; that of many contacts, most of whose corners are slight; and what it has
+        elsewhere, of which only the passings of frequencies matter.
+    many_contacts : int
+        Contacts that are many.
     max_point_seconds : float
         The same that all points may take that are moved to the partner, those that are found too.
     span_margin : float
@@ -152,6 +156,7 @@ class PairOptions:
     max_point_seconds: float = math.inf
     work_fraction: float = 0.3
     min_seconds: float = 0.4
+    long_fraction: float = 0.0
     max_seconds_elsewhere: float = 8.0
     work_fraction_elsewhere: float = 1.6
     min_seconds_elsewhere: float = 0.8
@@ -164,6 +169,14 @@ class PairOptions:
     following: FollowOptions = field(
         default_factory=lambda: FollowOptions(0.1, events=EventOptions(peak_tolerance_of_many=1e-5))
     )
+    following_of_many: FollowOptions = field(
+        default_factory=lambda: FollowOptions(
+            0.2,
+            step=StepOptions(target_turn=0.4, target_miss=0.1, target_output_error=0.5, min_cosine=0.8),
+            events=EventOptions(peak_tolerance_of_many=1e-5),
+        )
+    )
+    many_contacts: int = 12
     coarse_following: FollowOptions = field(
         default_factory=lambda: FollowOptions(
             0.2,
@@ -209,7 +222,7 @@ class PairOptions:
 
 PAIR = PairOptions()
 # of harmonics that are given: the pair is for the errors alone, and nothing is traced again
-OF_GIVEN = PairOptions(work_fraction=2.0, max_seconds=8.0, work_fraction_elsewhere=2.0)
+OF_GIVEN = PairOptions(work_fraction=2.0, max_seconds=8.0, long_fraction=1.0, work_fraction_elsewhere=2.0)
 # at single points, where many harmonics take little: as many as the partner of a partner has
 AT_POINTS = PairOptions(
     harmonics_factor=PAIR.harmonics_factor * PAIR.second_factor,

@@ -214,7 +214,8 @@ class _Search:
                 options.newton_tolerance,
                 OF_FAR_MOTIONS,
             )
-            rough = replace(options, following=options.coarse_following)
+            coarse = options.coarse_following
+            rough = replace(options, following=coarse, following_of_many=coarse)
             self.followers[k] = StretchFollower(self.system, finer, lifted, self.paths[k], rough, Budget(0.0))
         return self.followers[k]
 

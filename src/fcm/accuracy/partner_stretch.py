@@ -68,6 +68,8 @@ class StretchFollower:
     ) -> None:
         self.fewer = fewer.harmonics
         self.finer, self.lifted, self.curve, self.options = finer, lifted, curve, options
+        many = len(finer.scene.contacts) >= options.many_contacts
+        self.following = options.following_of_many if many else options.following
         self.each = seconds_of(finer, 1, len(finer.harmonics))
         self.budget, self.evaluations = budget, 0
 
@@ -80,10 +82,20 @@ class StretchFollower:
         if self.budget.seconds <= 0.0:
             return []
         tries, count = self.options.end_tries, len(self.curve.z)
-        before = self._end(range(first, max(first - tries, -1), -1)) if first >= 0 else self._alike(0)
+        before = (
+            self._end(range(first, max(first - tries, -1), -1)) if first >= 0 else self._same_frequency(0)
+        )
         behind = self._end(range(last, min(last + tries, count))) if last < count else None
+        pieces = self._hanging_on(before, behind)
+        if first < 0 and before is None and not any(piece.whole for piece in pieces):
+            before = self._nearest_passed(0, True)  # the level takes more than the partner from an end
+            pieces += self._hanging_on(before, None)
         if before is None and behind is None:
-            behind = self._alike(last - 1)
+            pieces += self._hanging_on(None, self._alike(last - 1))
+        return pieces
+
+    def _hanging_on(self, before: StretchEnd | None, behind: StretchEnd | None) -> list[PartnerPiece]:
+        """One piece that leads from one end to the other, or those that hang on each that there is."""
         span, pieces = self._span(before, behind), list[PartnerPiece]()
         for begin, end in ((before, behind), (behind, before)):
             if begin is None or not span[0] < span[1]:
@@ -210,7 +222,7 @@ class StretchFollower:
             if self.budget.seconds < 0.0:
                 raise BudgetSpentError
 
-        follower = Follower(balance, span, wanted, self.options.following, pay, stepper)
+        follower = Follower(balance, span, wanted, self.following, pay, stepper)
         with self.finer.exclusive_balance():
             stepper.newton.poll = self.finer.work.poll
             try:
