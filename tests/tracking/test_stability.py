@@ -71,7 +71,7 @@ def test_the_least_peak_has_a_mark_where_no_motion_stays(fcm, narrow):
     assert (
         done.code == 0
         and place.endswith("rad/s!")
-        and said.startswith("! unstable: the motion is not stable there")
+        and said.startswith("! unstable: with these harmonics the motion is not stable there")
     )
     assert fcm("plot", "peak", "a.nc", "-o", "a.svg").code == 0
     assert re.search(r"least peak [0-9.e-]+, unstable at", Path("a.svg").read_text("utf-8"))

@@ -8,6 +8,9 @@ from typing import Any
 from fcm.cli.terminal import plain
 
 UNSTABLE = "!"  # beside a peak where the motion is not stable
+DOES_NOT_STAY = (
+    "unstable: with these harmonics the motion is not stable there, and does not stay at this peak"
+)
 UNKNOWN = "?"  # beside that of which it is not told whether it is stable
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from fcm.cli.columns import (
     BEYOND,
+    DOES_NOT_STAY,
     UNKNOWN,
     UNSTABLE,
     aligned,
@@ -195,7 +196,7 @@ def _curves(
     lower = [one for curve in curves for dof in dofs for one in curve.get("peaks", {}).get(dof, ())]
     marks = {_stability(curve, dof) for curve in curves for dof in dofs} | set(map(_mark_of, lower))
     if UNSTABLE in marks:
-        lines.append(f"{UNSTABLE} unstable: the motion is not stable there: none stays at this peak")
+        lines.append(f"{UNSTABLE} {DOES_NOT_STAY}")
     if UNKNOWN in marks:
         lines.append(f"{UNKNOWN} stability is unknown there")
     if ranges_of:

@@ -46,7 +46,7 @@ def stable_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: li
     if not cells:
         return ""
     header = [*names, *(text for dof in dofs for text in (f"stable {dof}", f"at {unit}", "error"))]
-    said = "the greatest motions that stay, where a peak does not, or may not:"
+    said = "the greatest motions known to stay, where a peak does not, or may not; others may be greater:"
     return f"{said}\n{aligned([header, *cells], left=0)}"
 
 

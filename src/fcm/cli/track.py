@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.columns import UNKNOWN, UNSTABLE, aligned, share_of, short, stopped_early, swept
+from fcm.cli.columns import DOES_NOT_STAY, UNKNOWN, UNSTABLE, aligned, share_of, short, stopped_early, swept
 from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages
 from fcm.cli.terminal import plain
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 WHAT = ("folds", "peaks", "slip", "separation", "closing")
 _SAID = {
-    UNSTABLE: f"\n{UNSTABLE} unstable: the motion is not stable there: none stays at this peak",
+    UNSTABLE: f"\n{UNSTABLE} {DOES_NOT_STAY}",
     UNKNOWN: f"\n{UNKNOWN} stability is unknown there",
 }
 OF_NO_USE = {  # beside --track, and why

@@ -13,7 +13,7 @@ Summary = Mapping[str, Any]
 NAMES = {EXACT: "exact periodic motion", CLOSED_FORM: "harmonic balance, closed form"}
 HEADS = ["peak", "its freq.", "folds", "points", "curve"]  # of MEASURES
 MARKS = {True: "", False: "!", None: "?"}  # beside a peak: the motion there is stable, is not, is not told
-SAID = {"!": "! unstable: none stays at this peak", "?": "? stability is unknown there"}
+SAID = {"!": "! unstable: the motion does not stay at this peak", "?": "? stability is unknown there"}
 DIGITS = 6  # of amplitudes and frequencies
 
 
