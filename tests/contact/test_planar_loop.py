@@ -79,6 +79,15 @@ def test_along_a_line_it_is_that_of_a_contact_on_a_line():
     np.testing.assert_allclose(plane.force(theta)[:, 0], line.force(theta), rtol=0.0, atol=1e-9)
 
 
+def test_of_tiny_friction_it_is_followed_in_few_panels():
+    u, v = np.array([0.2, -1j, 0.0, 0.4]), np.array([0, 1.0])
+    line = periodic_loop(u, v, 1e-3, 1.0, 1.0, 0.5)
+    plane = planar_loop(u, 1e-8 * u, v, 1e-3, 1.0, 1.0, 0.5)
+    assert plane._panels.shape[0] < 200
+    assert plane.dissipation == pytest.approx(line.dissipation, rel=1e-7)
+    assert plane.slip_path == pytest.approx(line.slip_path, rel=1e-7)
+
+
 def test_a_circle_one_that_sticks_and_one_that_is_open():
     circle = planar_loop([0, 1], [0, -1j], [0], 1.0, 2.0, 1.0, 1.2)
     assert (circle.sequence, circle.angles.size) == ("P", 0)

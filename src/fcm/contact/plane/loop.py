@@ -168,7 +168,7 @@ def _solved(harmonics: list[int], x: FloatArray, parameters: FloatArray) -> Plan
     most = LOOP.recorded_panels
     while True:
         contact = PlanarContact(harmonics, harmonics, most, FINEST)
-        contact.at(x, *parameters)
+        contact.at(x, *parameters, gradient=False)
         if np.isnan(contact.forces).any():
             raise RuntimeError("no steady cycle of the motion was found")
         if contact.cycle.slider.panels <= most:
