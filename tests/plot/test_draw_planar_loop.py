@@ -120,3 +120,15 @@ def test_powers_of_ten_are_in_the_labels_and_not_on_them():
     numbers = [float(text.get_text().strip("$").replace("−", "-").removeprefix("\\mathdefault{").rstrip("}"))
                for text in plane.get_xticklabels()]  # fmt: skip
     assert numbers == pytest.approx((1e6 * plane.get_xticks()).tolist())
+
+
+def test_the_labels_stay_within_the_picture():
+    """That of a leaning direction ran out of it at both ends."""
+    long = "-0.866025 112y - 0.5 112z + 0.866025 900y + 0.5 900z"
+    figure = draw_planar_loop(DrawnPlanarLoop(LOOP, "pad", (long, long), ("mm", "N")))
+    figure.draw_without_rendering()
+    whole = figure.bbox
+    for axes in figure.axes:
+        for label in (axes.xaxis.label, axes.yaxis.label):
+            box = label.get_window_extent()
+            assert whole.x0 <= box.x0 and box.x1 <= whole.x1 and whole.y0 <= box.y0 and box.y1 <= whole.y1

@@ -158,9 +158,10 @@ def _only(values: FloatArray, which: npt.NDArray[np.bool_]) -> FloatArray:
 
 
 def _of_direction(symbol: str, name: str, unit: str) -> str:
-    """The label of a displacement, as a number of its unit or as a part of another."""
-    scaled = unit.startswith("$")
-    return f"Displacement {symbol}{unit if scaled else ''} = {_plain(name)}{unit}"
+    """The label of a displacement, as a number of its unit or a part of another; a long name is left out."""
+    scaled, short = unit.startswith("$"), len(name) <= LAYOUT.direction_name
+    named = f"{unit if scaled else ''} = {_plain(name)}" if short else ""
+    return f"Displacement {symbol}{named}{unit}"
 
 
 def _plain(text: str) -> str:

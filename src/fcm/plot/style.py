@@ -31,6 +31,7 @@ class Layout:
     height_with_errors: float = 4.9  # [inch] of a figure of a response with the panel of its errors
     row_height: float = 2.7  # [inch] of a row of panels
     pairs_height: float = 3.4  # [inch] of a row of panels with contacts
+    direction_name: int = 30  # characters of a direction that fit beside an axis
     planar_height: float = 3.35  # [inch] of a row of planar loops
     loop_alone: float = 1.25  # how much higher a loop alone is than one of a row
     plane_alone: float = 1.4  # height of a picture of one panel, relative to that of a row of two
