@@ -167,15 +167,22 @@ def _mark_resonances(upper: Axes, lower: Axes, mode: DrawnMode) -> None:
     _, damping = mode.smooth(_PERCENT * mode.damping)
     for level, amplitude, resonance in mode.resonances:
         upper.plot([amplitude], [resonance], "D", color="black", markersize=4.0)
+        inwards = _inwards(mode, amplitude)
         upper.annotate(
             f"resonance, forces × {level:g}",
             (amplitude, resonance),
-            xytext=(6, 4),
+            xytext=(6 * inwards, 4),
             textcoords="offset points",
             fontsize=LAYOUT.small_text,
+            ha="right" if inwards < 0 else "left",
         )
         k = int(np.argmin(np.abs(np.log(along / amplitude)) + np.abs(frequency / resonance - 1.0)))
         lower.plot([along[k]], [damping[k]], "D", color="black", markersize=4.0)
+
+
+def _inwards(mode: DrawnMode, amplitude: float) -> int:
+    """To which side of an amplitude there is more room on a logarithmic axis: -1 is the left."""
+    return -1 if amplitude**2 > mode.amplitude[0] * mode.amplitude[-1] else 1
 
 
 def _mark_greatest(axes: Axes, mode: DrawnMode, colour: str, unit: str) -> None:
@@ -189,7 +196,7 @@ def _mark_greatest(axes: Axes, mode: DrawnMode, colour: str, unit: str) -> None:
     axes.plot([x], [y], "o", markersize=6, markerfacecolor="none", color=colour, markeredgewidth=1.0)
     if unit:
         text = f"{y:.3g} % at {mode.frequency[top]:.4g} {unit}"
-        inwards = -1 if x * x > mode.amplitude[0] * mode.amplitude[-1] else 1  # from the middle of a log axis
+        inwards = _inwards(mode, x)
         axes.annotate(
             text, (x, y), xytext=(8 * inwards, 4), textcoords="offset points", fontsize=8,
             ha="right" if inwards < 0 else "left",
