@@ -139,3 +139,18 @@ def test_loads_that_nothing_holds_are_said(fcm, scene):
     scene.write_text(text + '\n[[load]]\ndof = "u"\nforce = 5.0\n')
     done = fcm("respond", scene, "--mode", 1, "--level", "0.1:10")
     assert done.code == 2 and "does not come to rest" in done.err
+
+
+@pytest.mark.parametrize(
+    ("force", "said"),
+    [
+        (101.0, "under the static loads 1 of 1 contacts are closed; their normal forces sum to 6\n"),
+        (-606.0, "under the static loads no contact is closed (1 in all): do they push the faces apart?"),
+    ],
+)
+def test_which_contacts_loads_close_is_said(fcm, scene, force, said):
+    """Along the normal the structure has a stiffness of 100, the contact of 1 and a preload of 5."""
+    text = scene.read_text().replace("[[0.707, 0.707], [1.0, -0.5]]", "[[1.0, 0.0], [0.0, 1.0]]")
+    scene.write_text(f'{text}\n[[load]]\ndof = "v"\nforce = {force}\n')
+    done = fcm("respond", scene, "--mode", 1, "--level", "0.1:10", "--harmonics", 1)
+    assert done.code == 0 and said in done.err

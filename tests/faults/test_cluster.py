@@ -124,7 +124,7 @@ def test_what_stands_in_the_way_of_a_cluster_is_said_in_one_line(program, monkey
     without = FEW + "import sys\nsys.modules['distributed'] = None\n"
     missing = program("respond", "one.toml", "--cluster", address, before=without)
     assert missing.returncode == 2 and missing.err.count("\n") == 1
-    assert missing.err.endswith("not installed: pip install 'fcm[cluster]'\n")
+    assert missing.err.endswith("not installed: pip install distributed\n")
     for more, why in (
         ("--jobs 2", "--jobs is of no use"),
         ("--level 0:1 --at 1.2", "of no use with --level"),

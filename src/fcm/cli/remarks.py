@@ -43,13 +43,36 @@ def announce(messages: Messages, scene: Scene, asked: Asked) -> bool:
     doubt = resonance_doubt(scene) if in_steps else ""
     if doubt:
         messages.warning(doubt)
-    count = len(scene.each_curve())
+    first, count = scene.each_curve()[0], len(scene.each_curve())
+    if first.loads and first.contacts:
+        _say_rest(messages, first)
     method = asked.method if asked.mode is None else f"nonlinear mode {asked.mode}"
     messages.detail(f"{scene.title or scene.name}: curves to trace: {count}, method: {method}")
     if in_steps and (points := least_points(scene)) > SENTENCES.many_points:
         curves = f"{count} curve{'s' * (count > 1)}"
         messages.info(f"at least {points} points: {curves} in steps of {scene.max_step:g} at most")
     return not doubt
+
+
+def _say_rest(messages: Messages, scene: Scene) -> None:
+    """Which contacts the static loads close, of the first curve: a sign may be wrong, or a bolt too weak."""
+    from fcm.harmonic_balance.static_equilibrium import RestError, normal_forces_at_rest
+
+    try:
+        forces = normal_forces_at_rest(scene)
+    except RestError:  # the curve says it
+        return
+    closed, count, unit = int((forces > 0.0).sum()), forces.size, scene.units[1]
+    if not closed:
+        messages.warning(
+            f"under the static loads no contact is closed ({count} in all): do they push the faces apart? "
+            "a displacement along `normal` closes a contact"
+        )
+        return
+    total = f"{forces.sum():.4g}{f' {unit}' if unit else ''}"
+    messages.info(
+        f"under the static loads {closed} of {count} contacts are closed; their normal forces sum to {total}"
+    )
 
 
 def close(

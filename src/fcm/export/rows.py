@@ -131,11 +131,11 @@ def check_mesh(rows: Rows, mesh: Mesh, name: str) -> list[str]:
     return said
 
 
-LIBRARIES = {".vtu": ("meshio", "mesh"), ".h5": ("h5py", "hdf5"), ".hdf5": ("h5py", "hdf5")}
+LIBRARIES = {".vtu": "meshio", ".h5": "h5py", ".hdf5": "h5py"}
 
 
 def check_library(ending: str) -> None:
     """Raise ExportError where a kind of file is written by a package that is not installed."""
-    package, extra = LIBRARIES.get(ending, ("", ""))
-    if package and find_spec(package) is None:
-        raise ExportError(f"a {ending} file is written by the package {package}: pip install 'fcm[{extra}]'")
+    package = LIBRARIES.get(ending)
+    if package is not None and find_spec(package) is None:
+        raise ExportError(f"a {ending} file is written by the package {package}: pip install {package}")

@@ -119,6 +119,17 @@ def at_rest(system: System) -> FloatArray:
     raise RestError(NO_EQUILIBRIUM)
 
 
+def normal_forces_at_rest(scene: Scene) -> FloatArray:
+    """Of each contact under the static loads of a scene, (contact,); 0 of those that are open.
+
+    Raises
+    ------
+    RestError
+        If there is no equilibrium.
+    """
+    return np.maximum(System(scene).loads_at_rest, 0.0)
+
+
 def loads_move_rigid_body(linear: Linear) -> bool:
     """Whether static loads push along a rigid-body mode that nothing holds."""
     size = np.abs(linear.load)

@@ -114,7 +114,7 @@ def _read(path: Path, kind: str) -> Any:
     try:
         from meshio import gmsh, nastran
     except ModuleNotFoundError:
-        raise MeshError("such a mesh is read by the package meshio: pip install 'fcm[mesh]'") from None
+        raise MeshError("such a mesh is read by the package meshio: pip install meshio") from None
     try:
         return {"gmsh": gmsh, "nastran": nastran}[kind].read(path)
     except Exception as error:  # whatever meshio comes to, the file is at fault

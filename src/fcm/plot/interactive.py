@@ -178,7 +178,7 @@ def _plotly() -> Any:
         from plotly import graph_objects
     except ModuleNotFoundError:
         raise PlotError(
-            "a page needs the package plotly: pip install 'fcm[html]', or write .png, .svg or .pdf"
+            "a page needs the package plotly: pip install plotly, or write .png, .svg or .pdf"
         ) from None
     return graph_objects
 

@@ -70,7 +70,7 @@ def _client(address: str, options: RunOptions) -> Any:
             from distributed import Client
     except ImportError:
         raise ClusterError(
-            "a cluster needs dask.distributed, which is not installed: pip install 'fcm[cluster]'"
+            "a cluster needs dask.distributed, which is not installed: pip install distributed"
         ) from None
     until = time.monotonic() + options.scheduler_answer
     fault = answering(address, until)

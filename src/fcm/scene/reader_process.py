@@ -104,9 +104,7 @@ def _op4(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
     except ModuleNotFoundError as error:
         if error.name and error.name.partition(".")[0] != "pyyeti":  # of what pyyeti itself needs
             raise _unusable(path, error) from None
-        raise DataFileError(
-            "it needs the package pyyeti: pip install 'fcm[op4]', or write it as .mtx"
-        ) from None
+        raise DataFileError("it needs the package pyyeti: pip install pyyeti, or write it as .mtx") from None
     except Exception as error:  # of an old release, for one, with a numpy that has not what it uses
         raise _unusable(path, error) from None
     for match in _OP4_FORMAT.finditer(path.read_bytes()):

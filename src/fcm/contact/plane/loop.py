@@ -166,9 +166,10 @@ def planar_loop(
 def _solved(harmonics: list[int], x: FloatArray, parameters: FloatArray) -> PlanarContact:
     """The kernel with the steady cycle, all panels of which are recorded."""
     most = LOOP.recorded_panels
+    mu, k_u, k_v, n_0, *start = parameters.tolist()
     while True:
         contact = PlanarContact(harmonics, harmonics, most, FINEST)
-        contact.at(x, *parameters, gradient=False)
+        contact.at(x, mu, k_u, k_v, n_0, start[0], start[1], False)
         if np.isnan(contact.forces).any():
             raise RuntimeError("no steady cycle of the motion was found")
         if contact.cycle.slider.panels <= most:

@@ -29,9 +29,7 @@ def read_hdf5(path: Path, wanted: Collection[str], largest: int) -> tuple[dict[s
     try:
         import h5py
     except ModuleNotFoundError:
-        raise UnreadableError(
-            "it needs the package h5py: pip install 'fcm[hdf5]', or write it as .npz"
-        ) from None
+        raise UnreadableError("it needs the package h5py: pip install h5py, or write it as .npz") from None
     with h5py.File(path, "r") as file:
         matlab = bool(file.userblock_size)  # where MATLAB writes its header
         places: dict[str, Any] = {}
