@@ -9,6 +9,8 @@ import pytest
 import scipy.io
 import scipy.sparse
 
+from fcm.response.request import Request
+from fcm.response.trace import traced_curve
 from fcm.scene import SceneError, scene_from_dict
 
 # three masses on springs: ground - 1 - 2 - 3
@@ -413,6 +415,22 @@ def test_a_loss_factor_is_half_of_it_at_each_resonance():
     for omega in EXACT:
         hysteretic = np.linalg.inv(K * (1 + 0.02j) - omega**2 * M)[2, 2]
         assert abs(answer(scene.modal, omega)[2, 2]) == pytest.approx(abs(hysteretic), rel=5e-3)
+
+
+def test_a_loss_factor_at_one_frequency_is_right_where_a_contact_holds_a_rigid_body():
+    """As the note says: of two masses, one of which floats, the peak is F / (loss factor times stiffness)."""
+    loss, stiffness = 0.02, 1e4
+    matrices = {"mass": np.eye(2).tolist(), "stiffness": [[stiffness, 0.0], [0.0, 0.0]]}
+    sticking = {"tangential": {"a": 1.0, "b": -1.0}, "normal": "b", "mu": 0.3, "k_u": 1e9, "k_v": 0.0}
+    table = {
+        "structure": {"dofs": ["a", "b"], **matrices},
+        "contact": [{"name": "c", **sticking, "n_0": 1e3}],
+        "force": [{"dof": "a", "amplitude": 1.0}],
+        "response": {"frequency": [60.0, 80.0], "harmonics": 1},
+    }
+    table["structure"]["damping"] = {"stiffness": loss / np.sqrt(stiffness / 2.0)}
+    curve = traced_curve(scene_from_dict(table), Request((1,), 1e-2))
+    assert np.nanmax(curve.amplitude[:, 0]) == pytest.approx(1.0 / (loss * stiffness), rel=1e-3)
 
 
 def test_rigid_bodies_are_recognised_and_said():

@@ -49,7 +49,8 @@ def damping_of(
     if matrices.hysteretic:
         equal = (
             "structure: a loss factor is taken as half of it for damping ratio, equal at each resonance "
-            "without contacts; where they raise its frequency, the damping is more by that ratio"
+            "without contacts; where contacts move it far, or hold rigid bodies, it is another: "
+            "{ stiffness = LOSS_FACTOR / OMEGA } has it right at one frequency OMEGA in rad/s"
         )
         return Damping(np.full(stiffness.size, matrices.hysteretic / 2.0), 0.0, [equal])
     if matrices.C is None:
