@@ -392,14 +392,13 @@ def frequencies_in_gaps(
         inner = [(max(low, a), min(high, b)) for a, b in moved if a < high and b > low]
         if low <= 0.0 or not inner:
             continue
-        count = math.ceil(math.log(high / low) / math.log1p(most))
-        spaced = [low, *(low * (high / low) ** (k / count) for k in range(1, count)), high]
-        tried = list(spaced)
-        for omega in (*spaced[1:-1], *peaks):
-            apart = omega in spaced or min(abs(omega - other) for other in tried) > distinct * omega
-            if apart and any(a < omega < b for a, b in inner):
-                tried.append(omega)
-                yield omega
+        count = max(math.ceil(math.log(high / low) / math.log1p(most)), 1)
+        spaced = [low * (high / low) ** (k / count) for k in range(count + 1)]
+        apart = spaced[1:-1]
+        for omega in peaks:
+            if min(abs(omega - other) for other in (*spaced, *apart)) > distinct * omega:
+                apart.append(omega)
+        yield from (omega for omega in apart if any(a < omega < b for a, b in inner))
 
 
 def with_low_harmonics(system: System, found: Sequence[LevelSolutions]) -> tuple[int, ...]:

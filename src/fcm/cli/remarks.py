@@ -45,7 +45,7 @@ def announce(messages: Messages, scene: Scene, asked: Asked) -> bool:
         messages.warning(doubt)
     first, count = scene.each_curve()[0], len(scene.each_curve())
     if first.loads and first.contacts:
-        _say_rest(messages, first)
+        _say_rest(messages, first, " of the first curve" if count > 1 else "")
     method = asked.method if asked.mode is None else f"nonlinear mode {asked.mode}"
     messages.detail(f"{scene.title or scene.name}: curves to trace: {count}, method: {method}")
     if in_steps and (points := least_points(scene)) > SENTENCES.many_points:
@@ -54,8 +54,8 @@ def announce(messages: Messages, scene: Scene, asked: Asked) -> bool:
     return not doubt
 
 
-def _say_rest(messages: Messages, scene: Scene) -> None:
-    """Which contacts the static loads close, of the first curve: a sign may be wrong, or a bolt too weak."""
+def _say_rest(messages: Messages, scene: Scene, of: str) -> None:
+    """Which contacts the static loads of a curve close: a sign may be wrong, or a bolt too weak."""
     from fcm.harmonic_balance.static_equilibrium import RestError, normal_forces_at_rest
 
     try:
@@ -63,16 +63,15 @@ def _say_rest(messages: Messages, scene: Scene) -> None:
     except RestError:  # the curve says it
         return
     closed, count, unit = int((forces > 0.0).sum()), forces.size, scene.units[1]
+    under = f"under the static loads{of}"
     if not closed:
         messages.warning(
-            f"under the static loads no contact is closed ({count} in all): do they push the faces apart? "
+            f"{under} no contact is closed ({count} in all): do they push the faces apart? "
             "a displacement along `normal` closes a contact"
         )
         return
     total = f"{forces.sum():.4g}{f' {unit}' if unit else ''}"
-    messages.info(
-        f"under the static loads {closed} of {count} contacts are closed; their normal forces sum to {total}"
-    )
+    messages.info(f"{under} {closed} of {count} contacts are closed; their normal forces sum to {total}")
 
 
 def close(

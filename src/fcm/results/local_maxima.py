@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from math import copysign, isfinite, sqrt
+from math import isfinite
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,7 @@ from fcm.contact.limits import FloatArray
 from fcm.results.options import RESULTS, PeakOptions
 
 _PARABOLA, _BEFORE, _BEHIND = (-1, 0, 1), (-2, -1, 0, 1), (-1, 0, 1, 2)  # points that polynomials go through
+_SAMPLES = 129  # between two neighbours, the middle one among them
 
 
 def lower_peaks(amplitude: FloatArray, options: PeakOptions = RESULTS.peaks) -> npt.NDArray[np.intp]:
@@ -76,29 +77,10 @@ def _rise(x: list[float], y: list[float]) -> float:
     where points are one, or not there."""
     if not all(one < other for one, other in pairwise(x)) or not all(map(isfinite, y)):
         return 0.0
-    differences = list(y)  # Newton's divided differences
-    for order in range(1, len(x)):
-        for i in range(len(x) - 1, order - 1, -1):
-            differences[i] = (differences[i] - differences[i - 1]) / (x[i] - x[i - order])
-    coefficients = [differences[-1]]  # by powers, the highest first
-    for node, value in zip(x[-2::-1], differences[-2::-1], strict=True):
-        shifted = [-node * one for one in coefficients]
-        coefficients = [p + q for p, q in zip([*coefficients, 0.0], [0.0, *shifted], strict=True)]
-        coefficients[-1] += value
-    d, c, b, a = [0.0] * (4 - len(coefficients)) + coefficients
-    top = x.index(0.0)
-    turns = _roots(3.0 * d, 2.0 * c, b)
-    inside = [t for t in turns if x[top - 1] < t < x[top + 1]]
-    return max((a + t * (b + t * (c + t * d)) for t in inside), default=0.0)
-
-
-def _roots(a: float, b: float, c: float) -> list[float]:
-    """Real roots of a x^2 + b x + c."""
-    square = b * b - 4.0 * a * c
-    if square < 0.0:
-        return []
-    far = -0.5 * (b + copysign(sqrt(square), b))  # of the two signs, that without cancellation
-    return [one / other for one, other in ((far, a), (c, far)) if other]
+    top, unit = x.index(0.0), x[-1] - x[0]
+    places = np.array(x) / unit
+    coefficients = np.linalg.solve(np.vander(places), y)
+    return float(np.polyval(coefficients, np.linspace(places[top - 1], places[top + 1], _SAMPLES)).max())
 
 
 def _prominence(heights: FloatArray, k: int) -> float:
