@@ -180,3 +180,52 @@ def test_a_file_of_pairs_does_not_tell_its_sides(tmp_path):
     scene = read(tmp_path, {"nodes": "pairs.csv", "normal": "z"})
     assert weights(scene, scene.contacts[0].tangential) == {"1x": 1.0, "101x": -1.0}
     assert scene.interfaces[0].first.tolist()[2] == [0.0, 1.0, 0.0]
+
+
+def of_file(folder, partners, contact=(), nodes=()):
+    """The scene of pairs 1.. with partners, by a file and the mesh of both sides."""
+    rows = "".join(f"{1 + k},{node}\n" for k, node in enumerate(partners))
+    (folder / "pairs.csv").write_text(f"node,other\n{rows}")
+    first, second = places(0.05)
+    (folder / "two.inp").write_text(deck(first, second))
+    given = {"pairs": "pairs.csv", "mesh": "two.inp"} | dict(nodes)
+    modal = {"dofs": [f"{n}{d}" for b in (1, 101) for n in range(b, b + 12) for d in "xyz"]}
+    shapes = np.random.default_rng(1).normal(size=(3, len(modal["dofs"])))
+    modal |= {"frequency": [1.0, 2.0, 3.0], "damping": 0.05, "shapes": shapes}
+    one = {"name": "shroud", "nodes": given, "normal": "fitted", "tangential": "fitted"}
+    data = {"modal": modal, "force": [{"dof": "1x", "amplitude": 1.0}], "response": {"frequency": [0.8, 1.2]}}
+    return scene_from_dict(data | {"contact": [one | NUMBERS | dict(contact)]}, "test.toml", folder)
+
+
+RIGHT = [112 - k for k in range(12)]  # the second side is numbered the other way round
+
+
+def test_a_file_of_pairs_and_a_mesh_are_as_two_sets(tmp_path):
+    of_sets, scene = read(tmp_path), of_file(tmp_path, RIGHT)
+    for one, other in zip(of_sets.contacts, scene.contacts, strict=True):
+        assert weights(scene, other.normal) == pytest.approx(weights(of_sets, one.normal))
+        assert weights(scene, other.tangential) == pytest.approx(weights(of_sets, one.tangential))
+    assert scene.notes[0] == 'contact "shroud": 12 pairs, 0.05 to 0.05 apart'
+    assert scene.interfaces[0].second == pytest.approx(of_sets.interfaces[0].second)
+
+
+def test_a_column_that_is_shifted_by_a_row_is_seen_by_the_distances(tmp_path):
+    scene = of_file(tmp_path, [*RIGHT[1:], RIGHT[0]])
+    farthest = np.hypot(2.0, 3 * 1.2)  # of the last node, whose partner is the first one's
+    assert f"to {np.hypot(farthest, 0.05):.3g} apart" in scene.notes[0]
+    assert "12 pairs are not of nearest nodes: 112 is nearer to 1 than its partner 111" in scene.notes[0]
+
+
+@pytest.mark.parametrize(
+    "partners, nodes, words",
+    [
+        ([*RIGHT[1:], RIGHT[0]], {"tolerance": 0.1}, "nodes 12 and 112 are 4.119 apart, more than 0.1"),
+        ([*RIGHT[:-1], 999], {}, "nodes.pairs: has nodes that the mesh has not: 999"),
+        (RIGHT, {"sets": ["LEFT", "RIGHT"]}, "nodes: has both sets and pairs; give one of them"),
+        ([*RIGHT[:-1], RIGHT[-1], RIGHT[-1]], {}, "nodes that the mesh has not: 13"),
+    ],
+)
+def test_what_is_amiss_with_a_file_and_a_mesh_is_said(tmp_path, partners, nodes, words):
+    with pytest.raises(SceneError) as caught:
+        of_file(tmp_path, partners, nodes=nodes)
+    assert words in str(caught.value)

@@ -93,6 +93,29 @@ def paired(mesh: Mesh, one: Sequence[int], other: Sequence[int], tolerance: floa
     return Paired(pairs, distance[within], alone, tuple(node for node in other if node not in taken))
 
 
+def nearest_partners(
+    mesh: Mesh, pairs: Sequence[tuple[int, int]], options: PairingOptions = PAIRING
+) -> list[int | None]:
+    """Of each pair the node that is nearer to its first node than its second; None where none is.
+
+    It is looked for among the second nodes of all pairs.
+
+    >>> mesh = Mesh((1, 2, 7, 8), np.array([[0.0, 0, 0], [1, 0, 0], [0, 0, 0], [1, 0, 0]]))
+    >>> nearest_partners(mesh, [(1, 8), (2, 7)]), nearest_partners(mesh, [(1, 7), (2, 8)])
+    ([7, 8], [None, None])
+    """
+    from scipy.spatial import cKDTree
+
+    first, second = (mesh.at(side) for side in zip(*pairs, strict=True))
+    distance, place = cKDTree(second).query(first)
+    far = np.linalg.norm(first - second, axis=1) - distance
+    size = float(np.ptp(np.concatenate((first, second)), axis=0).max())
+    return [
+        pairs[k][1] if beyond > options.side_tolerance * size and pairs[k][1] != pair[0] else None
+        for pair, k, beyond in zip(pairs, place.tolist(), far.tolist(), strict=True)
+    ]
+
+
 @dataclass(frozen=True)
 class Plane:
     """A plane through points: a unit normal and two directions in it at right angles, all (3,).

@@ -14,7 +14,7 @@ from fcm.model.scene import FloatArray
 from fcm.scene.errors import choices, counted, kind, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.names import DIRECTIONS, Names
-from fcm.scene.node_sets import FITTED, pairs_of_sets
+from fcm.scene.node_sets import FITTED, pairs_of_sets, with_places
 from fcm.scene.pair_file import (
     COORDINATES,
     NODES,
@@ -35,9 +35,29 @@ def read_pairs(section: Section, files: Files) -> PairTable:
     """The pairs of nodes and the numbers that a file has of them; empty after a mistake."""
     value = section.data["nodes"]
     if isinstance(value, Mapping):
-        return pairs_of_sets(section, files)
+        if "pairs" not in value:
+            return pairs_of_sets(section, files)
+        found = section.table("nodes", "")
+        name = "" if found is None else found.text("pairs")
+        table = _of_file(section, name, files) if name else PairTable([], unread=True)
+        return table if found is None or table.unread else with_places(section, found, table, files)
     if not isinstance(value, str):
         return PairTable(_listed(section, value))
+    table = _of_file(section, value, files)
+    if table.places is None:
+        return table
+    if section.data.get("normal") == FITTED:
+        section.wrong(
+            "normal",
+            "cannot be fitted to a file of pairs, whose sides its places do not tell; give a direction, or "
+            "nodes = { pairs = , mesh = }",
+        )
+    interface = Interface(section.data.get("name", ""), table.places, table.places)
+    return replace(table, interface=interface)
+
+
+def _of_file(section: Section, value: str, files: Files) -> PairTable:
+    """The pairs of a file; what is wrong with them is noted."""
     try:
         with files.opened(value) as path:
             table = read_pair_table(path)
@@ -59,15 +79,7 @@ def read_pairs(section: Section, files: Files) -> PairTable:
             f"{quoted(value)} has the columns {choices(table.unused)}, which mean nothing here; "
             f"its columns may be {', '.join((*NODES, *NUMBERS, *COORDINATES))}",
         )
-    if table.places is None:
-        return table
-    if section.data.get("normal") == FITTED:
-        section.wrong(
-            "normal",
-            "cannot be fitted to a file of pairs, whose sides its places do not tell; give a direction",
-        )
-    interface = Interface(section.data.get("name", ""), table.places, table.places)
-    return replace(table, interface=interface)
+    return table
 
 
 def _listed(section: Section, value: Any) -> list[Pair]:
@@ -85,6 +97,10 @@ def _listed(section: Section, value: Any) -> list[Pair]:
         )
         return []
     pairs = [_pair(section, index, item) for index, item in enumerate(value)]
+    first: dict[frozenset[str], int] = {}
+    for index, pair in enumerate(pairs):
+        if pair and (before := first.setdefault(frozenset(pair), index)) < index:
+            section.wrong(f"nodes[{index}]", f"is the same as nodes[{before}]; each is there once")
     return [pair for pair in pairs if pair] if all(pairs) else []
 
 

@@ -1,15 +1,26 @@
-"""Pairs of nodes from two sets and a mesh: nodes = { sets = [..], mesh = .., tolerance = .. }."""
+"""Pairs of nodes whose places a mesh has: { sets = , mesh = , tolerance = }, or { pairs = , mesh = }."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from fcm.mesh import Mesh, MeshError, read_mesh
-from fcm.mesh.pairing import MOST_NAMED, Plane, across, fitted_plane, outward, paired, side, turned
+from fcm.mesh.pairing import (
+    MOST_NAMED,
+    Plane,
+    across,
+    fitted_plane,
+    nearest_partners,
+    outward,
+    paired,
+    side,
+    turned,
+)
 from fcm.model.interface import Interface
 from fcm.scene.errors import choices, counted, quoted
 from fcm.scene.files import DataFileError, Files
@@ -76,6 +87,51 @@ def pairs_of_sets(section: Section, files: Files) -> PairTable:
     return PairTable([tuple(map(str, pair)) for pair in pairing.pairs], interface=interface, said=tuple(said))
 
 
+def with_places(section: Section, found: Section, table: PairTable, files: Files) -> PairTable:
+    """Pairs of a file with the places of their nodes in a mesh, and what is said of them."""
+    found.only(*names("contact.nodes"))
+    if "sets" in found.data:
+        found.wrong("", "has both sets and pairs; give one of them")
+    tolerance = found.number("tolerance", POSITIVE) if "tolerance" in found.data else np.inf
+    mesh = _mesh(found, files)
+    if mesh is None:
+        return table
+    words = dict.fromkeys(node for pair in table.pairs for node in pair)
+    lacking = [node for node in words if not node.isdecimal() or int(node) not in mesh.place]
+    if lacking:
+        some = ", ".join(lacking[:MOST_NAMED]) + (", ..." if len(lacking) > MOST_NAMED else "")
+        found.wrong("pairs", f"has nodes that the mesh has not: {some}")
+        return table
+    pairs = [tuple(map(int, pair)) for pair in table.pairs]
+    name = section.data.get("name", "")
+    first, second = mesh.at(tuple(pair[0] for pair in pairs)), mesh.at(tuple(pair[-1] for pair in pairs))
+    couples = [(pair[0], pair[1]) for pair in pairs if len(pair) > 1]
+    plane = _plane(section, mesh, couples or tuple(pair[0] for pair in pairs))
+    interface = Interface(name, first, second, plane=plane)
+    said = _said_of_plane(section, interface, plane)
+    if not couples:
+        return replace(table, interface=interface, said=tuple(said))
+    apart = np.linalg.norm(
+        mesh.at(tuple(a for a, _ in couples)) - mesh.at(tuple(b for _, b in couples)), axis=1
+    )
+    low, high = float(apart.min()), float(apart.max())
+    far = couples[int(apart.argmax())]
+    if high > tolerance:
+        found.wrong("tolerance", f"nodes {far[0]} and {far[1]} are {high:.4g} apart, more than {tolerance:g}")
+    text = f"contact {quoted(name)}: {counted(len(couples), 'pair')}, {low:.3g} to {high:.3g} apart"
+    others = [
+        (pair, near) for pair, near in zip(couples, nearest_partners(mesh, couples), strict=True) if near
+    ]
+    if others:
+        (one, other), near = others[0]
+        many = "1 pair is" if len(others) == 1 else f"{len(others)} pairs are"
+        text += (
+            f". {many} not of nearest nodes: {near} is nearer to {one} than its partner {other}. "
+            "Is a column of the file shifted?"
+        )
+    return replace(table, interface=interface, said=(text, *said))
+
+
 def with_fitted(section: Section, table: PairTable) -> Section:
     """The table of a contact with directions in the place of the words "fitted".
 
@@ -93,7 +149,8 @@ def with_fitted(section: Section, table: PairTable) -> Section:
         elif table.pairs and table.interface is None:
             section.wrong(
                 "normal",
-                "is fitted to the pairs of two sets of nodes, nodes = { sets = , mesh = , tolerance = }",
+                "is fitted to pairs whose nodes are in a mesh: nodes = { sets = , mesh = , tolerance = }, or "
+                "{ pairs = , mesh = }",
             )
     if tangential == FITTED:
         along = _vector(data.get("normal"))

@@ -65,6 +65,7 @@ def read_pair_table(path: Path) -> PairTable:
     where = list(COORDINATES) if set(COORDINATES) <= set(header) else []
     places: list[list[float]] = []
     table = PairTable([], {name: [] for name in header if name in NUMBERS}, _unused(header))
+    first: dict[frozenset[str], int] = {}  # line of each pair, whichever of its nodes is named first
     for number, words in lines[1:]:
         if len(words) != len(header):
             has = f"line {number} has {len(words)} {'entry' if len(words) == 1 else 'entries'}"
@@ -73,7 +74,11 @@ def read_pair_table(path: Path) -> PairTable:
         row = dict(zip(header, (word.strip() for word in words), strict=True))
         if not row["node"]:
             faults.append(f"line {number}: has no node")
-        table.pairs.append(tuple(row[name] for name in NODES if row[name]))
+        pair = tuple(row[name] for name in NODES if row[name])
+        if (before := first.setdefault(frozenset(pair), number)) < number:
+            which = f"pair {', '.join(pair)}" if len(pair) > 1 else f"node {', '.join(pair)}"
+            faults.append(f"line {number}: {which} is on line {before} already; each is there once")
+        table.pairs.append(pair)
         for name, values in table.numbers.items():
             value = number_in(row[name])
             if value is None:
