@@ -200,19 +200,46 @@ def test_modes_alone_are_enough_but_not_to_be_solved(listed, tmp_path):
     assert done.code == 2 and "response: missing" in done.err and "force: missing" in done.err
 
 
-def test_where_the_modes_are_while_all_contacts_stick(listed):
-    """Against the eigenvalues of the matrices with the springs of the contact."""
+def test_resonances_and_damping_with_contacts_open_and_stuck(listed):
+    """Against the complex eigenvalues of the matrices with the springs of the contact."""
     shapes, mass = np.array([[1.0, 0.5, 0.0], [0.2, 1.0, 0.0], [0.0, 1.0, 1.0]]), np.array([2.0, 3.0, 1.0])
     scene = SCENE.replace("[0.0, 1.0, 0.0]]", "[0.0, 1.0, 1.0]]").replace("k_u = 1\n", "k_u = 400\n")
-    inverse = np.linalg.inv(shapes)
-    M = inverse @ np.diag(mass) @ inverse.T
-    K = inverse @ np.diag(mass * (2 * np.pi * np.array([1.0, 4.0, 5.0])) ** 2) @ inverse.T
-    squares = np.linalg.eigvals(np.linalg.solve(M, K + np.diag([400.0, 0.0, 1.0])))
-    first = np.sort(np.sqrt(squares.real)) / (2 * np.pi)
-    said = next(line for line in listed(scene).err.splitlines() if "all contacts stick" in line)
-    assert [float(word.strip(",;")) for word in said.split() if word[0].isdigit()] == pytest.approx(
-        first, rel=1e-5
+    inverse, omega = np.linalg.inv(shapes), 2 * np.pi * np.array([1.0, 4.0, 5.0])
+    M, K, C = (
+        inverse @ np.diag(mass * each) @ inverse.T
+        for each in (np.ones(3), omega**2, 2.0 * np.array([0.01, 0.0, 0.02]) * omega)
     )
+    stiff = np.linalg.solve(M, K + np.diag([400.0, 0.0, 1.0]))
+    values = np.linalg.eigvals(np.block([[np.zeros((3, 3)), np.eye(3)], [-stiff, -np.linalg.solve(M, C)]]))
+    values = sorted(values[values.imag > 0.0], key=abs)
+    said = next(line for line in listed(scene).err.splitlines() if "with all stuck" in line)
+    numbers = [float(word.strip(",;.")) for word in said.split() if word[0].isdigit()]
+    assert numbers[:3] == [1.0, 4.0, 5.0]
+    assert numbers[3:6] == pytest.approx([abs(one) / (2.0 * np.pi) for one in values], rel=1e-4)
+    assert numbers[6:] == pytest.approx([-one.real / abs(one) for one in values], rel=5e-3)
+
+
+def test_damping_of_a_mode_in_which_a_contact_holds_a_rigid_body(listed):
+    """The ratio given is that without contacts: here half of it is left."""
+    text = """
+    [structure]
+    dofs = ["1x", "2x"]
+    stiffness = [[4.0, 0.0], [0.0, 0.0]]
+    mass = [[1.0, 0.0], [0.0, 3.0]]
+    damping = 0.01
+    [[contact]]
+    name = "joint"
+    tangential = { 1x = 1.0, 2x = -1.0 }
+    normal = "1x"
+    mu = 0.5
+    k_u = 1e6
+    k_v = 0.0
+    n_0 = 10.0
+    """
+    said = listed(text).err
+    # together 4 kg on a stiffness of 4: 1 rad/s; the damper of 2 * 0.01 * 2 gives it 0.04 / (2 * 4)
+    assert "with all contacts open: 2 rad/s; with all stuck: 1, 1154.7 rad/s, damping ratios 0.005," in said
+    assert "rigid-body modes have none" in said and "structure: its mass along x is 4, without" in said
 
 
 def test_stiffness_and_mass_in_each_others_place(tmp_path):

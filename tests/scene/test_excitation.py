@@ -203,3 +203,34 @@ def test_units_are_labels():
     assert read(force=[{"dof": "1x", "amplitude": 1.0}]).units == ("", "")
     assert "units.length: must be a string, is 3" in refused(units={"length": 3}, force=[])
     assert 'units.lenght: unknown key; did you mean "length"?' in refused(units={"lenght": "m"}, force=[])
+
+
+@pytest.mark.parametrize(
+    "loads, net",
+    [
+        ([("1x", 3.0), ("3x", -3.0)], "net force 0 of 6 N along x, by"),  # a bolt
+        ([("1x", 3.0)], "net force 3 of 3 N along x, by"),  # one side of it is missing
+        (
+            [({"1x": 1.0, "3x": -1.0}, 3.0), ("2x", 0.5), ("2y", -2.0)],
+            "0.5 of 6.5 N along x, -2 of 2 N along y, by",
+        ),
+        ([("F.npz", 10.0)], "net force 70 of 70 N along x, 30 of 50 N along y, by"),
+    ],
+)
+def test_the_net_of_static_loads_is_told(tmp_path, loads, net):
+    """Of a file with several rows at one axis, too; the two masses along y are named by hand."""
+    np.savez(tmp_path / "F.npz", np.array([1.0, 2.0, 4.0, 4.0, -1.0]))
+    wide = np.eye(5)
+    table = {"dofs": [*NAMES, "3y"], "stiffness": wide.tolist(), "mass": wide.tolist(), "damping": 0.01}
+    each = [{"file" if dof == "F.npz" else "dof": dof, "force": force} for dof, force in loads]
+    top = {"load": each, "units": {"length": "m", "force": "N"}, "force": [{"dof": "1x", "amplitude": 1.0}]}
+    notes = read(tmp_path, structure=table, **top).notes
+    assert [net in note for note in notes if note.startswith("static loads: ")] == [True]
+    assert "structure: its mass along x, y is 3, 2 kg, without rows that are held" in notes
+
+
+def test_the_net_of_loads_whose_directions_have_no_names_is_not_told():
+    table = {"dofs": ["a", "b"], "stiffness": [2.0, 1.0], "mass": [1.0, 1.0], "damping": 0.01}
+    force = [{"dof": "a", "amplitude": 1.0}]
+    notes = read(structure=table, load=[{"dof": "b", "force": 2.0}], force=force).notes
+    assert not any("static loads" in note or "its mass" in note for note in notes)

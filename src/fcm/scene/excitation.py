@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,13 +12,16 @@ from fcm.scene.errors import bare, kind, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
 from fcm.scene.names import Names, motion_of
+from fcm.scene.options import TOLERANCES
 from fcm.scene.rules import ANY, RULES
 from fcm.scene.section import Section
 
 TRANSLATIONS = ("x", "y", "z")
+ROTATIONS = ("rx", "ry", "rz")
 DIRECTIONS = {  # keys that are arrays over the degrees of freedom; second is of contacts in a plane alone
     "contact": ("tangential", "second", "normal"), "force": ("dof",), "load": ("dof",)
 }  # fmt: skip
+MASS_UNITS = {("m", "N"): "kg", ("mm", "N"): "t", ("mm", "mN"): "kg", ("mm", "kN"): "10^3 t"}
 BASE = "\0base"  # of the displacement that the base's acceleration works on; no name of a file begins so
 LOAD = "\0load"  # of the displacement that a distributed load works on
 
@@ -76,7 +79,7 @@ def _translation(section: Section, axis: str, dofs: Names | None) -> FloatArray 
     """Of a motion by 1 along one axis."""
     if dofs is None:
         return None
-    moved = [_along(name, axis) for name in dofs]
+    moved = [along_axis(name, axis) for name in dofs]
     if not any(moved):
         what = (
             f"no degree of freedom is named {quoted(axis)}, or as a node and {quoted(axis)}; give a table of "
@@ -87,10 +90,10 @@ def _translation(section: Section, axis: str, dofs: Names | None) -> FloatArray 
     return np.array(moved, dtype=np.float64)
 
 
-def _along(name: str, axis: str) -> bool:
+def along_axis(name: str, axis: str) -> bool:
     """Whether a degree of freedom is called as an axis, or as a node and that.
 
-    >>> _along("x", "x"), _along("12x", "x"), _along("12rx", "x"), _along("max", "x")
+    >>> along_axis("x", "x"), along_axis("12x", "x"), along_axis("12rx", "x"), along_axis("max", "x")
     (True, True, False, False)
     """
     motion = motion_of(name)
@@ -117,12 +120,71 @@ def _load(section: Section, files: Files, dofs: Names | None, matrices: bool) ->
         "distribution": None,
     }
     if "file" not in section.data:
-        return draft | {"dof": section.weights("dof", dofs)}
+        weights = section.weights("dof", dofs)
+        return draft | {"dof": weights, "net": _net(weights, dofs)}
     if "dof" in section.data:
         section.wrong("", "has both dof and file; give one of them")
     if not matrices:
         section.wrong("file", "needs [structure], whose rows the numbers of the file belong to")
-    return draft | {"dof": None, "distribution": _distribution(section, files, dofs)}
+    found = _distribution(section, files, dofs)
+    return draft | {"dof": None, "distribution": found, "net": _net(found, dofs)}
+
+
+def _net(weights: FloatArray | None, dofs: Names | None) -> FloatArray | None:
+    """Sum of a load along x, y and z, and of its magnitudes, (3, 2); None where names do not tell."""
+    if weights is None or dofs is None:
+        return None
+    loaded = np.flatnonzero(weights)
+    along = np.array([[along_axis(dofs[i], axis) for i in loaded] for axis in TRANSLATIONS], dtype=np.bool_)
+    turning = np.array([motion_of(dofs[i])[-2:] in ROTATIONS for i in loaded], dtype=np.bool_)
+    if not (along.any(axis=0) | turning).all():
+        return None
+    each = along * weights[loaded]
+    return np.stack((each.sum(axis=1), np.abs(each).sum(axis=1)), axis=1)
+
+
+def note_of_mass(masses: Mapping[str, float], length: str, force: str) -> list[str]:
+    """The mass of a structure along each axis, in the unit that follows from those of length and force.
+
+    >>> note_of_mass({"x": 0.25, "y": 0.25, "z": 0.2}, "mm", "N")
+    ['structure: its mass along x, y, z is 0.25, 0.25, 0.2 t, without rows that are held']
+    >>> note_of_mass({"z": 2.0}, "", "")
+    ['structure: its mass along z is 2, without rows that are held']
+    """
+    if not masses:
+        return []
+    unit = MASS_UNITS.get((length, force), f"{force} s^2/{length}" if length and force else "")
+    each = [f"{mass:.4g}" for mass in masses.values()]
+    values = each[0] if len(set(each)) == 1 else ", ".join(each)
+    return [
+        f"structure: its mass along {', '.join(masses)} is {values}{f' {unit}' if unit else ''}, "
+        "without rows that are held"
+    ]
+
+
+def notes_of_loads(drafts: Sequence[Mapping[str, Any]], unit: str) -> list[str]:
+    """The sum of all static loads along each direction, by the names of their degrees of freedom.
+
+    Forces within a structure, as those of a bolt, cancel; what does not is held by supports and contacts.
+    """
+    every = [draft["force"] * draft["net"] for draft in drafts if draft.get("net") is not None]
+    if not every or len(every) < len(drafts):
+        return []
+    net = sum(every)
+    size = np.sum(np.abs(every), axis=0)[:, 1]
+    unit = f" {unit}" if unit else ""
+    left = np.where(np.abs(net[:, 0]) <= TOLERANCES.negligible * size, 0.0, net[:, 0])
+    said = [
+        f"{total:.4g} of {whole:.4g}{unit} along {axis}"
+        for axis, total, whole in zip(TRANSLATIONS, left, size, strict=True)
+        if whole
+    ]
+    if not said:
+        return []
+    return [
+        f"static loads: net force {', '.join(said)}, by the names of degrees of freedom. Forces within the "
+        "structure cancel, as those of a bolt on its two sides; supports and contacts must hold the rest"
+    ]
 
 
 def _distribution(section: Section, files: Files, dofs: Names | None) -> FloatArray | None:

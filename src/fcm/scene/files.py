@@ -49,6 +49,7 @@ class Files:
     largest: int = FILES.largest  # bytes, unpacked
     read: list[Path] = field(default_factory=list, compare=False)  # those that were opened
     said: list[str] = field(default_factory=list, compare=False)  # of the matrices that were read
+    masses: dict[str, float] = field(default_factory=dict, compare=False)  # of the structure, along axes
     noted: list[str] = field(default_factory=list, compare=False)  # of the pairs that were made
     interfaces: list[Interface] = field(default_factory=list, compare=False)  # whose nodes have places
 

@@ -116,15 +116,53 @@ def _nearest(frequency: FloatArray, ends: tuple[float, float]) -> float:
 
 def _stuck(scene: Scene) -> FloatArray:
     """Frequencies (mode,) [rad/s], ascending, of the structure whose contacts all stick, in its modes."""
+    squares: FloatArray = np.asarray(np.linalg.eigvalsh(_stuck_stiffness(scene)), dtype=np.float64)
+    return np.sqrt(np.maximum(squares, 0.0))
+
+
+def _stuck_stiffness(scene: Scene) -> FloatArray:
+    """The stiffness (mode, mode) with all contacts stuck, in modes of mass 1."""
     modal, springs = scene.modal, list[tuple[float, FloatArray]]()
     for contact in scene.contacts:
         springs += [(contact.k_u, contact.tangential), (contact.k_v, contact.normal)]
         if contact.second is not None:
             springs.append((contact.k_u, contact.second))
     along = modal.shapes @ np.array([direction for _, direction in springs]).T / np.sqrt(modal.mass)[:, None]
-    stiffness = np.diag(modal.frequency**2) + (along * np.array([k for k, _ in springs])) @ along.T
-    squares: FloatArray = np.linalg.eigvalsh(stiffness)
-    return np.sqrt(np.maximum(squares, 0.0))
+    stiffness: FloatArray = (
+        np.diag(modal.frequency**2) + (along * np.array([k for k, _ in springs])) @ along.T
+    )
+    return stiffness
+
+
+def _damped_stuck(scene: Scene) -> tuple[FloatArray, FloatArray]:
+    """Frequencies [rad/s] and damping ratios (mode,) of elastic modes while all contacts stick.
+
+    The ratio is phi^T C phi / (2 omega), C the damping of the modes without contacts.
+    """
+    modal = scene.modal
+    squares, turn = np.linalg.eigh(_stuck_stiffness(scene))
+    damping = (2.0 * modal.damping * modal.frequency) @ turn**2
+    elastic = squares > TOLERANCES.undamped * squares.max(initial=0.0)
+    omega = np.sqrt(squares[elastic])
+    return omega, damping[elastic] / (2.0 * omega)
+
+
+def notes_of_modes(scene: Scene) -> list[str]:
+    """First resonances with all contacts open and with all stuck, with their damping: are units as meant?"""
+    unit, most = scene.frequency_unit, MESSAGES.stuck_modes
+    opened = np.sort(_modes_alone(scene))
+    opened = opened[opened > 0.0]
+    omega, ratio = _damped_stuck(scene)
+    of_open = f"{_listed(opened[:most] / UNIT[unit])} {unit}" if opened.size else "none"
+    of_stuck = f"{_listed(omega[:most] / UNIT[unit])} {unit}" if omega.size else "none"
+    return [
+        f"structure: first resonances with all contacts open: {of_open}; with all stuck: {of_stuck}, damping "
+        f"ratios {_listed(ratio[:most], 3)}. Peaks lie between"
+    ]
+
+
+def _listed(values: FloatArray, digits: int = 5) -> str:
+    return ", ".join(f"{value:.{digits}g}" for value in values)
 
 
 def _of_ring(scene: Scene, ring: Ring) -> dict[str, Any]:
@@ -179,22 +217,11 @@ def _read(scene: Scene, frequency: FloatArray) -> list[str]:
     low, high = elastic[0], elastic[-1]
     in_hertz = f"{low / (2.0 * np.pi):.6g} to {high / (2.0 * np.pi):.6g} Hz"
     said = [*scene.read, f"{bodies}; others from {in_hertz}, which are {low:.6g} to {high:.6g} rad/s"]
-    if scene.ring is None and scene.contacts:
-        said.append(_said_of_stuck(scene))
+    if scene.ring is None and scene.contacts and not scene.of_matrices:  # of matrices it is a note
+        said += notes_of_modes(scene)
     if doubt := resonance_doubt(scene):
         said.append(doubt)
     return said
-
-
-def _said_of_stuck(scene: Scene) -> str:
-    """Where the resonances are while all contacts stick."""
-    stuck = _stuck(scene)
-    first = stuck[stuck > 0.0][: MESSAGES.stuck_modes] / UNIT[scene.frequency_unit]
-    places = ", ".join(f"{frequency:.6g}" for frequency in first)
-    return (
-        f"first modes while all contacts stick: {places} {scene.frequency_unit}; peaks lie between these and "
-        "those of the structure alone"
-    )
 
 
 def _slip_of_units(opened: FloatArray, stuck: FloatArray, ends: tuple[float, float], unit: str) -> str:
@@ -274,8 +301,8 @@ def _of_range(scene: Scene) -> list[str]:
     said, modal, unit = [], scene.modal, scene.frequency_unit
     low, high = scene.frequency_range
     inside = (modal.frequency > low) & (modal.frequency < high)
-    if not inside.any():
-        said.append("no mode without contacts is within the range")
+    if not _resonance_within(*_modes_open_and_stuck(scene), (low, high)):
+        said.append("no resonance is within the range, with contacts open, stuck, or between")
     undamped = np.flatnonzero(inside & (modal.damping == 0.0)) + 1
     if undamped.size:
         said.append(f"within the range, without damping: mode {', '.join(map(str, undamped[:10]))}")

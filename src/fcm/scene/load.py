@@ -17,7 +17,7 @@ from fcm.scene.contact_stiffness import notes_of_stiffness
 from fcm.scene.cyclic import check_diameters, note_of_stability, only_own, own_names, read_cyclic
 from fcm.scene.draft import Draft, forces_of, modes_of
 from fcm.scene.errors import Mistakes, SceneError, choices, kind, quoted, suggestion
-from fcm.scene.excitation import load_of, read_base, read_loads
+from fcm.scene.excitation import load_of, note_of_mass, notes_of_loads, read_base, read_loads
 from fcm.scene.files import Files
 from fcm.scene.fit import read_fit
 from fcm.scene.keys import names
@@ -178,10 +178,17 @@ def _read(top: Section, files: Files, reading: _Reading) -> dict[str, Any]:
         top.wrong("schedule", NOT_IN_PLANE)
     start = read_start(top, parts)
     draft = Draft(parts, tuple(read_sweep(top, parts, drawn_rings(parts))))
-    notes = [*files.noted, *notes, *questions(top, parts, draft.swept)]
+    units = read_units(top)
+    notes = [
+        *files.noted,
+        *notes,
+        *note_of_mass(files.masses, *units),
+        *notes_of_loads(parts["load"], units[1]),
+        *questions(top, parts, draft.swept),
+    ]
     return {
         "title": top.text("title", ""),
-        "units": read_units(top),
+        "units": units,
         "frequency_unit": unit,
         "frequency_range": ends,
         "max_step": step,
@@ -226,6 +233,7 @@ def _made(name: str, fields: dict[str, Any], told: Told | None) -> Scene:
         scene,
         notes=(
             *scene.notes,
+            *_notes_of_modes(scene),
             *note_of_stability(scene),
             *note_of_harmonics(scene.forces),
             *note_of_start(scene),
@@ -241,6 +249,14 @@ def _in_doubt(scene: Scene) -> bool:
     from fcm.scene.listing import resonance_doubt  # scipy, which other scenes do without
 
     return bool(resonance_doubt(scene))
+
+
+def _notes_of_modes(scene: Scene) -> list[str]:
+    if not scene.of_matrices or scene.ring is not None or not scene.contacts:
+        return []
+    from fcm.scene.listing import notes_of_modes
+
+    return notes_of_modes(scene)
 
 
 def _tuned(name: str, fields: dict[str, Any]) -> Scene | None:

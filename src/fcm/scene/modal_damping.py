@@ -20,6 +20,8 @@ from fcm.structure.damping import (
 )
 from fcm.structure.reduced import Reduced
 
+_AT_ONE = "{ stiffness = LOSS_FACTOR / OMEGA } has it right at one frequency OMEGA in rad/s"
+
 
 @dataclass(frozen=True)
 class Damping:
@@ -45,12 +47,11 @@ def damping_of(
     """That of the modes; the arguments are those of `reduction.modal_of_matrices`."""
     stiffness, rigid = found.modes.stiffness, found.rigid
     if matrices.ratio is not None:
-        return Damping(np.full(stiffness.size, matrices.ratio), 0.0, [])
+        return Damping(np.full(stiffness.size, matrices.ratio), 0.0, _of_floating(matrices.ratio, rigid))
     if matrices.hysteretic:
         equal = (
             "structure: a loss factor is taken as half of it for damping ratio, equal at each resonance "
-            "without contacts; where contacts move it far, or hold rigid bodies, it is another: "
-            "{ stiffness = LOSS_FACTOR / OMEGA } has it right at one frequency OMEGA in rad/s"
+            f"without contacts. Where contacts move it far, or hold rigid bodies, it is another. {_AT_ONE}"
         )
         return Damping(np.full(stiffness.size, matrices.hysteretic / 2.0), 0.0, [equal])
     if matrices.C is None:
@@ -72,6 +73,16 @@ def damping_of(
         said = _left_out(dragged, list(effects))
     lowest = ends[0] if np.isfinite(ends[0]) else 0.0
     return Damping(ratio, float(dragged / np.hypot(lowest, dragged)) if dragged else 0.0, said)
+
+
+def _of_floating(ratio: float, rigid: int) -> list[str]:
+    """What a ratio of modes without contacts means where contacts hold rigid bodies."""
+    if not ratio or not rigid:
+        return []
+    return [
+        "structure: its damping is that of modes without contacts, and rigid-body modes have none. "
+        f"A resonance in which contacts hold them has another ratio. {_AT_ONE}, LOSS_FACTOR twice the ratio"
+    ]
 
 
 def _left_out(dragged: float, effects: list[float]) -> list[str]:

@@ -11,6 +11,7 @@ import scipy.sparse
 
 from fcm.scene.entries import check_numbers, check_symmetric, symmetric
 from fcm.scene.errors import choices, counted, kind, quoted, shown
+from fcm.scene.excitation import TRANSLATIONS, along_axis
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.formats.labelled import Labelled
 from fcm.scene.keys import names
@@ -83,6 +84,7 @@ def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices |
         if sound and coupling is None:
             _check_definite(section, K, M)
         return dofs, None
+    files.masses.update(translated(M, dofs))
     return dofs, Matrices(
         dofs, symmetric(K), symmetric(M), modes=modes, flexibility=keep, coupling=coupling, **damping
     )
@@ -102,6 +104,16 @@ def said_of(value: Any, key: str, matrix: Any, off: float, given: Labelled | Non
     size = counted(matrix.shape[0], "row")
     many = "1 entry that is" if entries == 1 else f"{entries} entries that are"
     return f"{key}: {source}{size}, {many} not 0, {form}{named}"
+
+
+def translated(M: Any, dofs: Names) -> dict[str, float]:
+    """The mass that moves when all degrees of freedom along an axis do, by the names of these.
+
+    >>> translated(scipy.sparse.diags_array([2.0, 2.0, 1.0, 7.0]), Names(("1x", "1y", "2x", "q")))
+    {'x': 3.0, 'y': 2.0}
+    """
+    moved = {axis: np.array([along_axis(name, axis) for name in dofs], dtype=float) for axis in TRANSLATIONS}
+    return {axis: float(one @ (M @ one)) for axis, one in moved.items() if one.any()}
 
 
 def _check_rows(section: Section, K: Any, M: Any, dofs: Names | None) -> None:
