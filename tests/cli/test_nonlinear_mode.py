@@ -63,14 +63,14 @@ def test_a_level_whose_resonance_is_not_among_the_amplitudes_is_told(fcm):
     levels = [x for level in (1e-3, 1, 20) for x in ("--force-level", level)]
     done = fcm(*MODE[:4], "--level", "5:30", "--harmonics", 1, *levels)
     assert done.code == 0
-    assert done.out.splitlines()[2:] == [
+    assert done.out.splitlines()[3:] == [
         "force level 0.001: its resonance lies below amplitude 5",
         "force level 20: its resonance lies beyond amplitude 30",
     ]
     assert done.out.splitlines()[1].count("(level ") == 1 and "(level 1)" in done.out
     several = ("respond", "yang1998", *MODE[2:4], "--level", "5:30", "--harmonics", 1, "--force-level", 20)
     told = "force level 20: its resonance lies beyond amplitude 30, in 10 of 10 curves"
-    assert fcm(*several).out.splitlines()[11:] == [told]
+    assert fcm(*several).out.splitlines()[12:] == [told]
     mode = json.loads(fcm(*MODE[:4], "--level", "5:30", "--harmonics", 1, *levels, "--json").out)["curves"][0]
     assert [one["level"] for one in mode["mode"]["not_met"]] == [0.001, 20.0]
     assert [one["level"] for one in mode["mode"]["resonances"]] == [1.0]
@@ -98,12 +98,25 @@ def test_the_picture(fcm, result, tmp_path):
         (["--mode", 9, "--level", "1:2"], "there is no mode 9; the structure has the modes 1 to 2"),
         (["--mode", 1, "--level", "1e-9:1e9"], "by at most a factor of 1e+15"),
         (["--force-level", 2], "--force-level needs --mode"),
+        (
+            ["--mode", 1, "--level", "1e-3"],
+            "'1e-3': give both ends, FROM:TO. Without --mode they are factors",
+        ),
         (["--mode", 0, "--level", "1:2"], "0 is not in the range x>=1"),
     ],
 )
 def test_what_is_wrong_is_said(fcm, args, said, tmp_path):
     done = fcm("respond", "yang1998-n5", *args, "-o", "a.nc")
     assert done.code == 2 and said in done.err and not (tmp_path / "a.nc").exists()
+
+
+def test_what_a_modal_amplitude_is_of_displacements_is_told(fcm):
+    """So that its span can be chosen: of a mode of mass 1 with the contact stuck, by the eigenvectors."""
+    done = fcm("respond", "yang1998-n5", "--mode", 1, "--level", "1e-3:1e-2", "--harmonics", 1)
+    shapes = np.array([[0.707, 0.707], [1.0, -0.5]])
+    springs = shapes @ np.diag([1.0, 1.0]) @ shapes.T  # k_u along u, k_v along v
+    u, v = np.abs(shapes.T @ np.linalg.eigh(np.diag([1.0, 100.0]) + springs)[1][:, 0])
+    assert f"a modal amplitude of 1 is, at the least one followed: u {u:.4g}, v {v:.4g}\n" in done.out
 
 
 def test_another_file_is_no_mode(fcm, tmp_path):

@@ -49,7 +49,10 @@ def level(_ctx: click.Context, _param: click.Parameter, text: str | None) -> tup
     try:
         low, high = (float(part) for part in text.split(":"))
     except ValueError:
-        raise click.BadParameter(f"{text!r}: give a span of levels FROM:TO, as in 0:2.") from None
+        raise click.BadParameter(
+            f"{text!r}: give both ends, FROM:TO. Without --mode they are factors of the forces, as 0:2; with "
+            "--mode modal amplitudes, as 1e-5:1e-3."
+        ) from None
     from fcm.response.level import span_fault
 
     if fault := span_fault(low, high):

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fcm.cli.columns import BEYOND, aligned, number, ranges, short, swept
+from fcm.cli.limits import SENTENCES
+from fcm.rotational_dofs import greatest_first, unit_of
 
 if TYPE_CHECKING:
     from fcm.model.scene import Scene
@@ -94,7 +96,20 @@ def as_table(summary: Mapping[str, Any], names: list[str], unit: str) -> str:
     every = ((curve.get("mode") or {}).get("not_met", ()) for curve in curves)
     unmet = Counter(f"force level {one['level']:g}: {one['why']}" for found in every for one in found)
     of = f" of {len(curves)} curves" if len(curves) > 1 else ""
-    told = [f"{what}, in {count}{of}" if of else what for what, count in unmet.items()]
+    told = [_of_dofs(summary), *(f"{what}, in {count}{of}" if of else what for what, count in unmet.items())]
     if any((curve.get("truncation_error") or 0.0) > 1.0 for curve in curves):
         told.append(f"{BEYOND} the error is more than the amplitude: give more by --harmonics")
-    return "\n".join([aligned([header, *rows], left=2), *told])
+    return "\n".join([aligned([header, *rows], left=2), *filter(None, told)])
+
+
+def _of_dofs(summary: Mapping[str, Any]) -> str:
+    """What a modal amplitude is of displacements, by which its span is chosen; empty where no mode is."""
+    first = next((curve["mode"] for curve in summary["curves"] if curve.get("mode")), None)
+    if first is None:
+        return ""
+    asked, length = summary.get("output", ()), summary.get("units", {}).get("length", "")
+    moved = {dof: value for dof, value in first["displacement"].items() if not asked or dof in asked}
+    dofs = list(moved)
+    chosen = sorted(greatest_first(dofs, list(moved.values()))[: SENTENCES.named])
+    each = (f"{dofs[d]} {moved[dofs[d]]:.4g} {unit_of(dofs[d], length)}".rstrip() for d in chosen)
+    return f"a modal amplitude of 1 is, at the least one followed: {', '.join(each)}"

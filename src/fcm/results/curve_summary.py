@@ -79,7 +79,9 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
     if curve.orbits is not None:
         out |= _of_orbits(curve, curve.orbits, unit)
     if curve.mode is not None:
-        out["mode"] = curve.mode.summary(curve.frequency, unit, curve.peaks)
+        out["mode"] = curve.mode.summary(
+            curve.frequency, unit, dict(zip(curve.peaks, curve.amplitude.T, strict=True))
+        )
     return out | {"seconds": curve.seconds}
 
 

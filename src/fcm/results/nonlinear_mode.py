@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -33,14 +33,22 @@ class NonlinearMode:
     folds: list[float]  # modal amplitudes at which the curve turns back
     resonances: list[Resonance]  # at these levels
 
-    def summary(self, frequency: FloatArray, unit: str, dofs: Iterable[str]) -> dict[str, Any]:
-        """As `fcm respond --json` prints it."""
-        top = int(self.damping.argmax())
+    def summary(
+        self, frequency: FloatArray, unit: str, amplitude: Mapping[str, FloatArray]
+    ) -> dict[str, Any]:
+        """As `fcm respond --json` prints it; amplitude (point,) is that of each degree of freedom.
+
+        `displacement` is what a modal amplitude of 1 is of each at the least amplitude that was followed.
+        """
+        top, least = int(self.damping.argmax()), int(self.amplitude.argmin())
         return {
             "number": self.number,
             "frequency": in_unit(frequency[[0, -1]], unit).tolist(),
             "damping": self.damping[[0, -1]].tolist(),
             "modal_amplitude": self.amplitude[[0, -1]].tolist(),
+            "displacement": {
+                dof: float(one[least] / self.amplitude[least]) for dof, one in amplitude.items()
+            },
             "greatest_damping": {
                 "damping": float(self.damping[top]),
                 "frequency": float(in_unit(frequency[top], unit)),
@@ -52,7 +60,7 @@ class NonlinearMode:
                     "level": one.level,
                     "frequency": float(in_unit(one.frequency, unit)),
                     "modal_amplitude": one.modal_amplitude,
-                    "amplitude": {dof: one.amplitude[dof] for dof in dofs},
+                    "amplitude": {dof: one.amplitude[dof] for dof in amplitude},
                 }
                 for one in self.resonances
             ],
