@@ -12,7 +12,7 @@ from fcm.contact.plane.forces import PlanarContact
 from fcm.contact.plane.options import FINEST, OPTIONS
 
 from ..scale import SCALE
-from .motions import random_cases
+from .motions import decaying, random_cases
 from .planar_motions import Planar, kernel, random_planars
 from .test_planar_forces import EXTREMES, extreme
 
@@ -107,6 +107,32 @@ def test_motions_far_smaller_than_the_load_allows(small, k_v, options):
             found, _ = differences(contact, x, (*law, k_v * n_0), column, 1e-3)
             assert np.abs(J[:2, column] - found[:2]).max() < 1e-3 * small
             assert np.abs(J[3:7, column] - found[3:7]).max() < 1e-3 * small
+
+
+@pytest.mark.parametrize("small", [1e-2, 1e-4, 1e-6])
+def test_load_that_is_small_beside_the_motion(small):
+    """A direction that is off fades at once, and panels are as long as those of the forces alone."""
+    rng = np.random.default_rng(7)
+    u_x, u_y, v = (decaying(rng, 9, 1.0) for _ in range(3))
+    case = Planar(u_x, u_y, small * v, 0.5, 1.0, 1.0, small)
+    contact, x = kernel(case)
+    law = (case.mu, case.k_u, case.k_v, case.n_0)
+    contact.at(x, *law, gradient=False)
+    panels = contact.cycle.slider.panels
+    contact.at(x, *law)
+    assert contact.cycle.slider.panels < 1.2 * panels
+    J = np.array(contact.jacobian)
+    contact.cycle.slider.tolerance = 1e-11
+    settled = 0
+    for column in range(2, x.size):
+        by = small if column == 2 or (column - 3) % 6 > 3 else 1.0
+        tried = [differences(contact, x, law, column, by * step) for step in (1e-3, 1e-4)]
+        found, error = min(tried, key=lambda one: one[1])
+        if error > 2e-9:
+            continue
+        settled += 1
+        assert np.abs(J[:, column] - found).max() <= 1e-8, column
+    assert settled > 40
 
 
 def test_of_a_circle():

@@ -161,7 +161,37 @@ cdef extern from *:
         }
         return 1;
     }
+
+    /* Of eight columns of the block at a time: the greatest coefficient, the last or a part of the one before it,
+       by their weights (8,) and those of the turn at the start. */
+    FCM_COLUMNS static double fcm_rest_eight(
+        const double *before, const double *last, double turn_before, double turn_last, double part,
+        const double *turn, const double *block, ptrdiff_t width)
+    {
+        fcm_eight_whole most = {0};
+        for (ptrdiff_t j = 0; j < width; j += 8) {
+            const fcm_eight first = *(const fcm_eight *)(turn + j);
+            fcm_eight a = turn_before * first, b = turn_last * first;
+    #pragma GCC unroll 8
+            for (int i = 0; i < 8; i++) {
+                const fcm_eight x = *(const fcm_eight *)(block + i * width + j);
+                a += before[i] * x, b += last[i] * x;
+            }
+            const fcm_eight sizes[2] = {a * part, b};
+            for (int p = 0; p < 2; p++) {
+                const fcm_eight_whole size = (fcm_eight_whole)sizes[p] & 0x7fffffffffffffffLL;
+                const fcm_eight_whole more = (fcm_eight)size > (fcm_eight)most;
+                most = (more & size) | (~more & most);
+            }
+        }
+        double all = 0.0;
+        const fcm_eight each = (fcm_eight)most;
+        for (int i = 0; i < 8; i++)
+            all = all > each[i] ? all : each[i];
+        return all;
+    }
     #else
+    #define fcm_rest_eight(before, last, turn_before, turn_last, part, turn, block, width) (-1.0)
     #define fcm_drive_eight(t, r, slope, rate, e_x, e_y, cosines, sines, order, count, turn, width, moves, block) 0
     #define fcm_weigh_eight(t, weight, speed, reach, e_x, e_y, cosines, sines, place, count, by, into) 0
     #define fcm_carry_eight(inverse, block, width, columns, weight, sums, rows, by, turn) 0
@@ -171,6 +201,9 @@ cdef extern from *:
         const double *, const double *, const double *, const double *, const double *, const double *,
         const double *, const double *, const double *, int, const double *, Py_ssize_t, int,
         double *) noexcept nogil
+    double rest_eight "fcm_rest_eight"(
+        const double *, const double *, double, double, double, const double *, const double *,
+        Py_ssize_t) noexcept nogil
     bint weigh_eight "fcm_weigh_eight"(
         const double *, const double *, const double *, const double *, const double *, const double *,
         const double *, const double *, const int *, int, double, double *) noexcept nogil
@@ -201,6 +234,7 @@ cdef class Derivatives:
     cdef void close(self) noexcept nogil
     cdef void close_sliding(self, double e_x, double e_y, double rate) noexcept nogil
     cdef double greatest(self) noexcept nogil
+    cdef double rest_of_turns(self) noexcept nogil
     cdef void carry(self, bint gather) noexcept nogil
     cdef void drive(self) noexcept nogil
     cdef void solve(self, bint gather, double by) noexcept nogil

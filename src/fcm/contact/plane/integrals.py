@@ -28,7 +28,13 @@ from cython.cimports.libc.math import cos, fabs, sin
 
 if cython.compiled:
     from cython.cimports.fcm.contact.closed_form import PI
-    from cython.cimports.fcm.contact.plane.integrals import carry_eight, drive_eight, turn_eight, weigh_eight
+    from cython.cimports.fcm.contact.plane.integrals import (
+        carry_eight,
+        drive_eight,
+        rest_eight,
+        turn_eight,
+        weigh_eight,
+    )
     from cython.cimports.fcm.contact.plane.panel import SCAN, STAGES, Panel, PlaneMotion
 else:
     from fcm.contact.closed_form import PI
@@ -240,7 +246,10 @@ class Derivatives:
 
     def take(self, low: cython.int, high: cython.int) -> None:
         """The columns that are made, from a slider at rest that nothing has moved."""
+        j: cython.int
         self.low, self.high = low, high
+        for j in range(low):
+            self.turn[j] = 0.0
         self.start()
 
     def start(self) -> None:
@@ -333,17 +342,40 @@ class Derivatives:
             most = max(most, fabs(self.turn[j]))
         return most
 
+    def rest_of_turns(self) -> float:
+        """The greatest `rest` of the derivatives of t in the panel.
+
+        Where the load is small beside the motion a direction that is off fades at once. Then derivatives go
+        with the motion, and panels need not be as short as what has faded.
+        """
+        i: cython.int
+        j: cython.int
+        one: float
+        last: float
+        most: float = -1.0
+        turn_one: float = 0.5 * self.panel.tail[0, 0]
+        turn_last: float = 0.5 * self.panel.tail[1, 0]
+        self.drive()
+        self.panel.tails()
+        if cython.compiled:
+            most = rest_eight(
+                self.panel.tail_before, self.panel.tail_last, turn_one, turn_last, self.panel.before,
+                cython.address(self.turn[0]), cython.address(self.block[0, 0]), self.width,
+            )  # fmt: skip
+        if most >= 0.0:
+            return most
+        for j in range(self.low, self.high):
+            one, last = turn_one * self.turn[j], turn_last * self.turn[j]
+            for i in range(STAGES):
+                one += self.panel.tail_before[i] * self.block[i, j]
+                last += self.panel.tail_last[i] * self.block[i, j]
+            most = max(most, fabs(last), self.panel.before * fabs(one))
+        return most
+
     def carry(self, gather: bool) -> None:
         """Through the panel, whose inverse is that of its last step; if wanted their part of the Jacobian."""
         by: float = 2.0 / (1.0 + self.panel.tangent[STAGES] * self.panel.tangent[STAGES])
-        if not cython.compiled or not drive_eight(
-            cython.address(self.panel.tangent[1]), self.panel.r, cython.address(self.slope[0]),
-            cython.address(self.panel.rate[0]), cython.address(self.panel.e_x[0]),
-            cython.address(self.panel.e_y[0]), cython.address(self.motion.node_cos[0, 0]),
-            cython.address(self.motion.node_sin[0, 0]), cython.address(self.motion.order[0]),
-            self.motion.count, cython.address(self.turn[0]), self.width, self.high > 2,
-            cython.address(self.block[0, 0]),
-        ):  # fmt: skip
+        if not self.panel.driven:
             self.drive()
         if gather:
             self.weigh()
@@ -359,6 +391,16 @@ class Derivatives:
         i: cython.int
         j: cython.int
         k: cython.int
+        self.panel.driven = True
+        if cython.compiled and drive_eight(
+            cython.address(self.panel.tangent[1]), self.panel.r, cython.address(self.slope[0]),
+            cython.address(self.panel.rate[0]), cython.address(self.panel.e_x[0]),
+            cython.address(self.panel.e_y[0]), cython.address(self.motion.node_cos[0, 0]),
+            cython.address(self.motion.node_sin[0, 0]), cython.address(self.motion.order[0]),
+            self.motion.count, cython.address(self.turn[0]), self.width, self.high > 2,
+            cython.address(self.block[0, 0]),
+        ):  # fmt: skip
+            return
         for i in range(STAGES):
             t: float = self.panel.tangent[i + 1]
             part: float = 1.0 + t * t

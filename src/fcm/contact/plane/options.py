@@ -24,8 +24,8 @@ class PlanarOptions:
     max_initial_tangent : t at the end of a panel, at most, to begin with.
     max_tangent : of t; directions are then within 100 degrees of that at the start.
     max_growth : exponent by which directions may part in a panel.
-    derivative_fraction : times the derivative of the force by the direction at the start of a panel, the last
-        coefficient of how that goes on, and likewise; where derivatives are wanted.
+    derivative_fraction : what its derivatives leave out counts by this part of what the polynomial does;
+        where derivatives are wanted.
     light_load_tolerance : times the length of a panel, where the load is small: tolerance of derivatives
         there.
     min_factor, max_factor, safety : limits of the ratio of two lengths, and what it is multiplied by.
@@ -76,7 +76,7 @@ class PlanarOptions:
     max_tangent: float = 1.2
     max_growth: float = 2.0
     light_load_tolerance: float = 1.0
-    derivative_fraction: float = 3e-5
+    derivative_fraction: float = 1e-3
     min_factor: float = 0.2
     max_factor: float = 2.5
     safety: float = 0.7
@@ -123,7 +123,6 @@ FINE = replace(
     tolerance=1e-9,
     panel_length=4.0,
     last_change=1e-6,
-    derivative_fraction=1e-3,
     impulse_tolerance=1e-11,
 )  # of `planar_forces`: forces within 1e-11, derivatives 1e-8
 FINEST = replace(FINE, tolerance=1e-11)  # of a loop, whose polynomials are read between the ends of panels

@@ -232,7 +232,9 @@ cdef class Panel:
     cdef readonly double theta, length, left, fade, start_x, start_y, noise
     cdef readonly double[::1] node, weight, bary, tangent, change, rate, e_x, e_y, push, along, speed
     cdef readonly double[:, ::1] slopes, tail
-    cdef bint exact
+    cdef bint exact, driven
+    cdef double tail_before[8]
+    cdef double tail_last[8]
     cdef double inverse[64]
     cdef double columns[64]
     cdef double at[8]
@@ -251,7 +253,7 @@ cdef class Panel:
     cdef bint invert(self) noexcept nogil
     cdef bint finish(self) noexcept nogil
     cdef double rest(self) noexcept nogil
-    cdef double rest_of_variation(self) noexcept nogil
+    cdef void tails(self) noexcept nogil
     cdef double end_of_slip(self) noexcept nogil
     cdef (double, double) pushed(self, double x) noexcept nogil
     cdef double root(self, double low, double high) noexcept nogil

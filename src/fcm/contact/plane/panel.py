@@ -282,6 +282,10 @@ class Panel:
         The direction and e . U' at the nodes; lambda at the start and at the nodes.
     noise
         The rounding of lambda.
+    driven
+        Whether the right sides of its derivatives are made.
+    tail_before, tail_last (s,)
+        By these the last two coefficients of its derivatives follow from them; see `tails`.
     exact
         Whether the derivatives of the equations, whose inverse is `inverse`, are to be those at the solution.
     """
@@ -310,7 +314,8 @@ class Panel:
         if not cython.compiled:
             self.inverse, self.columns = np.zeros((2, STAGES * STAGES))
             self.right, self.missing, self.a, self.b, self.r, self.at, self.fall = np.zeros((7, STAGES))
-        self.exact = True
+            self.tail_before, self.tail_last = np.zeros((2, STAGES))
+        self.exact, self.driven = True, False
         i: cython.int
         j: cython.int
         for i in range(STAGES):
@@ -331,6 +336,7 @@ class Panel:
         i: cython.int
         gone: float
         self.theta, self.length, self.start_x, self.start_y = theta, length, e_x, e_y
+        self.driven = False
         self.left = left if length < left else 0.0
         self.fade = 1.0 - sqrt(1.0 - length / left) if length < left else 0.0
         self.noise = 4.0 * EPSILON * (self.motion.motion_bound[1] + self.motion.reach_bound[1])
@@ -518,22 +524,17 @@ class Panel:
         rest: float = max(fabs(last), self.before * fabs(before))
         return rest
 
-    def rest_of_variation(self) -> float:
-        """`rest` of the derivative of t by t at the start, which falls where t itself may be a straight line.
-
-        Of motion along a line the direction stays, and what turns it fades all the same.
-        """
+    def tails(self) -> None:
+        """`tail_before`, `tail_last`: the last coefficients of derivatives of t from their right sides."""
         i: cython.int
-        before: float = self.tail[0, 0]
-        last: float = self.tail[1, 0]
-        for i in range(STAGES):
-            self.missing[i] = -self.r[i] * self.slopes[i + 1, 0]
-        self.apply()
-        for i in range(STAGES):
-            before += self.tail[0, i + 1] * self.fall[i] * self.right[i]
-            last += self.tail[1, i + 1] * self.fall[i] * self.right[i]
-        rest: float = max(fabs(last), self.before * fabs(before))
-        return rest
+        j: cython.int
+        one: float
+        for j in range(STAGES):
+            self.tail_before[j] = self.tail_last[j] = 0.0
+            for i in range(STAGES):
+                one = self.fall[i] * self.inverse[STAGES * j + i]
+                self.tail_before[j] += self.tail[0, i + 1] * one
+                self.tail_last[j] += self.tail[1, i + 1] * one
 
     def end_of_slip(self) -> float:
         """The part of the panel after which lambda is no more than rounding; 2 if it does not fall so far."""

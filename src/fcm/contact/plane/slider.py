@@ -238,8 +238,8 @@ class Slider:
                         min(self.light * length, 1.0),
                     )
                     if with_turns:
-                        part = turned * max(r, self.motion.value[STAGES, 2])
-                        rest = max(rest, self.varied * part * self.panel.rest_of_variation())
+                        part = self.varied * max(r, self.motion.value[STAGES, 2])
+                        rest = max(rest, part * self.derivatives.rest_of_turns())
                     if rest <= self.tolerance or (last and length == left):
                         break
                 part = self.grown(rest) if rest < 1e300 else 0.0
