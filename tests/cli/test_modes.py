@@ -61,6 +61,13 @@ def test_forces_stay_in_the_table_beside_many_contacts_and_what_does_not_fit_is_
     assert "force.v" in found.out.splitlines()[0]
     assert "6 of 7 directions of contacts and forces: --json has all" in found.err
     assert "directions" not in listed(SCENE).err
+    long = listed(
+        SCENE.replace("shroud", "an interlocked shroud of the outer ring").replace(
+            "[[force]]", f"{second}[[force]]"
+        )
+    )
+    assert max(map(len, long.out.splitlines())) <= 120 and "force.v" in long.out.splitlines()[0]
+    assert "2 of 5 directions of contacts and forces: --json has all" in long.err
 
 
 def test_what_is_amiss_is_said_before_anything_is_solved(listed):

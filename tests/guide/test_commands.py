@@ -63,8 +63,7 @@ def same(printed, shown):
 
 def cells(line, heading):
     """The words of a line, numbers to what they may change by; a jump begins at a point, which may change."""
-    found = line.split()
-    columns = re.split(r"  +", heading.strip())
+    found, columns = (re.split(r"  +", one.strip()) for one in (line, heading))
     if "points" in columns and line.split() != heading.split():
         at = columns.index("points")
         del found[at : at + 1 + ("time [s]" in columns[at + 1 : at + 2])]

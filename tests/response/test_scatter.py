@@ -184,7 +184,9 @@ def test_what_is_not_known_is_printed_and_written(scatter_of, response):
     curves = [curve_with(stable) for stable in told]
     one = scatter_of(curves)
     printed = summary(response) | {"scatter": [one | {"peak": dict.fromkeys("uv", one["peak"]["u"])}]}
-    assert "of 0% of the curves; 50% may jump, as stability is unknown" in as_table(printed, "rad/s")
+    text = as_table(printed, "rad/s")
+    assert "of 0% of the curves, unknown of 50%" in text
+    assert text.endswith("unknown: stability is not known, and a sweep may jump")
     own = [replace(c, parameters={"contact.c.n_0": float(i)}) for i, c in enumerate(curves)]
     fields = scatter_fields(scatter(replace(response, curves=own, dofs=("u",))), "rad/s")
     assert fields["jump_untold_share"].values.tolist() == [[0.5, 0.5]]

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
+from fcm.cli.limits import SENTENCES
 from fcm.cli.terminal import plain
 
 UNSTABLE = "!"  # beside a peak where the motion is not stable
@@ -27,6 +29,70 @@ def aligned(rows: Sequence[Sequence[str]], left: int) -> str:
         for row in rows
     )
     return "\n".join(line.rstrip() for line in lines)
+
+
+@dataclass(frozen=True)
+class DofTable:
+    """A table with some columns for each degree of freedom.
+
+    They stand beside each other where a line has room for all; else each degree of freedom has a line.
+
+    left, right: heads of what a row has once; heads: of a degree of freedom's columns, {} in the place of its
+    name; rows: cells of these, (left, one list for each degree of freedom, right).
+    """
+
+    left: list[str]
+    dofs: list[str]
+    heads: list[str]
+    right: list[str]
+    rows: list[tuple[list[str], list[list[str]], list[str]]]
+    width: int = SENTENCES.width
+
+    def text(self, last: int) -> str:
+        """Its lines, of which the last so many columns are to the left."""
+        beside = self._beside(last)
+        return beside if _width(beside) <= self.width else self._below(last)
+
+    def _beside(self, last: int) -> str:
+        shown = [
+            (d, i)
+            for d in range(len(self.dofs))
+            for i in range(len(self.heads))
+            if any(cells[d][i] != ABSENT for _, cells, _ in self.rows)
+        ]
+        heads = [self.heads[i].format(self.dofs[d]) for d, i in shown]
+        lines = [
+            [*left, *("" if cells[d][i] == ABSENT else cells[d][i] for d, i in shown), *right]
+            for left, cells, right in self.rows
+        ]
+        return aligned([[*self.left, *heads, *self.right], *lines], last)
+
+    def _below(self, last: int) -> str:
+        shown = [
+            i for i in range(len(self.heads)) if any(one[i] for _, cells, _ in self.rows for one in cells)
+        ]
+        heads = [self.heads[i].format("").replace("  ", " ").strip() for i in shown]
+        lines = []
+        for left, cells, right in self.rows:
+            kept = [(dof, one) for dof, one in zip(self.dofs, cells, strict=True) if any(one)]
+            for k, (dof, one) in enumerate(kept):
+                own = ["" if one[i] == ABSENT else one[i] for i in shown]
+                lines.append([*left, dof, *own, *(right if k == 0 else [""] * len(right))])
+        if (
+            not self.right
+        ):  # nothing that the lines of a row share: those of a degree of freedom stay together
+            order = {dof: d for d, dof in enumerate(self.dofs)}
+            first = {tuple(left): k for k, (left, _, _) in reversed(list(enumerate(self.rows)))}
+            count = len(self.left)
+            lines.sort(key=lambda line: (first[tuple(line[:count])], order[line[count]]))
+        return aligned([[*self.left, "dof", *heads, *self.right], *lines], last)
+
+
+ABSENT = "\0"  # a cell that there is none of, though others of its column have one
+
+
+def _width(text: str) -> int:
+    return max(map(len, text.splitlines()))
 
 
 BEYOND = "> 100 %"  # an error that is greater than what it is the error of

@@ -6,10 +6,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fcm.cli.columns import (
+    ABSENT,
     BEYOND,
     DOES_NOT_STAY,
     UNKNOWN,
     UNSTABLE,
+    DofTable,
     aligned,
     number,
     ranges,
@@ -25,6 +27,7 @@ from fcm.rotational_dofs import MOST_DOFS, greatest_first, is_rotation, unit_of
 Curve = Mapping[str, Any]  # one of the summary's "curves"
 
 _AT_REST = "0 the degree of freedom does not move, beside rounding"
+_BROKEN = "NOT COMPLETE"
 _EDGE = "*"  # beside the frequency of a peak where the range ends
 _UNTOLD = "- unknown error: with more harmonics no peak is near this one, or a higher one is elsewhere"
 _OF_LEVELS = "- unknown error: what more harmonics would change could not be estimated at this peak"
@@ -69,20 +72,18 @@ def _every_peak(curves: Sequence[Curve], names: list[str], dofs: list[str], unit
     for curve in curves:
         every = [curve.get("peaks", {}).get(dof, []) for dof in dofs]
         for k in range(max(map(len, every), default=0)):
-            cells = swept(curve)
-            for peaks in every:
-                cells += _cells_of_peak(peaks[k]) if k < len(peaks) else ["", "", ""]
-            rows.append(cells)
+            cells = [_cells_of_peak(peaks[k]) if k < len(peaks) else ["", "", ""] for peaks in every]
+            rows.append((swept(curve), cells, list[str]()))
     if not rows:
         return ""
-    kept = [i for i in range(len(dofs)) if any(row[len(names) + 3 * i] for row in rows)]
-    columns = [*range(len(names)), *(len(names) + 3 * i + j for i in kept for j in range(3))]
-    header = [*names, *(text for dof in dofs for text in _peak_heads(dof, unit, length))]
-    return f"{_EVERY}\n" + aligned([[row[i] for i in columns] for row in [header, *rows]], left=0)
+    kept = [d for d in range(len(dofs)) if any(any(cells[d]) for _, cells, _ in rows)]
+    rows = [(left, [cells[d] for d in kept], right) for left, cells, right in rows]
+    shown = [_with_unit(dofs[d], length) for d in kept]
+    return f"{_EVERY}\n" + DofTable(names, shown, _peak_heads(unit), [], rows).text(last=0)
 
 
-def _peak_heads(dof: str, unit: str, length: str) -> tuple[str, str, str]:
-    return f"peak {_with_unit(dof, length)}", f"at {unit}", "error"
+def _peak_heads(unit: str) -> list[str]:
+    return ["peak {}", f"at {unit}", "error"]
 
 
 def _cells_of_peak(peak: Mapping[str, Any]) -> list[str]:
@@ -128,7 +129,12 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
     if not rows:
         return head
     percents = next(iter(found["jumps"].values()))["frequency"]
-    return f"{head}\n" + aligned([["", *(f"{percent} %" for percent in percents), ""], *rows], left=1)
+    untold = "\nunknown: stability is not known, and a sweep may jump"
+    return (
+        f"{head}\n"
+        + aligned([["", *(f"{percent} %" for percent in percents), ""], *rows], left=1)
+        + (untold if any(one["untold"] for one in jumps.values()) else "")
+    )
 
 
 def _of_stable(peak: Mapping[str, Any]) -> str:
@@ -139,7 +145,7 @@ def _of_stable(peak: Mapping[str, Any]) -> str:
 
 def _of_how_many(jump: Mapping[str, Any]) -> str:
     """Of how many curves the percentiles of a jump are, and of how many it is not known."""
-    untold = f"; {jump['untold']:.0%} may jump, as stability is unknown" if jump["untold"] else ""
+    untold = f", unknown of {jump['untold']:.0%}" if jump["untold"] else ""
     return f"of {jump['share']:.0%} of the curves{untold}"
 
 
@@ -174,18 +180,25 @@ def _curves(
     from fcm.results.result import NOT_BEGUN
 
     ranges_of = [dof for dof in dofs if any(_residual(curve, dof) != "0" for curve in curves)]
-    peaks = []
-    for dof in dofs:
-        more = [_RESIDUAL] if dof in ranges_of else []
-        peaks += [*_peak_heads(dof, unit, length), *more]
     balanced = ["harmonics"] if any("harmonics" in curve for curve in curves) else []
     folds = "folds at level" if "level_folds" in curves[0] else f"folds at {unit}"
-    header = [*names, *peaks, *balanced, "points", "time [s]", folds, ""]
     begun = [curve for curve in curves if curve.get("reason") != NOT_BEGUN]
-    rows = [_curve_row(curve, dofs, ranges_of, bool(balanced)) for curve in begun]
-    lines = [aligned([header, *rows], left=2)]
+    broken = [""] if any(not curve["complete"] for curve in begun) else []
+    table = DofTable(
+        names,
+        [_with_unit(dof, length) for dof in dofs],
+        [*_peak_heads(unit), *([_RESIDUAL] if ranges_of else [])],
+        [*balanced, "points", "time [s]", folds, *broken],
+        [_curve_row(curve, dofs, ranges_of, bool(balanced), bool(broken)) for curve in begun],
+    )
+    lines = [table.text(last=1 + len(broken))]
+    for curve in begun:
+        if not curve["complete"]:
+            given = ", ".join(f"{name} = {value}" for name, value in zip(names, swept(curve), strict=True))
+            which = f"{given} " if len(curves) > 1 else ""
+            lines.append(f"{which}{_BROKEN}: {curve.get('reason') or 'it stopped early'}")
     if left := len(curves) - len(begun):
-        lines.append(f"{left} more curve{'s' * (left > 1)} NOT COMPLETE: {NOT_BEGUN}")
+        lines.append(f"{left} more curve{'s' * (left > 1)} {_BROKEN}: {NOT_BEGUN}")
     if shown:
         lines.append(f"shown: {shown}")
     if any(_at_rest(curve, dof) for curve in curves for dof in dofs):
@@ -263,27 +276,32 @@ def _residual(curve: Curve, dof: str) -> str:
     return share_of(change)
 
 
-def _curve_row(curve: Curve, dofs: list[str], ranges_of: list[str], balanced: bool) -> list[str]:
-    cells = swept(curve)
+def _curve_row(
+    curve: Curve, dofs: list[str], ranges_of: list[str], balanced: bool, broken: bool
+) -> tuple[list[str], list[list[str]], list[str]]:
+    each = []
     for dof in dofs:
         peak = curve["peak"].get(dof) or {}
-        if _at_rest(curve, dof):
-            cells += ["0", "-", "-", *(["0"] if dof in ranges_of else [])]
-            continue
-        cells += _cells_of_peak(peak)
-        if dof in ranges_of:
-            cells.append(_residual(curve, dof))
-    if balanced:
-        cells.append(ranges(curve["harmonics"]) if "harmonics" in curve else "-")
+        cells = ["0", "-", "-"] if _at_rest(curve, dof) else _cells_of_peak(peak)
+        if ranges_of:
+            cells.append(_residual(curve, dof) if dof in ranges_of else ABSENT)
+        each.append(cells)
+    right = [ranges(curve["harmonics"]) if "harmonics" in curve else "-"] if balanced else []
     folds = _folds(curve.get("level_folds", curve["folds"]))
-    state = "" if curve["complete"] else f"NOT COMPLETE: {curve.get('reason') or 'it stopped early'}"
-    return [*cells, str(curve["points"]), f"{curve['seconds']:.3f}", folds, state]
+    state = ([_BROKEN] if not curve["complete"] else [""]) if broken else []
+    return swept(curve), each, [*right, str(curve["points"]), f"{curve['seconds']:.3f}", folds, *state]
 
 
 def _folds(folds: Sequence[float | None]) -> str:
-    """All of them, or of very many the first and how many there are."""
-    shown = "  ".join(map(number, folds[: SENTENCES.folds])) or "none"
-    return shown if len(folds) <= SENTENCES.folds else f"{shown}  ... {len(folds)} in all"
+    """All of them, or of many how many there are and between which they lie.
+
+    >>> _folds([]), _folds([1.0, 2.0]), _folds([1.0, 4.0, 2.0, 3.0, 5.0])
+    ('none', '1.00000  2.00000', '5: 1.00000 to 5.00000')
+    """
+    if len(folds) <= SENTENCES.folds:
+        return "  ".join(map(number, folds)) or "none"
+    known = [one for one in folds if one is not None]
+    return f"{len(folds)}: {number(min(known, default=None))} to {number(max(known, default=None))}"
 
 
 def cost_and_error(summary: Mapping[str, Any]) -> str:

@@ -6,48 +6,47 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from fcm.cli.columns import aligned, number, short, swept
+from fcm.cli.columns import DofTable, number, short, swept
 from fcm.cli.limits import SENTENCES
 
 _LOST = "\n- the curve has no stable part there to land on"
-Row = tuple[str, float, list[str]]  # the sweep, where it begins, the cells between swept values and sweep
+# the sweep, where it begins, the cells between swept values and degrees of freedom, the cells of these
+Row = tuple[str, float, list[str], list[list[str]]]
 
 
 def jump_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: list[str], unit: str) -> str:
     """A line for each jump; empty if there is none."""
-    moves = [text for dof in dofs for text in (f"{dof} before", f"{dof} after")]
 
     def rows(curve: Mapping[str, Any]) -> list[Row]:
         return [
             (
                 one["sweep"],
                 one["frequency"],
-                [number(one["frequency"])]
-                + [number(one[side].get(dof)) for dof in dofs for side in ("before", "after")],
+                [number(one["frequency"])],
+                [[number(one[side].get(dof)) for side in ("before", "after")] for dof in dofs],
             )
             for one in curve.get("jumps", ())
         ]
 
-    cells = _rows(curves, rows)
-    if not cells:
+    found = _rows(curves, rows)
+    if not found:
         return ""
-    lost = any("-" in row[len(names) :] for row in cells)
-    return aligned([[*names, f"jump at {unit}", *moves, "sweep"], *cells], left=1) + (_LOST if lost else "")
+    lost = any("-" in cells for _, each, _ in found for cells in each)
+    table = DofTable([*names, f"jump at {unit}"], dofs, ["{} before", "{} after"], ["sweep"], found)
+    return table.text(last=1) + (_LOST if lost else "")
 
 
 def stable_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: list[str], unit: str) -> str:
     """A line for each curve of which a peak is not known to be stable: the greatest motions that are."""
-    cells = []
+    rows = []
     for curve in curves:
         peaks = [(curve["peak"].get(dof) or {}).get("greatest_stable") for dof in dofs]
         if any(peaks):
-            each = (_stays(one) for one in peaks)
-            cells.append([*swept(curve), *(cell for stays in each for cell in stays)])
-    if not cells:
+            rows.append((swept(curve), [_stays(one) for one in peaks], list[str]()))
+    if not rows:
         return ""
-    header = [*names, *(text for dof in dofs for text in (f"stable {dof}", f"at {unit}", "error"))]
     said = "the greatest motions known to stay, where a peak does not, or may not; others may be greater:"
-    return f"{said}\n{aligned([header, *cells], left=0)}"
+    return f"{said}\n{DofTable(names, dofs, ['stable {}', f'at {unit}', 'error'], [], rows).text(last=0)}"
 
 
 def _stays(one: Mapping[str, Any] | None) -> list[str]:
@@ -70,7 +69,8 @@ def untold_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: li
             (
                 one["sweep"],
                 one["from"],
-                [number(one["from"]), number(one["to"]), *(number(one["before"].get(dof)) for dof in dofs)],
+                [number(one["from"]), number(one["to"])],
+                [[number(one["before"].get(dof))] for dof in dofs],
             )
             for one in curve.get("stability_untold", ())
             if not _is_narrow(one)
@@ -83,10 +83,10 @@ def untold_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: li
     if not cells:
         said = f"stability is unknown, and a sweep may jump, in {narrow} {windows}"
         return said if narrow else ""
-    header = [*names, f"from {unit}", "to", *(f"{dof} there" for dof in dofs), "sweep"]
+    table = DofTable([*names, f"from {unit}", "to"], dofs, ["{} there"], ["sweep"], cells)
     said = "between these stability is unknown, and a sweep may jump; more harmonics may tell:"
     more = f"\nand in {narrow} more {windows}" if narrow else ""
-    return f"{said}\n{aligned([header, *cells], left=1)}{more}"
+    return f"{said}\n{table.text(last=1)}{more}"
 
 
 def _is_narrow(window: Mapping[str, Any]) -> bool:
@@ -95,11 +95,11 @@ def _is_narrow(window: Mapping[str, Any]) -> bool:
 
 def _rows(
     curves: Sequence[Mapping[str, Any]], rows: Callable[[Mapping[str, Any]], list[Row]]
-) -> list[list[str]]:
-    """The lines of all curves, of each as first the upward, then the downward sweep meets them."""
+) -> list[tuple[list[str], list[list[str]], list[str]]]:
+    """The rows of all curves, of each as first the upward, then the downward sweep meets them."""
     found = []
     for curve in curves:
         ups = sorted((one for one in rows(curve) if one[0] == "up"), key=lambda one: one[1])
         downs = sorted((one for one in rows(curve) if one[0] != "up"), key=lambda one: -one[1])
-        found += [[*swept(curve), *cells, sweep] for sweep, _, cells in ups + downs]
+        found += [([*swept(curve), *where], each, [sweep]) for sweep, _, where, each in ups + downs]
     return found

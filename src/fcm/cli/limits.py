@@ -10,13 +10,14 @@ class RemarkOptions:
     """How much sentences, tables and pictures of the command line show."""
 
     harmonics: int = 10  # of which it is said what they meet
-    folds: int = 12  # of which a line has all
+    width: int = 120  # characters of a line of a table, from which on each degree of freedom has a line
+    folds: int = 4  # of which a line has all
     stretches: int = 3  # of frequencies in a sentence
     named: int = 3  # motions, and degrees of freedom, in a sentence
     narrow_window: float = 1e-3  # of the frequency: narrower ones of unknown stability have no line each
     rows: int = 10  # of the table of an interface: contacts that take most
     flexible: int = 5  # modes that stand for flexibility, in a list of modes
-    directions: int = 6  # whose participation fits beside each other on a line
+    directions: int = 6  # at most, whose participation stands beside each other on a line
     forces: int = 2  # of these directions, where contacts need the others
     contacts: int = 3  # that fit beside the degrees of freedom on a line
     problems: int = 3  # on a terminal; --json has all

@@ -54,8 +54,11 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
 
 
 def as_table(found: dict[str, Any]) -> str:
-    """One line for each mode."""
-    directions = _shown(found)
+    """One line for each mode, with as many directions as it has room for."""
+    return _lines(found, _shown(found))
+
+
+def _lines(found: dict[str, Any], directions: list[str]) -> str:
     ring = "nodal_diameter" in found["modes"][0]
     header = [
         "mode",
@@ -97,8 +100,12 @@ def _shown(found: dict[str, Any]) -> list[str]:
     every = list(found["modes"][0]["participation"])
     contacts = [name for name in every if name.startswith("contact.")]
     forces = [name for name in every if name not in contacts]
-    few = forces[: max(SENTENCES.forces, SENTENCES.directions - len(contacts))]
-    return contacts[: SENTENCES.directions - len(few)] + few
+    for most in range(SENTENCES.directions, 0, -1):
+        few = forces[: max(min(SENTENCES.forces, most - 1), most - len(contacts))]
+        chosen = contacts[: most - len(few)] + few
+        if max(map(len, _lines(found, chosen).splitlines())) <= SENTENCES.width:
+            break
+    return chosen
 
 
 def _short(direction: str) -> str:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from fcm.response import Response
     from fcm.run import Execution
 
+_BROKEN = "NOT COMPLETE"
 OF_NO_USE = {  # with --mode, and why
     "method": "modes are followed by the balance",
     "table": "their forces are exact",
@@ -63,15 +64,34 @@ def traced(
 
 def as_table(summary: Mapping[str, Any], names: list[str], unit: str) -> str:
     """One line a mode: at its ends, where it is damped most, and in resonance with the scene's forces."""
+    wide = _lines(summary, names, unit, ["points", "time [s]"])
+    fits = max(map(len, wide.splitlines())) <= SENTENCES.width
+    table = wide if fits else _lines(summary, names, unit, [])
+    curves = summary["curves"]
+    every = ((curve.get("mode") or {}).get("not_met", ()) for curve in curves)
+    unmet = Counter(f"force level {one['level']:g}: {one['why']}" for found in every for one in found)
+    of = f" of {len(curves)} curves" if len(curves) > 1 else ""
+    told = [_of_dofs(summary), *(f"{what}, in {count}{of}" if of else what for what, count in unmet.items())]
+    if any((curve.get("truncation_error") or 0.0) > 1.0 for curve in curves):
+        told.append(f"{BEYOND} the error is more than the amplitude: give more by --harmonics")
+    broken = (curve for curve in curves if not curve["complete"])
+    told += [
+        f"{_given(curve, names)}{_BROKEN}: {curve.get('reason') or 'it stopped early'}" for curve in broken
+    ]
+    return "\n".join([table, *filter(None, told)])
+
+
+def _lines(summary: Mapping[str, Any], names: list[str], unit: str, cost: list[str]) -> str:
+    """The table, with or without the columns of what a curve cost."""
+    broken = [""] if any(not curve["complete"] for curve in summary["curves"]) else []
     header = [*names, f"frequency {unit}", f"to {unit}", "damping", "to", "greatest", f"at {unit}",
-              "harmonics", "error", "points", "time [s]", f"resonances at {unit}", ""]  # fmt: skip
+              "harmonics", "error", *cost, f"resonances at {unit}", *broken]  # fmt: skip
     rows = []
     for curve in summary["curves"]:
-        mode, state = curve.get("mode"), ""
-        if not curve["complete"]:
-            state = f"NOT COMPLETE: {curve.get('reason') or 'it stopped early'}"
+        mode = curve.get("mode")
+        state = [_BROKEN if not curve["complete"] else ""] if broken else []
         if mode is None:
-            rows.append([*swept(curve), *["-"] * (len(header) - len(names) - 1), state])
+            rows.append([*swept(curve), *["-"] * (len(header) - len(names) - len(broken)), *state])
             continue
         top = mode["greatest_damping"]
         rows.append(
@@ -83,23 +103,20 @@ def as_table(summary: Mapping[str, Any], names: list[str], unit: str) -> str:
                 number(top["frequency"]),
                 ranges(curve["harmonics"]),
                 short(curve["truncation_error"]),
-                str(curve["points"]),
-                f"{curve['seconds']:.3f}",
+                *([str(curve["points"]), f"{curve['seconds']:.3f}"] if cost else []),
                 "  ".join(
                     f"{number(one['frequency'])} (level {one['level']:g})" for one in mode["resonances"]
                 )
                 or "none",
-                state,
+                *state,
             ]
         )
-    curves = summary["curves"]
-    every = ((curve.get("mode") or {}).get("not_met", ()) for curve in curves)
-    unmet = Counter(f"force level {one['level']:g}: {one['why']}" for found in every for one in found)
-    of = f" of {len(curves)} curves" if len(curves) > 1 else ""
-    told = [_of_dofs(summary), *(f"{what}, in {count}{of}" if of else what for what, count in unmet.items())]
-    if any((curve.get("truncation_error") or 0.0) > 1.0 for curve in curves):
-        told.append(f"{BEYOND} the error is more than the amplitude: give more by --harmonics")
-    return "\n".join([aligned([header, *rows], left=2), *filter(None, told)])
+    return aligned([header, *rows], left=1 + len(broken))
+
+
+def _given(curve: Mapping[str, Any], names: list[str]) -> str:
+    """The numbers that a curve of several is for."""
+    return "".join(f"{name} = {value} " for name, value in zip(names, swept(curve), strict=True))
 
 
 def _of_dofs(summary: Mapping[str, Any]) -> str:
