@@ -63,7 +63,7 @@ def test_a_level_whose_resonance_is_not_among_the_amplitudes_is_told(fcm):
     levels = [x for level in (1e-3, 1, 20) for x in ("--force-level", level)]
     done = fcm(*MODE[:4], "--level", "5:30", "--harmonics", 1, *levels)
     assert done.code == 0
-    assert done.out.splitlines()[3:] == [
+    assert done.out.splitlines()[3:5] == [
         "force level 0.001: its resonance lies below amplitude 5",
         "force level 20: its resonance lies beyond amplitude 30",
     ]
@@ -167,3 +167,12 @@ def test_which_contacts_loads_close_is_said(fcm, scene, force, said):
     scene.write_text(f'{text}\n[[load]]\ndof = "v"\nforce = {force}\n')
     done = fcm("respond", scene, "--mode", 1, "--level", "0.1:10", "--harmonics", 1)
     assert done.code == 0 and said in done.err
+
+
+def test_a_mode_outside_the_range_of_the_scene_is_told(fcm):
+    """Perhaps another is meant. The range of the scene is from 0.7 to 1.7."""
+    level = "--level", "1e-3:1e-2", "--harmonics", 1
+    assert "outside the scene's range" not in fcm("respond", "yang1998-n5", "--mode", 1, *level).err
+    done = fcm("respond", "yang1998-n5", "--mode", 2, *level)
+    assert done.code == 0 and "mode 2 goes from 10." in done.err
+    assert "outside the scene's range of 0.7 to 1.7 rad/s: is another --mode meant?" in done.err

@@ -115,6 +115,9 @@ def test_a_part_of_the_only_phase_is_written_and_no_work_is_kept(program):
     measured = before("schedule", signal.SIGINT, 4).replace("cycles_from", "measure")
     stopped = program("respond", "one.toml", "-o", "a.nc", before=measured)
     assert stopped.returncode == 3 and "NOT COMPLETE: interrupted" in stopped.out
-    assert "fcm: warning: interrupted; nothing is kept to go on from\n" in stopped.err
+    assert (
+        "fcm: warning: interrupted; nothing is kept to go on from: --resume skips finished curves"
+        in stopped.err
+    )
     assert "fcm: ending, which may take some seconds\n" in stopped.err
     assert begun(program) == 4 and program.files == ["a.nc", "one.toml", "sweep.toml"]

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fcm.plot.mode import DrawnMode, DrawnModes, draw_modes
+from fcm.plot.unfinished import Unfinished
 
 AMPLITUDE = np.geomspace(0.1, 10.0, 41)
 
@@ -62,7 +63,7 @@ def test_a_line_through_few_points_is_smooth_and_passes_them():
 def test_resonances_of_the_forces_are_marked_and_errors_drawn():
     """Each where it is told, and its damping on the line below it."""
     damping, error = np.full(41, 0.3), np.full(41, np.nan)
-    error[5] = 0.02
+    error[5:7] = 0.02
     one = DrawnMode({}, np.full(41, 10.0), AMPLITUDE, damping, error, ((4.0, 2.0, 9.06),))
     upper, lower, below = draw_modes(DrawnModes("", "Hz", (one,))).axes
     (diamond,) = (line for line in upper.lines if line.get_marker() == "D")
@@ -71,4 +72,20 @@ def test_resonances_of_the_forces_are_marked_and_errors_drawn():
     (diamond,) = (line for line in lower.lines if line.get_marker() == "D")
     assert diamond.get_xdata()[0] == pytest.approx(2.0, rel=1e-2)
     assert diamond.get_ydata()[0] == pytest.approx(30.0)
-    assert np.nansum(below.lines[0].get_ydata()) == 0.02
+    assert np.nansum(below.lines[0].get_ydata()) == 0.04
+
+
+def test_few_errors_have_a_line_and_no_panel():
+    error = np.full(41, np.nan)
+    error[[5, 40]] = 0.02, 0.14
+    one = DrawnMode({}, np.full(41, 10.0), AMPLITUDE, np.full(41, 0.3), error)
+    _, lower = draw_modes(DrawnModes("", "Hz", (one,))).axes
+    assert "at most 0.14, told at 2 points" in lower.get_title(loc="right")
+
+
+def test_a_mode_that_stopped_early_says_so_and_where():
+    one = DrawnMode({}, np.full(41, 10.0), AMPLITUDE, np.full(41, 0.3))
+    upper, _ = draw_modes(DrawnModes("", "Hz", (one,), unfinished=Unfinished(("stopped at 10",)))).axes
+    (cross,) = (line for line in upper.lines if line.get_marker() == "x")
+    assert cross.get_xdata().tolist() == [AMPLITUDE[-1]]
+    assert upper.get_title(loc="left") == "NOT COMPLETE: stopped at 10"

@@ -8,6 +8,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.text import Annotation
 
 from fcm.plot import DrawnCurve, DrawnResponse, PlotError, draw_response, save
+from fcm.plot.measured import DrawnMeasured, FittedNumber
 
 FREQUENCY = np.linspace(0.7, 1.7, 201)
 
@@ -321,3 +322,18 @@ def test_a_level_curve_is_below_the_frame():
 def test_a_unit_of_length_is_in_the_label():
     one = replace(response(resonance(5.0, 1.0, 1.0)), length="mm")
     assert draw_response(one).axes[0].get_ylabel().endswith("(mm)")
+
+
+def test_the_numbers_that_a_fit_found_stand_beside_what_was_measured():
+    found = (
+        FittedNumber("contact.shroud.mu", 0.301234, 0.0042),
+        FittedNumber("contact.shroud.n_0", 9.0, np.nan),
+    )
+    points = DrawnMeasured("u", FREQUENCY[:3], FREQUENCY[:3])
+    drawn = replace(response(resonance(9.0, 1.2, 5.0)), measured=(points,), fitted=found)
+    (legend,) = draw_response(drawn).legends
+    assert [text.get_text() for text in legend.get_texts()] == [
+        "measured",
+        "contact.shroud.mu = 0.3012 ± 0.0042",
+        "contact.shroud.n_0 = 9, scatter not told",
+    ]

@@ -102,8 +102,9 @@ def test_random_draws_are_points_without_lines():
 def test_a_curve_that_is_not_complete_is_not_drawn():
     some = peaks(n_0=[0, 10, 20])
     some.complete[1] = False
-    upper, _ = draw_peak(some).axes
+    upper, lower = draw_peak(some).axes
     assert upper.lines[0].get_xdata().tolist() == [0, 20]
+    assert title(lower) == "NOT COMPLETE: 1 of 3 curves, left out"
     some.complete[:] = False
     with pytest.raises(PlotError, match="no complete curve"):
         draw_peak(some)
@@ -160,12 +161,51 @@ def test_a_file_without_a_sweep(tmp_path):
         draw_peak(read_peaks(path))
 
 
-def test_a_file_of_nonlinear_modes_has_no_peaks(tmp_path):
-    """It was said that nothing was swept."""
-    made = called("respond", "yang1998-n5", "--mode", "1", "--level", "1:2", "-o", tmp_path / "mode.nc")
+def test_the_resonances_of_nonlinear_modes_are_the_peaks_of_a_sweep(tmp_path):
+    """Of the levels of the forces, too; a level whose resonance is beyond the amplitudes has none."""
+    levels = [x for level in (0.5, 1, 20) for x in ("--force-level", level)]
+    path = tmp_path / "mode.nc"
+    made = called(
+        "respond", "yang1998", "--mode", 1, "--level", "5:30", "--harmonics", 1, *levels, "-o", path
+    )
     assert made.code == 0
-    with pytest.raises(PlotError, match="nonlinear modes, which have no peaks; try fcm plot mode"):
-        read_peaks(tmp_path / "mode.nc")
+    found, rows = read_peaks(path), made.out.split("times the level:\n")[1].splitlines()
+    assert rows[0].split()[:4] == ["n_0", "level", "at", "rad/s"] and list(found.parameters) == [
+        N_0,
+        "excitation.level",
+    ]
+    there = np.isfinite(found.amplitude[:, 0])
+    told = np.array([[float(x) for x in row.split()] for row in rows[1:]])
+    mine = [*found.parameters.values(), found.frequency[:, 0], found.damping, found.amplitude[:, 0]]
+    assert told[:, [0, 1, 2, 3, 5]] == pytest.approx(np.transpose(mine)[there], rel=1e-3)
+    upper, _, lowest = draw_peak(found).axes
+    assert "least resonance" in title(upper) and lowest.get_ylabel() == "Damping ratio (%)"
+    assert upper.get_ylabel().startswith("Resonance amplitude of u")
+
+
+def test_a_mode_without_resonances_is_said_to_have_none(tmp_path):
+    path = tmp_path / "mode.nc"
+    assert called("respond", "yang1998-n5", "--mode", "1", "--level", "1:2", "-o", path).code == 0
+    with pytest.raises(PlotError, match="no resonance of a nonlinear mode; try fcm plot mode"):
+        read_peaks(path)
+
+
+def test_a_least_peak_at_an_end_of_the_sweep_is_no_minimum():
+    said = title(draw_peak(peaks(n_0=[10, 20, 50])).axes[0])
+    assert said.splitlines()[1] == "an end of the sweep of $n_{0}$: beyond it may be less; sweep further"
+    assert "end of the sweep" not in title(draw_peak(peaks(n_0=[0, 10, 20])).axes[0])
+
+
+def test_random_draws_have_no_best_one():
+    """Nobody chooses a draw: the middle of the peaks and their scatter are told, and no ring is drawn."""
+    random = np.random.default_rng(0)
+    some = replace(peaks(n_0=random.normal(10, 3, 50)), drawn=(N_0,))
+    upper, _ = draw_peak(some).axes
+    low, middle, high = np.percentile(some.amplitude[:, 0], (5, 50, 95))
+    assert title(upper) == (
+        f"random draws of $n_{{0}}$: median {middle:.4g}, 5 to 95 % are {low:.4g} to {high:.4g}"
+    )
+    assert not any(line.get_markersize() == 7 for line in upper.lines)
 
 
 def test_the_least_peak_has_its_unit():

@@ -21,7 +21,7 @@ def path(tmp_path):
         variables = {
             "dof": (("dof",), np.array(["tip"], object)),
             "contact.a.n_0": (("curve",), np.array([5.0, -1.0])),
-            "complete": (("curve",), np.array([1.0, 0.0])),
+            "complete": (("curve",), np.array([1.0, 1.0])),
             "frequency": (("curve", "point"), np.array([[1.0, 2.0, 1.5], [1.0, 3.0, NAN]])),
             "amplitude": (
                 ("curve", "point", "dof"),

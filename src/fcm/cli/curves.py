@@ -179,7 +179,8 @@ def _curves(
     """What was swept, the peaks, the points, the time, the folds, whether it is whole."""
     from fcm.results.result import NOT_BEGUN
 
-    ranges_of = [dof for dof in dofs if any(_residual(curve, dof) != "0" for curve in curves)]
+    judged = [curve for curve in curves if curve.get("cause") != "interrupted"]
+    ranges_of = [dof for dof in dofs if any(_residual(curve, dof) != "0" for curve in judged)]
     balanced = ["harmonics"] if any("harmonics" in curve for curve in curves) else []
     folds = "folds at level" if "level_folds" in curves[0] else f"folds at {unit}"
     begun = [curve for curve in curves if curve.get("reason") != NOT_BEGUN]

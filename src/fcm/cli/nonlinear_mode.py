@@ -78,7 +78,8 @@ def as_table(summary: Mapping[str, Any], names: list[str], unit: str) -> str:
     told += [
         f"{_given(curve, names)}{_BROKEN}: {curve.get('reason') or 'it stopped early'}" for curve in broken
     ]
-    return "\n".join([table, *filter(None, told)])
+    lines = "\n".join([table, *filter(None, told)])
+    return "\n\n".join(filter(None, [lines, _in_resonance(summary, names, unit)]))
 
 
 def _lines(summary: Mapping[str, Any], names: list[str], unit: str, cost: list[str]) -> str:
@@ -119,14 +120,62 @@ def _given(curve: Mapping[str, Any], names: list[str]) -> str:
     return "".join(f"{name} = {value} " for name, value in zip(names, swept(curve), strict=True))
 
 
+def outside_range(summary: Mapping[str, Any]) -> str:
+    """That a mode has no frequency within the range of the scene, and is perhaps not that meant; else ''."""
+    modes = [curve["mode"] for curve in summary["curves"] if curve.get("mode")]
+    if not modes or "range" not in summary:
+        return ""
+    low, high = summary["range"]
+    away = [one for one in modes if max(one["frequency"]) < low or min(one["frequency"]) > high]
+    if not away:
+        return ""
+    unit, (first, last) = summary["frequency_unit"], sorted(away[0]["frequency"])
+    on = f" on {len(away)} of {len(modes)} curves" if len(modes) > 1 else ""
+    return (
+        f"mode {away[0]['number']} goes from {first:.6g} to {last:.6g} {unit}{on}, outside the scene's range "
+        f"of {low:.6g} to {high:.6g} {unit}: is another --mode meant?"
+    )
+
+
+def _in_resonance(summary: Mapping[str, Any], names: list[str], unit: str) -> str:
+    """One line for each resonance with the scene's forces: frequency, damping, amplitudes; empty if none."""
+    dofs, length = _shown(summary), summary.get("units", {}).get("length", "")
+    rows = [
+        [
+            *swept(curve),
+            f"{one['level']:g}",
+            number(one["frequency"]),
+            f"{one['damping']:.4g}",
+            number(one["modal_amplitude"]),
+            *(number(one["amplitude"][dof]) for dof in dofs),
+        ]
+        for curve in summary["curves"]
+        for one in (curve.get("mode") or {}).get("resonances", ())
+    ]
+    if not rows:
+        return ""
+    each = [f"{dof} [{own}]" if (own := unit_of(dof, length)) else dof for dof in dofs]
+    header = [*names, "level", f"at {unit}", "damping", "modal amplitude", *each]
+    return "in resonance with the scene's forces, times the level:\n" + aligned([header, *rows], left=0)
+
+
+def _shown(summary: Mapping[str, Any]) -> list[str]:
+    """The degrees of freedom that fit on a line: of those that the scene asks for, where it does, those that
+    move most in the mode."""
+    first = next((curve["mode"] for curve in summary["curves"] if curve.get("mode")), None)
+    if first is None:
+        return []
+    asked = summary.get("output", ())
+    moved = {dof: value for dof, value in first["displacement"].items() if not asked or dof in asked}
+    dofs = list(moved)
+    return [dofs[d] for d in sorted(greatest_first(dofs, list(moved.values()))[: SENTENCES.named])]
+
+
 def _of_dofs(summary: Mapping[str, Any]) -> str:
     """What a modal amplitude is of displacements, by which its span is chosen; empty where no mode is."""
     first = next((curve["mode"] for curve in summary["curves"] if curve.get("mode")), None)
     if first is None:
         return ""
-    asked, length = summary.get("output", ()), summary.get("units", {}).get("length", "")
-    moved = {dof: value for dof, value in first["displacement"].items() if not asked or dof in asked}
-    dofs = list(moved)
-    chosen = sorted(greatest_first(dofs, list(moved.values()))[: SENTENCES.named])
-    each = (f"{dofs[d]} {moved[dofs[d]]:.4g} {unit_of(dofs[d], length)}".rstrip() for d in chosen)
+    moved, length = first["displacement"], summary.get("units", {}).get("length", "")
+    each = (f"{dof} {moved[dof]:.4g} {unit_of(dof, length)}".rstrip() for dof in _shown(summary))
     return f"a modal amplitude of 1 is, at the least one followed: {', '.join(each)}"

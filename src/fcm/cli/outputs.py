@@ -78,7 +78,9 @@ class Outputs:
             click.echo(text)
         if response.interrupted:
             self._say_kept(
-                "interrupted; what is finished is kept", "interrupted; nothing is kept to go on from"
+                "interrupted; what is finished is kept",
+                "interrupted; nothing is kept to go on from: --resume skips finished curves, and begins "
+                "others anew",
             )
         elif self.checkpoint is not None:
             for path in self.checkpoint.done():

@@ -27,8 +27,10 @@ def peak(
 ) -> None:
     """Draw the peaks of FILE, the netCDF file of `fcm respond -o FILE`, against what was swept.
 
-    The least peak is marked: of a sweep of the preload, the best preload. Of tracked peaks, as of an
-    [optimum], the curve is drawn; of tracked folds their frequencies, the window between them shaded.
+    The least peak is marked: of a sweep of the preload, the best preload. At an end of the sweep that is
+    said. Of random draws the median and the scatter are. Of nonlinear modes (--mode) the resonances with the
+    scene's forces are drawn, with their damping. Of tracked peaks, as of an [optimum], the curve is drawn; of
+    tracked folds their frequencies, the window between them shaded.
     """
     from fcm.plot.peak import draw_peak, read_peaks
     from fcm.plot.tracked import draw_tracked, read_tracked

@@ -79,7 +79,8 @@ def response(
 ) -> None:
     """Draw the response curves of FILE, the netCDF file of `fcm respond -o FILE`.
 
-    Unstable parts are dashed. Parts of unknown stability are dotted. The errors of the curves are drawn below
+    Unstable parts are dashed. Parts of unknown stability are dotted. A cross is where a curve that is not
+    complete ends; above the axes stands why. The errors of the curves are drawn below
     them, where the file has them. A page (.html) has every degree of freedom, and the numbers of the
     point under the mouse.
     """

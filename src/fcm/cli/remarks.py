@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli import fit, schedule, track
+from fcm.cli import fit, nonlinear_mode, schedule, track
 from fcm.cli.curves import all_lost_to_defects, cost_and_error, incomplete
 from fcm.cli.doubts import (
     branches_unsure,
@@ -103,6 +103,8 @@ def close(
         messages.info(nothing)
     if beyond := peaks_not_followed(result):
         messages.info(beyond)
+    if away := nonlinear_mode.outside_range(result):
+        messages.warning(away)
     if short := short_of_accuracy(result):
         messages.warning(short)
     unsure = (branches_unsure, folds_unsure, symmetry_lost, tracked_unsure)

@@ -131,9 +131,14 @@ OPTIONS: list[Callable[[Any], Any]] = [  # in the order of the help
     ),
     click.option(
         "--time-limit", type=float, metavar="SECONDS", callback=seconds,
-        help="Stop after so long, and keep what is finished, as Ctrl-C does; --resume goes on.",
+        help="Stop after so long, and keep what is finished, as Ctrl-C does; see --resume.",
     ),
-    click.option("--resume", is_flag=True, help="Continue an interrupted sweep with the same -o FILE."),
+    click.option(
+        "--resume", is_flag=True,
+        help="Continue an interrupted run with the same -o FILE. Finished curves of a sweep are not "
+        "traced again; one that was begun is, from its start. With --method exact it goes on from its last "
+        "point.",
+    ),
     click.option(
         "--leave-out-tolerance", "tolerance", type=FiniteRange(min=0.0), default=1e-5, show_default=True,
         metavar="X", help="Greatest relative change of the response by what is left out.",

@@ -12,6 +12,7 @@ from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label, with_unit
 from fcm.plot.read import LEVEL, DrawnResponse, wide
 from fcm.plot.style import LAYOUT, has_decades, house_style, logarithmic_axis, new_figure, sequence_colours
+from fcm.plot.unfinished import say_unfinished
 from fcm.rotational_dofs import unit_of
 
 if TYPE_CHECKING:
@@ -58,6 +59,7 @@ def draw_bands(
             axes.set_xscale("log")
         _finish(axes, bands, log)
         axes.set_title(f"median, and {span[0]:g} to {span[1]:g} % of the draws", loc="right", fontsize=8)
+        say_unfinished(axes, response.unfinished)
         name_at_side(figure, axes.get_lines(), [band.parameters for band in bands], response.units)
     return figure
 

@@ -5,6 +5,7 @@ The page is one HTML file that holds all it needs, by plotly; no network is used
 
 from __future__ import annotations
 
+import html
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from fcm.plot.labels import short_names, with_unit
 from fcm.plot.peak import Peaks
 from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, FloatArray, wide
 from fcm.plot.style import LAYOUT, has_decades, sequence_colours
+from fcm.plot.unfinished import sentence
 
 STATES = ("stable", "unstable", "stability unknown")
 DASHES = dict(zip(STATES, ("solid", "dash", "dot"), strict=True))
@@ -55,6 +57,7 @@ def response_page(response: DrawnResponse, dof: str | None, log: bool | None, pa
     figure.update_xaxes(title=_frequency(response.frequency_unit), type=along)
     figure.update_yaxes(title=_amplitude(response, column), type=up)
     said = [f"{dash}: {state}" for state, dash in DASHES.items() if any(state == part[1] for part in parts)]
+    said += filter(None, [html.escape(sentence(response.unfinished))])
     title = {"text": "; ".join(said), "font": {"size": 13}, "x": 0.5}
     figure.update_layout(updatemenus=_menu(response, parts, column), title=title, **_LAYOUT)
     _write(figure, path)

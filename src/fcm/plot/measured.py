@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +13,7 @@ import numpy.typing as npt
 
 from fcm.plot.errors import PlotError
 from fcm.plot.options import READ
+from fcm.plot.style import LAYOUT
 from fcm.units import EXCITED, UNIT
 
 if TYPE_CHECKING:
@@ -44,6 +46,25 @@ class MeasuredBackbone:
     amplitude: FloatArray
     frequency: FloatArray
     damping: FloatArray
+
+
+@dataclass(frozen=True)
+class FittedNumber:
+    """A number of the scene that a fit found, and its standard error; NaN where that is not told.
+
+    >>> print(FittedNumber("contact.lap.mu", 0.30123, 0.0042))
+    contact.lap.mu = 0.3012 ± 0.0042
+    >>> print(FittedNumber("contact.lap.k_u", 2.0e9, float("nan")))
+    contact.lap.k_u = 2e+09, scatter not told
+    """
+
+    key: str
+    value: float
+    error: float
+
+    def __str__(self) -> str:
+        scatter = f" ± {self.error:.2g}" if np.isfinite(self.error) else ", scatter not told"
+        return f"{self.key} = {self.value:.4g}{scatter}"
 
 
 def backbones_of(variables: Any) -> tuple[MeasuredBackbone, ...]:
@@ -148,9 +169,32 @@ def _by_curve(
     return [*found, (None, np.flatnonzero(free))] if free.any() else found
 
 
-def name_measured(figure: Figure) -> None:
-    """Say above the axes what the crosses are."""
+def fitted_of(data: Any) -> tuple[FittedNumber, ...]:
+    """The numbers that a fit found, of an open file, as its summary has them; none where it has none."""
+    if not any(name in data.variables for name in ("data_frequency", "data_displacement")):
+        return ()
+    try:
+        numbers = json.loads(str(getattr(data, "summary", "{}"))).get("fitted", {}).get("numbers", {})
+        return tuple(
+            FittedNumber(
+                str(key),
+                float(one["value"]),
+                np.nan if one["standard_error"] is None else float(one["standard_error"]),
+            )
+            for key, one in numbers.items()
+        )
+    except (AttributeError, LookupError, TypeError) as error:
+        raise ValueError("its attribute summary is not of a fit") from error
+
+
+def name_measured(figure: Figure, fitted: Sequence[FittedNumber] = ()) -> None:
+    """Say above the axes what the crosses are, and which numbers were found."""
     from matplotlib.lines import Line2D
 
-    handle = Line2D([], [], linestyle="none", marker="+", color=NEUTRAL, markersize=SIZE)
-    figure.legend([handle], [WORD], loc="outside upper right")
+    handles = [Line2D([], [], linestyle="none", marker="+", color=NEUTRAL, markersize=SIZE)]
+    handles += [Line2D([], [], linestyle="none") for _ in fitted]
+    rows = 1 + LAYOUT.fitted_of_row
+    figure.legend(
+        handles, [WORD, *map(str, fitted)], loc="outside upper right", ncols=min(len(handles), rows),
+        handlelength=0.8, handletextpad=0.4,
+    )  # fmt: skip

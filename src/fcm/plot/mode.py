@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -14,11 +14,20 @@ from fcm.plot.curve_names import name_at_side
 from fcm.plot.error_panel import RANGE
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label
-from fcm.plot.measured import BACKBONE, MeasuredBackbone, backbones_of, draw_backbones, name_measured
+from fcm.plot.measured import (
+    BACKBONE,
+    FittedNumber,
+    MeasuredBackbone,
+    backbones_of,
+    draw_backbones,
+    fitted_of,
+    name_measured,
+)
 from fcm.plot.options import READ
 from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
 from fcm.plot.style import LAYOUT, house_style, new_figure, sequence_colours
+from fcm.plot.unfinished import Unfinished, mark_unfinished, say_unfinished, unfinished_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -67,17 +76,21 @@ class DrawnModes:
     modes: tuple[DrawnMode, ...]
     units: Mapping[str, str] = field(default_factory=dict)  # of swept keys, if the file says them
     measured: tuple[MeasuredBackbone, ...] = ()  # that numbers were fitted to
+    unfinished: Unfinished = field(
+        default_factory=Unfinished
+    )  # of all curves, those without a point among them
+    fitted: tuple[FittedNumber, ...] = ()  # that a fit found
 
 
 @apart
 def read_modes(path: Path) -> DrawnModes:
     """Read what ``fcm respond --mode -o`` has written; PlotError if the file is something else."""
     what = "a file of nonlinear modes (fcm respond --mode)"
-    with opened(path, what, _NEEDED, (_ERROR, *BACKBONE)) as data:
+    with opened(path, what, _NEEDED, (_ERROR, "complete", *BACKBONE)) as data:
         frequency, amplitude, damping = (floats(data.variables[name]) for name in _NEEDED)
         told = _ERROR in data.variables
         error = floats(data.variables[_ERROR]) if told else np.full(frequency.shape, np.nan)
-        swept, resonances = swept_values(data.variables), _resonances(data)
+        swept, resonances = swept_values(data.variables), resonances_of(data)
         found = [
             DrawnMode(
                 {key: float(values[i]) for key, values in swept.items()},
@@ -85,7 +98,7 @@ def read_modes(path: Path) -> DrawnModes:
                 amplitude[i][known],
                 damping[i][known],
                 error[i][known],
-                resonances[i] if i < len(resonances) else (),
+                tuple(one[:3] for one in resonances[i]) if i < len(resonances) else (),
             )
             for i, one in enumerate(frequency)
             if (known := np.isfinite(one)).any()
@@ -99,17 +112,34 @@ def read_modes(path: Path) -> DrawnModes:
             tuple(found),
             swept_units(data.variables, swept),
             backbones_of(data.variables),
+            Unfinished(unfinished_of(data).reasons),  # the range is of frequencies
+            fitted_of(data),
         )
 
 
-def _resonances(data: Any) -> list[tuple[tuple[float, float, float], ...]]:
-    """Level, amplitude and frequency of those of each curve, as the file's summary has them."""
-    keys = "level", "modal_amplitude", "frequency"
+class Resonance(NamedTuple):
+    """Of a mode with the scene's forces, in the unit of the file."""
+
+    level: float  # of the forces
+    modal: float  # amplitude
+    frequency: float
+    damping: float  # ratio
+    amplitude: dict[str, float]  # of each degree of freedom
+
+
+def resonances_of(data: Any) -> list[tuple[Resonance, ...]]:
+    """Those of each curve, as the file's summary has them."""
     try:
         curves = json.loads(str(getattr(data, "summary", "{}"))).get("curves", ())
         return [
             tuple(
-                (float(one[keys[0]]), float(one[keys[1]]), float(one[keys[2]]))
+                Resonance(
+                    float(one["level"]),
+                    float(one["modal_amplitude"]),
+                    float(one["frequency"]),
+                    float(one.get("damping", np.nan)),
+                    {str(dof): float(value) for dof, value in one.get("amplitude", {}).items()},
+                )
                 for one in curve.get("mode", {}).get("resonances", ())
             )
             for curve in curves
@@ -124,7 +154,7 @@ def draw_modes(drawn: DrawnModes) -> Figure:
     Of a mode alone diamonds are where forces of a level are in resonance.
     """
     modes = drawn.modes
-    told = any((mode.error > 0.0).any() for mode in modes)
+    told = any(_is_line(mode.error) for mode in modes)
     with house_style():
         figure = new_figure(LAYOUT.width, (1.6 if told else 1.3) * LAYOUT.height)
         panels = figure.subplots(2 + told, 1, sharex=True, height_ratios=[1.0, 1.0, 0.5][: 2 + told])
@@ -144,12 +174,33 @@ def draw_modes(drawn: DrawnModes) -> Figure:
             axes.margins(x=0.0)
         draw_backbones(upper, lower, drawn.measured)
         lower.set_ylim(top=1.12 * lower.get_ylim()[1])
+        say_unfinished(upper, drawn.unfinished)
+        if not told:
+            _say_errors(lower, modes)
         if len(modes) == 1:
             _mark_resonances(upper, lower, modes[0])
+            for axes, values in ((upper, modes[0].frequency), (lower, _PERCENT * modes[0].damping)):
+                mark_unfinished(axes, [(modes[0].amplitude, values)], drawn.unfinished)
         if drawn.measured:
-            name_measured(figure)
+            name_measured(figure, drawn.fitted)
         name_at_side(figure, upper.get_lines(), [one.parameters for one in modes], drawn.units)
     return figure
+
+
+def _is_line(error: FloatArray) -> bool:
+    """Whether errors are known at neighbouring points; of many contacts they are at one or two alone."""
+    known = error > 0.0
+    return bool((known[1:] & known[:-1]).any())
+
+
+def _say_errors(axes: Axes, modes: Sequence[DrawnMode]) -> None:
+    """The greatest error, where too few are known for a panel."""
+    known = np.concatenate([mode.error[mode.error > 0.0] for mode in modes])
+    if known.size:
+        said = (
+            f"error by the harmonics left out: at most {float(known.max()):.2g}, told at {known.size} points"
+        )
+        axes.set_title(said, loc="right", fontsize=LAYOUT.small_text)
 
 
 def _draw_error(axes: Axes, mode: DrawnMode, colour: str) -> None:

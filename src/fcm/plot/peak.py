@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,10 +13,12 @@ import numpy.typing as npt
 from fcm.plot.dof import asked_for, leading_column
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, staying, symbols, with_unit
-from fcm.plot.read import BoolArray, FloatArray, floats, opened, swept_units, swept_values
+from fcm.plot.mode import Resonance, resonances_of
+from fcm.plot.read import BoolArray, FloatArray, drawn_keys, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
 from fcm.plot.style import LAYOUT, house_style, logarithmic_axis, new_figure, sequence_colours, swept_axis
 from fcm.rotational_dofs import unit_of
+from fcm.units import EXCITED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,6 +45,8 @@ class Peaks:
     stable: FloatArray | None = None  # (curve, dof) 1, 0 or NaN as of a point; None: the file does not say it
     units: Mapping[str, str] = field(default_factory=dict)  # of swept keys, if the file says them
     asked: tuple[str, ...] = ()  # degrees of freedom that the scene asks for, if it says so
+    drawn: tuple[str, ...] = ()  # swept keys whose values are random draws
+    damping: FloatArray | None = None  # (curve,) ratio, of the resonances of nonlinear modes
 
 
 @apart
@@ -50,17 +54,46 @@ def read_peaks(path: Path) -> Peaks:
     """Read the peaks of what ``fcm respond -o`` has written; PlotError if the file is something else."""
     with opened(path, "a response file", _NEEDED, ("peak_stable",)) as data:
         variables = data.variables
-        if "damping_ratio" in variables:
-            raise PlotError(f"{path}: it is of nonlinear modes, which have no peaks; try fcm plot mode")
         dofs = tuple(str(name) for name in np.atleast_1d(variables["dof"][:]))
-        amplitude, frequency, complete = (floats(variables[name]) for name in _NEEDED[1:])
-        swept = swept_values(variables)
-        stable = floats(variables["peak_stable"]) if "peak_stable" in variables else None
         unit, length = getattr(data, "frequency_unit", "rad/s"), getattr(variables[_NEEDED[1]], "units", "")
-        units, asked = swept_units(variables, swept), asked_for(getattr(data, "output", ""), dofs)
+        swept, asked = swept_values(variables), asked_for(getattr(data, "output", ""), dofs)
+        units, drawn = swept_units(variables, swept), drawn_keys(variables, swept)
+        if "damping_ratio" in variables:
+            found = resonances_of(data)
+            none = np.zeros((0, len(dofs)))
+            whole = np.zeros(0, np.bool_)
+            told = Peaks(dofs, str(unit), swept, none, none, whole, str(length), None, units, asked, drawn)
+            return _of_modes(told, found, path)
+        amplitude, frequency, complete = (floats(variables[name]) for name in _NEEDED[1:])
+        stable = floats(variables["peak_stable"]) if "peak_stable" in variables else None
     return Peaks(
-        dofs, str(unit), swept, amplitude, frequency, complete == 1, str(length), stable, units, asked
+        dofs, str(unit), swept, amplitude, frequency, complete == 1, str(length), stable, units, asked, drawn
     )
+
+
+def _of_modes(told: Peaks, found: Sequence[Sequence[Resonance]], path: Path) -> Peaks:
+    """The resonances of nonlinear modes with the scene's forces, as the peaks of a sweep; of several at a
+    level that of the greatest amplitude. Several levels are swept as well."""
+    levels = sorted({one.level for each in found for one in each})
+    if not levels:
+        raise PlotError(f"{path}: it has no resonance of a nonlinear mode; try fcm plot mode")
+    rows = [(i, level) for i in range(len(found)) for level in levels]
+    best = [
+        max((one for one in found[i] if one.level == level), key=lambda one: one.modal, default=None)
+        for i, level in rows
+    ]
+    amplitude, frequency = (np.full((len(rows), len(told.dofs)), np.nan) for _ in range(2))
+    damping = np.full(len(rows), np.nan)
+    for row, one in enumerate(best):
+        if one is not None:
+            amplitude[row] = [one.amplitude.get(dof, np.nan) for dof in told.dofs]
+            frequency[row], damping[row] = one.frequency, one.damping
+    swept = {key: values[[i for i, _ in rows]] for key, values in told.parameters.items()}
+    swept |= {EXCITED: np.array([level for _, level in rows])} if len(levels) > 1 else {}
+    return replace(
+        told, parameters=swept, amplitude=amplitude, frequency=frequency, damping=damping,
+        complete=np.full(len(rows), True),
+    )  # fmt: skip
 
 
 def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) -> Figure:
@@ -73,15 +106,24 @@ def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) 
         raise PlotError("the file holds no complete curve")
     lines = _lines(peaks, key, known)
     with house_style():
-        figure = new_figure(LAYOUT.width, 1.3 * LAYOUT.height)
-        upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+        figure = new_figure(LAYOUT.width, (1.3 if peaks.damping is None else 1.6) * LAYOUT.height)
+        shares = (3, 2) if peaks.damping is None else (3, 2, 2)
+        panels = figure.subplots(len(shares), 1, sharex=True, height_ratios=shares)
+        upper, lower = panels[:2]
         for axes, values in ((upper, peaks.amplitude), (lower, peaks.frequency)):
             _draw(axes, peaks.parameters[key], values[:, column], known, lines, key not in _WHOLE)
-        _finish_axes(upper, lower, peaks, key, column, known)
+        if peaks.damping is not None:
+            _draw(panels[2], peaks.parameters[key], 100.0 * peaks.damping, known, lines, key not in _WHOLE)
+            panels[2].set_ylabel("Damping ratio (%)")
+        _finish_axes(panels, peaks, key, column, known)
         if len(lines) > 1:
             _name_lines(figure, upper, peaks, _others(peaks, key, known), lines)
-        _mark_least(upper, lower, peaks, key, column, known)
+        if set(peaks.drawn) & set(peaks.parameters):
+            _say_scatter(upper, peaks, column, known)
+        else:
+            _mark_least(panels, peaks, key, column, known)
         _mark_unstable((upper, lower), peaks, key, column, known)
+        _say_left_out(lower, peaks)
     return figure
 
 
@@ -135,17 +177,21 @@ def _draw(
             axes.plot(x[line], y[line], "o", color=colour, markersize=4.0)
 
 
-def _finish_axes(upper: Axes, lower: Axes, peaks: Peaks, key: str, column: int, known: BoolArray) -> None:
+def _finish_axes(panels: Sequence[Axes], peaks: Peaks, key: str, column: int, known: BoolArray) -> None:
     from matplotlib.ticker import MaxNLocator, NullLocator
 
     (symbol,) = symbols([key])
     (in_unit,) = symbols([key], peaks.units)
     name = in_unit if symbol == key else f"{in_unit}  ({key})"
     x = peaks.parameters[key][known]
-    lower.set_xlabel(name, parse_math=symbol != key)
-    dof = peaks.dofs[column]
-    upper.set_ylabel(with_unit(f"Peak amplitude of {dof}", unit_of(dof, peaks.length)), parse_math=False)
-    lower.set_ylabel(frequency_label(peaks.frequency_unit).replace("Frequency", "Peak frequency"))
+    (upper, lower), last = panels[:2], panels[-1]
+    last.set_xlabel(name, parse_math=symbol != key)
+    dof, what = peaks.dofs[column], "Peak" if peaks.damping is None else "Resonance"
+    upper.set_ylabel(with_unit(f"{what} amplitude of {dof}", unit_of(dof, peaks.length)), parse_math=False)
+    lower.set_ylabel(frequency_label(peaks.frequency_unit).replace("Frequency", f"{what} frequency"))
+    if peaks.damping is not None:
+        top = float(np.nanmax(100.0 * peaks.damping[known]))
+        last.set_ylim(0.0, LAYOUT.headroom * top or 1.0)
     swept_axis(lower, float(x.min()), float(x.max()))
     y = peaks.amplitude[known, column]
     if y.max() > 10.0 * y.min() > 0.0:
@@ -168,22 +214,58 @@ def _name_lines(
 
 def ring_at(upper: Axes, lower: Axes, x: float, y: float, color: str) -> None:
     """A ring around a peak, and a thin line down to its frequency."""
-    upper.plot([x], [y], "o", markersize=7, markerfacecolor="none", color=color, markeredgewidth=1.0)
-    for axes in (upper, lower):
+    ring_over((upper, lower), x, y, color)
+
+
+def ring_over(panels: Sequence[Axes], x: float, y: float, color: str) -> None:
+    """A ring around a peak in the first of panels, and a thin line through all."""
+    panels[0].plot([x], [y], "o", markersize=7, markerfacecolor="none", color=color, markeredgewidth=1.0)
+    for axes in panels:
         axes.axvline(x, color=color, linewidth=0.5, linestyle=(0, (4, 3)), zorder=0)
 
 
-def _mark_least(upper: Axes, lower: Axes, peaks: Peaks, key: str, column: int, known: BoolArray) -> None:
-    """A ring around the least peak of all, a thin line down to its frequency, and its values above."""
+def _mark_least(panels: Sequence[Axes], peaks: Peaks, key: str, column: int, known: BoolArray) -> None:
+    """A ring around the least peak of all, a thin line down to its frequency, and its values above.
+
+    At an end of what was swept it is no minimum: a lower one may lie beyond.
+    """
     curves = np.flatnonzero(known)
     least = curves[np.argmin(peaks.amplitude[curves, column])]
     x, y = float(peaks.parameters[key][least]), float(peaks.amplitude[least, column])
-    ring_at(upper, lower, x, y, _MARK)
+    ring_over(panels, x, y, _MARK)
     values = {name: float(values[least]) for name, values in peaks.parameters.items()}
     where = curve_label(values, units=peaks.units)
     stays = "" if peaks.stable is None or y == 0.0 else staying(float(peaks.stable[least, column]))
+    what = "peak" if peaks.damping is None else "resonance"
     least_peak = f"{y:.4g} {unit_of(peaks.dofs[column], peaks.length)}".rstrip()
-    upper.set_title(f"least peak {least_peak}{stays} at {where}", loc="right", fontsize=8, color=_MARK)
+    said = f"least {what} {least_peak}{stays} at {where}"
+    swept = peaks.parameters[key][known]
+    if key not in (*_WHOLE, EXCITED) and np.ptp(swept) > 0.0 and x in (swept.min(), swept.max()):
+        (symbol,) = symbols([key])
+        said += f"\nan end of the sweep of {symbol}: beyond it may be less; sweep further"
+    panels[0].set_title(said, loc="right", fontsize=8, color=_MARK)
+
+
+def _say_scatter(axes: Axes, peaks: Peaks, column: int, known: BoolArray) -> None:
+    """Of random draws, which nobody chooses, the middle and how far they scatter."""
+    low, middle, high = np.percentile(peaks.amplitude[known, column], (5.0, 50.0, 95.0))
+    own = unit_of(peaks.dofs[column], peaks.length)
+    names = ", ".join(symbols(key for key in peaks.parameters if key in peaks.drawn))
+    said = (
+        f"random draws of {names}: median {middle:.4g}, 5 to 95 % are {low:.4g} to {high:.4g} {own}".rstrip()
+    )
+    axes.set_title(said, loc="right", fontsize=8, color=_MARK)
+    for value, style in ((middle, "-"), (low, "--"), (high, "--")):
+        axes.axhline(float(value), color=_MARK, linewidth=0.6, linestyle=style, zorder=0)
+
+
+def _say_left_out(axes: Axes, peaks: Peaks) -> None:
+    """How many curves are not complete, and not drawn."""
+    count, every = int((~peaks.complete).sum()), peaks.complete.size
+    if count:
+        axes.set_title(
+            f"NOT COMPLETE: {count} of {every} curves, left out", loc="right", fontsize=8, color=_MARK
+        )
 
 
 def _mark_unstable(both: tuple[Axes, Axes], peaks: Peaks, key: str, column: int, known: BoolArray) -> None:

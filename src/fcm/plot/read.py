@@ -17,10 +17,11 @@ from fcm.plot.dof import asked_for, leading_column
 from fcm.plot.errors import PlotError
 from fcm.plot.layout import check_layout, is_text
 from fcm.plot.measured import NEEDED as MEASURED
-from fcm.plot.measured import DrawnMeasured, measured_of
+from fcm.plot.measured import DrawnMeasured, FittedNumber, fitted_of, measured_of
 from fcm.plot.options import READ
 from fcm.plot.reader_process import apart
 from fcm.plot.style import LAYOUT
+from fcm.plot.unfinished import Unfinished, unfinished_of
 from fcm.units import CF_UNIT
 from fcm.unknown_stability import unknown_stability
 
@@ -32,7 +33,7 @@ _DESCRIBED = "swept value"  # how the description of a swept value begins
 _READ = {written: unit for unit, written in CF_UNIT.items()}
 LEVEL = "level"  # in the place of a unit of frequency: the curves are against the level of the forces
 _NEEDED = ("frequency", "amplitude", "dof")
-_ALSO = ("stable", "table_error", "truncation_error", "regime", "level", *MEASURED)
+_ALSO = ("stable", "table_error", "truncation_error", "regime", "level", "complete", *MEASURED)
 NO_NETCDF = "Unknown file format"  # what the library says of other files
 UNREAD = (OSError, RuntimeError, ValueError)  # what the library raises at reading, and what is refused here
 
@@ -64,6 +65,10 @@ class DrawnResponse:
     units: Mapping[str, str] = field(default_factory=dict)  # of swept keys, if the file says them
     measured: tuple[DrawnMeasured, ...] = ()  # points that numbers were fitted to
     asked: tuple[str, ...] = ()  # degrees of freedom that the scene asks for, if it says so
+    unfinished: Unfinished = field(
+        default_factory=Unfinished
+    )  # of all curves, those without a point among them
+    fitted: tuple[FittedNumber, ...] = ()  # that a fit found
 
     def column(self, dof: str | None) -> int:
         """The place of a degree of freedom; by default that of `leading_column`."""
@@ -195,11 +200,15 @@ def _response(dataset: Any) -> DrawnResponse:
     )
     length = str(getattr(variables["amplitude"], "units", ""))
     unit = str(getattr(dataset, "frequency_unit", "rad/s")) if level is None else LEVEL
-    held = _swept(variables)
-    drawn = tuple(key for key in swept if getattr(held[key], "drawn", "") == "true")
+    drawn = drawn_keys(variables, swept)
     measured = measured_of(variables)
     units, asked = swept_units(variables, swept), asked_for(getattr(dataset, "output", ""), dofs)
-    return DrawnResponse(dofs, unit, curves, length, drawn, units, measured, asked)
+    unfinished = unfinished_of(dataset)
+    if level is not None:  # the range is of frequencies
+        unfinished = Unfinished(unfinished.reasons)
+    return DrawnResponse(
+        dofs, unit, curves, length, drawn, units, measured, asked, unfinished, fitted_of(dataset)
+    )
 
 
 def _curve(
@@ -235,6 +244,12 @@ def swept_units(variables: Any, keys: Iterable[str]) -> dict[str, str]:
     held = _swept(variables)
     written = {key: str(getattr(held[key], "units", "")) for key in keys}
     return {key: _READ.get(unit, unit) for key, unit in written.items()}
+
+
+def drawn_keys(variables: Any, keys: Iterable[str]) -> tuple[str, ...]:
+    """Those of swept keys whose values are random draws."""
+    held = _swept(variables)
+    return tuple(key for key in keys if getattr(held[key], "drawn", "") == "true")
 
 
 def _swept(variables: Any) -> dict[str, Any]:

@@ -23,6 +23,7 @@ from fcm.plot.style import (
     new_figure,
     sequence_colours,
 )
+from fcm.plot.unfinished import mark_unfinished, say_unfinished
 from fcm.rotational_dofs import unit_of
 
 if TYPE_CHECKING:
@@ -68,7 +69,10 @@ def draw_response(
             draw_points(axes, points, response.dofs[column], response.frequency_unit, curves, colours)
             name_points(figure, axes)
         if draw_measured(axes, response.measured, response.dofs[column], curves, colours):
-            name_measured(figure)
+            name_measured(figure, response.fitted)
+        ends = [(curve.frequency, curve.amplitude[:, column]) for curve in response.curves]
+        mark_unfinished(axes, ends, response.unfinished)
+        say_unfinished(axes, response.unfinished)
         if wide(curves) and response.frequency_unit != LEVEL:
             axes.set_xscale("log")
         _finish_axes(axes, response, column, _logarithmic(curves, column) if log is None else log)

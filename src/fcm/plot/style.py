@@ -55,6 +55,10 @@ class Layout:
     dark: float = 0.1  # of the greatest value of all columns: one of less would be dark on a linear scale
     least_colour: float = 1e-4  # of the greatest value: less has no colour on a logarithmic scale
     line_places: int = 16  # of a smooth line, between two points
+    fitted_of_row: int = 2  # numbers of a fit beside one another
+    same_end: float = 1e-6  # of the extent: two points of a curve nearer than this are one
+    letters_of_inch: float = 20.0  # small ones, of a line above the axes
+    lines_above: int = 3  # of text above the axes
     touch_roundings: float = 8.0  # of a coordinate, by which partners at one place are apart at most
     least_weight: float = 1e-9  # of an axis in the name of a direction; less is a rounding error
     name_leader: int = 10  # [point] a name this far from its peak has a thin line to it

@@ -236,6 +236,6 @@ def _resonances(mode: Mode, level: float) -> list[Resonance]:
     frequency = found.omega * np.sqrt(1.0 - 2.0 * found.damping**2)
     dofs = found.system.scene.modal.dofs
     return [
-        Resonance(level, float(w), float(a), dict(zip(dofs, x.tolist(), strict=True)))
-        for w, a, x in zip(frequency, found.amplitude, amplitude, strict=True)
+        Resonance(level, float(w), float(a), dict(zip(dofs, x.tolist(), strict=True)), float(D))
+        for w, a, x, D in zip(frequency, found.amplitude, amplitude, found.damping, strict=True)
     ]

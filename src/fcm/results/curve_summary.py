@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fcm.results.cause import Cause
 from fcm.results.condensed_curves import CondensedCurve, condense, worst
 from fcm.results.contact_maxima import Greatest
 from fcm.results.jumps import Jump, UnknownStability
@@ -73,7 +74,7 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
     if curve.level is not None:
         out["level_folds"] = curve.level_folds
     out["jumps"] = [_jump(jump, dofs, unit) for jump in swept.jumps]
-    if swept.untold:
+    if swept.untold and not _unjudged(curve):
         out["stability_untold"] = [_untold(one, dofs, unit) for one in swept.untold]
     out |= {name: getattr(condensed, name) for name in ("stable", "table_error", "truncation_error")}
     if curve.orbits is not None:
@@ -83,6 +84,12 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
             curve.frequency, unit, dict(zip(curve.peaks, curve.amplitude.T, strict=True))
         )
     return out | {"seconds": curve.seconds}
+
+
+def _unjudged(curve: Curve) -> bool:
+    """Whether an interruption came before the stability of any point was looked for."""
+    cut_off = not curve.complete and curve.cause is Cause.INTERRUPTED
+    return cut_off and bool(np.isnan(curve.stable).all())
 
 
 def _jump(jump: Jump, dofs: tuple[str, ...], unit: str) -> dict[str, Any]:

@@ -17,6 +17,7 @@ class Resonance(NamedTuple):
     frequency: float  # [rad/s] of the forces
     modal_amplitude: float
     amplitude: dict[str, float]  # of each dof, half the peak-to-peak displacement
+    damping: float  # ratio
 
 
 @dataclass
@@ -60,6 +61,7 @@ class NonlinearMode:
                     "level": one.level,
                     "frequency": float(in_unit(one.frequency, unit)),
                     "modal_amplitude": one.modal_amplitude,
+                    "damping": one.damping,
                     "amplitude": {dof: one.amplitude[dof] for dof in amplitude},
                 }
                 for one in self.resonances

@@ -20,6 +20,7 @@ from fcm.results.padded_arrays import Field, Padded
 from fcm.results.result import Response
 from fcm.results.scatter import scatter, summary_of
 from fcm.results.tracked_fields import tracked_names
+from fcm.units import in_unit
 
 if TYPE_CHECKING:
     import xarray
@@ -39,6 +40,8 @@ def summary(response: Response) -> dict[str, Any]:
         "units": dict(zip(("length", "force"), response.units, strict=True)),
         "seconds": response.seconds,
     }
+    if response.span is not None:
+        data["range"] = in_unit(np.array(response.span), response.frequency_unit).tolist()
     if response.output:
         data["output"] = list(response.output)
     if response.directions:

@@ -182,6 +182,7 @@ class Response:
     motions: Motions | None = None  # at peaks or chosen frequencies, with contact forces and modes
     blades: Blades | None = None  # of a mistuned ring
     in_time: InTime = InTime.COMPUTED  # whether the exact motion of the scene is
+    span: tuple[float, float] | None = None  # [rad/s] over which curves are traced; None for no such range
 
     @staticmethod
     def of(scene: Scene, curves: list[Curve], method: str) -> Response:
@@ -192,6 +193,7 @@ class Response:
         response.output = scene.output
         response.directions, response.positions = directions_of(scene), positions_of(scene)
         response.in_time = in_time(scene)
+        response.span = scene.frequency_range if scene.has_range else None
         return response
 
     @staticmethod

@@ -1,0 +1,135 @@
+"""Curves that stopped early: a cross where each ends, and why, above the axes."""
+
+from __future__ import annotations
+
+import json
+import textwrap
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.plot.style import LAYOUT
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+FloatArray = npt.NDArray[np.float64]
+COLOUR = "#c03020"
+_NO_SPAN = (np.nan, np.nan)
+
+
+@dataclass(frozen=True)
+class Unfinished:
+    """Of the curves of a file, in their order."""
+
+    reasons: tuple[str, ...] = ()  # (curve,) empty where a curve is whole
+    span: tuple[float, float] = _NO_SPAN  # sought, in the file's unit; NaN where the file does not say it
+
+    def reason(self, number: int) -> str:
+        """Why a curve ends early; empty if it does not."""
+        return self.reasons[number] if number < len(self.reasons) else ""
+
+
+def unfinished_of(data: Any) -> Unfinished:
+    """What an open file says of its curves; of one without `complete` nothing."""
+    if "complete" not in data.variables:
+        return Unfinished()
+    whole = np.atleast_1d(np.ma.filled(np.ma.asarray(data.variables["complete"][:], dtype=float), 1.0)) == 1.0
+    if whole.all():
+        return Unfinished(("",) * whole.size)
+    found = _summary(data)
+    curves = found.get("curves") or [{}] * whole.size
+    if not isinstance(curves, list) or not all(isinstance(one, dict) for one in curves):
+        raise ValueError("its attribute summary is not of curves")
+    reasons = [str(one.get("reason") or "stopped early") for one in curves] + [""] * whole.size
+    span = found.get("range") or _NO_SPAN
+    return Unfinished(
+        tuple("" if done else reason for done, reason in zip(whole.tolist(), reasons, strict=False)),
+        (float(span[0]), float(span[1])),
+    )
+
+
+def _summary(data: Any) -> dict[str, Any]:
+    found = json.loads(str(getattr(data, "summary", "{}")))
+    if not isinstance(found, dict):
+        raise ValueError("its attribute summary is not of a response")
+    return found
+
+
+def open_ends(x: FloatArray, y: FloatArray, span: tuple[float, float]) -> list[int]:
+    """Where an unfinished curve ends: points that end a branch, neither at the span's ends nor on another.
+
+    A closed branch has no end.
+
+    Without a span the last point of each branch counts.
+
+    >>> x = np.array([1.0, 1.5, np.nan, 3.0, 2.5])
+    >>> open_ends(x, x, (1.0, 3.0)), open_ends(x, x, (np.nan, np.nan))
+    ([1, 4], [1, 4])
+    >>> open_ends(x, x, (1.0, 1.5))
+    [3, 4]
+    """
+    there = np.isfinite(x) & np.isfinite(y)
+    if not there.any():
+        return []
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], there, [False])))).reshape(-1, 2)
+    width, height = float(np.ptp(x[there])) or 1.0, float(y[there].max()) or 1.0
+    found, known = [], bool(np.isfinite(span[0]))
+    for first, last in (edges - (0, 1)).tolist():
+        for k in sorted({first, last}) if known else [last]:
+            near = np.hypot((x - x[k]) / width, (y - y[k]) / height) < LAYOUT.same_end
+            near[first : last + 1] = first != last and near[first + last - k]
+            at_end = known and np.isclose(x[k], span, rtol=LAYOUT.same_end, atol=0.0).any()
+            if not at_end and not near.any():
+                found.append(k)
+    return found
+
+
+def mark_unfinished(axes: Axes, curves: Sequence[tuple[FloatArray, FloatArray]], told: Unfinished) -> None:
+    """A cross where each unfinished curve ends; the axis then has all that was sought."""
+    for number, (x, y) in enumerate(curves):
+        if told.reason(number) and (ends := open_ends(x, y, told.span)):
+            axes.plot(
+                x[ends],
+                y[ends],
+                "x",
+                color=COLOUR,
+                markersize=5.0,
+                clip_on=False,
+                zorder=5,
+                label="_unfinished",
+            )
+    if any(told.reasons) and np.isfinite(told.span[0]):
+        axes.update_datalim([(end, 0.0) for end in told.span], updatey=False)
+        axes.autoscale_view()
+
+
+def say_unfinished(axes: Axes, told: Unfinished) -> None:
+    """Above the axes, that and why curves are unfinished; nothing where all are whole."""
+    if said := sentence(told):
+        width = axes.get_figure().get_size_inches()[0] * LAYOUT.letters_of_inch  # type: ignore[union-attr]
+        lines = textwrap.wrap(said, int(width), max_lines=LAYOUT.lines_above, placeholder=" ...")
+        axes.set_title(
+            "\n".join(lines), loc="left", fontsize=LAYOUT.small_text, color=COLOUR, parse_math=False
+        )
+
+
+def sentence(told: Unfinished) -> str:
+    """That curves are unfinished, and why the first is; empty where all are whole.
+
+    >>> sentence(Unfinished(("", "")))
+    ''
+    >>> sentence(Unfinished(("stopped at 1.2 Hz: no further point could be found",)))
+    'NOT COMPLETE: stopped at 1.2 Hz: no further point could be found'
+    >>> sentence(Unfinished(("", "interrupted before it was traced", "")))
+    'NOT COMPLETE: 1 of 3 curves; the first: interrupted before it was traced'
+    """
+    reasons = [one for one in told.reasons if one]
+    if not reasons:
+        return ""
+    count = len(told.reasons)
+    which = "" if count == 1 else f"{len(reasons)} of {count} curves; the first: "
+    return f"NOT COMPLETE: {which}{reasons[0]}"
