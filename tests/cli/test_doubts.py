@@ -30,7 +30,7 @@ def test_where_nothing_that_was_found_is_stable_the_run_says_so(fcm, tmp_path):
     run = fcm("respond", scene, "--harmonics", "3", "--json", "-o", "a.nc")
     (curve,) = json.loads(run.out)["curves"]
     ((low, high),) = curve["no_stable_motion"]
-    assert f"no stable motion was found between {low:.6g} and {high:.6g} rad/s: the motion" in run.err
+    assert f"no stable motion was found between {low:.6g} and {high:.6g} rad/s, so no steady" in run.err
     at = [0.5 * (low + high), high + 0.02]
     visited = trace_exact(load_scene(scene), at).curves[0]
     assert visited.orbits.repeats.tolist() == [2, 1, 1, 2] and visited.complete
@@ -81,22 +81,24 @@ def test_of_many_stretches_without_a_stable_motion_the_widest_are_named():
     said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table", **COMPUTED})
     assert "between 1 and 1.5, between 3 and 3.2, between 4 and 4.3 Hz and in 2 narrower ranges" in said
     assert "(contact.a.n_0 = 0.5; on 1 of 2 curves)" in said and said.endswith(
-        "--method exact --at F shows it"
+        "--method exact --at F shows the motion there"
     )
     curves[1]["may_not_be_unique"] = 3  # another member of the family of motions may be stable
     said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table", **COMPUTED})
-    assert "not found, or has another residual friction; " in said
+    assert "not found, or has another residual friction. " in said
     curves[1]["no_stable_motion_not_looked_at"] = ways[3:]
     said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table", **COMPUTED})
-    assert "not found (in 2 of these ranges, the widest between 4 and 4.3, none was looked for), or" in said
+    assert ". No branch was looked for in 2 of these ranges, the widest between 4 and 4.3. --method" in said
     curves[1]["no_stable_motion_not_looked_at"] = ways[4:]
     said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table", **COMPUTED})
-    assert "not found (between 5 and 5.05 none was looked for), or" in said
+    assert ". No branch was looked for between 5 and 5.05. --method" in said
     del curves[1]["may_not_be_unique"], curves[1]["no_stable_motion_not_looked_at"]
     ring = nothing_stable(
         {"curves": curves[1:], "frequency_unit": "Hz", "method": "table", "exact_motion": InTime.RING.value}
     )
-    assert ring.endswith("not found")  # the exact motion of a ring is not visited
+    assert "--method" not in ring and ring.endswith(
+        "More harmonics may have one"
+    )  # the exact motion of a ring is not visited
 
 
 @pytest.mark.parametrize(
@@ -105,7 +107,7 @@ def test_of_many_stretches_without_a_stable_motion_the_widest_are_named():
 def test_curves_on_which_no_contact_slips_are_said_to_be_linear(fcm, scene, loads, which):
     scene.write_text(scene.read_text() + f'[sweep]\n"contact.0.n_0" = {loads}\n')
     run = fcm("respond", scene)
-    said = f"no contact slips or opens {which}: the response is linear; less preload or more force"
+    said = f"no contact slips or opens {which}: the response is linear. With less preload or more force"
     assert run.code == 0 and (said in run.err if which else "no contact slips" not in run.err)
 
 
@@ -120,7 +122,7 @@ def test_curves_on_which_no_contact_touches_are_said_to_be_linear(fcm, scene, lo
     """Nothing was said of contacts that stay open."""
     scene.write_text(scene.read_text() + f'[sweep]\n"contact.0.n_0" = {loads}\n')
     run = fcm("respond", scene)
-    assert run.code == 0 and said in run.err and ": the response is linear; " in run.err
+    assert run.code == 0 and said in run.err and ": the response is linear. With " in run.err
 
 
 @pytest.mark.parametrize("curves", [[], [{"parameters": {}}]])
@@ -142,10 +144,10 @@ def test_where_folds_of_the_level_were_lost_a_run_says_once_that_branches_may_be
     none = ResponseOptions(others=(FoldOptions(work_fraction=0.0, min_seconds=0.0),))
     run = fcm("respond", scene, "--harmonics", "1", "--json", "-o", "a.nc", response=none)
     said = (
-        "isolated branches on 2 of 3 curves may be missing: the folds of the level of the forces were not "
-        "followed to their end from this frequency on: 1.207 rad/s (contact.0.n_0 = 1); folds_unsure_at with "
-        "--json has all; --level 0:4 --at F, with F beyond 1.207, or a sweep up and down by "
-        "--method exact --at FROM:TO:COUNT, looks there"
+        "isolated branches may be missing beyond 1.207 rad/s (contact.0.n_0 = 1; on 2 of 3 curves): there a "
+        "fold of the level of the forces was lost. The curve itself is whole. --level 0:4 --at F, with F "
+        "beyond 1.207, or a sweep up and down by --method exact --at FROM:TO:COUNT, looks there. All of "
+        "them: folds_unsure_at of --json"
     )
     assert run.code == 0 and run.err.count(said) == 1 and run.err.count("may be missing") == 1
     curves = json.loads(run.out)["curves"]
@@ -161,8 +163,8 @@ def test_where_folds_of_the_level_were_lost_a_run_says_once_that_branches_may_be
 @pytest.mark.parametrize(
     ("reached", "said"),
     [
-        ([[0.1, 15.0]], "no peak of u was followed with n_0 above 15: "),
-        ([[2.0, 30.0]], "no peak of u was followed with n_0 below 2: "),
+        ([[0.1, 15.0]], "no peak of u was followed with n_0 above 15. "),
+        ([[2.0, 30.0]], "no peak of u was followed with n_0 below 2. "),
         ([[0.1, 15.0], [12.0, 30.0]], ""),  # two peaks, one after the other
     ],
 )

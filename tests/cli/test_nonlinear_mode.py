@@ -158,7 +158,7 @@ def test_loads_that_nothing_holds_are_said(fcm, scene):
     ("force", "said"),
     [
         (101.0, "under the static loads 1 of 1 contacts are closed; their normal forces sum to 6\n"),
-        (-606.0, "under the static loads no contact is closed (1 in all): do they push the faces apart?"),
+        (-606.0, "under the static loads no contact is closed (1 in all). Do they push the faces apart?"),
     ],
 )
 def test_which_contacts_loads_close_is_said(fcm, scene, force, said):

@@ -241,4 +241,4 @@ def test_flexibility_along_directions_that_memory_does_not_hold_is_refused(fcm):
     said = "structure: its flexibility along 3 directions of contacts and forces, at 3 rows, takes about 1 kB"
     assert done.code == 0 and done.err.splitlines()[0] == f"{said} of memory"
     done = fcm("respond", "a.toml", memory=lambda: 1_000.0)
-    assert done.code == 2 and "takes 1 kB of memory, and 1 kB are free: reduce it to the rows" in done.err
+    assert done.code == 2 and "takes 1 kB of memory, and 1 kB are free. Reduce it to the rows" in done.err

@@ -58,7 +58,7 @@ def test_a_start_beyond_what_a_contact_can_carry_is_said(fcm, scene):
         scene.write_text(text + SCHEDULE + SWEEP + f"[start]\n{start}\n")
         done = fcm("respond", scene)
         assert done.code == 0 and f"in {count} of 2 curves, the first with contact.shroud.n_0 = " in done.err
-        assert "start.friction[0]: " in done.err and "a [[schedule]] starts from the limit" in done.err
+        assert "start.friction[0]: " in done.err and "A [[schedule]] starts from the limit" in done.err
     for start in ("friction = [1.9]", "friction = [2.1]\ndisplacement = [1.0, -1.293]"):
         scene.write_text(text + SCHEDULE + f"[start]\n{start}\n")
         assert "start.friction" not in fcm("respond", scene).err

@@ -31,7 +31,7 @@ def test_where_nothing_damps_it_is_said_what_would_do():
     """
     scene = random_scene(151)
     (curve,) = trace(scene).curves
-    said = re.search(r"nothing damps the structure.*: try a damping ratio of (\S+)$", curve.reason)
+    said = re.search(r"Nothing damps the structure.*: try a damping ratio of (\S+)$", curve.reason)
     assert not curve.complete and said
     damping = np.full(scene.modal.frequency.size, float(said[1]))
     damped = replace(scene, modal=replace(scene.modal, damping=damping))

@@ -109,7 +109,7 @@ def test_engine_orders_are_swept():
 def test_what_is_not_computed_of_a_ring_is_refused_at_once(tmp_path, options, what):
     code, out, err = called("respond", "bladed-disk", "-o", tmp_path / "a.nc", *options)
     assert code == 2 and not out and not list(tmp_path.iterdir())
-    assert f"bladed-disk: cyclic: {what} of a ring of sectors are not computed: write all" in err
+    assert f"bladed-disk: cyclic: {what} of a ring of sectors are not computed. Write all" in err
 
 
 def test_a_sector_keeps_its_own_degree_of_freedom_of_a_next_one_that_is_used():

@@ -84,7 +84,7 @@ def test_orbits_from_points_of_the_response_curve():
 
 
 def test_a_guess_too_far_away():
-    with pytest.raises(SimulationError, match="simulate some cycles"):
+    with pytest.raises(SimulationError, match="Simulate some cycles"):
         state = periodic(yang(-60.0), 1.0).state
         scene = one_mode(damping=0.0, n_0=-1e9)
         periodic(scene, 1.0, replace(state, q=np.ones(1), velocity=np.ones(1)))

@@ -211,7 +211,7 @@ def test_modes_that_the_digits_do_not_tell_from_rigid_bodies_are_said():
         return scene_from_dict(data).notes
 
     said = " ".join(notes(8))
-    assert "written with 8 digits, by which modes below" in said and "2 rigid-body modes" in said
+    assert "written with 8 digits. Modes below" in said and "2 rigid-body modes" in said
     assert "as its stiffness was written with 8 digits" in said
     assert not any("digits" in note for note in notes(17))
 

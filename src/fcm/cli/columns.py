@@ -10,10 +10,9 @@ from fcm.cli.limits import SENTENCES
 from fcm.cli.terminal import plain
 
 UNSTABLE = "!"  # beside a peak where the motion is not stable
-DOES_NOT_STAY = (
-    "unstable: with these harmonics the motion is not stable there, and does not stay at this peak"
-)
+DOES_NOT_STAY = "unstable: with these harmonics the motion is not stable there, and leaves this peak"
 UNKNOWN = "?"  # beside that of which it is not told whether it is stable
+STABILITY_UNKNOWN = "stability is unknown there: more harmonics may tell"
 
 
 def aligned(rows: Sequence[Sequence[str]], left: int) -> str:

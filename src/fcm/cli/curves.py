@@ -9,6 +9,7 @@ from fcm.cli.columns import (
     ABSENT,
     BEYOND,
     DOES_NOT_STAY,
+    STABILITY_UNKNOWN,
     UNKNOWN,
     UNSTABLE,
     DofTable,
@@ -29,10 +30,16 @@ Curve = Mapping[str, Any]  # one of the summary's "curves"
 _AT_REST = "0 the degree of freedom does not move, beside rounding"
 _BROKEN = "NOT COMPLETE"
 _EDGE = "*"  # beside the frequency of a peak where the range ends
-_UNTOLD = "- unknown error: with more harmonics no peak is near this one, or a higher one is elsewhere"
-_OF_LEVELS = "- unknown error: what more harmonics would change could not be estimated at this peak"
+_UNTOLD = (
+    "- unknown error: with more harmonics no peak is near this one, or a higher one is elsewhere. "
+    "More --harmonics, or --accuracy, may tell it"
+)
+_OF_LEVELS = (
+    "- unknown error: what more harmonics would change could not be estimated at this peak. "
+    "More --harmonics may tell it"
+)
 _BEYOND = (
-    f"{BEYOND} the error is more than the peak, which these harmonics do not tell: give more by --harmonics, "
+    f"{BEYOND} the error is more than the peak, which these harmonics do not tell. Give more by --harmonics, "
     "or leave them to --accuracy"
 )
 _EVERY = "every peak, in order of frequency:"
@@ -212,7 +219,7 @@ def _curves(
     if UNSTABLE in marks:
         lines.append(f"{UNSTABLE} {DOES_NOT_STAY}")
     if UNKNOWN in marks:
-        lines.append(f"{UNKNOWN} stability is unknown there")
+        lines.append(f"{UNKNOWN} {STABILITY_UNKNOWN}")
     if ranges_of:
         unknown = any(_residual(curve, dof) == "-" for curve in curves for dof in ranges_of)
         lines.append(_OF_RESIDUAL + (", - unknown" if unknown else ""))
@@ -318,7 +325,7 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
         if (closure := _worst(curves, "closure_error")) is not None:
             errors.append(f"{closure:.1e} by which a period does not close")
     if summary.get("method") == "table" and table and not summary.get("directions"):
-        errors.append(f"{table:.1e} by the table, which the points do not have")
+        errors.append(f"{table:.1e} of the table, not of the points")
     if harmonic is not None:
         untold = any(_untold(curve, dof) for curve in curves for dof in curve["peak"])
         told = [
@@ -334,10 +341,12 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
             of_all = f"{harmonic:.1e}"
             if peaks:
                 of_peaks = short(max(peaks)).replace(BEYOND, "more than 100 %")
+                beside = " (beside folds)" if harmonic > 1.0 else ""
+                of_any = f"{short(harmonic).replace(BEYOND, 'more than 100 %')} of any point{beside}"
                 below = max(peaks) < harmonic
-                of_all = f"{of_peaks} of peaks and {of_all} of any point" if below else of_peaks
+                of_all = f"{of_peaks} of peaks and {of_any}" if below else of_peaks
             but = ", and of some peaks unknown" if untold else ""
-            errors.append(f"{of_all} by leaving out higher harmonics{but}")
+            errors.append(f"{of_all}, by the harmonics left out{but}")
     return (
         f"{count}, {points} points in {summary['seconds']:.2f} s\n"
         f"largest relative error: {'; '.join(errors) or 'not known'}"

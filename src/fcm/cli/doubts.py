@@ -18,6 +18,7 @@ _LINEAR = {  # keys of curves on which no contact changes its state: what is sai
         "another preload or more force",
     ),
 }
+_KEEPS = "a contact that never slips keeps a friction force that its past decides"
 _BY_LEVEL = "--level 0:4 --at"  # follows the level of the forces, at a frequency
 
 
@@ -25,12 +26,12 @@ def short_of_accuracy(summary: Mapping[str, Any]) -> str:
     """How many curves have not the accuracy that was asked for, and why the first has not; empty if all."""
     short = [curve["short_of_accuracy"] for curve in summary["curves"] if curve.get("short_of_accuracy")]
     if tracked := summary.get("tracked", {}).get("short_of_accuracy"):
-        return f"what is tracked misses the accuracy that was asked for: {tracked}"
+        return f"what is tracked misses the accuracy that was asked for. {tracked[:1].upper()}{tracked[1:]}"
     if not short:
         return ""
     count, verb = len(summary["curves"]), "misses" if len(short) == 1 else "miss"
     which = "the curve" if count == 1 else f"{len(short)} of {count} curves"
-    return f"{which} {verb} the accuracy that was asked for: {short[0]}"
+    return f"{which} {verb} the accuracy that was asked for. {short[0][:1].upper()}{short[0][1:]}"
 
 
 def linear(summary: Mapping[str, Any]) -> str:
@@ -41,45 +42,51 @@ def linear(summary: Mapping[str, Any]) -> str:
         return ""
     which = "on any curve" if len(curves) > 1 else "within the range"
     what, helps = _LINEAR[found.pop() if len(found) == 1 else "all_stick_or_open"]
-    return f"{what.format(which)}: the response is linear; {helps} changes that"
+    return f"{what.format(which)}: the response is linear. With {helps} it is not"
 
 
 def branches_unsure(summary: Mapping[str, Any]) -> str:
     """Where solutions were not looked for to the end, so that branches may be missing; empty if nowhere."""
-    why = "the level of the forces was not followed to its end at"
-    return _may_be_missing(summary, "branches_unsure_at", "other branches", why, f"{_BY_LEVEL} {{}}")
+    what = "other branches may be missing at {}: there the level of the forces was not followed to its end"
+    helps = f"{_BY_LEVEL} {{}} looks there: a branch has amplitudes at the level 1 that the curve has not"
+    return _may_be_missing(summary, "branches_unsure_at", what, helps)
 
 
 def folds_unsure(summary: Mapping[str, Any]) -> str:
     """Where folds of the level were not followed to their end: branches may be missing; empty if nowhere."""
-    why = "the folds of the level of the forces were not followed to their end from this frequency on:"
+    what = (
+        "isolated branches may be missing beyond {}: there a fold of the level of the forces was lost. "
+        "The curve itself is whole"
+    )
     helps = f"{_BY_LEVEL} F, with F beyond {{}}"
     if how := _how(summary):
         helps += f", or a sweep up and down by {how.replace('--at F', '--at FROM:TO:COUNT')},"
-    return _may_be_missing(summary, "folds_unsure_at", "isolated branches", why, helps)
+    return _may_be_missing(summary, "folds_unsure_at", what, f"{helps} looks there")
 
 
 def symmetry_lost(summary: Mapping[str, Any]) -> str:
     """Where symmetric motions lose their symmetry by harmonics that are not balanced; empty if nowhere."""
-    why = "the symmetric motion loses its symmetry, by even harmonics that are not among those balanced, at"
-    helps = "--harmonics with even ones, as 1-4,"
-    return _may_be_missing(summary, "symmetry_lost_at", "unsymmetric branches", why, helps, "finds them")
+    what = (
+        "unsymmetric branches may be missing at {}: there the motion loses its symmetry, by even harmonics "
+        "that are not balanced"
+    )
+    return _may_be_missing(
+        summary, "symmetry_lost_at", what, "--harmonics with even ones, as 1-4, finds them"
+    )
 
 
-def _may_be_missing(
-    summary: Mapping[str, Any], key: str, what: str, why: str, helps: str, verb: str = "looks there"
-) -> str:
+def _may_be_missing(summary: Mapping[str, Any], key: str, what: str, helps: str) -> str:
+    """What may be missing where, and what helps, each with a place for the first frequency."""
     curves, unit = summary["curves"], summary["frequency_unit"]
     unsure = [curve for curve in curves if curve.get(key)]
     if not unsure:
         return ""
     (first, *more), given = unsure[0][key], _given(unsure[0])
     at = f"{first:.5g}"
-    which, every = ("", "") if len(curves) == 1 else (f"on {len(unsure)} of {len(curves)} curves ", "")
-    if len(unsure) > 1 or more:
-        every = f"; {key} with --json has all"
-    swept = f" ({given})" if len(curves) > 1 and given else ""
-    return f"{what} {which}may be missing: {why} {at} {unit}{swept}{every}; {helps.format(at)} {verb}"
+    count = f"on {len(unsure)} of {len(curves)} curves"
+    which = f" ({given}; {count})" if len(curves) > 1 and given else f" ({count})" if len(curves) > 1 else ""
+    every = f". All of them: {key} of --json" if len(unsure) > 1 or more else ""
+    return f"{what.format(f'{at} {unit}{which}')}. {helps.format(at)}{every}"
 
 
 def _given(curve: Mapping[str, Any]) -> str:
@@ -92,7 +99,9 @@ def mirrored(summary: Mapping[str, Any]) -> str:
     count = sum(curve.get("mirrored_branches", 0) for curve in summary["curves"])
     if not count:
         return ""
-    return f"{count} branch{'es' * (count > 1)} of unsymmetric motions: the mirror images are not traced"
+    one, other = ("branch", "its mirror image") if count == 1 else ("branches", "their mirror images")
+    verb = "is" if count == 1 else "are"
+    return f"{count} {one} of unsymmetric motions: {other}, of the same amplitudes, {verb} not traced"
 
 
 def looked_at(summary: Mapping[str, Any]) -> str:
@@ -113,8 +122,8 @@ def tracked_unsure(summary: Mapping[str, Any]) -> str:
     number, frequency = unsure[0]
     at = f"with {tracked['over']} = {number:.6g} at {frequency:.5g} {summary['frequency_unit']}"
     why = "the level of the forces, or a fold of it, was not followed to its end"
-    helps = f"a scene with that number, by {_BY_LEVEL} {frequency:.5g}, looks there"
-    return f"other tracked curves may be missing: {at} {why}; {helps}"
+    helps = f"A scene with that number, by {_BY_LEVEL} {frequency:.5g}, looks there"
+    return f"other tracked curves may be missing: {at} {why}. {helps}"
 
 
 def peaks_not_followed(summary: Mapping[str, Any]) -> str:
@@ -136,8 +145,8 @@ def peaks_not_followed(summary: Mapping[str, Any]) -> str:
         if beyond:
             swept = f" ({given})" if given else ""
             return (
-                f"no {what} was followed with {key} {' and '.join(beyond)}{swept}: within the range of "
-                "frequencies there is none, or it was lost; a wider [response] frequency may have it"
+                f"no {what} was followed with {key} {' and '.join(beyond)}{swept}. Within the range of "
+                "frequencies there is none, or it was lost: a wider [response] frequency may have it"
             )
     return ""
 
@@ -153,12 +162,12 @@ def nothing_stable(summary: Mapping[str, Any]) -> str:
     ways = ", ".join(_between(*ends) for ends in widest)
     more = f" and in {len(every) - len(widest)} narrower ranges" if len(every) > len(widest) else ""
     which = f" ({_given(found[0])}; on {len(found)} of {len(curves)} curves)" if len(curves) > 1 else ""
-    shows = f"; {how} shows it" if (how := _how(summary)) else ""
-    other = _not_looked_at(found[0])
-    other += ", or has another residual friction" if found[0].get("may_not_be_unique") else ""
+    other = ", or has another residual friction" if found[0].get("may_not_be_unique") else ""
+    shows = f"{how} shows the motion there" if (how := _how(summary)) else "More harmonics may have one"
     return (
-        f"no stable motion was found {ways} {unit}{more}{which}: the motion there may have "
-        f"several periods or none, or be on a branch that was not found{other}{shows}"
+        f"no stable motion was found {ways} {unit}{more}{which}, so no steady amplitude is known there. The "
+        f"motion repeats after several periods or never, or is on a branch that was not found{other}."
+        f"{_not_looked_at(found[0])} {shows}"
     )
 
 
@@ -181,10 +190,9 @@ def _not_looked_at(curve: Mapping[str, Any]) -> str:
     missing = _widest_first(curve.get("no_stable_motion_not_looked_at", []))
     if not missing:
         return ""
-    widest = _between(*missing[0])
-    count = len(missing)
-    where = widest if count == 1 else f"in {count} of these ranges, the widest {widest},"
-    return f" ({where} none was looked for)"
+    widest, count = _between(*missing[0]), len(missing)
+    where = widest if count == 1 else f"in {count} of these ranges, the widest {widest}"
+    return f" No branch was looked for {where}."
 
 
 def maybe_not_unique(summary: Mapping[str, Any]) -> str:
@@ -195,13 +203,13 @@ def maybe_not_unique(summary: Mapping[str, Any]) -> str:
     if not count:
         return ""
     how, of_levels = _how(summary), any("level_folds" in curve for curve in summary["curves"])
-    tells = (
-        f"; {how}{', at the level 1,' if of_levels else ''} tells how far the motions range" if how else ""
-    )
-    return (
-        f"at {count} point{'s' * (count > 1)} the motion may be one of many: a contact that never slips "
-        f"keeps a friction force that its past decides{tells}"
-    )
+    points = f"{count} point{'s' * (count > 1)}"
+    tells = "By how much amplitudes may differ was not estimated"
+    if how:
+        tells += f": {how}{', at the level 1,' if of_levels else ''} tells how far the motions range"
+    elif any("mode" in curve for curve in summary["curves"]):
+        tells += ": the response, without --mode, tells it of its peaks"
+    return f"{_KEEPS}: at {points} the motion may be one of many. {tells}"
 
 
 def _range_told(curve: Mapping[str, Any]) -> bool:
@@ -221,15 +229,18 @@ def residual_friction(summary: Mapping[str, Any]) -> str:
     peaks = [curve["peak"].get(dof) for curve in curves for dof in shown]
     worst = max((one["residual_change"] for one in peaks if one), default=0.0)
     share = share_of(worst)
-    changes = "no peak" if share == "0" else f"a peak by at most {share} of it, estimated"
-    how = _how(summary) if share != "0" else ""
-    tells = f"; {how} tells how far the motions range" if how else ""
-    keeps = "a contact that never slips keeps a friction force that its past decides"
     every = sum(bool(one.get("may_not_be_unique")) for one in summary["curves"])
     where = (
         f"on {len(curves)} of {every} curves " if len(curves) < every else ""
     )  # of the others it is unknown
-    return f"{keeps}: {where}it changes {changes}{tells}"
+    if share == "0":
+        return f"{_KEEPS}: {where}it changes no peak"
+    how = _how(summary)
+    tells = f". {how} tells how far the motions range" if how else ""
+    return (
+        f"{_KEEPS}: {where}it may change a peak by up to {share} of it, estimated. That is an uncertainty "
+        f"of the peak{tells}"
+    )
 
 
 def _how(summary: Mapping[str, Any]) -> str:

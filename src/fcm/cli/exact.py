@@ -140,8 +140,8 @@ def _irregular(found: Sequence[Orbits]) -> Iterator[str]:
     count = sum(int((orbits.repeats == 0).sum()) for orbits in found)
     if count:
         yield (
-            "quasi-periodic or irregular points, or of more than 8 periods (repeats is 0; cycle_least to "
-            f"cycle_greatest, of the cycles that were looked at: others may range further): {count}"
+            f"quasi-periodic or irregular points, or of more than 8 periods (repeats is 0): {count}. Their "
+            "range is cycle_least to cycle_greatest, of the cycles that were looked at"
         )
 
 
@@ -155,9 +155,9 @@ def _not_unique(found: Sequence[Orbits]) -> Iterator[str]:
     count = sum(int(np.isfinite(one.family_greatest).any(axis=1).sum()) for one in families)
     spread = max(map(_spread, families))
     yield (
-        f"points that are not unique: {count}; a contact never slips there, and its residual friction "
-        f"changes an amplitude by up to {spread:.0%} (family_least to family_greatest, of stable motions "
-        "beside stable points); [start] friction chooses"
+        f"points that are not unique: {count}. A contact never slips there, and its residual friction "
+        f"changes an amplitude by up to {spread:.0%} (family_least to family_greatest). [start] friction "
+        "chooses one"
     )
     partly = sum(int((one.family_complete == 0.0).sum()) - _untold(one) for one in families)
     if partly:
@@ -180,8 +180,8 @@ def _unsure(found: Sequence[Orbits]) -> Iterator[str]:
     count = sum(map(_untold, found))
     if count:
         yield (
-            f"points that may not be unique: {count}; a contact never slips there, and not every residual "
-            "friction of it was reached (family_complete is 0); [start] friction begins with another"
+            f"points that may not be unique: {count}. A contact never slips there, and not every residual "
+            "friction of it was reached (family_complete is 0). [start] friction begins with another"
         )
 
 
@@ -234,7 +234,7 @@ def _stuck(response: Response) -> list[str]:
     start = ", ".join(f"{force:.5g}" for force in first.friction)
     swept = "".join(f"{key} = {value:g}, " for key, value in curve.parameters.items())
     return [
-        f"motions beside the curves, in which a contact never slips: {len(stuck)}; at "
+        f"motions beside the curves, in which a contact never slips: {len(stuck)} (stuck_beside). At "
         f"{swept}{float(in_unit(first.frequency, unit)):.6g} {unit} one with {does}: "
-        f"[start] friction = [{start}] leads to it (stuck_beside with --json has all)"
+        f"[start] friction = [{start}] leads to it"
     ]

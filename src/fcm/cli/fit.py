@@ -74,7 +74,7 @@ def as_table(result: Mapping[str, Any]) -> str:
         )
     note = (
         "misfit: root mean square distance of the points from the curve, as a share of the greatest "
-        "amplitude; of a backbone, as a share of the frequencies"
+        "amplitude. Of a backbone it is a share of the frequencies"
     )
     return f"{aligned(rows, left=1)}\n\n{aligned(data, left=1)}\n{note}"
 

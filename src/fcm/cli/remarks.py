@@ -31,6 +31,9 @@ if TYPE_CHECKING:
     from fcm.model.scene import Scene
 
 
+_NO_EFFECT = "(no effect)"  # how a sentence ends on what is left out, and is the same without it
+
+
 def announce(messages: Messages, scene: Scene, asked: Asked) -> bool:
     """What is going to be computed; without being asked where that is a great deal.
 
@@ -66,8 +69,8 @@ def _say_rest(messages: Messages, scene: Scene, of: str) -> None:
     under = f"under the static loads{of}"
     if not closed:
         messages.warning(
-            f"{under} no contact is closed ({count} in all): do they push the faces apart? "
-            "a displacement along `normal` closes a contact"
+            f"{under} no contact is closed ({count} in all). Do they push the faces apart? "
+            "A displacement along `normal` closes a contact"
         )
         return
     total = f"{forces.sum():.4g}{f' {unit}' if unit else ''}"
@@ -84,7 +87,8 @@ def close(
     for text in dict.fromkeys(defects):
         messages.detail(text)
     for text in result["left_out"]:
-        messages.info(f"left out: {text}")
+        say = messages.detail if text.endswith(_NO_EFFECT) else messages.info
+        say(f"left out: {text}")
     if result["curves"]:
         messages.info(cost_and_error(result))
     elif "tracked" in result:

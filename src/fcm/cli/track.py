@@ -7,7 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.columns import DOES_NOT_STAY, UNKNOWN, UNSTABLE, aligned, share_of, short, stopped_early, swept
+from fcm.cli.columns import (
+    DOES_NOT_STAY,
+    STABILITY_UNKNOWN,
+    UNKNOWN,
+    UNSTABLE,
+    aligned,
+    share_of,
+    short,
+    stopped_early,
+    swept,
+)
 from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages
 from fcm.cli.terminal import plain
@@ -20,7 +30,7 @@ if TYPE_CHECKING:
 WHAT = ("folds", "peaks", "slip", "separation", "closing")
 _SAID = {
     UNSTABLE: f"\n{UNSTABLE} {DOES_NOT_STAY}",
-    UNKNOWN: f"\n{UNKNOWN} stability is unknown there",
+    UNKNOWN: f"\n{UNKNOWN} {STABILITY_UNKNOWN}",
 }
 OF_NO_USE = {  # beside --track, and why
     "level": "give --over level instead",

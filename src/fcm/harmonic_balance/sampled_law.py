@@ -123,7 +123,7 @@ def check_own_laws(scene: Scene, most: float = HARMONIC_BALANCE.own_law_changes)
             if off > most:
                 raise ContactLawError(
                     f"{law.description}: its changes are off by {off:.2g} from central differences of its "
-                    f"forces, relative to the greatest, and may be by {most:g}: no solution would be found"
+                    f"forces, relative to the greatest. With more than {most:g} no solution would be found"
                 )
 
 

@@ -22,10 +22,10 @@ from fcm.structure.linear import Linear
 from fcm.structure.options import RIGID_BODY
 
 RIGID_BODY_FAULT = (
-    "the static loads push the structure along a rigid-body mode that no contact holds along its normal, so "
-    "it does not come to rest; hold it by a contact along its normal, or by a small frequency of that mode"
+    "the static loads push the structure along a rigid-body mode that no contact holds along its normal. "
+    "It does not come to rest. Hold it by a contact along its normal, or by a small frequency of that mode"
 )
-NO_EQUILIBRIUM = "no equilibrium with the static loads was found: the contacts may not be able to hold them"
+NO_EQUILIBRIUM = "no equilibrium with the static loads was found. The contacts may not be able to hold them"
 
 
 class RestError(ValueError):

@@ -18,8 +18,8 @@ from fcm.structure.options import RIGID_BODY
 
 BoolArray = npt.NDArray[np.bool_]
 REASONS = {
-    "pushed": "friction pushes the structure one way on average along a rigid-body mode that nothing holds, "
-    "so there is no steady state; hold it by a contact along its normal, or by {}",
+    "pushed": "friction pushes the structure one way on average, along a rigid-body mode that nothing holds, "
+    "so there is no steady state. Hold it by a contact along its normal, or by {}",
     "floating": "no closed contact holds the structure along a rigid-body mode: its place is not determined",
 }
 

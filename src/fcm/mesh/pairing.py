@@ -79,8 +79,8 @@ def paired(mesh: Mesh, one: Sequence[int], other: Sequence[int], tolerance: floa
         more = f"; {len(twice)} nodes are wanted so" if len(twice) > 1 else ""
         which = _nodes([one[i] for i in who], verb=False)
         raise MeshError(
-            f"{which} of the first set all have node {other[k]} of the second as the nearest{more}: "
-            "pair them in a file, lower the tolerance, or give the coarser set first"
+            f"{which} of the first set all have node {other[k]} of the second as the nearest{more}. "
+            "Pair them in a file, lower the tolerance, or give the coarser set first"
         )
     if not within.size:
         raise MeshError(
@@ -223,7 +223,7 @@ def _with_side(plane: Plane, told: float, what: str, way: str, options: PairingO
     """The plane whose normal points where something is told to lie along it; MeshError if nothing is."""
     if abs(told) <= options.side_tolerance * plane.size:
         raise MeshError(
-            f"which side is which is not told by {what}; give the normal, as "
+            f"which side is which is not told by {what}. Give the normal, as "
             f"{{ x = {plane.normal[0]:.6g}, y = {plane.normal[1]:.6g}, z = {plane.normal[2]:.6g} }} "
             f"or its opposite: it points {way}"
         )

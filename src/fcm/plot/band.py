@@ -27,7 +27,7 @@ def banded_column(response: DrawnResponse, dof: str | None) -> int:
     column = response.column(dof)
     if not response.drawn:
         raise PlotError(
-            "nothing was drawn at random in this sweep, so that it has no bands; [sweep] draws a number by "
+            "nothing was drawn at random in this sweep, so that it has no bands. [sweep] draws a number by "
             "{ normal = [5.0, 0.5], count = 40 }"
         )
     if response.frequency_unit == LEVEL:

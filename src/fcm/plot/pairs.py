@@ -76,7 +76,7 @@ def draw_pairs(interfaces: Sequence[Interface], length: str = "") -> Figure:
     """
     if not interfaces:
         raise PlotError(
-            "no contact has pairs with places: give nodes = { sets = , mesh = , tolerance = }, or "
+            "no contact has pairs with places. Give nodes = { sets = , mesh = , tolerance = }, or "
             "x, y, z in a file of pairs"
         )
     if len(interfaces) > LAYOUT.panels:

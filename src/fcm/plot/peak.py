@@ -130,7 +130,7 @@ def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) 
 def _key(peaks: Peaks, against: str | None) -> str:
     if not peaks.parameters:
         raise PlotError(
-            "nothing was swept: the file holds one curve, and one peak; give the scene a [sweep], or follow "
+            "nothing was swept: the file holds one curve, and one peak. Give the scene a [sweep], or follow "
             "its peaks by fcm respond --track peaks --over KEY"
         )
     if against is not None and against not in peaks.parameters:

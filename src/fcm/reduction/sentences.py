@@ -34,9 +34,9 @@ def on_modes(lighter: ReducedScenes, shift: float) -> str:
     limit = lighter.above or 0.0
     high, few = (int((one.frequency > limit).sum()) for one in (modal, fewer))
     return (
-        f"{counted(high, 'mode')} of {modal.frequency.size} above {limit / UNIT[unit]:.4g} {unit}: far above "
-        f"the range, replaced by {few} with the same flexibility (changes the response by less than "
-        f"{2.0 * shift:.1e}, twice the most at the points checked, peaks among them)"
+        f"{counted(high, 'mode')} of {modal.frequency.size} above {limit / UNIT[unit]:.4g} {unit}, far above "
+        f"the range: replaced by {few} with the same flexibility. This changes the response by less than "
+        f"{2.0 * shift:.1e}, twice the most at the points checked"
     )
 
 

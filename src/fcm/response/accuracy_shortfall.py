@@ -43,8 +43,8 @@ def _of_harmonics(found: RefinedResponse, accuracy: float) -> str:
     which = str(more[-1]) if more[-1] == len(more) else ",".join(map(str, more))
     if found.begun:
         most = found.system.options.work.max_seconds
-        return f"{said}; more were given up after some {most:.0f} s of work: --harmonics {which}"
-    return f"{said}; more would take some {found.seconds_with(more):.0f} s: --harmonics {which}"
+        return f"{said}. More were given up after some {most:.0f} s of work: --harmonics {which}"
+    return f"{said}. More would take some {found.seconds_with(more):.0f} s: --harmonics {which}"
 
 
 def _dofs_short(found: RefinedResponse, accuracy: float) -> str:

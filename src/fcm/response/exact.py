@@ -143,8 +143,8 @@ def _checked(scene: Scene, at: Sequence[float] | None) -> tuple[float, ...] | No
     highest = _highest(scene) / UNIT[scene.frequency_unit]
     if highest > 0.0 and frequencies[-1] > INPUT_LIMITS.max_frequency_ratio * highest:
         raise ResponseError(
-            f"a frequency to visit of {frequencies[-1]:g} {scene.frequency_unit} is a mistake of units: the "
-            f"scene has no natural frequency above {highest:.2g}, and the greatest is "
+            f"a frequency to visit of {frequencies[-1]:g} {scene.frequency_unit} is a mistake of units. The "
+            f"scene has no natural frequency above {highest:.2g}, and the greatest visited is "
             f"{INPUT_LIMITS.max_frequency_ratio:g} times that"
         )
     return tuple((frequencies * UNIT[scene.frequency_unit]).tolist())

@@ -16,8 +16,10 @@ from fcm.model.scene import FloatArray
 from fcm.response.options import SENTENCES
 from fcm.units import in_unit
 
-FLOATING = "; rigid-body modes are at rest only while closed contacts hold them"
-UNDAMPED = "; nothing damps the structure, so that it may turn back on the spot: try a damping ratio of 1e-4"
+FLOATING = ". Rigid-body modes are at rest only while closed contacts hold them: give these more preload"
+UNDAMPED = (
+    ". Nothing damps the structure, so that the curve may turn back on the spot: try a damping ratio of 1e-4"
+)
 
 
 def incomplete(found: RefinedResponse, points: PointRecord) -> tuple[str, npt.NDArray[np.bool_]]:
@@ -99,7 +101,7 @@ def _resonant(system: System, omega: float) -> str:
                 hold = f"try soft springs in structure.stiffness that raise {spring}, with a damping of 0.01"
             return (
                 f"no further point could be found: harmonic {h} meets a resonance on the closed contacts, "
-                f"at {at:.6g} {unit}, that nothing damps, as rigid-body modes have no damping ratio: {hold}"
+                f"at {at:.6g} {unit}, that nothing damps. Rigid-body modes have no damping ratio: {hold}"
             )
     return ""
 

@@ -11,8 +11,8 @@ from fcm.scene.options import LIMITS
 from fcm.structure.loads import driven_harmonics
 
 PLANE = (
-    "is computed of contacts on a line alone, between whose events the structure is linear; while one slips "
-    "in a plane its direction turns with the motion: more harmonics (--harmonics, --accuracy) come as near"
+    "is computed of contacts on a line alone, between whose events the structure is linear. While one slips "
+    "in a plane its direction turns with the motion. More harmonics (--harmonics, --accuracy) come as near"
 )
 
 
@@ -34,8 +34,8 @@ def refuse_other_harmonics(scene: Scene, what: str) -> None:
     if others:
         named = " and ".join(map(str, others))
         raise ResponseError(
-            f"{scene.name}: {what} knows forces of harmonic 1 alone, and there are some of harmonic {named}; "
-            "curves of the balance have them (--method closed-form)"
+            f"{scene.name}: {what} knows forces of harmonic 1 alone, and there are some of harmonic {named}. "
+            "Curves of the balance have them (--method closed-form)"
         )
 
 
@@ -43,7 +43,7 @@ def check_no_ring(scene: Scene, what: str) -> None:
     """Raise ResponseError for a sector of a ring, of which this is not computed."""
     if scene.ring is not None:
         raise ResponseError(
-            f"{scene.name}: cyclic: {what} of a ring of sectors are not computed: write all its sectors out "
+            f"{scene.name}: cyclic: {what} of a ring of sectors are not computed. Write all its sectors out "
             "as a scene without [cyclic], or take a [sweep]"
         )
 
@@ -54,7 +54,7 @@ def refuse_own_laws(scene: Scene, what: str) -> None:
         names = [quoted(one.name) for one in scene.contacts if one.law is not None]
         raise ResponseError(
             f"{scene.name}: contact {names[0]}: {what} needs more than the forces over a cycle that its own "
-            "law gives; response curves of the balance do not (method 'closed-form')"
+            "law gives. Response curves of the balance do not (method 'closed-form')"
         )
 
 

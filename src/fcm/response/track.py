@@ -204,8 +204,8 @@ def _check(scene: Scene, number: Number, span: tuple[float, float]) -> None:
     rigid = [int((linear_of(curve).natural == 0.0).sum()) for curve in _at_ends(scene, number, span)]
     if len(set(rigid)) > 1:
         fault = (
-            f"at one end of {number.key} the structure has more rigid-body motions than at the other, and "
-            "what is tracked does not go on from there; leave that end out"
+            f"at one end of {number.key} the structure has more rigid-body motions than at the other. "
+            "What is tracked does not go on from there; leave that end out"
         )
         raise SpanError(both, fault)
 

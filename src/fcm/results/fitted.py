@@ -135,7 +135,7 @@ class Fitted:
             if off > self.poor:
                 said.append(
                     f"{part.measured.file}: the model does not meet these data, from which it is off by "
-                    f"{100.0 * off:.0f} %: it lacks something, and the intervals do not know what"
+                    f"{100.0 * off:.0f} %. It lacks something, and the intervals do not know what"
                 )
         return said
 

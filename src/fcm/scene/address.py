@@ -107,7 +107,7 @@ class Addresses:
                 mistakes.add(
                     path,
                     f"the {field} of the pairs of contact {quoted(draft['group'])} add up to 0, so they "
-                    f"cannot be scaled to another total; give one {field}, which is shared by areas",
+                    f"cannot be scaled to another total. Give one {field}, which is shared by areas",
                 )
                 return ()
         return tuple(found)

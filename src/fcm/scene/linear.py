@@ -87,7 +87,7 @@ def _room_for(top: Section, directions: int, rows: int) -> bool:
         top.wrong(
             "structure",
             f"{said} {resources.size(taken)} of memory, "
-            f"and {resources.size(free)} are free: reduce it to the rows of the contacts and forces "
+            f"and {resources.size(free)} are free. Reduce it to the rows of the contacts and forces "
             "first, as by Craig and Bampton, or give fewer contacts",
         )
         return False

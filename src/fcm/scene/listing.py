@@ -230,11 +230,11 @@ def _slip_of_units(opened: FloatArray, stuck: FloatArray, ends: tuple[float, flo
     slips = {
         1.0 / hertz: 'the range would hold modes if its numbers were in Hz: frequency_unit = "Hz"',
         hertz: 'the range would hold modes if its numbers were in rad/s: frequency_unit = "rad/s"',
-        METRE_AND_MILLIMETRE: "the range would hold modes if frequencies were 31.6 times as high, as with a "
-        "stiffness in N/mm and a mass in kg: give the mass in t",
+        METRE_AND_MILLIMETRE: "the range would hold modes if frequencies were 31.6 times as high. So it is "
+        "with a stiffness in N/mm and a mass in kg: give the mass in t",
         1.0
-        / METRE_AND_MILLIMETRE: "the range would hold modes if frequencies were 31.6 times as low, as with "
-        "a stiffness in N/m and a mass in t: give the mass in kg",
+        / METRE_AND_MILLIMETRE: "the range would hold modes if frequencies were 31.6 times as low. So it is "
+        "with a stiffness in N/m and a mass in t: give the mass in kg",
     }
     del slips[hertz if unit == "rad/s" else 1.0 / hertz]  # it is in that unit already
     return next(

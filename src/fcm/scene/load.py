@@ -58,7 +58,7 @@ from fcm.scene.sweep import combinations, curves_of, read_sweep
 from fcm.scene.toml import read_toml
 
 NOT_IN_PLANE = (
-    "simulates contacts on a line alone, between whose events the structure is linear; a contact with two "
+    "simulates contacts on a line alone, between whose events the structure is linear. A contact with two "
     "tangential directions has a response by harmonics, without [[schedule]]"
 )
 

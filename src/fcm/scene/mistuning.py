@@ -277,7 +277,7 @@ def _energy_of_modes(top: Section, found: Part, modal: Part, shapes: Any) -> tup
     strain = strain * UNITS[top.data.get("frequency_unit", "rad/s")]
     note = (
         "cyclic.mistuning: the i-th modes of all diameters are taken as a family in which a sector deforms "
-        f"alike, its whole stiffness times the factor; the shapes are alike to {1.0 - likeness[least]:.2g}"
+        f"alike, its whole stiffness times the factor. The shapes are alike to {1.0 - likeness[least]:.2g}"
     )
     return energy_of(strain, strain), [note]
 

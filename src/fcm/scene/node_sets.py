@@ -149,7 +149,7 @@ def with_fitted(section: Section, table: PairTable) -> Section:
         elif table.pairs and table.interface is None:
             section.wrong(
                 "normal",
-                "is fitted to pairs whose nodes are in a mesh: nodes = { sets = , mesh = , tolerance = }, or "
+                "is fitted to pairs with nodes in a mesh. Write nodes = { sets = , mesh = , tolerance = } or "
                 "{ pairs = , mesh = }",
             )
     if tangential == FITTED:

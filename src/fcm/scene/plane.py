@@ -79,7 +79,7 @@ def notes_of_planes(scene: Scene) -> list[str]:
     contacts = "contact" if len(oblique) == 1 else "contacts"
     return [
         f"the two tangential directions of {contacts} {names} share degrees of freedom without being at "
-        "right angles, if those are of right-angled axes; k_u and mu n are meant for two at right angles"
+        "right angles, if those are of right-angled axes. k_u and mu n are meant for two at right angles"
     ]
 
 

@@ -110,9 +110,9 @@ def of_rounding(parts: list[Reduced], ratios: FloatArray) -> list[str]:
     said = []
     if unclear := max(one.unclear for one in parts):
         said.append(
-            f"structure: its stiffness was written with {digits} digits, by which modes below "
-            f"{100 * unclear:.2g} % of the first elastic frequency cannot be told from rigid-body modes, and "
-            "are taken for such: write it with more"
+            f"structure: its stiffness was written with {digits} digits. Modes below {100 * unclear:.2g} % "
+            "of the first elastic frequency cannot be told from rigid-body modes, and are taken for such. "
+            "Write it with more digits"
         )
     if off > max(MESSAGES.damping_left_out * float(ratios.min(initial=1.0)), TOLERANCES.undamped):
         why = f"was written with {digits} digits" if digits else "has stiff parts that hide the soft ones"

@@ -120,10 +120,10 @@ def _sentence(scene: Scene, place: int, beyond: list[tuple[Scene, float]]) -> st
     swept = ", ".join(f"{key} = {value:g}" for key, value in first.parameters.items())
     count = f"{len(beyond)} of {len(scene.each_curve())}"
     where = f" in {count} curves, the first with {swept}," if swept else ""
-    begins = "a [[schedule]] starts from the limit; " if scene.schedule else ""
+    begins = "A [[schedule]] starts from the limit. " if scene.schedule else ""
     contact = first.contacts[place]
     return (
         f"start.friction[{place}]: {first.start.friction[place]:g} is beyond what {contact.name} can carry "
-        f"there,{where} mu n = {limit:g}: {begins}exact curves take that residual friction where the motion "
+        f"there,{where} mu n = {limit:g}. {begins}Exact curves take that residual friction where the motion "
         "itself holds it, else the nearest"
     )

@@ -30,7 +30,7 @@ def note_of_shared_normals(scene: Scene) -> list[str]:
     names = "; ".join(several([one.name for one in group]) for group in doubled[: MESSAGES.groups])
     more = f"; {counted(len(doubled), 'such place')} in all" if len(doubled) > MESSAGES.groups else ""
     return [
-        f"contacts {names} have the same normal displacement and different tangential ones{more}: their "
+        f"contacts {names} have the same normal displacement and different tangential ones{more}. Their "
         "preloads and normal stiffnesses add up there, as those of several contacts side by side. If it is "
         f"one contact that slides in a plane, write it once with two directions, as in "
         f"tangential = [{one}, {other}]"

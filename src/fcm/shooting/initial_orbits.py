@@ -298,11 +298,11 @@ def undetermined_reason(orbit: Orbit, options: ShootingOptions = SHOOTING) -> st
     ratio = orbit.frequency / float(orbit.scene.modal.frequency.max(initial=0.0) or np.inf)
     if ratio > options.search.rounding_frequency:
         return (
-            f"{where}: that is {ratio:.1g} times the frequency of the highest mode, which hardly moves, and "
-            "loses nothing, in one period of the force; take a lower frequency"
+            f"{where}: that is {ratio:.1g} times the frequency of the highest mode, which hardly moves in "
+            "one period of the force. Take a lower frequency"
         )
     return (
-        f"{where}: a mode is free to drift, or resonates without damping; add damping, or try another range"
+        f"{where}: a mode is free to drift, or resonates without damping. Add damping, or try another range"
     )
 
 
@@ -311,7 +311,6 @@ def start_reason(scene: Scene, orbit: Orbit, near: Shot) -> str:
     names = " and ".join(scene.contacts[choice.contact].name for choice in near.chosen if choice.gap)
     at = spoken(orbit.frequency, scene.frequency_unit)
     return (
-        f"of the solution found at {at} the contact {names} always sticks, on a "
-        "residual friction of its own, and with that of [start] there is none near it; give [start] another "
-        "friction"
+        f"in the solution found at {at} the contact {names} always sticks, on residual friction of its own. "
+        "With that of [start] there is none near it: give [start] another friction"
     )

@@ -105,8 +105,8 @@ def periodic(
         if orbit is None:
             at = spoken(frequency, scene.frequency_unit)
             raise SimulationError(
-                f"no periodic solution is found at {at} from this state; "
-                "simulate some cycles and start from their end, or from a solution at a frequency nearby"
+                f"no periodic solution is found at {at} from this state. "
+                "Simulate some cycles and start from their end, or from a solution at a frequency nearby"
             )
         return orbit
     return approached(system, options=options)
@@ -144,7 +144,7 @@ def approached(system: System, poll: Poll = never_interrupt, options: ShootingOp
     at = spoken(system.omega, system.scene.frequency_unit)
     raise SimulationError(
         f"the motion from rest at {at} has not become periodic "
-        f"in {sum(options.approach.cycles)} cycles; {_description(system, np.array(amplitudes), options)}"
+        f"in {sum(options.approach.cycles)} cycles. {_description(system, np.array(amplitudes), options)}"
     )
 
 
@@ -152,15 +152,15 @@ def _description(system: System, amplitude: FloatArray, options: ShootingOptions
     """What a motion does that has not become periodic, by the greatest amplitudes of its last cycles."""
     first, second = np.array_split(amplitude, 2)
     if abs(second.mean() - first.mean()) > options.approach.max_drift * np.ptp(amplitude):
-        return "it may grow without end, repeat only after several periods, or need a guess"
+        return "It may grow without end, repeat only after several periods, or need a guess"
     modal = system.scene.modal
     rate = float((modal.damping * modal.frequency).min())
     last = -np.log(options.approach.settled_fraction) / rate / system.period if rate > 0.0 else np.inf
     slow = f", or settles only in some {last:.1g} cycles" if last > sum(options.approach.cycles) else ""
     return (
-        f"the amplitude of its last {amplitude.size} lies between {amplitude.min():.4g} and "
-        f"{amplitude.max():.4g}, and neither grows nor decays: it is irregular, or repeats only after "
-        f"several periods{slow}; --at has the extent of such a motion"
+        f"The amplitude of its last {amplitude.size} lies between {amplitude.min():.4g} and "
+        f"{amplitude.max():.4g}, and neither grows nor decays. It is irregular, or repeats only after "
+        f"several periods{slow}. --at has the extent of such a motion"
     )
 
 

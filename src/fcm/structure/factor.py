@@ -56,7 +56,7 @@ class TooLargeError(ValueError):
 
     def __init__(self, rows: int, entries: int) -> None:
         super().__init__(
-            f"the factors of its {rows} rows and {entries} entries take more memory than there is: reduce "
+            f"the factors of its {rows} rows and {entries} entries take more memory than there is. Reduce "
             "the structure, as by Craig and Bampton, or install scikit-sparse, whose factors are smaller"
         )
 

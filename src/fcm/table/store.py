@@ -23,13 +23,13 @@ LAYOUT = 1  # to be raised whenever `decode` or `atlas` changes
 PART_LAYOUT = 2  # of a file with a part of the nodes, which fcm before it would have taken for all
 TITLE = "Fourier coefficients of the friction force of a contact with variable normal load"
 COMMENT = (
-    "Levels: the first level_open are with separation, from n0_bar = -b_bar (fully open) to n0_bar = b_bar; "
-    "the others slip without separation, from n0_bar = b_bar to the slip limit. phi + pi changes the sign of "
+    "Levels: the first level_open are with separation, from n0_bar = -b_bar (fully open) to n0_bar = b_bar. "
+    "The others slip without separation, from n0_bar = b_bar to the slip limit. phi + pi changes the sign of "
     "F_b alone. b_bar = 1e8 stands for infinity. Between the nodes fcm interpolates F (1 + b_bar) / b_bar in "
-    "separation and the slopes in slip by cubic splines; measured_error is the absolute error of that."
+    "separation and the slopes in slip by cubic splines. measured_error is the absolute error of that."
 )
 PART_COMMENT = (
-    " This file has a part of the nodes, those that one scene needs: part has the first of them and one "
+    " This file has a part of the nodes, those that one scene needs. part has the first of them and one "
     "past the last, along separation (from its onset), slip, variation and phase. Elsewhere fcm uses the "
     "closed form."
 )

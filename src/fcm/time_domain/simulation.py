@@ -166,7 +166,7 @@ def _marched(system: System, march: March, options: TimeOptions = TIME) -> Segme
         elif stopped == Stopped.LONG:
             raise CycleError(
                 f"a cycle at {_at(system)} lasts {march.duration * march.rate():.1g} radians of the "
-                "fastest motion; give the contacts less stiffness, leave the highest modes out, or raise the "
+                "fastest motion. Give the contacts less stiffness, leave the highest modes out, or raise the "
                 "frequency"
             )
     segments: Segments = march.segments.trim()
