@@ -110,6 +110,51 @@ def test_all_rows_move_as_the_matrices_under_the_contact_forces(made):
             assert np.abs(found - expected).max() < 1e-9 * np.abs(expected).max()
 
 
+def test_a_nonlinear_mode_moves_freely_with_the_damping_that_gives_back_what_friction_takes(tmp_path):
+    """All rows by the matrices: M x'' + (C - 2 D omega M) x' + K x + f = load; its modal amplitude is that
+    asked for."""
+    (tmp_path / "model.toml").write_text(SCENE)
+    amplitude, files = 1e-4, ("-o", tmp_path / "c.nc", "--contact-forces", tmp_path / "f.csv")
+    mode = ("respond", tmp_path / "model.toml", "--mode", 2, "--level", f"1e-6:{amplitude}")
+    done = called(*mode, *files, "--export", tmp_path / "c.h5", "--motion-at", amplitude)
+    assert done.code == 0, done.err
+    names = calculix_names((BEAM / "beam.dof").read_text().splitlines(), "beam.dof")
+    K, M = triangle("sti", names), triangle("mas", names)
+    square, shapes = scipy.linalg.eigh(K, M)
+    _, waves, mean, (omega,) = waves_of(tmp_path)
+    forces, at = forces_of(tmp_path), {name: i for i, name in enumerate(names)}
+    with netCDF4.Dataset(tmp_path / "c.nc") as data:
+        D = float(data["damping_ratio"][0, -1])
+        assert float(data["frequency"][0, -1]) == pytest.approx(omega, rel=1e-9)
+    first = shapes.T @ M @ waves[0, 0]
+    assert np.linalg.norm(first) == pytest.approx(amplitude, rel=1e-6) and D > 1.2 * ZETA
+    for j in range(4):
+        push = np.zeros(36, dtype=complex)
+        push[at["16y"]] = -forces[0, 0, 0, j]
+        push[at["16z"]] = -(forces[0, 0, 1, j] - (20.0 if j == 0 else 0.0))
+        push[at["8z"]] += 3.0 if j == 0 else 0.0
+        w, moved = j * omega, shapes.T @ M @ (mean[0] if j == 0 else waves[0, j - 1])
+        free = square - w**2 + 2j * w * (ZETA * np.sqrt(square) - D * omega)
+        left = free * moved - shapes.T @ push
+        assert np.abs(left).max() < 1e-6 * np.abs(square * first).max()
+    rows = list(csv.DictReader((tmp_path / "f.csv").open()))
+    assert {row["peak of"] for row in rows} == {"mode at 0.0001"}
+
+
+def test_the_motions_of_a_mode_are_its_resonances_where_none_is_asked_for(tmp_path):
+    """Of a curve without one that of the greatest amplitude. A free motion has no spectrum."""
+    (tmp_path / "model.toml").write_text(SCENE)
+    mode = ("respond", tmp_path / "model.toml", "--mode", 2, "--level", "1e-6:1e-4", "--json")
+    for level in (0.3, 1000):
+        done = called(*mode, "--force-level", level, "--export", tmp_path / "c.uff")
+        found = json.loads(done.out)["curves"][0]["mode"]
+        sets = pyuff.UFF(str(tmp_path / "c.uff")).read_sets()
+        expected = [one["frequency"] for one in found["resonances"]] or [found["frequency"][1]]
+        assert {one["type"] for one in sets} == {55}
+        # a resonance of the forces is where their answer is greatest, below the frequency of the mode
+        assert sets[0]["freq"] * 2.0 * np.pi == pytest.approx(expected[0], rel=1e-3)
+
+
 def test_the_contact_forces_are_those_of_the_motion_across_the_contact(made):
     """The motion from the exported rows, its forces by `fcm.periodic_forces`."""
     folder, _ = made
@@ -262,7 +307,9 @@ REFUSED = {
     "give -o FILE": ("--modal-amplitudes",),
     "--method exact: it is of motions by their harmonics": ("--export", "a.h5", "--method", "exact"),
     "give the forces that amplitude": ("--contact-forces", "f.csv", "--level", "0:2", "--at", 1.2),
-    "leave --mode out": ("--export", "a.h5", "--mode", 1, "--level", "0.1:1"),
+    "--motion-at 2: the range is 0.1 to 1 (modal amplitude)": (
+        *("--contact-forces", "f.csv", "--mode", 1, "--level", "0.1:1", "--motion-at", 2),
+    ),
     "leave --track out": (
         "--export",
         "a.h5",

@@ -92,6 +92,8 @@ def _tracked(messages: Messages, scene: Scene, asked: Asked, execution: Executio
 def _mode(messages: Messages, scene: Scene, asked: Asked, execution: Execution) -> Response:
     assert asked.mode is not None and asked.level is not None  # --mode needs --level
     chosen = _balanced(messages, asked) | {"force_levels": asked.force_levels or (1.0,)}
+    if asked.export is not None or asked.contact_forces is not None or asked.modal_amplitudes:
+        chosen["motion_at"] = asked.motion_at
     response = nonlinear_mode.traced(scene, asked.mode, asked.level, execution, chosen)
     messages.clear()
     return response

@@ -52,7 +52,8 @@ def export_options(command: Any) -> Any:
         ),
         click.option(
             "--motion-at", type=FiniteRange(min=0.0, min_open=True), multiple=True, metavar="F",
-            help="Instead of at the peaks, export where the curves pass this frequency; again for more.",
+            help="Instead of at the peaks, export where the curves pass this frequency; again for more. With "
+            "--mode where the modal amplitude is this, instead of in resonance with the scene's forces.",
         ),
     ]  # fmt: skip
     for option in reversed(options):
@@ -81,12 +82,8 @@ def check_options(asked: Asked) -> None:
             asked.method == "exact",
             "it is of motions by their harmonics, which the balance has; leave --method out",
         ),
-        "--mode": (
-            asked.mode is not None,
-            "it is of the motion under the scene's forces, as curves have it; leave --mode out",
-        ),
         "--level": (
-            asked.level is not None,
+            asked.level is not None and asked.mode is None,
             "it is of curves against the frequency; give the forces that amplitude, and leave --level out",
         ),
         "--track": (
@@ -171,15 +168,9 @@ def exporting(messages: Messages, scene: Scene, asked: Asked) -> Exporting | Non
         raise ExportError(
             f"{scene.name}: motions are exported of a scene as it is; write what [fit] found into it"
         )
-    if not scene.has_range:
+    if not scene.has_range and asked.mode is None:
         raise ExportError(f"{scene.name}: motions are exported of curves, and it has no [response]")
-    from fcm.units import UNIT, in_unit
-
-    low, high = scene.frequency_range
-    for one in asked.motion_at:
-        if not low <= one * UNIT[scene.frequency_unit] <= high:
-            ends = " to ".join(f"{float(in_unit(end, scene.frequency_unit)):g}" for end in (low, high))
-            raise ExportError(f"--motion-at {one:g}: the range is {ends} {scene.frequency_unit}")
+    _check_motion_at(scene, asked)
     if scene.ring is not None and (asked.export is not None or asked.modal_amplitudes):
         raise ExportError(f"{scene.name}: {_RING}")
     if scene.tuned is not None and asked.export is not None:
@@ -194,6 +185,24 @@ def exporting(messages: Messages, scene: Scene, asked: Asked) -> Exporting | Non
             check_nodes(Rows.of(scene))
         check_library(asked.export.suffix.lower())
     return Exporting(messages, scene, asked, mesh)
+
+
+def _check_motion_at(scene: Scene, asked: Asked) -> None:
+    """An error where a frequency, or with --mode a modal amplitude, is not among those that are followed."""
+    from fcm.export.rows import ExportError
+    from fcm.units import UNIT, in_unit
+
+    if asked.mode is not None:
+        assert asked.level is not None  # --mode needs it
+        (low, high), factor, unit = asked.level, 1.0, "(modal amplitude)"
+        ends = f"{low:g} to {high:g} {unit}"
+    else:
+        (low, high), unit = scene.frequency_range, scene.frequency_unit
+        factor = UNIT[unit]
+        ends = f"{' to '.join(f'{float(in_unit(end, unit)):g}' for end in (low, high))} {unit}"
+    for one in asked.motion_at:
+        if not low <= one * factor <= high:
+            raise ExportError(f"--motion-at {one:g}: the range is {ends}")
 
 
 def _mesh(path: Path) -> Mesh:

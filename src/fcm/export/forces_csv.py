@@ -16,8 +16,9 @@ from fcm.units import headed, in_unit
 def write_forces(motions: Sequence[Motion], response: Response, path: Path) -> None:
     """Write a row for each motion, contact, direction and harmonic; harmonic 0 is the mean.
 
-    Columns: curve, swept values, peak of, frequency, contact, force (friction or normal), harmonic,
-    amplitude and phase [rad] of amplitude * sin(harmonic omega t + phase), and its real and imaginary part.
+    Columns: curve, swept values, peak of (or the mode), frequency, contact, force (friction or
+    normal), harmonic, amplitude and phase [rad] of amplitude * sin(harmonic omega t + phase), and its
+    real and imaginary part.
     """
     unit, force = response.frequency_unit, response.units[1]
     swept = motions[0].parameters if motions else {}
@@ -33,7 +34,8 @@ def write_forces(motions: Sequence[Motion], response: Response, path: Path) -> N
 
 
 def _rows(motion: Motion, response: Response) -> Iterator[list[object]]:
-    begin = [motion.curve, *motion.parameters.values(), " ".join(motion.of)]
+    of = f"mode at {motion.amplitude:g}" if np.isfinite(motion.amplitude) else " ".join(motion.of)
+    begin = [motion.curve, *motion.parameters.values(), of]
     begin += [repr(float(in_unit(motion.frequency, response.frequency_unit)))]
     kinds = LINE if motion.force.shape[1] == len(LINE) else PLANE
     for contact, of_contact in zip(response.contacts, motion.force, strict=True):

@@ -19,7 +19,7 @@ def write_hdf5(motions: Sequence[Motion], scene: Scene, mesh: Mesh | None, path:
 
     Datasets: row (row,) names; displacement (motion, harmonic, row) complex, as Im(X exp(i h omega t)), NaN
     of harmonics that a motion has not; mean (motion, row); harmonic (harmonic,); frequency, curve, stable and
-    of (motion,). With a mesh also node (node,) and xyz (node, 3).
+    of (motion,), and of nonlinear modes modal_amplitude. With a mesh also node (node,) and xyz (node, 3).
     """
     import h5py
 
@@ -40,5 +40,7 @@ def write_hdf5(motions: Sequence[Motion], scene: Scene, mesh: Mesh | None, path:
         file["curve"] = np.array([one.curve for one in motions])
         file["stable"] = np.array([one.stable for one in motions])
         file["of"] = np.array([" ".join(one.of) for one in motions], dtype=h5py.string_dtype())
+        if any(np.isfinite(one.amplitude) for one in motions):
+            file["modal_amplitude"] = np.array([one.amplitude for one in motions])
         if mesh is not None:
             file["node"], file["xyz"] = np.array(mesh.nodes), mesh.xyz

@@ -22,6 +22,7 @@ from fcm.response.request import ResponseError
 from fcm.results.motions import ComplexArray, Motion
 from fcm.results.result import Curve, Response
 from fcm.rotational_dofs import greatest_first
+from fcm.structure.linear import linear_of
 from fcm.units import UNIT, in_unit
 
 
@@ -29,6 +30,8 @@ def motions_of(
     response: Response, scene: Scene, at: Sequence[float] = (), options: ExportOptions = EXPORT
 ) -> list[Motion]:
     """Motions of every curve: at the peaks, or where it passes some frequencies in the scene's unit.
+
+    Of nonlinear modes those that were kept, see `fcm.response.mode.trace_modes`; `at` are modal amplitudes.
 
     Parameters
     ----------
@@ -55,6 +58,8 @@ def motions_of(
     >>> one.force.shape, one.harmonics  # of a contact friction and normal force, the mean and a harmonic
     ((1, 2, 2), (1,))
     """
+    if any(curve.mode is not None for curve in response.curves):
+        return _of_modes(response, scene, at)
     found: list[Motion] = []
     for number, (curve, own) in enumerate(zip(response.curves, scene.each_curve(), strict=True)):
         if not curve.points:
@@ -69,6 +74,26 @@ def motions_of(
     for one in at:
         if one * UNIT[scene.frequency_unit] not in met:
             raise ResponseError(f"{scene.name}: no curve passes {one:g} {scene.frequency_unit}")
+    return found
+
+
+def _of_modes(response: Response, scene: Scene, at: Sequence[float]) -> list[Motion]:
+    """The motions that nonlinear modes have for export."""
+    found: list[Motion] = []
+    for number, (curve, own) in enumerate(zip(response.curves, scene.each_curve(), strict=True)):
+        if curve.mode is None or not curve.mode.motions:
+            continue
+        system, turn = System(own, curve.harmonics), linear_of(scene_in_modes(own)).dofs
+        swept, harmonics = dict(curve.parameters), curve.harmonics
+        for one in curve.mode.motions:
+            force, modal = contact_forces(system, one.contacts), turn.T @ one.modes
+            motion = Motion(number, swept, (), one.frequency, np.nan, harmonics, force, modal, one.amplitude)
+            found.append(motion)
+    for amplitude in at:
+        if not any(
+            np.isclose(one.amplitude, amplitude, rtol=EXPORT.same_amplitude, atol=0.0) for one in found
+        ):
+            raise ResponseError(f"{scene.name}: no mode comes to the modal amplitude {amplitude:g}")
     return found
 
 
@@ -212,6 +237,8 @@ def labels_of(motions: Sequence[Motion], unit: str) -> list[str]:
     several, found = len({one.curve for one in motions}) > 1, list[str]()
     for one in motions:
         of = "_".join(["peak", *one.of[:1]]) if one.of else "at"
+        if np.isfinite(one.amplitude):
+            of = f"amplitude_{one.amplitude:.4g}_at"
         text = f"{of}_{in_unit(one.frequency, unit):.6g}_{unit}"
         name = _OTHER.sub("_", f"curve{one.curve}_{text}" if several else text)
         count, first = 1, name

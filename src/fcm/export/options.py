@@ -19,10 +19,13 @@ class ExportOptions:
     max_drift
         How far the frequency of a peak may move, relative, where its point is corrected with all digits; what
         the balance has left is far below.
+    same_amplitude
+        Relative: modal amplitudes nearer than this are one.
     """
 
     max_peaks: int = MOST_DOFS
     max_drift: float = 1e-6
+    same_amplitude: float = 1e-6
 
 
 EXPORT = ExportOptions()

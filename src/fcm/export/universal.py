@@ -28,7 +28,7 @@ def write_universal(
     Nodes as dataset 2411 where there is a mesh. A dataset 55 of all nodes with rows for each motion and
     harmonic, complex, in the five digits of the format. A dataset 58 for each reported degree of freedom of a
     node and each stretch of a curve between two folds: the fundamental against the frequency, complex, in
-    double precision. Phases are against sin(omega t), as those of the forces.
+    double precision; none of nonlinear modes. Phases are against sin(omega t), as those of the forces.
     """
     rows = Rows.of(scene)
     with path.open("w", encoding="ascii", newline="\n") as file:
@@ -43,6 +43,8 @@ def write_universal(
                 text = _shape(rows, found[j], f"{name} harmonic {harmonic}", hertz, step)
                 file.writelines(_dataset(55, text))
         for number, curve in enumerate(response.curves):
+            if curve.mode is not None:  # a free motion answers to no force
+                continue
             for d, dof in enumerate(response.dofs):
                 if motion_of(dof):
                     for stretch in _between_folds(curve):

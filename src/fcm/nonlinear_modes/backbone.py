@@ -51,8 +51,14 @@ class Mode:
     @property
     def rest(self) -> FloatArray:
         """Displacements of the degrees of freedom under the static loads, (dof,)."""
+        found: FloatArray = self.modes_at_rest @ self.system.linear.dofs
+        return found
+
+    @property
+    def modes_at_rest(self) -> FloatArray:
+        """Displacements of the modes under the static loads, (mode,)."""
         linear, force = self.system.linear, self.problem.contacts.means_at_rest()
-        found: FloatArray = (linear.flexibility @ (linear.load - linear.ports @ force)) @ linear.dofs
+        found: FloatArray = linear.flexibility @ (linear.load - linear.ports @ force)
         return found
 
 

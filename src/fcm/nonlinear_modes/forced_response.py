@@ -10,6 +10,8 @@ exact for a linear structure with one mode, and good where no other mode is near
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy.optimize import brentq
 
@@ -55,22 +57,39 @@ def flanks(mode: Mode, level: float = 1.0) -> FloatArray:
 
 def resonances(mode: Mode, level: float = 1.0) -> Mode | None:
     """The points of the mode at which it is in resonance with forces of a level; None if there are none."""
-    above = resonant_level(mode) > level
-    found = [_between(mode, int(i), level) for i in np.flatnonzero(above[1:] != above[:-1])]
-    z = [one for one in found if one is not None]
+    return _where(mode, resonant_level, level)
+
+
+def at_amplitude(mode: Mode, amplitude: float) -> Mode | None:
+    """The points of the mode with a modal amplitude; None if it does not come to it."""
+    return _where(mode, lambda one: one.amplitude, amplitude)
+
+
+def _where(mode: Mode, quantity: Callable[[Mode], FloatArray], value: float) -> Mode | None:
+    """The points at which a quantity of the mode has a value; None if there are none."""
+    along = quantity(mode)
+    if not along.size:
+        return None
+    above, last = along > value, along.size - 2
+    at_end = np.isclose(along[[0, -1]], value, rtol=mode.problem.options.same_end, atol=0.0)
+    z = [mode.path.z[i] for i in (0, -1) if at_end[i]]
+    for i in np.flatnonzero(above[1:] != above[:-1]).tolist():
+        if not (i == 0 and at_end[0]) and not (i == last and at_end[1]):
+            found = _between(mode, i, quantity, value)
+            z += [] if found is None else [found]
     return _points(mode, np.array(z)) if z else None
 
 
-def _between(mode: Mode, i: int, level: float) -> FloatArray | None:
-    """The resonance between a point and the next."""
+def _between(mode: Mode, i: int, quantity: Callable[[Mode], FloatArray], value: float) -> FloatArray | None:
+    """Where a quantity has a value, between a point and the next."""
     curve = Segment(mode.problem, mode.path, i)
 
     def off(part: float) -> float:
         if not 0.0 < part < 1.0:
-            return float(resonant_level(mode)[i + round(part)] - level)
+            return float(quantity(mode)[i + round(part)] - value)
         if not curve.find(part):
             raise ArithmeticError
-        return float(resonant_level(_points(mode, curve.z[None]))[0] - level)
+        return float(quantity(_points(mode, curve.z[None]))[0] - value)
 
     try:
         curve.find(float(brentq(off, 0.0, 1.0, xtol=mode.problem.options.resonance)))

@@ -143,6 +143,8 @@ class NonlinearModeOptions:
         Of the parts, each of a class of its own.
     resonance : float
         Part of a step along the mode, to which a resonance is found.
+    same_end : float
+        Relative: what is sought is at an end of the mode where its value there is as near.
     """
 
     linear: LinearModeOptions = field(default_factory=LinearModeOptions)
@@ -152,6 +154,7 @@ class NonlinearModeOptions:
     rounding: RoundingOptions = field(default_factory=RoundingOptions)
     truncation: TruncationOptions = field(default_factory=TruncationOptions)
     resonance: float = 1e-9
+    same_end: float = 1e-9
 
 
 NONLINEAR_MODE = NonlinearModeOptions()  # where nothing else is said

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -19,7 +19,13 @@ from fcm.harmonic_balance.static_equilibrium import RestError
 from fcm.harmonic_balance.wave_extremes import half_peak_to_peak
 from fcm.model.scene import FloatArray, Scene
 from fcm.nonlinear_modes.backbone import Mode, ModeError, nonlinear_mode, truncation
-from fcm.nonlinear_modes.forced_response import flanks, modal_force, resonances, resonant_level
+from fcm.nonlinear_modes.forced_response import (
+    at_amplitude,
+    flanks,
+    modal_force,
+    resonances,
+    resonant_level,
+)
 from fcm.response.curve_batches import anonymous, lost_curve
 from fcm.response.incomplete import no_steady_states, reason_for
 from fcm.response.options import INPUT_LIMITS, ResponseOptions
@@ -31,7 +37,7 @@ from fcm.response.undetermined_traction import undetermined
 from fcm.results.at_rest import without_rounding
 from fcm.results.cause import Cause
 from fcm.results.contact_maxima import greatest_of
-from fcm.results.nonlinear_mode import NonlinearMode, Resonance
+from fcm.results.nonlinear_mode import MotionOfMode, NonlinearMode, Resonance
 from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
 from fcm.run import IN_THIS_PROCESS, Execution, fingerprint
 from fcm.scene.errors import counted
@@ -47,6 +53,7 @@ def trace_modes(
     harmonics: int | Sequence[int] | None = None,
     accuracy: float | None = None,
     force_levels: Sequence[float] = (1.0,),
+    motion_at: Sequence[float] | None = None,
     options: ResponseOptions | None = None,
 ) -> Response:
     """The mode of each curve of the scene over a span of modal amplitudes.
@@ -54,7 +61,9 @@ def trace_modes(
     The modal amplitude is the root of sum_i |Q_i|^2 over the amplitudes Q_i of the fundamental in modes of
     mass 1: the root of X^H M X. Modes are counted from the lowest of the structure with its contacts as they
     are at rest, without rigid-body modes. Without harmonics or an accuracy, those of the scene. The response
-    near the resonance is predicted at some levels of the scene's forces. What is finished goes to the
+    near the resonance is predicted at some levels of the scene's forces. Motions at some modal amplitudes are
+    kept for export; of none at the resonances, or, of a mode without one, at its greatest amplitude. What is
+    finished goes to the
     checkpoint, and what that holds of it is not followed again.
 
     Raises
@@ -76,14 +85,15 @@ def trace_modes(
     begin = time.perf_counter()
     wanted = request_of(scene, harmonics, accuracy, options)
     levels = tuple(float(level) for level in force_levels)
-    of_curves = (number, span, wanted, levels, anonymous(scene.each_curve()))
+    at = None if motion_at is None else tuple(float(one) for one in motion_at)
+    of_curves = (number, span, wanted, levels, at, anonymous(scene.each_curve()))
     mark = b"" if execution.keep is None else fingerprint("mode", *of_curves)
     try:
         curves = one_by_one(
             [
                 (
                     lost_curve(one, NOT_BEGUN, Cause.INTERRUPTED),
-                    partial(_curve, one, number, span, wanted, levels),
+                    partial(_curve, one, number, span, wanted, levels, at),
                 )
                 for one in scene.each_curve()
             ],
@@ -111,6 +121,7 @@ def _curve(
     span: tuple[float, float],
     wanted: Request,
     levels: tuple[float, ...],
+    at: tuple[float, ...] | None,
     tell: Tell,
 ) -> Curve:
     begin = time.perf_counter()
@@ -139,6 +150,8 @@ def _curve(
     if wanted.harmonics is None and curve.complete and not _worst(error) <= wanted.accuracy:
         these = counted(len(mode.system.harmonics), "harmonic")
         curve.short_of = f"with {these} an estimated error of {_worst(error):.1e} remains"
+    if at is not None and curve.mode is not None:
+        curve.mode.motions = tuple(_motions(mode, at, levels))
     if stopped:
         curve.complete, curve.reason, curve.cause = False, stopped, Cause.INTERRUPTED
     curve.seconds = time.perf_counter() - begin
@@ -210,6 +223,25 @@ def _along(mode: Mode, number: int, levels: tuple[float, ...]) -> NonlinearMode:
         folds=mode.amplitude[(mode.path.mark & Mark.FOLD) > 0].tolist(),
         resonances=[one for level in levels for one in _resonances(mode, level)],
     )
+
+
+def _motions(mode: Mode, at: tuple[float, ...], levels: tuple[float, ...]) -> Iterator[MotionOfMode]:
+    """The motions at modal amplitudes; without any at the resonances, or else at the greatest amplitude."""
+    if at:
+        found = [at_amplitude(mode, one) for one in at]
+    else:
+        found = [resonances(mode, level) for level in levels]
+        if all(one is None for one in found):
+            found = [at_amplitude(mode, float(mode.amplitude.max()))]
+    for points in found:
+        if points is None:
+            continue
+        rest = mode.modes_at_rest
+        for a, omega, z, mean, Q in zip(
+            points.amplitude, points.omega, points.contacts, points.mean, points.Q, strict=True
+        ):
+            modes = np.concatenate(((rest + a * mean)[:, None], 1j * a * Q.T), axis=1)
+            yield MotionOfMode(float(a), float(omega), z, modes)
 
 
 def _reason(mode: Mode) -> str:

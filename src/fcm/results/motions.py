@@ -34,6 +34,7 @@ class Motion:
     harmonics: tuple[int, ...]
     force: ComplexArray  # (contact, direction, 1 + harmonic)
     modal: ComplexArray | None  # (mode, 1 + harmonic), of modes of mass 1; None of a ring's sector
+    amplitude: float = np.nan  # modal, of a nonlinear mode
 
     def at(self, harmonic: int) -> int:
         """The place of a harmonic in the arrays; -1 if the motion has it not."""

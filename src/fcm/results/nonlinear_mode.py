@@ -6,6 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+import numpy as np
+import numpy.typing as npt
+
 from fcm.contact.limits import FloatArray
 from fcm.units import in_unit
 
@@ -18,6 +21,16 @@ class Resonance(NamedTuple):
     modal_amplitude: float
     amplitude: dict[str, float]  # of each dof, half the peak-to-peak displacement
     damping: float  # ratio
+
+
+@dataclass(frozen=True)
+class MotionOfMode:
+    """The motion at a point of a nonlinear mode."""
+
+    amplitude: float  # modal
+    frequency: float  # [rad/s]
+    contacts: FloatArray  # (unknown + 1,) displacements of the contacts as in `law`, and the frequency
+    modes: npt.NDArray[np.complex128]  # (mode, 1 + harmonic) of Im(q exp(i h omega t)), the mean first
 
 
 @dataclass
@@ -33,6 +46,7 @@ class NonlinearMode:
     flanks: FloatArray  # (point, level, 2) [rad/s] where they give the amplitude, below and above resonance
     folds: list[float]  # modal amplitudes at which the curve turns back
     resonances: list[Resonance]  # at these levels
+    motions: tuple[MotionOfMode, ...] = ()  # that are to be exported
 
     def summary(
         self, frequency: FloatArray, unit: str, amplitude: Mapping[str, FloatArray]
