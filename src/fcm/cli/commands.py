@@ -14,9 +14,9 @@ one_by_default()
 os.environ["MPLBACKEND"] = "agg"  # pictures are files, whatever shows those of other programs
 
 COMMANDS = {
-    "tabulate": ("fcm.cli.tabulate:tabulate", "Build a table of the Fourier coefficients of friction."),
     "respond": ("fcm.cli.respond:respond", "Trace the response curves of a scene."),
     "plot": ("fcm.cli.plot:plot", "Draw a result, or the coefficients of one contact."),
+    "tabulate": ("fcm.cli.tabulate:tabulate", "Build a table of the Fourier coefficients of friction."),
 }
 
 INSTEAD = {  # of commands that there are not: what does that
@@ -43,4 +43,4 @@ INSTEAD = {  # of commands that there are not: what does that
 )
 @click.version_option(fcm.__version__, "-V", "--version", message="%(prog)s %(version)s")
 def main() -> None:
-    """Friction contacts with variable normal load: tables, response curves, pictures."""
+    """Vibration of structures with friction contacts that stick, slip and open."""

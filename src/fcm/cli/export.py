@@ -40,7 +40,7 @@ def export_options(command: Any) -> Any:
             "--mesh", type=click.Path(exists=True, dir_okay=False, readable=True, path_type=Path),
             metavar="FILE",
             help="With --export: where the nodes are: .inp of CalculiX or Abaqus, .bdf, .msh, or .csv with "
-            "the columns node,x,y,z.",
+            "the columns node,x,y,z. A .vtu has surfaces only of a mesh with elements.",
         ),
         output_option(
             "--contact-forces", endings=(".csv",),

@@ -90,7 +90,8 @@ OPTIONS: list[Callable[[Any], Any]] = [  # in the order of the help
     click.option(
         "--mode", type=click.IntRange(min=1), metavar="N",
         help="Follow the nonlinear mode N instead: its frequency and damping against its modal amplitude, "
-        "over the span --level. Counted from 1 with the contacts as at rest, without rigid-body modes.",
+        "over the span --level. Counted from 1 with the contacts as at rest, without rigid-body modes. The "
+        "table says what a modal amplitude of 1 is at the degrees of freedom.",
     ),
     click.option(
         "--force-level", "force_levels", type=FiniteRange(min=0.0, min_open=True), multiple=True,

@@ -80,8 +80,9 @@ def _of_floating(ratio: float, rigid: int) -> list[str]:
     if not ratio or not rigid:
         return []
     return [
-        "structure: its damping is that of modes without contacts, and rigid-body modes have none. "
-        f"A resonance in which contacts hold them has another ratio. {_AT_ONE}, LOSS_FACTOR twice the ratio"
+        "structure: its damping ratio is of modes without contacts, and rigid-body modes have none. Where "
+        f"contacts hold these, a resonance has less: see the ratios with all stuck. {_AT_ONE}, with "
+        "LOSS_FACTOR twice the ratio"
     ]
 
 

@@ -141,7 +141,7 @@ def _kept(matrices: Matrices, found: Reduced, damping: Damping) -> str:
     )
     if not np.isfinite(found.bound):
         return f"{text}; how far it is off cannot be told"
-    return f"{text}: {how_far_off(matrices, found.bound, found.damping, damping.lost)}"
+    return f"{text}. {how_far_off(matrices, found.bound, found.damping, damping.lost)}"
 
 
 def how_far_off(matrices: Matrices, bound: float, damping: float, lost: float) -> str:
@@ -154,8 +154,8 @@ def how_far_off(matrices: Matrices, bound: float, damping: float, lost: float) -
     most = _upwards(max(bound + 2.0 * ratio * damping + lost, 1e-15))
     if lost:
         why = "the damping of rigid-body modes, which have no ratio, being left out"
-        return f"receptances at the forces' frequencies are off by at most {most}, {why}"
-    text = f"receptances up to the forces' highest frequency are off by at most {most}"
+        return f"Receptances at the forces' frequencies are off by at most {most}, {why}"
+    text = f"Receptances up to the forces' highest frequency are off by at most {most}"
     if not ratio:
         return text
     return f"{text}, the damping of a resonance by at most {_upwards(max(damping, 1e-15))}"

@@ -130,7 +130,7 @@ def _notes(matrices: Matrices, diameters: list[Diameter], ends: tuple[float, flo
     elif np.isfinite(bound):
         damping = max(one.damping for one in all_found)
         lost = max(one.damping.lost for one in diameters)
-        text += f", and the flexibility of the others: {how_far_off(matrices, bound, damping, lost)}"
+        text += f", and the flexibility of the others. {how_far_off(matrices, bound, damping, lost)}"
     else:
         text += ", and the flexibility of the others; how far it is off cannot be told"
     notes = [text]
