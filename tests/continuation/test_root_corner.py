@@ -52,3 +52,55 @@ def test_a_curve_that_leaves_to_where_it_came_from(pull: float) -> None:
     sides = np.sign([problem.square(0, z) for z in path.z])
     assert (sides[:corner] == 1.0).all()
     assert (sides[corner + 1 :] == -1.0).all()
+
+
+class MirroredRoots(Problem):
+    """Two roots as of `Root`, of unknowns x_1, y_1, x_2, y_2: what is unlike in both acts on their squares.
+
+    Both squares vanish at once. The unlike motion has its own determinant, which changes its sign where a
+    root is half of `unlike`, and back in the corner.
+    """
+
+    def __init__(self, pull: float, unlike: float) -> None:
+        Problem.__init__(self, 4, 2, 0)
+        self.rooted, self.pull, self.unlike = True, pull, unlike
+        self.kind[:] = np.arange(2)
+
+    def square(self, kind: int, z: FloatArray) -> float:
+        x, y, other, p = z[2 * kind], z[2 * kind + 1], z[2 - 2 * kind], z[4]
+        apart = 0.5 * (self.unlike - self.pull)
+        return float(p + self.pull * x + apart * (x - other) - 0.3 * y + 0.5 * x * y)
+
+    def bound(self, z: FloatArray) -> int:
+        for kind in range(2):
+            g = self.square(kind, z)
+            self.margin[kind] = np.sign(g) * np.sqrt(abs(g))
+        return 0
+
+    def evaluate(self, z: FloatArray) -> int:
+        apart = 0.5 * (self.unlike - self.pull)
+        for kind in range(2):
+            i, k = 2 * kind, 2 - 2 * kind
+            x, y, g = z[i], z[i + 1], self.square(kind, z)
+            root = np.sqrt(abs(g))
+            slope = np.zeros(5)
+            slope[[i, i + 1, k, 4]] = self.pull + apart + 0.5 * y, 0.5 * x - 0.3, -apart, 1.0
+            slope *= np.sign(g) / (2.0 * max(root, 1e-150))
+            self.residual[i], self.residual[i + 1] = x - root, y - 0.7 * root - z[4]
+            unit = np.eye(5)
+            self.jacobian[i, :] = unit[i] - slope
+            self.jacobian[i + 1, :] = unit[i + 1] - unit[4] - 0.7 * slope
+        return 0
+
+
+@pytest.mark.parametrize("unlike", [0.03, 0.003, 0.0003, 0.00003])
+def test_mirrored_corners_change_the_orientation_and_are_crossed(unlike: float) -> None:
+    problem = MirroredRoots(0.01, unlike)
+    start = np.array([0.0, 1.0, 0.0, 1.0, 1.0])
+    path = follow(problem, start, (-1.0, 1.0), forward=False)
+    assert path.status is Status.COMPLETE
+    corners = np.flatnonzero(path.mark & Mark.CORNER)
+    sides = np.sign([[problem.square(kind, z) for z in path.z] for kind in range(2)])
+    assert (sides[:, : corners[0]] == 1.0).all()
+    assert (sides[:, corners[-1] + 1 :] == -1.0).all()
+    assert path.z[:, 0] == pytest.approx(path.z[:, 2], abs=MET)

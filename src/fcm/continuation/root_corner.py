@@ -5,6 +5,10 @@ root of what is left. The forces do likewise: their derivatives have no limit, a
 curve lies in the surface where the square vanishes. On either side there is one curve. It may leave in the
 direction that it came from, a cusp, so that nothing is found ahead. Where the square keeps a small value of
 the other sign its root hardly changes, and there Newton's method finds the curve from the corner itself.
+
+Contacts that mirror one another come to their corners at once. What both do against one another may then
+change the orientation of the curve, in the corner or so near that it is nothing else: that the curve leads
+across both surfaces tells its direction beyond.
 """
 
 from __future__ import annotations
@@ -58,17 +62,24 @@ def land(stepper: Stepper) -> None:
 def find_beyond(stepper: Stepper, before: Point) -> float:
     """Take the corrector to the curve beyond a corner that is here, to which `before` led; how far that is.
 
-    0 where there is no such corner, or no curve with the orientation of here.
+    0 where there is no such corner, or no curve with the orientation of here, or across several at once.
     """
     newton, distance = stepper.newton, stepper.options.switching.root_distance
     z, scale = np.array(stepper.here.z), np.array(newton.scale)
-    for one in _corners_near(stepper, before, distance):
+    corners = list(_corners_near(stepper, before, distance))
+    for one in corners:
         found = _solve(stepper, one, -one.side * distance)
         if found is None:
             return 0.0
-        if newton.take_tangent() and newton.orientation == stepper.here.orientation:
+        across = len(corners) > 1 and all(_is_beyond(stepper, other, found) for other in corners)
+        if newton.take_tangent() and (across or newton.orientation == stepper.here.orientation):
             return float(np.linalg.norm((found - z) / scale))
     return 0.0
+
+
+def _is_beyond(stepper: Stepper, corner: RootCorner, z: FloatArray) -> bool:
+    """Whether a point lies beyond the surface of a corner."""
+    return bool(stepper.problem.square(corner.kind, z) * corner.side < 0.0)
 
 
 def _solve(stepper: Stepper, corner: RootCorner, wanted: float) -> FloatArray | None:
