@@ -5,10 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fcm.accuracy.budget import Budget
 from fcm.accuracy.embedded_pair import errors_along
 from fcm.accuracy.options import OF_GIVEN
+from fcm.accuracy.partner import prolongation_to
+from fcm.accuracy.partner_stretch import StretchFollower
 from fcm.accuracy.refinement import with_given_harmonics
 from fcm.branches.trace import traced
+from fcm.continuation import Status
 from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.response.exact import trace_exact
@@ -81,6 +85,19 @@ def test_a_wide_stretch_whose_error_is_not_known_is_not_called_stable():
 
     assert exact.complete and stable_at(exact).max() < 0.2
     assert np.nanmax(curve.amplitude) > 10.0 and stable_at(curve).max(initial=0.0) < 0.2
+
+
+def test_the_partner_is_followed_to_the_other_end_of_a_stretch_and_no_further():
+    system, more = System(planar_strip(frequency=(1.0, 1.2)), (1,)), (1, 2, 3)
+    path, finer = traced(system).branches.paths[0], system.with_harmonics(more)
+    lifted = prolongation_to(system, more)
+    follower = StretchFollower(system, finer, lifted, path, OF_GIVEN, Budget(1e3))
+    first = int(np.flatnonzero(path.parameter > 1.05)[0])
+    assert (np.diff(path.parameter[first : first + 3]) > 0.0).all()
+    (piece,) = follower.between(first, first + 2)
+    low, high = path.parameter[[first, first + 2]]
+    assert piece.reached_end and piece.path.status is Status.EVENT
+    assert piece.path.parameter.max() - piece.path.parameter.min() == pytest.approx(high - low, rel=0.1)
 
 
 def test_each_look_at_the_partner_of_many_contacts_may_interrupt():

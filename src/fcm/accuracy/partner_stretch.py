@@ -7,7 +7,7 @@ both sides, and from one of them the partner can be followed to the other.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from fcm.accuracy.budget import Budget
 from fcm.accuracy.options import PairOptions
 from fcm.branches.force_level import solutions
 from fcm.branches.options import LEVEL_CURVE
-from fcm.continuation import Events, Path, Status
+from fcm.continuation import Events, Mark, Path, Status
 from fcm.continuation.follow import Follower
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.prolongation import Prolongation
@@ -190,18 +190,27 @@ class StretchFollower:
         self, begin: StretchEnd, end: StretchEnd | None, span: tuple[float, float], forward: bool
     ) -> PartnerPiece:
         """The partner from one end to the other, or as far as it stays in the span."""
-        wanted = Events((float(end.z[-1]),) if end else ())
-        path = self._path(begin.z, None, span, wanted, forward)
-        shown = reported_quantities(self.finer, path)
         if end is None:
-            return PartnerPiece(path, shown, False)
-        off = np.abs(shown.amplitude - end.amplitude).max(axis=1, initial=0.0)
-        near = off < self.options.end_tolerance * end.amplitude.max()
-        there = np.flatnonzero((path.parameter == end.z[-1]) & near)
-        if not there.size:
-            return PartnerPiece(path, shown, False)
-        rows = slice(0, int(there[0]) + 1)
-        return PartnerPiece(_part(path, rows), shown.part(rows), True)
+            path = self._path(begin.z, None, span, Events(), forward)
+            return PartnerPiece(path, reported_quantities(self.finer, path), False)
+        wanted = Events((float(end.z[-1]),), last=int(Mark.STATION))
+        path, reached = self._path(begin.z, None, span, wanted, forward), False
+        while path.status is Status.EVENT:
+            reached = self._is_at(path, end)
+            if reached or self.budget.seconds <= 0.0:
+                break
+            further = self._path(path.z[-1], path.direction[-1], span, wanted, forward)
+            path = path.then(further) if len(further.z) else replace(path, status=further.status)
+        if path.status is Status.EVENT and not reached:
+            path = replace(path, status=Status.INTERRUPTED)
+        return PartnerPiece(path, reported_quantities(self.finer, path), reached)
+
+    def _is_at(self, path: Path, end: StretchEnd) -> bool:
+        """Whether a path ends there, and not at another motion of that frequency."""
+        last = slice(len(path.z) - 1, len(path.z))
+        amplitude = reported_quantities(self.finer, _part(path, last)).amplitude[0]
+        off = np.abs(amplitude - end.amplitude).max(initial=0.0)
+        return bool(off < self.options.end_tolerance * end.amplitude.max())
 
     def _path(
         self,
@@ -214,15 +223,18 @@ class StretchFollower:
         """The partner from a point, as far as the work allows."""
         balance, stepper, known = self.finer.reset_balance(), self.finer.shared_stepper, 0
 
-        def pay(_: float) -> None:
+        def pay() -> None:
             nonlocal known
             new, known = stepper.newton.evaluations - known, stepper.newton.evaluations
             self.evaluations += new
             self.budget.seconds -= new * self.each
+
+        def pay_as_far_as_it_lasts(_: float) -> None:
+            pay()
             if self.budget.seconds < 0.0:
                 raise BudgetSpentError
 
-        follower = Follower(balance, span, wanted, self.following, pay, stepper)
+        follower = Follower(balance, span, wanted, self.following, pay_as_far_as_it_lasts, stepper)
         with self.finer.exclusive_balance():
             stepper.newton.poll = self.finer.work.poll
             try:
@@ -233,6 +245,7 @@ class StretchFollower:
                 return follower.path(Status.INTERRUPTED)
             finally:
                 stepper.newton.poll = None
+                pay()
 
 
 def _part(path: Path, rows: slice) -> Path:
