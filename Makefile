@@ -28,7 +28,7 @@ DRAWING    := $(ALL) src/fcm/plot/style.py src/fcm/plot/options.py src/fcm/plot/
 LOOPS      := $(CONTACT) $(DRAWING) $(wildcard src/fcm/plot/loop*.py src/fcm/cli/loop*.py) src/fcm/plot/plane.py
 SURFACES   := $(CONTACT) $(DRAWING) $(addprefix src/fcm/plot/,plane.py surface.py) src/fcm/cli/coefficients.py
 NORMAL     := $(CONTACT) $(DRAWING) src/fcm/plot/normal.py src/fcm/cli/coefficients.py
-CURVES     := $(DRAWING) $(addprefix src/fcm/plot/,curve_names.py points.py response.py error_panel.py) src/fcm/cli/plot.py
+CURVES     := $(DRAWING) $(addprefix src/fcm/plot/,curve_names.py points.py backbone.py response.py error_panel.py) src/fcm/cli/plot.py
 HISTORIES  := $(DRAWING) $(wildcard src/fcm/plot/history*.py) src/fcm/cli/history.py
 FIGURES    := $(foreach number,5 6 8 10 11 12 13 14 15,$(PAPER)/figure$(number).png)
 

@@ -176,3 +176,13 @@ def test_a_mode_outside_the_range_of_the_scene_is_told(fcm):
     done = fcm("respond", "yang1998-n5", "--mode", 2, *level)
     assert done.code == 0 and "mode 2 goes from 10." in done.err
     assert "outside the scene's range of 0.7 to 1.7 rad/s: is another --mode meant?" in done.err
+
+
+def test_a_mode_is_drawn_over_the_response_of_its_scene(fcm, result, tmp_path):
+    assert fcm("respond", "yang1998-n5", "-o", "r.nc").code == 0
+    done = fcm("plot", "response", "r.nc", "--backbone", result, "-o", "b.png")
+    assert (done.code, done.err) == (0, "wrote b.png\n")
+    assert fcm("plot", "response", "r.nc", "-o", "alone.png").code == 0
+    assert (tmp_path / "b.png").read_bytes() != (tmp_path / "alone.png").read_bytes()
+    done = fcm("plot", "response", "r.nc", "--backbone", "r.nc")
+    assert done.code == 2 and "not a file of nonlinear modes (fcm respond --mode)" in done.err

@@ -337,3 +337,35 @@ def test_the_numbers_that_a_fit_found_stand_beside_what_was_measured():
         "contact.shroud.mu = 0.3012 ± 0.0042",
         "contact.shroud.n_0 = 9, scatter not told",
     ]
+
+
+def test_the_legend_names_no_line_that_is_too_short_to_be_seen():
+    """A hook a hundred-thousandth of the range wide is unstable, and nobody finds its dashes."""
+    for width, named in ((1e-6, False), (0.1, True)):
+        x = np.sort(np.concatenate((FREQUENCY, 1.2 + width * np.array([-2, -1, 1, 2]))))
+        stable = np.abs(x - 1.2) > width * 1.01
+        one = DrawnCurve({}, x, np.full((x.size, 2), 2.0), stable)
+        legends = draw_response(response(one)).legends
+        assert bool(legends) is named
+        assert not named or [text.get_text() for text in legends[0].get_texts()] == ["unstable"]
+
+
+def test_a_backbone_is_drawn_within_the_axes_of_the_curves():
+    """In the unit of the curves, of the same degree of freedom; else it is said why not."""
+    mode = DrawnCurve(
+        {}, 2.0 * np.pi * np.array([1.3, 1.2, 1.1]), np.array([[0.1, 1.0], [2.0, 3.0], [99.0, 9.0]])
+    )
+    modes = DrawnResponse(("v", "u"), "rad/s", (mode,))
+    drawn = response(resonance(9.0, 1.2, 5.0), unit="Hz")
+    (axes,) = draw_response(drawn, backbone=modes).axes
+    (line,) = (line for line in axes.lines if line.get_label() == "_backbone")
+    assert line.get_xdata() == pytest.approx([1.3, 1.2, 1.1]) and line.get_ydata().tolist() == [1.0, 3.0, 9.0]
+    (before,) = draw_response(drawn).axes
+    assert axes.get_xlim() == before.get_xlim() and axes.get_ylim() == before.get_ylim()
+    with pytest.raises(PlotError, match=r"from 96\.9115 to 98\.1681 rad/s, are not within the range"):
+        draw_response(
+            response(resonance(9.0, 1.2, 5.0)),
+            backbone=replace(modes, curves=(replace(mode, frequency=mode.frequency + 90),)),
+        )
+    with pytest.raises(PlotError, match="the modes have v, w"):
+        draw_response(drawn, backbone=replace(modes, dofs=("v", "w")))

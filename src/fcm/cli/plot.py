@@ -62,6 +62,10 @@ def plot() -> None:
     "measured points with the columns frequency and amplitude (.csv, .mat, .npz, .uff).",
 )  # fmt: skip
 @click.option(
+    "--backbone", type=click.Path(exists=True, dir_okay=False, readable=True, path_type=Path), metavar="FILE",
+    help="To draw over the curves: nonlinear modes, the file of `fcm respond --mode N -o FILE`.",
+)  # fmt: skip
+@click.option(
     "--band", type=FiniteRange(0.0, 100.0), nargs=2, metavar="LOW HIGH",
     help="Instead of curves of random draws, these percentiles of the greatest stable amplitude at each "
     "frequency, and the median.",
@@ -75,6 +79,7 @@ def response(
     log: bool | None,
     errors: bool,
     points: Path | None,
+    backbone: Path | None,
     band: tuple[float, float] | None,
 ) -> None:
     """Draw the response curves of FILE, the netCDF file of `fcm respond -o FILE`.
@@ -85,13 +90,14 @@ def response(
     point under the mouse.
     """
     from fcm.plot import draw_response, read_points, read_response
+    from fcm.plot.backbone import read_backbone
     from fcm.plot.measured import read_measured_points
 
-    output = picture_of(file, output, ".png", points, page=True)
+    output = picture_of(file, output, ".png", points, backbone, page=True)
     if is_page(output):
-        if band is not None or points is not None:
+        if band is not None or points is not None or backbone is not None:
             raise click.UsageError(
-                "a page has curves alone; write --band and --points to .png, .svg or .pdf."
+                "a page has curves alone; write --band, --points and --backbone to .png, .svg or .pdf."
             )
         from fcm.plot.interactive import response_page
 
@@ -100,6 +106,8 @@ def response(
         messages.info(wrote(output))
         return
     if band is not None:
+        if backbone is not None:
+            raise click.UsageError("--backbone is drawn over curves; --band draws none.")
         save_picture_of(lambda: _bands(file, dof, log, points, band), output)
         messages.info(wrote(output))
         return
@@ -110,7 +118,8 @@ def response(
         read = replace(read, measured=(*read.measured, own))
     elif points is not None:
         marked = read_points(points)
-    save_picture_of(lambda: draw_response(read, dof=dof, log=log, errors=errors, points=marked), output)
+    modes = None if backbone is None else read_backbone(backbone)
+    save_picture_of(lambda: draw_response(read, dof, log, errors, marked, modes), output)
     messages.info(wrote(output))
 
 

@@ -59,7 +59,10 @@ def draw_points(
         If the points are of other degrees of freedom, or of other curves.
     """
     theirs = points.response
-    column, factor = column_of(theirs.dofs, dof, "the points have"), _factor(theirs.frequency_unit, unit)
+    column, factor = (
+        column_of(theirs.dofs, dof, "the points have"),
+        frequency_factor(theirs.frequency_unit, unit),
+    )
     several = len(curves) > 1
     for curve, sweep in zip(theirs.curves, points.sweeps, strict=True):
         number = _match(curve, curves)
@@ -92,7 +95,7 @@ def name_points(figure: Figure, axes: Axes) -> None:
     figure.legend(handles, words, loc="outside upper center", ncols=len(handles))
 
 
-def _factor(theirs: str, ours: str) -> float:
+def frequency_factor(theirs: str, ours: str) -> float:
     """What turns frequencies of one unit into the other."""
     units = {"rad/s": 1.0, "Hz": 2.0 * np.pi}
     return units.get(theirs, 1.0) / units.get(ours, 1.0)
@@ -103,10 +106,11 @@ def _match(points: DrawnCurve, curves: Sequence[DrawnCurve]) -> int:
     if len(curves) == 1 and not (points.parameters and curves[0].parameters):
         return 0
     for number, curve in enumerate(curves):
-        if _same(points.parameters, curve.parameters):
+        if same_parameters(points.parameters, curve.parameters):
             return number
     raise PlotError(f"no curve of the file is that of the points with {curve_label(points.parameters)}")
 
 
-def _same(one: Mapping[str, float], other: Mapping[str, float]) -> bool:
+def same_parameters(one: Mapping[str, float], other: Mapping[str, float]) -> bool:
+    """Whether the swept values are the same."""
     return one.keys() == other.keys() and all(np.isclose(one[k], other[k], rtol=1e-12, atol=0.0) for k in one)

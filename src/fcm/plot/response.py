@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from fcm.plot.backbone import NAME as BACKBONE
+from fcm.plot.backbone import draw_backbone
 from fcm.plot.curve_names import label_at_peaks
 from fcm.plot.error_panel import SHARES, draw_errors, has_errors, name_errors
 from fcm.plot.errors import PlotError
@@ -50,12 +52,13 @@ def draw_response(
     log: bool | None = None,
     errors: bool = True,
     points: DrawnPoints | None = None,
+    backbone: DrawnResponse | None = None,
 ) -> Figure:
     """The figure of one degree of freedom (by default see `leading_column`); unstable parts are dashed, those
     of which that is not told dotted.
 
     Errors that the file knows have a panel below the curves, unless errors is false. Points of the exact
-    motion are drawn over the curves.
+    motion are drawn over the curves, and a backbone: nonlinear modes.
     """
     column = response.column(dof)
     curves = _drawable(response, column, bool(log))
@@ -80,7 +83,9 @@ def draw_response(
             draw_errors(figure, below, curves, colours, width)
             below.set_xlabel(axes.get_xlabel())
             axes.set_xlabel("")
-        notes = _notes(curves, column, colours[0], width)
+        notes = _notes(axes, curves, column, colours[0], width)
+        if backbone is not None:
+            notes[BACKBONE] = draw_backbone(axes, backbone, response, column, curves, colours)
         if below is not None:
             name_errors(figure, curves, colours, width, notes)
         elif notes:
@@ -156,20 +161,35 @@ def _alone(curve: DrawnCurve, column: int) -> BoolArray:
     return alone
 
 
-def _notes(curves: list[DrawnCurve], column: int, colour: str, width: float) -> dict[str, Line2D]:
-    """Why parts of curves are faded, dashed or dotted: lines like theirs, by what is to be said of them."""
+def _notes(axes: Axes, curves: list[DrawnCurve], column: int, colour: str, width: float) -> dict[str, Line2D]:
+    """Why parts of curves are faded, dashed or dotted: lines like theirs, by what is to be said of them.
+
+    Nothing of parts that are too short to be seen.
+    """
     from matplotlib.lines import Line2D
 
     notes = {}
-    if any(doubtful(curve).any() for curve in curves):
+    if any(_seen(axes, curve, column, doubtful(curve)) for curve in curves):
         notes[_FADED] = Line2D([], [], color=colour, linewidth=width, alpha=LAYOUT.doubtful_opacity)
-    if any(curve.stable is not None and (~curve.stable).any() for curve in curves):
+    if any(curve.stable is not None and _seen(axes, curve, column, ~curve.stable) for curve in curves):
         notes[_NOT_STABLE] = Line2D([], [], color=colour, linewidth=width, linestyle=_DASHES)
-    if any(curve.untold is not None and curve.untold.any() for curve in curves):
+    if any(curve.untold is not None and _seen(axes, curve, column, curve.untold) for curve in curves):
         notes[_UNTOLD] = Line2D([], [], color=colour, linewidth=width, linestyle=_DOTS)
     if any((_alone(curve, column) & _not_stable(curve)).any() for curve in curves):
         notes[_HOLLOW] = Line2D([], [], color=colour, linestyle="none", marker=".", markerfacecolor="none")
     return notes
+
+
+def _seen(axes: Axes, curve: DrawnCurve, column: int, which: BoolArray) -> bool:
+    """Whether a stretch of a curve is long enough that its line is seen as what it is."""
+    if not which.any():
+        return False
+    drawn = _split(curve.amplitude[:, column], which)[1]  # with its neighbours
+    place = axes.transData.transform(np.column_stack((curve.frequency, drawn)))
+    steps = np.hypot(*np.diff(place, axis=0).T) * 72.0 / axes.get_figure(root=True).dpi  # type: ignore[union-attr]
+    length = np.concatenate(([0.0], np.nancumsum(steps)))
+    broken = np.concatenate(([0], np.flatnonzero(np.isnan(steps)) + 1, [steps.size]))
+    return bool((np.diff(length[broken]) > LAYOUT.shortest_stretch).any())
 
 
 def _not_stable(curve: DrawnCurve) -> BoolArray:

@@ -55,6 +55,7 @@ class Layout:
     dark: float = 0.1  # of the greatest value of all columns: one of less would be dark on a linear scale
     least_colour: float = 1e-4  # of the greatest value: less has no colour on a logarithmic scale
     line_places: int = 16  # of a smooth line, between two points
+    shortest_stretch: float = 2.5  # [point] of a dashed or faded line that a legend names
     fitted_of_row: int = 2  # numbers of a fit beside one another
     same_end: float = 1e-6  # of the extent: two points of a curve nearer than this are one
     letters_of_inch: float = 20.0  # small ones, of a line above the axes
