@@ -17,7 +17,7 @@ from scipy.sparse.linalg import splu
 from fcm.scene import scene_from_dict
 from fcm.structure.eigen import StructureError, system_of
 from fcm.structure.elimination_tree import FrontOptions, tree_of
-from fcm.structure.factor import FactorOptions, NotPositiveError, has_cholmod, solver
+from fcm.structure.factor import FactorOptions, NotPositiveError, by_blocks, has_cholmod, solver
 from fcm.structure.multifrontal import Factor
 
 from .solids import bricks
@@ -26,6 +26,7 @@ PACKAGES = [
     FactorOptions("SuperLU"),
     FactorOptions("SuperLU", polled_entries=0, poll_interval=0.001),
     FactorOptions("SuperLU", dissection_size=0),
+    FactorOptions("SuperLU", solved_entries=1),
     FactorOptions("fronts"),
     FactorOptions("fronts", fronts=FrontOptions(max_zeros=0.0, max_zeros_of_few=0.0)),
     FactorOptions("fronts", fronts=FrontOptions(max_zeros=1.0)),
@@ -50,6 +51,18 @@ def test_solutions(options, turned):
     assert solve(loads[:, 0].astype(K.dtype)) == pytest.approx(
         exact[:, 0], rel=1e-9, abs=1e-9 * np.abs(exact).max()
     )
+
+
+def test_loads_are_solved_for_by_blocks_between_which_a_signal_ends_it():
+    K, seen = bricks(2, 2, 2)[0], []
+    loads = np.random.default_rng(0).standard_normal((K.shape[0], 5))
+
+    def solve(some):
+        seen.append(some.shape[1])
+        return some / 2.0
+
+    np.testing.assert_array_equal(by_blocks(solve, 2 * K.shape[0], loads), loads / 2.0)
+    assert seen == [2, 2, 1]
 
 
 @pytest.mark.parametrize("options", PACKAGES)

@@ -37,6 +37,9 @@ class FactorOptions:
     # entries of a matrix from which on SuperLU has a thread that may be left behind
     polled_entries: int = 200_000
     poll_interval: float = 0.1  # [s] between looks at whether it is done, or the run interrupted
+    solved_entries: int = (
+        1_000_000  # of the loads that SuperLU solves for at once, as no signal ends it sooner
+    )
     fronts: FrontOptions = field(default_factory=FrontOptions)
 
 
@@ -139,8 +142,17 @@ def _superlu(
         raise NotPositiveError(None)
     if definite and (negative := _negative(factor)):
         raise NotPositiveError(negative)
-    solve: Solve = factor.solve
-    return solve
+    return partial(by_blocks, factor.solve, options.solved_entries)
+
+
+def by_blocks(solve: Solve, most: int, loads: FloatArray) -> FloatArray:
+    """Displacements under (row,) or (row, load), of so many entries at once at most."""
+    if loads.ndim == 1 or loads.size <= most:
+        return solve(loads)
+    together = max(most // loads.shape[0], 1)
+    return np.hstack(
+        [solve(loads[:, first : first + together]) for first in range(0, loads.shape[1], together)]
+    )
 
 
 def _left_behind(work: Callable[[], Any], poll: float) -> Any:
