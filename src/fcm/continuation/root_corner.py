@@ -107,9 +107,17 @@ def _corners_near(stepper: Stepper, before: Point, distance: float) -> Iterator[
         value = stepper.problem.square(kind, z)
         if not np.isfinite(value):
             continue
-        ahead = z + np.diag(options.root_difference * scale)
-        slopes = np.array([stepper.problem.square(kind, one) - value for one in ahead])
-        slopes /= options.root_difference
+        slopes = _differences(stepper, kind, z, options.root_difference * scale) / options.root_difference
         slope = float(np.linalg.norm(slopes))
         if abs(value) < distance * slope:
             yield RootCorner(kind, float(np.sign(margins[k])), value / slope, slope, slopes / slope)
+
+
+def _differences(stepper: Stepper, kind: int, z: FloatArray, steps: FloatArray) -> FloatArray:
+    """By how much (n + 1,) the square of a kind is more a step ahead of z in each unknown."""
+    value, ahead, found = stepper.problem.square(kind, z), z.copy(), np.empty(len(z))
+    for i in range(len(z)):  # a matrix of all would be as large as that of the equations
+        ahead[i] += steps[i]
+        found[i] = stepper.problem.square(kind, ahead) - value
+        ahead[i] = z[i]
+    return found
