@@ -258,7 +258,7 @@ def sampled_slip(figure):
     panels, errors = np.array([5.0, 5.5, 6.0, 6.5, 7.0, 7.5, 8.0]), []
     for length in 2.0 * np.pi / panels:
         options = PlanarOptions(
-            tolerance=1.0, panel_length=2.0 * length, last_change=1e-12
+            tolerance=1.0, panel_length=2.0 * length, last_change=1e-8
         )  # no panel is longer
         contact = PlanarContact([1], [1], options=options)
         contact.at(np.array([0, 0, 0, 1.0, 0, 0, -0.7, 1.0, 0]), *LAW.values(), gradient=False)

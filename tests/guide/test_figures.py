@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from .figures import FIGURES, FOLDER, write
+from .pages import GUIDE
 
 WITHIN = 1.5  # points of print by which a line may be off
 SVG = "{http://www.w3.org/2000/svg}"
@@ -52,3 +53,10 @@ def test_a_shifted_line_is_seen():
 
 def test_each_is_small():
     assert all((FOLDER / f"{name}.svg").stat().st_size < 80_000 for name in FIGURES)
+
+
+def test_the_order_that_a_figure_shows_is_that_of_its_page():
+    """It was 0: Newton's method was to go on to below rounding, and panels were halved until it needed not."""
+    orders = re.findall(r"order (\d+\.\d)", (FOLDER / "sampled-slip.svg").read_text("utf-8"))
+    page = (GUIDE / "validation/accuracy.md").read_text("utf-8")
+    assert orders[0] == "1.0" and f"; {orders[1]} is measured" in page
