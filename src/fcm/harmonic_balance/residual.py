@@ -26,6 +26,7 @@ from fcm.structure.layout import Layout
 from fcm.structure.receptance import Receptance
 
 if cython.compiled:
+    from cython.cimports.cpython.exc import PyErr_CheckSignals
     from cython.cimports.fcm.continuation.problem import NONE, Problem
     from cython.cimports.fcm.harmonic_balance.contact_law import KINDS, Law
     from cython.cimports.fcm.harmonic_balance.modal_equations import ModalCompliance
@@ -33,6 +34,9 @@ else:
     from fcm.continuation.problem import NONE, Problem
     from fcm.harmonic_balance.contact_law import KINDS, Law
     from fcm.harmonic_balance.modal_equations import ModalCompliance
+
+    def PyErr_CheckSignals() -> None:  # the interpreter does
+        pass
 
 
 @cython.cfunc
@@ -428,12 +432,13 @@ class PointQuantities:
         direction: cython.double[:, ::1],
         level: cython.double[::1],
     ) -> PointQuantities:
-        """With the forces times level (point,)."""
+        """With the forces times level (point,); between two points a signal is seen to."""
         b: Balance = self.balance
         i: cython.Py_ssize_t
         d: cython.Py_ssize_t
         j: cython.Py_ssize_t
         for i in range(z.shape[0]):
+            PyErr_CheckSignals()
             b.load = level[i]
             b.evaluate_contacts(z[i], True)
             b.report(z[i], direction[i])
