@@ -74,7 +74,7 @@ def test_numerics_import_numpy_and_scipy_alone(package):
     outside = {module.split(".")[0] for _, module in imported(package)} - set(sys.stdlib_module_names)
     # sparse matrices of structures: factors where sksparse is installed, the order of unknowns by pymetis
     sparse = {"sksparse", "pymetis"} if package == "structure" else set()
-    assert outside <= {"fcm", "numpy", "scipy", "cython", "libc"} | sparse
+    assert outside <= {"fcm", "numpy", "scipy", "cython", "libc", "cpython"} | sparse
 
 
 def test_processes_are_started_by_one_helper():
