@@ -116,8 +116,9 @@ def test_an_error_greater_than_the_peak_is_said_to_be_so_and_what_helps():
     assert "100 %" not in as_table({"curves": [one]}, "Hz")
     worse = one | {"truncation_error": 9.0, "points": 3}
     worse["peak"]["u"]["error"] = 3.0
-    assert "more than 100 % of peaks and more than 100 % of any point (beside folds)" in cost_and_error(
-        {"curves": [worse], "seconds": 1.0, "method": "table"}
+    assert (
+        "more than 100 % of peaks and more than 100 % of the greatest amplitude at any point"
+        in cost_and_error({"curves": [worse], "seconds": 1.0, "method": "table"})
     )
 
 
@@ -168,6 +169,36 @@ def test_residual_friction_is_told_of_the_peaks_that_are_shown():
         peak["residual_change"] = 1e6 if dof == "still" else 0.02
     run = {"method": "exact", "exact_motion": InTime.COMPUTED.value, "curves": [one]}
     assert "may change a peak by up to 2 %" in residual_friction(run)
+
+
+def test_jumps_and_folds_that_nobody_could_see_are_counted():
+    """Hooks of a hundred-thousandth of a hertz were told as folds and jumps, as those that matter are."""
+    jumps = [
+        {"sweep": "up", "frequency": 1.5, "before": {"u": 1.0}, "after": {"u": 0.2}},
+        {"sweep": "up", "frequency": 1.2, "before": {"u": 1.0}, "after": {"u": 1.005}},
+        {"sweep": "up", "frequency": 1.3, "before": {"u": 1.0}, "after": {"u": None}},
+        {"sweep": "down", "frequency": 1.3001, "before": {"u": 1.004}, "after": {"u": None}},
+    ]
+    one = curve({"u": 1.0}, jumps) | {"no_stable_motion": [[1.3, 1.3001]]}
+    one["folds"] = [1.5, 1.4, 1.2, 1.2001, 1.45, 1.4501]
+    told = as_table({"curves": [one], "range": [1.0, 2.0]}, "Hz")
+    assert told.count("  up") == 1 and "  down" not in told and "1.50000  1.40000, 4 in hooks" in told
+    assert "hooks: folds in pairs less than 0.001 Hz apart, too near to be seen" in told
+    assert "3 jumps too small to be seen: by less than 1 %, or over less than 0.001 Hz without" in told
+    jumps[3]["before"]["u"] = 2.0  # across the gap the amplitude doubles, which anyone sees
+    seen = as_table({"curves": [one], "range": [1.0, 2.0]}, "Hz")
+    assert seen.count("  up") == 2 and seen.count("  down") == 1
+    one["folds"] = [1.3, 1.3001]  # at which those jumps are
+    assert "1.30000  1.30010" in as_table({"curves": [one], "range": [1.0, 2.0]}, "Hz")
+
+
+def test_a_peak_where_nothing_stable_was_found_says_so():
+    one = curve({"u": 1.0, "v": 2.0}) | {"no_stable_motion": [[1.4, 1.6]]}
+    one["peak"]["u"]["stable"], one["peak"]["v"]["stable"] = False, True
+    said = "u: no stable motion was found at the frequency of the peak, so none is known there"
+    assert said in as_table({"curves": [one]}, "Hz").splitlines()
+    one["no_stable_motion"] = [[1.0, 1.2]]
+    assert "the frequency of the peak" not in as_table({"curves": [one]}, "Hz")
 
 
 def test_a_jump_to_no_stable_part_is_explained():
@@ -367,7 +398,23 @@ def test_the_greatest_error_of_a_peak_stands_beside_the_greatest_of_any_point():
     curve = {"points": 3, "harmonics": [1, 3], "truncation_error": 3.0, "peak": peak}
     said = cost_and_error({"curves": [curve], "seconds": 1.0, "method": "table"})
     assert said.endswith(
-        "2.0e-02 of peaks and more than 100 % of any point (beside folds), by the harmonics left out"
+        "2.0e-02 of peaks and more than 100 % of the greatest amplitude at any point (beside folds), by the "
+        "harmonics left out"
+    )
+
+
+def test_the_error_of_what_hardly_moves_is_not_that_of_the_response():
+    """Across a plane of symmetry the motion is rounding, and half a million times off with more harmonics."""
+    peak = {"u": {"amplitude": 1.0, "error": 0.02}} | {
+        f"v{i}": {"amplitude": 0.5, "error": 0.03} for i in range(9)
+    }
+    peak["still"] = {"amplitude": 1e-9, "error": 5e5}
+    curve = {"points": 3, "harmonics": [1], "truncation_error": 0.1, "peak": peak}
+    said = cost_and_error({"curves": [curve], "seconds": 1.0, "method": "table"})
+    assert "3.0e-02 of peaks and 1.0e-01 of the greatest amplitude at any point, by" in said
+    peak["still"]["amplitude"] = 1e-6
+    assert "5.0e-01 of the greatest amplitude" in cost_and_error(
+        {"curves": [curve], "seconds": 1.0, "method": ""}
     )
 
 

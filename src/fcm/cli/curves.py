@@ -21,7 +21,7 @@ from fcm.cli.columns import (
     stopped_early,
     swept,
 )
-from fcm.cli.jump_table import jump_table, stable_table, untold_table
+from fcm.cli.jump_table import is_seen, jump_table, resolution_of, stable_table, untold_table
 from fcm.cli.limits import SENTENCES
 from fcm.rotational_dofs import MOST_DOFS, greatest_first, is_rotation, unit_of
 
@@ -61,11 +61,12 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
         return of_modes(summary, names, unit)
     dofs, length = shown_dofs(summary), summary.get("units", {}).get("length", "")
     shown = _which_are_shown(summary, dofs)
-    parts = [_curves(curves, names, dofs, unit, length, shown)]
+    parts = [_curves(summary, names, dofs, unit, length, shown)]
     parts += filter(None, [_every_peak(curves, names, dofs, unit, length)])
     parts += [_blades(curves, names, unit, length)] if "blades" in curves[0] else []
-    tables = (stable_table, jump_table, untold_table)
-    parts += filter(None, [table(curves, names, dofs, unit) for table in tables])
+    jumps = jump_table(curves, names, dofs, unit, resolution_of(summary))
+    others = (table(curves, names, dofs, unit) for table in (stable_table, untold_table))
+    parts += filter(None, [next(others), jumps, *others])
     parts += [_scatter(one, dofs, unit) for one in summary.get("scatter", ())]
     return "\n\n".join(parts)
 
@@ -181,11 +182,14 @@ def shown_dofs(summary: Mapping[str, Any]) -> list[str]:
 
 
 def _curves(
-    curves: Sequence[Curve], names: list[str], dofs: list[str], unit: str, length: str, shown: str
+    summary: Mapping[str, Any], names: list[str], dofs: list[str], unit: str, length: str, shown: str
 ) -> str:
     """What was swept, the peaks, the points, the time, the folds, whether it is whole."""
     from fcm.results.result import NOT_BEGUN
 
+    curves: Sequence[Curve] = summary["curves"]
+    least = 0.0 if "level_folds" in curves[0] else resolution_of(summary)
+    folds_of = {id(curve): _seen_folds(curve, dofs, least) for curve in curves}
     judged = [curve for curve in curves if curve.get("cause") != "interrupted"]
     ranges_of = [dof for dof in dofs if any(_residual(curve, dof) != "0" for curve in judged)]
     balanced = ["harmonics"] if any("harmonics" in curve for curve in curves) else []
@@ -197,7 +201,10 @@ def _curves(
         [_with_unit(dof, length) for dof in dofs],
         [*_peak_heads(unit), *([_RESIDUAL] if ranges_of else [])],
         [*balanced, "points", "time [s]", folds, *broken],
-        [_curve_row(curve, dofs, ranges_of, bool(balanced), bool(broken)) for curve in begun],
+        [
+            _curve_row(curve, folds_of[id(curve)], dofs, ranges_of, bool(balanced), bool(broken))
+            for curve in begun
+        ],
     )
     lines = [table.text(last=1 + len(broken))]
     for curve in begun:
@@ -207,6 +214,8 @@ def _curves(
             lines.append(f"{which}{_BROKEN}: {curve.get('reason') or 'it stopped early'}")
     if left := len(curves) - len(begun):
         lines.append(f"{left} more curve{'s' * (left > 1)} {_BROKEN}: {NOT_BEGUN}")
+    if any(hooks for _, hooks in folds_of.values()):
+        lines.append(f"hooks: folds in pairs less than {least:.2g} {unit} apart, too near to be seen")
     if shown:
         lines.append(f"shown: {shown}")
     if any(_at_rest(curve, dof) for curve in curves for dof in dofs):
@@ -218,6 +227,16 @@ def _curves(
     marks = {_stability(curve, dof) for curve in curves for dof in dofs} | set(map(_mark_of, lower))
     if UNSTABLE in marks:
         lines.append(f"{UNSTABLE} {DOES_NOT_STAY}")
+    lost = [
+        dof
+        for dof in dofs
+        if any(_stability(curve, dof) and _nowhere_stable(curve, curve["peak"][dof]) for curve in curves)
+    ]
+    if lost:
+        lines.append(
+            f"{', '.join(lost)}: no stable motion was found at the frequency of the peak, so none is known "
+            "there"
+        )
     if UNKNOWN in marks:
         lines.append(f"{UNKNOWN} {STABILITY_UNKNOWN}")
     if ranges_of:
@@ -285,7 +304,12 @@ def _residual(curve: Curve, dof: str) -> str:
 
 
 def _curve_row(
-    curve: Curve, dofs: list[str], ranges_of: list[str], balanced: bool, broken: bool
+    curve: Curve,
+    seen: tuple[list[float | None], int],
+    dofs: list[str],
+    ranges_of: list[str],
+    balanced: bool,
+    broken: bool,
 ) -> tuple[list[str], list[list[str]], list[str]]:
     each = []
     for dof in dofs:
@@ -295,21 +319,48 @@ def _curve_row(
             cells.append(_residual(curve, dof) if dof in ranges_of else ABSENT)
         each.append(cells)
     right = [ranges(curve["harmonics"]) if "harmonics" in curve else "-"] if balanced else []
-    folds = _folds(curve.get("level_folds", curve["folds"]))
+    folds = _folds(*seen)
     state = ([_BROKEN] if not curve["complete"] else [""]) if broken else []
     return swept(curve), each, [*right, str(curve["points"]), f"{curve['seconds']:.3f}", folds, *state]
 
 
-def _folds(folds: Sequence[float | None]) -> str:
-    """All of them, or of many how many there are and between which they lie.
+def _seen_folds(curve: Curve, dofs: list[str], least: float) -> tuple[list[float | None], int]:
+    """The folds of a curve, and how many beside them are in hooks: pairs nearer than what is seen, at which
+    no jump is."""
+    folds = list(curve.get("level_folds", curve["folds"]))
+    jumps = [one["frequency"] for one in curve.get("jumps", ()) if is_seen(one, curve, dofs, least)]
+    kept: list[float | None] = []
+    for one in folds:
+        last = kept[-1] if kept else None
+        narrow = last is not None and one is not None and abs(last - one) < least
+        if narrow and not any(abs(at - end) < least for at in jumps for end in (last or at, one or at)):
+            kept.pop()
+        else:
+            kept.append(one)
+    return kept, len(folds) - len(kept)
+
+
+def _folds(folds: Sequence[float | None], hooks: int = 0) -> str:
+    """All of them, or of many how many there are and between which they lie; and how many are in hooks.
 
     >>> _folds([]), _folds([1.0, 2.0]), _folds([1.0, 4.0, 2.0, 3.0, 5.0])
     ('none', '1.00000  2.00000', '5: 1.00000 to 5.00000')
+    >>> _folds([1.0, 2.0], 4), _folds([], 2)
+    ('1.00000  2.00000, 4 in hooks', '2 in hooks')
     """
+    narrow = f"{hooks} in hooks" if hooks else ""
     if len(folds) <= SENTENCES.folds:
-        return "  ".join(map(number, folds)) or "none"
+        every = "  ".join(map(number, folds))
+        return ", ".join(filter(None, [every, narrow])) or "none"
     known = [one for one in folds if one is not None]
-    return f"{len(folds)}: {number(min(known, default=None))} to {number(max(known, default=None))}"
+    ends = f"{len(folds)}: {number(min(known, default=None))} to {number(max(known, default=None))}"
+    return ", ".join(filter(None, [ends, narrow]))
+
+
+def _nowhere_stable(curve: Curve, peak: Mapping[str, Any]) -> bool:
+    """Whether a peak lies where no stable motion was found."""
+    at = peak.get("frequency")
+    return at is not None and any(low <= at <= high for low, high in curve.get("no_stable_motion", ()))
 
 
 def cost_and_error(summary: Mapping[str, Any]) -> str:
@@ -328,21 +379,21 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
         errors.append(f"{table:.1e} of the table, not of the points")
     if harmonic is not None:
         untold = any(_untold(curve, dof) for curve in curves for dof in curve["peak"])
-        told = [
-            (one["error"], dof)
-            for curve in curves
-            for dof, one in curve["peak"].items()
-            if one and one.get("error")
-        ]
         shown = shown_dofs(summary)  # of which the table has the peaks
-        peaks = [error for error, dof in told if dof in shown]
-        harmonic = max([harmonic, *(error for error, _ in told)])  # also where what lies around is not told
+        peaks, others = [], []
+        for curve in curves:
+            told = {dof: one for dof, one in curve["peak"].items() if one and one.get("error")}
+            greatest = max((one["amplitude"] for one in told.values()), default=0.0) or 1.0
+            peaks += [one["error"] for dof, one in told.items() if dof in shown]
+            others += [one["error"] * one["amplitude"] / greatest for one in told.values()]
+        harmonic = max([harmonic, *others])  # also where what lies around is not told
         if harmonic > 0.0 or not untold:  # the 0 of a motion at rest tells nothing of peaks
             of_all = f"{harmonic:.1e}"
             if peaks:
                 of_peaks = short(max(peaks)).replace(BEYOND, "more than 100 %")
                 beside = " (beside folds)" if harmonic > 1.0 else ""
-                of_any = f"{short(harmonic).replace(BEYOND, 'more than 100 %')} of any point{beside}"
+                of_any = short(harmonic).replace(BEYOND, "more than 100 %")
+                of_any += f" of the greatest amplitude at any point{beside}"
                 below = max(peaks) < harmonic
                 of_all = f"{of_peaks} of peaks and {of_any}" if below else of_peaks
             but = ", and of some peaks unknown" if untold else ""

@@ -8,6 +8,7 @@ from typing import Any
 
 from fcm.cli.columns import share_of
 from fcm.cli.curves import shown_dofs
+from fcm.cli.jump_table import resolution_of
 from fcm.cli.limits import SENTENCES
 
 _LINEAR = {  # keys of curves on which no contact changes its state: what is said, and what helps
@@ -153,14 +154,18 @@ def peaks_not_followed(summary: Mapping[str, Any]) -> str:
 
 def nothing_stable(summary: Mapping[str, Any]) -> str:
     """Between which frequencies no motion that was found is stable, the widest; empty if nowhere."""
-    curves, unit = summary["curves"], summary["frequency_unit"]
-    found = [curve for curve in curves if curve.get("no_stable_motion")]
-    if not found:
-        return ""
-    every = found[0]["no_stable_motion"]
-    widest = sorted(_widest_first(every)[: SENTENCES.stretches])
+    curves, unit, least = summary["curves"], summary["frequency_unit"], resolution_of(summary)
+    every = {i: curve["no_stable_motion"] for i, curve in enumerate(curves) if curve.get("no_stable_motion")}
+    wide = {i: seen for i, found in every.items() if (seen := [x for x in found if x[1] - x[0] >= least])}
+    narrow = sum(map(len, every.values())) - sum(map(len, wide.values()))
+    hooks = f"{narrow} range{'s' * (narrow > 1)} narrower than {least:.2g} {unit}"
+    if not wide:
+        return f"no stable motion was found in {hooks}, which no one sees" if narrow else ""
+    found, shown = [curves[i] for i in wide], next(iter(wide.values()))
+    widest = sorted(_widest_first(shown)[: SENTENCES.stretches])
     ways = ", ".join(_between(*ends) for ends in widest)
-    more = f" and in {len(every) - len(widest)} narrower ranges" if len(every) > len(widest) else ""
+    more = f" and in {len(shown) - len(widest)} narrower ranges" if len(shown) > len(widest) else ""
+    more += f" and in {hooks}" if narrow else ""
     which = f" ({_given(found[0])}; on {len(found)} of {len(curves)} curves)" if len(curves) > 1 else ""
     other = ", or has another residual friction" if found[0].get("may_not_be_unique") else ""
     shows = f"{how} shows the motion there" if (how := _how(summary)) else "More harmonics may have one"

@@ -14,8 +14,13 @@ _LOST = "\n- the curve has no stable part there to land on"
 Row = tuple[str, float, list[str], list[list[str]]]
 
 
-def jump_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: list[str], unit: str) -> str:
-    """A line for each jump; empty if there is none."""
+def jump_table(
+    curves: Sequence[Mapping[str, Any]], names: list[str], dofs: list[str], unit: str, resolution: float = 0.0
+) -> str:
+    """A line for each jump; empty if there is none. Jumps that nobody could see are counted.
+
+    resolution: within which, in the unit, nothing is seen.
+    """
 
     def rows(curve: Mapping[str, Any]) -> list[Row]:
         return [
@@ -26,14 +31,62 @@ def jump_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: list
                 [[number(one[side].get(dof)) for side in ("before", "after")] for dof in dofs],
             )
             for one in curve.get("jumps", ())
+            if is_seen(one, curve, dofs, resolution)
         ]
 
     found = _rows(curves, rows)
+    small = sum(len(curve.get("jumps", ())) for curve in curves) - len(found)
+    left_out = ""
+    if small:
+        left_out = f"{small} jump{'s' * (small > 1)} too small to be seen: by less than "
+        left_out += f"{100.0 * SENTENCES.small_jump:g} %"
+        left_out += (
+            f", or over less than {resolution:.2g} {unit} without a stable motion" if resolution else ""
+        )
     if not found:
-        return ""
+        return left_out
     lost = any("-" in cells for _, each, _ in found for cells in each)
     table = DofTable([*names, f"jump at {unit}"], dofs, ["{} before", "{} after"], ["sweep"], found)
-    return table.text(last=1) + (_LOST if lost else "")
+    more = f"\nand {left_out}" if left_out else ""
+    return table.text(last=1) + (_LOST if lost else "") + more
+
+
+def resolution_of(summary: Mapping[str, Any]) -> float:
+    """Within which, in the unit of the frequencies, nothing is seen; 0 where no range is swept."""
+    low, high = summary.get("range", (0.0, 0.0))
+    return SENTENCES.resolution * float(high - low)
+
+
+def is_seen(
+    jump: Mapping[str, Any], curve: Mapping[str, Any], dofs: Sequence[str], resolution: float
+) -> bool:
+    """Whether an amplitude changes, or none is known over more than the resolution."""
+    if any(jump["after"].get(dof) is not None for dof in dofs):
+        return any(_change(jump["before"], jump["after"], dof) > SENTENCES.small_jump for dof in dofs)
+    beyond = _beyond_gap(jump, curve, resolution)
+    return beyond is None or any(_change(jump["before"], beyond, dof) > SENTENCES.small_jump for dof in dofs)
+
+
+def _beyond_gap(
+    jump: Mapping[str, Any], curve: Mapping[str, Any], resolution: float
+) -> Mapping[str, float] | None:
+    """Where a sweep finds no stable motion any more over less than the resolution, the amplitudes beyond, at
+    which the opposite sweep comes to it; None where it is not so."""
+    upwards = jump["sweep"] == "up"
+    for low, high in curve.get("no_stable_motion", ()):
+        near, far = (low, high) if upwards else (high, low)
+        if high - low < resolution and abs(jump["frequency"] - near) < resolution:
+            for other in curve.get("jumps", ()):
+                if other["sweep"] != jump["sweep"] and abs(other["frequency"] - far) < resolution:
+                    found: Mapping[str, float] = other["before"]
+                    return found
+    return None
+
+
+def _change(before: Mapping[str, Any], after: Mapping[str, Any], dof: str) -> float:
+    """Of an amplitude, relative to the greater."""
+    one, other = float(before.get(dof) or 0.0), float(after.get(dof) or 0.0)
+    return abs(one - other) / (max(one, other) or 1.0)
 
 
 def stable_table(curves: Sequence[Mapping[str, Any]], names: list[str], dofs: list[str], unit: str) -> str:

@@ -14,6 +14,8 @@ class RemarkOptions:
     folds: int = 4  # of which a line has all
     stretches: int = 3  # of frequencies in a sentence
     named: int = 3  # motions, and degrees of freedom, in a sentence
+    resolution: float = 1e-3  # of the range: what happens within less is not seen in a sweep or a picture
+    small_jump: float = 1e-2  # of the amplitude: a jump of less is not seen either
     narrow_window: float = 1e-3  # of the frequency: narrower ones of unknown stability have no line each
     rows: int = 10  # of the table of an interface: contacts that take most
     flexible: int = 5  # modes that stand for flexibility, in a list of modes
