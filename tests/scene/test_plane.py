@@ -52,8 +52,23 @@ def test_turned_axes_of_nodes():
 
 
 @pytest.mark.parametrize(
+    "directions",
+    [
+        ["x", {"y": 0.866, "z": 0.5}],  # as of the face of a damper: their length is 0.99998
+        [{"x": 0.577, "y": 0.577, "z": 0.577}, {"x": 0.707, "y": -0.707}],
+        [{"x": 0.267, "y": 0.535, "z": 0.802}, {"x": 0.873, "y": 0.218, "z": -0.436}],  # 0.02 degrees off
+    ],
+)
+def test_weights_of_three_digits_are_at_right_angles_and_of_one_scale(directions):
+    scene = scene_from_dict(data(NODES | {"tangential": directions}))
+    assert not any("share degrees of freedom" in note for note in scene.notes)
+
+
+@pytest.mark.parametrize(
     ("contact", "said"),
     [
+        (NODES | {"tangential": ["x", {"y": 1.003}]}, "of different scale, the second 1.003 times the first"),
+        (NODES | {"tangential": ["x", {"x": 0.003, "y": 1.0}]}, "these are 89.83 degrees apart"),
         ({"tangential": ["ax"]}, "must be one direction, or two directions at right angles"),
         ({"tangential": ["ax", "ay", "az"]}, "is a list of 3"),
         ({"tangential": []}, "is a list of 0"),

@@ -109,6 +109,8 @@ class ToleranceOptions:
     same_direction: float = 1e-9  # directions that differ by no more are one
     right_angle: float = 0.01  # sine of the angle by which a normal may lean: about half a degree
     square: float = 1e-6  # cosine of the angle between two directions at right angles, at most
+    # of lengths of directions, and cosine of the angle between them: so far are weights of three digits off
+    written: float = 2e-3
     undamped: float = 1e-12  # of a frequency without damping: rounding that nobody would notice
     equal_frequency: float = 1e-6  # of frequencies that are one
     rotated: float = 1e-8  # of ring shapes that are real but for a factor: what is left of the imaginary part

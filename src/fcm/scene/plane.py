@@ -44,9 +44,9 @@ def check_axes(section: Section, directions: Mapping[str, Mapping[str, float]]) 
     size = np.linalg.norm(a), np.linalg.norm(b)
     if not size[0] or not size[1]:
         section.wrong("tangential", "has a direction with only zero weights, so it moves nothing")
-    elif abs(size[0] - size[1]) > TOLERANCES.square * max(size):
+    elif abs(size[0] - size[1]) > TOLERANCES.written * max(size):
         section.wrong("tangential", "has directions " + _scales(float(size[1] / size[0])))
-    elif abs(a @ b) > TOLERANCES.square * size[0] * size[1]:
+    elif abs(a @ b) > TOLERANCES.written * size[0] * size[1]:
         angle = np.degrees(np.arccos(min(abs(a @ b) / (size[0] * size[1]), 1.0)))
         section.wrong("tangential", f"must be {TWO}; these are {angle:.4g} degrees apart")
 
@@ -87,7 +87,7 @@ def _oblique(contact: Contact) -> bool:
     if contact.second is None:
         return False
     one, other = contact.tangential, contact.second
-    return bool(abs(one @ other) > TOLERANCES.square * np.linalg.norm(one) * np.linalg.norm(other))
+    return bool(abs(one @ other) > TOLERANCES.written * np.linalg.norm(one) * np.linalg.norm(other))
 
 
 def _scales(ratio: float) -> str:
