@@ -298,7 +298,7 @@ def test_what_the_file_has_not_is_said(fcm, folded, args, said):
     assert done.code == 2 and said in done.err and done.out == ""
 
 
-def test_of_many_contacts_those_that_take_most_energy_are_named(fcm, folded, tmp_path):
+def test_of_many_contacts_that_which_takes_most_energy_is_drawn(fcm, folded, tmp_path):
     """A hundred made of the one: the energy of each is another part of its own."""
     share = np.random.default_rng(3).permutation(100) + 1.0
     with netCDF4.Dataset(folded) as one, netCDF4.Dataset(tmp_path / "many.nc", "w") as many:
@@ -315,12 +315,14 @@ def test_of_many_contacts_those_that_take_most_energy_are_named(fcm, folded, tmp
                 values = np.array([f"pair {i}" for i in range(100)], dtype=object)
             made[:] = values * share if name == "dissipated_energy" else values
     done = fcm("plot", "loop", "many.nc", "--curve", 0)
-    most = ", ".join(f"pair {i}" for i in np.argsort(-share)[:10])
-    assert done.code == 2
-    assert done.err.endswith(
-        "has several contacts; say which by --contact: of 100 those that take most energy in a cycle: "
-        f"{most}\n"
+    first, *others = (f"pair {i}" for i in np.argsort(-share)[:11])
+    assert done.code == 0 and done.err.startswith(
+        f"{first} of 100 contacts takes most energy in a cycle; --contact NAME takes another: "
+        f"{', '.join(others)}, ...\n"
     )
+    assert f"{first}, " in done.err.splitlines()[1]
+    done = fcm("plot", "loop", "many.nc", "--curve", 0, "--contact", "pair 7")
+    assert done.code == 0 and "takes most energy" not in done.err
 
 
 def test_letters_that_the_fonts_lack_are_said_once(fcm, folded, tmp_path):

@@ -124,7 +124,9 @@ def _parameters(command: Any) -> Any:
     help="Of FILE: the frequency, or the level; the nearest points are drawn, on a folded curve all.  "
     "[default: the peak of the scene's output]",
 )  # fmt: skip
-@click.option("--contact", metavar="NAME", help="Of FILE: the contact.  [default: the only one]")
+@click.option(
+    "--contact", metavar="NAME", help="Of FILE: the contact.  [default: that which takes most energy]"
+)
 @click.option(
     "--solution", type=click.IntRange(min=1), metavar="K",
     help="On a folded curve only the K-th, that of the greatest amplitude being 1.",
@@ -163,7 +165,7 @@ def loop(
     options["phases"] = tuple(dict.fromkeys(options["phases"]))
     given = {name for name in ctx.params if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE}
     _check(given, file is not None)
-    cases = _cases(given, file, options, units)
+    cases = _cases(given, file, options, units, messages.info)
     if len(cases) > 1 and isinstance(cases[0], PlanarCase):
         raise click.UsageError(f"{len(cases)} loops in a plane are too many for a picture: say which one.")
     if cosine and isinstance(cases[0], PlanarCase):
@@ -191,7 +193,11 @@ def loop(
 
 
 def _cases(
-    given: set[str], file: Path | None, options: dict[str, Any], units: tuple[str, str] | None
+    given: set[str],
+    file: Path | None,
+    options: dict[str, Any],
+    units: tuple[str, str] | None,
+    tell: Callable[[str], None],
 ) -> Sequence[Case | PlanarCase]:
     """The loops of the one way, of three, in which they are given."""
     from fcm.cli.loop_cases import of_contact, of_file, of_ratios
@@ -203,6 +209,7 @@ def _cases(
             options["contact"],
             options["at"] or [None],
             options["solution"],
+            tell,
         )
     if given.intersection(OF_CONTACT):
         return of_contact(

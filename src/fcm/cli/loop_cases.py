@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import product
 from pathlib import Path
@@ -177,12 +177,15 @@ def of_file(
     contact: str | None,
     at: Sequence[float | None],
     solution: int | None,
+    tell: Callable[[str], None],
 ) -> list[Case] | list[PlanarCase]:
-    """The loops of a contact on curves of a response file, at frequencies."""
-    from fcm.plot.loop_file import PlanePoint, points_at, read_loops
+    """The loops of a contact on curves of a response file, at frequencies; which was taken is told."""
+    from fcm.plot.loop_file import PlanePoint, busiest, points_at, read_loops
     from fcm.plot.read import read
 
     file = read_loops(path)
+    if contact is None and (said := busiest(file)[1]):
+        tell(said)
     cases: list[Case] = []
     planar: list[PlanarCase] = []
     for curve, frequency in product(curves, at):

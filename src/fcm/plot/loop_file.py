@@ -175,7 +175,8 @@ def _motions(data: Any) -> MotionFile | None:
 def points_at(file: LoopFile, curve: int | None, contact: str | None, at: float | None) -> list[LoopPoint]:
     """The points of a curve nearest to a frequency, one for each solution there, greatest amplitude first.
 
-    Without a frequency it is the peak of the scene's output, see `LoopFile.column`.
+    Without a frequency it is the peak of the scene's output, see `LoopFile.column`. Without a contact it is
+    the `busiest`.
 
     Raises
     ------
@@ -254,6 +255,24 @@ def _greatest(energy: FloatArray, contacts: int) -> FloatArray:
     return found
 
 
+def busiest(file: LoopFile) -> tuple[str, str]:
+    """The contact whose friction takes most energy in a cycle, or, without energies, that which moves most;
+    and how it is said that another can be chosen.
+
+    Of a file with one contact, or none, nothing is said.
+    """
+    if len(file.contacts) < 2:
+        return (file.contacts[0] if file.contacts else ""), ""
+    moved = np.nan_to_num(file.loop[3]).max(axis=(0, 1), initial=0.0)
+    by_energy = bool(file.energy.any())
+    column, *others = np.argsort(-(file.energy if by_energy else moved), kind="stable").tolist()
+    why = "takes most energy in a cycle" if by_energy else "moves most"
+    named = ", ".join(file.contacts[i] for i in others[: READ.contacts_named])
+    more = ", ..." if len(others) > READ.contacts_named else ""
+    name, count = file.contacts[column], len(file.contacts)
+    return name, f"{name} of {count} contacts {why}; --contact NAME takes another: {named}{more}"
+
+
 def _names(file: LoopFile) -> str:
     """The contacts, of many those that take most energy, first the one that takes most."""
     if len(file.contacts) <= READ.contacts_named:
@@ -265,11 +284,9 @@ def _names(file: LoopFile) -> str:
 
 
 def _column(file: LoopFile, contact: str | None) -> int:
-    names = _names(file)
     if not file.contacts:
         raise PlotError(f"{file.path}: its scene has no contact, and so no loop")
-    if contact is None and len(file.contacts) > 1:
-        raise PlotError(f"{file.path}: has several contacts; say which by --contact: {names}")
-    if contact is not None and contact not in file.contacts:
-        raise PlotError(f"{file.path}: there is no contact {contact!r}; it has {names}")
-    return 0 if contact is None else file.contacts.index(contact)
+    name = busiest(file)[0] if contact is None else contact
+    if name not in file.contacts:
+        raise PlotError(f"{file.path}: there is no contact {name!r}; it has {_names(file)}")
+    return file.contacts.index(name)
