@@ -6,14 +6,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
+from textwrap import wrap
 from typing import Any
 
 import click
 
 from fcm.cli import balance, exact
-from fcm.cli.columns import aligned
 from fcm.cli.export import export_options
 from fcm.cli.files import largest_file_option, output_option
+from fcm.cli.limits import SENTENCES
 from fcm.cli.options import FiniteRange
 from fcm.cli.time_limit import seconds
 from fcm.cli.track import track_options
@@ -28,9 +29,24 @@ def _keys(_ctx: click.Context, _param: click.Parameter, wanted: bool) -> None:
     if wanted:
         from fcm.scene.keys import as_lines
 
-        _printed(
-            aligned([["key", "what it may be", "without it", "meaning"], *map(list, as_lines())], left=4)
-        )
+        _printed("\n".join(map(_of_key, as_lines())))
+
+
+def _of_key(line: tuple[str, str, str, str]) -> str:
+    """A key with its meaning, and below what it may be and what it is when it is not given.
+
+    >>> print(_of_key(("force[].phase", "number", "0", "of the force")))
+    force[].phase: of the force
+        number; without it: 0
+    """
+    key, kind, default, meaning = line
+    needed = f"; {default}" if default.startswith(("required", "needed")) else f"; without it: {default}"
+    width = SENTENCES.width - 20
+    said = wrap(f"{key}: {meaning}", width, subsequent_indent="    ", break_long_words=False)
+    may_be = wrap(
+        kind + needed, width, initial_indent="    ", subsequent_indent="    ", break_long_words=False
+    )
+    return "\n".join([*said, *may_be])
 
 
 def _template(_ctx: click.Context, _param: click.Parameter, wanted: bool) -> None:
