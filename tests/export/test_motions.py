@@ -73,6 +73,18 @@ def made(tmp_path_factory):
     return folder, names
 
 
+def test_a_mesh_without_elements_is_said_to_have_no_surfaces(made):
+    folder, _ = made
+    lines = (BEAM / "beam.inp").read_text().upper().partition("*NODE")[2].splitlines()[1:]
+    nodes = [",".join(map(str.strip, one.split(","))) for one in lines[: [x[:1] for x in lines].index("*")]]
+    (folder / "nodes.csv").write_text("node,x,y,z\n" + "\n".join(nodes) + "\n")
+    model = ("respond", folder / "model.toml", "--motion-at", 4500, "--export")
+    done = called(*model, folder / "p.vtu", "--mesh", folder / "nodes.csv")
+    assert done.code == 0 and "p.vtu has points alone; an .inp, a .bdf or an .msh has surfaces" in done.err
+    done = called(*model, folder / "s.vtu", "--mesh", BEAM / "beam.inp")
+    assert done.code == 0 and "points alone" not in done.err
+
+
 def waves_of(folder):
     """(motion, harmonic, row), (motion, row), and frequencies, of the HDF5 file."""
     with h5py.File(folder / "c.h5") as file:

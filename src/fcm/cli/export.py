@@ -180,6 +180,11 @@ def exporting(messages: Messages, scene: Scene, asked: Asked) -> Exporting | Non
         mesh = _mesh(asked.mesh)
         for note in check_mesh(Rows.of(scene), mesh, str(asked.mesh)):
             messages.info(note)
+        if not mesh.cells and asked.export is not None and asked.export.suffix.lower() == ".vtu":
+            messages.info(
+                f"{asked.mesh}: it has no elements, so {asked.export} has points alone; an .inp, a .bdf or "
+                "an .msh has surfaces"
+            )
     if asked.export is not None:
         if asked.export.suffix.lower() in UNIVERSAL:
             check_nodes(Rows.of(scene))
