@@ -63,3 +63,34 @@ def test_slip_begins_where_the_root_is_steep() -> None:
     assert curve.complete, curve.reason
     state = curve.regime[:, 0]
     assert np.count_nonzero((state[:-1] == "EPEP") & (state[1:] == "E")) == 1
+
+
+def test_more_harmonics_begin_beside_a_corner_that_they_share() -> None:
+    """Where the contact rests the harmonics are uncoupled, and the fold in a corner is one of all of them."""
+    data = {
+        "modal": {
+            "dofs": ["x", "y", "z"], "mass": 1.0, "frequency": [1.0, 1.15, 1.6], "damping": 0.02,
+            "shapes": [[1.0, 0.1, 0.3], [-0.1, 1.0, 0.2], [0.2, 0.3, 1.0]],
+        },
+        "contact": [
+            {
+                "name": "c", "tangential": ["x", "y"], "normal": "z",
+                "mu": 0.4, "k_u": 20.0, "k_v": 15.0, "n_0": 3.0,
+            }
+        ],
+        "force": [
+            {"dof": "x", "amplitude": 1.0},
+            {"dof": "y", "amplitude": 0.7, "phase": float(np.deg2rad(70.0))},
+        ],
+        "response": {"frequency": [1.65, 1.9]},
+    }  # fmt: skip
+    curve = trace(scene_from_dict(data), method="closed-form", accuracy=0.05).curves[0]
+    assert len(curve.harmonics) > 1
+    assert curve.complete, curve.reason
+
+
+def test_the_corner_behind_is_not_gone_back_to() -> None:
+    """A second disc ceases to hold the slider just beyond an onset of slip, from where the curve comes."""
+    curve = trace(replace(random_plane(220), harmonics=None), method="closed-form", accuracy=1e-2).curves[0]
+    assert curve.complete, curve.reason
+    assert {"E", "EPEP"} <= set(curve.regime.ravel().tolist())

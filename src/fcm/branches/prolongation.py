@@ -119,11 +119,18 @@ def _prolongated_by_stages(
 
 
 def prolongation_points(path: Path, options: ProlongationOptions = PROLONGATION) -> list[int]:
-    """The points of a path that are prolongated: its peaks, ends and folds, and some between them."""
+    """The points of a path that are prolongated: its peaks, ends and folds, and some between them.
+
+    In the place of a corner a point next to it: while contacts rest the corner of more harmonics is the same,
+    and from there no branch can be begun, as it has two directions.
+    """
     count = len(path.z)
     marked = [path.where(Mark.PEAK), np.array([0, count - 1]), path.where(Mark.FOLD)]
     marked.append(np.linspace(0, count - 1, min(options.spaced_points, count)).astype(np.intp))
     every = np.concatenate([_spaced(one, options.max_of_a_kind) for one in marked])
+    smooth = np.flatnonzero(path.mark & Mark.CORNER == 0)
+    if smooth.size:
+        every = smooth[np.abs(every[:, None] - smooth).argmin(axis=1)]
     return list(dict.fromkeys(every.tolist()))
 
 

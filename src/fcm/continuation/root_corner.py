@@ -38,10 +38,7 @@ class RootCorner(NamedTuple):
 
 def is_met(stepper: Stepper) -> bool:
     """Whether the curve has come to such a corner."""
-    tangent = np.asarray(stepper.here.tangent)
-    distance = stepper.options.switching.root_distance
-    near = _corners_near(stepper, stepper.here, distance)
-    return any(one.side * float(one.normal @ tangent) < 0.0 for one in near)
+    return any(_corners_ahead(stepper, stepper.options.switching.root_distance))
 
 
 def land(stepper: Stepper) -> None:
@@ -52,7 +49,7 @@ def land(stepper: Stepper) -> None:
     """
     newton, options = stepper.newton, stepper.options.switching
     z, scale = np.array(stepper.here.z), np.array(newton.scale)
-    for one in _corners_near(stepper, stepper.here, options.reached_distance_root):
+    for one in _corners_ahead(stepper, options.reached_distance_root):
         found = _solve(stepper, one, 0.5 * one.side * options.root_distance)
         if found is not None and np.linalg.norm((found - z) / scale) < options.reached_distance_root:
             stepper.here.z[:] = found
@@ -96,6 +93,13 @@ def _solve(stepper: Stepper, corner: RootCorner, wanted: float) -> FloatArray | 
         if np.linalg.norm((at - last) / scale) < options.negligible_step:
             break
     return at
+
+
+def _corners_ahead(stepper: Stepper, distance: float) -> Iterator[RootCorner]:
+    """Those within a distance of here to which the curve goes, and not those that it comes from."""
+    tangent = np.asarray(stepper.here.tangent)
+    near = _corners_near(stepper, stepper.here, distance)
+    return (one for one in near if one.side * float(one.normal @ tangent) < 0.0)
 
 
 def _corners_near(stepper: Stepper, before: Point, distance: float) -> Iterator[RootCorner]:
