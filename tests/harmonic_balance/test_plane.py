@@ -172,6 +172,22 @@ def test_a_second_direction_that_never_moves_is_a_line(name, harmonics):
     assert _changes(plane) == pytest.approx(_changes(line), abs=2e-3)
 
 
+@pytest.mark.parametrize("harmonics", [1, 3])
+def test_what_a_still_direction_says_of_forces_and_energy_is_that_of_a_line(harmonics):
+    data = single("yang1998-n5", response={"frequency": [1.1, 1.4]})
+    line, plane = (
+        fcm.respond(scene_from_dict(one), "closed-form", harmonics=harmonics)
+        for one in (data, with_still(data))
+    )
+    for name in ("greatest_normal_force", "greatest_friction_force", "slip_path", "dissipated_energy"):
+        for end in (0, -1):
+            found = plane[name].isel(curve=0).dropna("point").isel(point=end).values
+            expected = line[name].isel(curve=0).dropna("point").isel(point=end).values
+            assert found == pytest.approx(expected, rel=1e-9), name
+    limit = 0.4 * plane.greatest_normal_force
+    assert float((plane.greatest_friction_force / limit).max()) <= 1.0 + 1e-12
+
+
 def _changes(response):
     """Frequencies at which what is told of stability changes."""
     stable, w = response.stable.values[0], response.frequency.values[0]

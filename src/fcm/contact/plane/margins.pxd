@@ -24,7 +24,7 @@ cdef class PlanarMargins:
     cdef double outside(self, int p, double theta) noexcept nogil
 
 cdef class PlanarMeasures:
-    cdef double invisible, steps
+    cdef double invisible, steps, growth
     cdef readonly PlaneMotion motion
     cdef readonly Cycle cycle
     cdef readonly Crossings crossings
@@ -34,6 +34,6 @@ cdef class PlanarMeasures:
     cdef void bear(self, double mu, double k_u) noexcept nogil
     cdef void loads(self) noexcept nogil
     cdef void friction(self) noexcept nogil
+    cdef double top(self, int p, double low, double high, double before) noexcept nogil
     cdef double force(self, int p, double theta) noexcept nogil
-    cdef double length(self, int p) noexcept nogil
     cdef void states(self, bint rubs) noexcept nogil

@@ -35,7 +35,6 @@ if cython.compiled:
         LOAD_RATE,
         MIXED,
         OPEN,
-        TWO_PI,
         UNKNOWN,
         Crossings,
     )
@@ -44,7 +43,7 @@ if cython.compiled:
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK
 else:
     from fcm.contact.periodic.margins import CLOSES, FIXED, MAXIMUM, MINIMUM, OPENS, PAST, SLIPS
-    from fcm.contact.periodic.motion import CLOSED, LOAD, LOAD_RATE, MIXED, OPEN, TWO_PI, UNKNOWN, Crossings
+    from fcm.contact.periodic.motion import CLOSED, LOAD, LOAD_RATE, MIXED, OPEN, UNKNOWN, Crossings
     from fcm.contact.plane.cycle import STUCK, UNSOLVED, Cycle
     from fcm.contact.plane.panel import SCAN
     from fcm.contact.plane.slider import SEPARATION, SLIP, STICK
@@ -208,18 +207,14 @@ class PlanarMargins:
                 continue
             last: cython.bint = p + 1 == n
             follows: cython.int = 0 if last else p + 1
-            end: float = self.cycle.slider.begin[follows]
-            while end <= self.cycle.slider.begin[p]:
-                end += TWO_PI
+            end: float = self.cycle.slider.begin[p] + self.cycle.slider.length(p)
             self.within(p, end)
             if self.cycle.slider.state[follows] == SLIP:
                 after: cython.int = 0 if follows + 1 == n else follows + 1
                 whole: cython.bint = p == 0 and after == n - 1 and self.cycle.slider.state[after] == STICK
                 if after == p or whole:
                     continue
-                halt: float = self.cycle.slider.begin[after]
-                while halt <= end:
-                    halt += TWO_PI
+                halt: float = end + self.cycle.slider.length(follows)
                 self.note(PUSHES, halt, self.outside(p, halt))
 
     def within(self, p: cython.int, end: float) -> None:
@@ -272,6 +267,7 @@ class PlanarMeasures:
         self.cycle, self.motion = cycle, cycle.motion
         self.crossings = Crossings(cycle.motion.normal)
         self.greatest_load = self.greatest_friction = self.dissipation = self.slip_path = 0.0
+        self.growth = 0.0
         self.pieces, self.state = 0, np.zeros(cycle.slider.capacity + 1, dtype=np.intc)
 
     def bear(self, mu: float, k_u: float) -> None:
@@ -301,52 +297,58 @@ class PlanarMeasures:
         self.greatest_load = max(high, 0.0) * self.motion.load_scale
 
     def friction(self) -> None:
-        """The greatest magnitude in each piece: at its ends, or at the top of a parabola."""
+        """The greatest magnitude in each piece: at its ends, or where it rises no more."""
         p: cython.int
         i: cython.int
         n: cython.int = self.cycle.slider.pieces
         most: float = 0.0
         for p in range(n):
             begin: float = self.cycle.slider.begin[p]
-            end: float = self.cycle.slider.begin[0 if p + 1 == n else p + 1]
-            while end <= begin:
-                end += TWO_PI
+            end: float = begin + self.cycle.slider.length(p)
             step: float = 1.0 / (self.steps * max(self.motion.highest, 1))
             steps: cython.int = cython.cast(cython.int, (end - begin) / step) + 2
             step = (end - begin) / steps
-            older: float = self.force(p, begin)
-            old: float = self.force(p, begin + step)
-            most = max(most, older, old)
-            for i in range(2, steps + 1):
-                new: float = self.force(p, begin + i * step)
-                most = max(most, new)
-                bend: float = 2.0 * old - older - new
-                if old >= older and old >= new and bend > 0.0:
-                    most = max(most, old + 0.125 * (new - older) * (new - older) / bend)
-                older, old = old, new
+            most = max(most, self.force(p, begin))
+            before: float = self.growth
+            for i in range(1, steps + 1):
+                most = max(most, self.force(p, begin + i * step))
+                if before > 0.0 >= self.growth:
+                    most = max(most, self.top(p, begin + (i - 1) * step, begin + i * step, before))
+                    self.force(p, begin + i * step)
+                before = self.growth
         self.greatest_friction = most * self.motion.scale
 
+    def top(self, p: cython.int, low: float, high: float, before: float) -> float:
+        """The magnitude where it ceases to grow, from the growth there by false position (Illinois)."""
+        i: cython.int
+        after: float = self.growth
+        most: float = 0.0
+        for i in range(60):  # noqa: B007
+            if high - low < 1e-9 or before == after:
+                break
+            middle: float = (low * after - high * before) / (after - before)
+            most = max(most, self.force(p, middle))
+            if self.growth > 0.0:
+                low, before, after = middle, self.growth, 0.5 * after
+            else:
+                high, after, before = middle, self.growth, 0.5 * before
+        return most
+
     def force(self, p: cython.int, theta: float) -> float:
-        """Magnitude of the friction force in a piece."""
+        """Magnitude of the friction force in a piece; `growth` is half the derivative of its square."""
         self.motion.place(SCAN, theta)
+        self.growth = 0.0
         if self.cycle.slider.state[p] == STICK:
-            stretched: float = hypot(
-                self.motion.value[SCAN, 0] - self.cycle.slider.rest_x[p],
-                self.motion.value[SCAN, 1] - self.cycle.slider.rest_y[p],
-            )
+            d_x: float = self.motion.value[SCAN, 0] - self.cycle.slider.rest_x[p]
+            d_y: float = self.motion.value[SCAN, 1] - self.cycle.slider.rest_y[p]
+            self.growth = d_x * self.motion.value[SCAN, 3] + d_y * self.motion.value[SCAN, 4]
+            stretched: float = hypot(d_x, d_y)
             return stretched
         if self.cycle.slider.state[p] == SLIP:
             limit: float = max(self.motion.value[SCAN, 2], 0.0)
+            self.growth = limit * self.motion.value[SCAN, 5]
             return limit
         return 0.0
-
-    def length(self, p: cython.int) -> float:
-        """Of a piece of several [rad]."""
-        last: cython.bint = p + 1 == self.cycle.slider.pieces
-        length: float = self.cycle.slider.begin[0 if last else p + 1] - self.cycle.slider.begin[p]
-        while length < 0.0 or (last and length <= 0.0):
-            length += TWO_PI
-        return length
 
     def states(self, rubs: cython.bint) -> None:
         """Without what is rounding, neighbours joined, and without friction closed instead of slipping."""
@@ -356,13 +358,15 @@ class PlanarMeasures:
         first: cython.int = 0
         n: cython.int = self.cycle.slider.pieces
         for p in range(n):
-            if self.cycle.slider.state[p] == STICK and (n == 1 or self.length(p) > self.invisible):
+            if self.cycle.slider.state[p] == STICK and (
+                n == 1 or self.cycle.slider.length(p) > self.invisible
+            ):
                 first = p
                 break
         self.pieces = 0
         for i in range(n):
             p = (first + i) % n
-            if n > 1 and self.length(p) < self.invisible:
+            if n > 1 and self.cycle.slider.length(p) < self.invisible:
                 continue
             state = self.cycle.slider.state[p]
             if state == SLIP and not rubs:

@@ -19,6 +19,7 @@ cdef class Slider:
     cdef public double tolerance
     cdef readonly bint sliding, varying, gathering, gradient, failed
     cdef void add(self, int state) noexcept nogil
+    cdef double length(self, int p) noexcept nogil
     cdef void enter(self, double theta, double w_x, double w_y) noexcept nogil
     cdef void close(self, double theta) noexcept nogil
     cdef void advance(self, double end, bint opens) noexcept nogil

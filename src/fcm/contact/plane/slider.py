@@ -13,11 +13,11 @@ import numpy as np
 from cython.cimports.libc.math import fabs, hypot, sqrt
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.motion import EPSILON, SLOPE_ERROR, VALUE_ERROR
+    from cython.cimports.fcm.contact.periodic.motion import EPSILON, SLOPE_ERROR, TWO_PI, VALUE_ERROR
     from cython.cimports.fcm.contact.plane.integrals import Derivatives, Sums
     from cython.cimports.fcm.contact.plane.panel import SCAN, STAGES, Panel, PlaneMotion
 else:
-    from fcm.contact.periodic.motion import EPSILON, SLOPE_ERROR, VALUE_ERROR
+    from fcm.contact.periodic.motion import EPSILON, SLOPE_ERROR, TWO_PI, VALUE_ERROR
     from fcm.contact.plane.integrals import Derivatives, Sums
     from fcm.contact.plane.panel import SCAN, Panel, PlaneMotion
     from fcm.contact.plane.radau import STAGES
@@ -103,6 +103,14 @@ class Slider:
         self.state[i], self.begin[i] = state, self.theta
         self.rest_x[i], self.rest_y[i] = self.w_x, self.w_y
         self.pieces += 1
+
+    def length(self, p: cython.int) -> float:
+        """Of a piece of several [rad]."""
+        last: cython.bint = p + 1 == self.pieces
+        length: float = self.begin[0 if last else p + 1] - self.begin[p]
+        while length < 0.0 or (last and length <= 0.0):
+            length += TWO_PI
+        return length
 
     def enter(self, theta: float, w_x: float, w_y: float) -> None:
         """Begin at an angle with a slider at a place, which the disc may hold elsewhere."""
