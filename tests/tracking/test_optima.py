@@ -58,7 +58,18 @@ def test_optima_are_kept_until_the_response_with_them_is_written(fcm, scene):
     assert done.code == 3 and "continue with --resume" in done.err
     never = Interrupting("never")
     assert fcm(*COMMAND, "a.nc", "--resume", messages=never).code == 0
-    assert never.shown and not any(text == "optimum" for _, text in never.shown)
+    assert never.shown and not any(text.startswith("optimum") for _, text in never.shown)
+
+
+def test_the_progress_of_a_search_moves_with_its_work(fcm, scene):
+    """It stood still for minutes, from one response that was traced to the next."""
+    shown = Interrupting("never")
+    assert fcm(*COMMAND, "a.nc", messages=shown).code == 0
+    search = [(share, text) for share, text in shown.shown if text.startswith("optimum with 1 harmonic")]
+    first = [share for share, _ in search if share < 0.5 * OPTIMUM.search_share]  # of two curves
+    assert np.diff(np.maximum.accumulate(first)).max() < 0.1 and len(set(first)) > 20
+    assert any(text.endswith(": 2 responses traced") for _, text in search)
+    assert max(share for share, _ in search) < OPTIMUM.search_share
 
 
 class Known(PeakTask):

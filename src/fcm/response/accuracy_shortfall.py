@@ -13,18 +13,21 @@ from fcm.scene.errors import counted
 from fcm.units import in_unit
 
 
-def shortfall(found: RefinedResponse, lost: Sequence[StabilityLimit], accuracy: float) -> str:
+def shortfall(
+    found: RefinedResponse, lost: Sequence[StabilityLimit], accuracy: float, spent: float = 0.0
+) -> str:
     """What keeps a curve from the accuracy, and what more would take; empty if nothing does.
 
-    lost: how far the frequencies are off at which stability is lost without a fold.
+    lost: how far the frequencies are off at which stability is lost without a fold. spent: processor time [s]
+    of the curve until now, with its stability and errors: more harmonics take these as well.
     """
     if not found.reached:
-        return _of_harmonics(found, accuracy)
+        return _of_harmonics(found, accuracy, spent)
     off = [one for one in lost if not one.error <= accuracy]
     return _of_stability(found, off) if off else ""
 
 
-def _of_harmonics(found: RefinedResponse, accuracy: float) -> str:
+def _of_harmonics(found: RefinedResponse, accuracy: float, spent: float) -> str:
     """Too large errors of peaks and folds, and how long it takes with more harmonics."""
     folds, said = found.folds, _with_harmonics(found)
     untold = np.count_nonzero(np.isnan(folds))
@@ -44,7 +47,14 @@ def _of_harmonics(found: RefinedResponse, accuracy: float) -> str:
     if found.begun:
         most = found.system.options.work.max_seconds
         return f"{said}. More were given up after some {most:.0f} s of work: --harmonics {which}"
-    return f"{said}. More would take some {found.seconds_with(more):.0f} s: --harmonics {which}"
+    return f"{said}. More would take some {_seconds(found, more, spent):.0f} s: --harmonics {which}"
+
+
+def _seconds(found: RefinedResponse, more: tuple[int, ...], spent: float) -> float:
+    """What a curve takes with more harmonics, to a digit: what it took, as much more as its equations do."""
+    alone = found.seconds_with(more)
+    whole = max(alone, spent * alone / found.seconds if found.seconds else 0.0)
+    return float(f"{whole:.1g}") if whole > 1.0 else 1.0
 
 
 def _dofs_short(found: RefinedResponse, accuracy: float) -> str:

@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from fcm.accuracy.refinement import enlarged, with_estimated_errors
+from fcm.harmonic_balance.cost_model import seconds_of_curve
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.options import RESPONSE, ResponseOptions
@@ -18,6 +19,7 @@ from fcm.results.tracked import Optimal, TrackedCurve
 from fcm.run import Progress
 from fcm.run.progress import part
 from fcm.scene.draft import Number
+from fcm.scene.errors import counted
 from fcm.tracking.kept_steps import KeptSteps
 from fcm.tracking.lowest_peak import LowestPeak, LowestPeakSearch
 from fcm.tracking.minimax import PeakEnvelope, descend
@@ -90,12 +92,12 @@ def _optimum(task: PeakTask, harmonics: tuple[int, ...] | None, progress: Progre
         shown = part(progress, i / rounds, (i + 1) / rounds)
         if len(task.numbers) == 1:
             task.seeking = search = _search(task, chosen)
-            known = search.run(known, _sharing(shown))
+            known = search.run(known, _sharing(task, chosen, shown))
             if not known.checked:
                 known = replace(known, best=by_trials(search))
             found = _on_line(task, known, chosen)
         else:
-            found = _downhill(task, chosen, _sharing(shown))
+            found = _downhill(task, chosen, shown)
         if harmonics:
             break
         more, taken = task.steps(
@@ -109,8 +111,42 @@ def _optimum(task: PeakTask, harmonics: tuple[int, ...] | None, progress: Progre
     return replace(found[0], fewer=task.fewer), found[1]
 
 
-def _sharing(progress: Progress | None) -> Callable[[float], None] | None:
-    return None if progress is None else lambda share: progress(share, "optimum")
+class _Moving:
+    """Progress of a search: what it says is over, and from there what it works, of which no end is known.
+
+    As much as a curve takes moves it by a quarter of what is left.
+    """
+
+    def __init__(self, task: PeakTask, harmonics: tuple[int, ...], progress: Progress) -> None:
+        self.task, self.progress, self.share = task, progress, 0.0
+        self.text = f"optimum with {counted(len(harmonics), 'harmonic')}"
+        self.begin, self.usual = 0.0, seconds_of_curve(task.scene, len(harmonics))
+
+    def __call__(self, share: float) -> None:
+        self.share, self.begin = share, self._seconds()
+        self.poll()
+
+    def poll(self) -> None:
+        """Show it; called now and then by the work."""
+        work = self._seconds() - self.begin
+        ahead = (1.0 - self.share) * work / (work + self.usual) / 2.0
+        found = getattr(self.task.seeking, "visited_values", None)
+        traced = f": {counted(len(found), 'response')} traced" if found else ""
+        self.progress(self.share + ahead, f"{self.text}{traced}")
+
+    def _seconds(self) -> float:
+        return 0.0 if self.task.seeking is None else self.task.seeking.system.work.seconds
+
+
+def _sharing(
+    task: PeakTask, harmonics: tuple[int, ...], progress: Progress | None
+) -> Callable[[float], None] | None:
+    """The progress of what a task seeks, which its work moves on."""
+    if progress is None or task.seeking is None:
+        return None
+    moving = _Moving(task, harmonics, progress)
+    task.seeking.system.work.poll = moving.poll
+    return moving
 
 
 def _harmonics_for_peaks(
@@ -152,13 +188,13 @@ def _on_line(task: PeakTask, found: LowestPeak, harmonics: tuple[int, ...]) -> F
     return _optimal(task, np.array([found.best.s]), found.best, harmonics), curves
 
 
-def _downhill(task: PeakTask, harmonics: tuple[int, ...], progress: Callable[[float], None] | None) -> Found:
+def _downhill(task: PeakTask, harmonics: tuple[int, ...], progress: Progress | None) -> Found:
     """Of several numbers; from what was found with fewer harmonics."""
     task.seeking = valley = PeakEnvelope(
         task.system(task.scene, harmonics), task.numbers, task.bounds, task.targets, steps=task.steps
     )
     start = None if task.fewer is None else np.array(list(task.fewer.values.values()))
-    found = descend(valley, start, progress)
+    found = descend(valley, start, _sharing(task, harmonics, progress))
     if found is None:
         raise ResponseError(_no_peak(task))
     return _optimal(task, found[0], found[1], harmonics), []

@@ -112,6 +112,7 @@ def _unfinished(so_far: BestSoFar, scene: Scene, options: InterruptedOptions) ->
 def _traced_curve(scene: Scene, wanted: Request, poll: Callable[[], None] | None, so_far: BestSoFar) -> Curve:
     from fcm.response.curve_batches import lost_curve
 
+    begin = time.process_time()
     system = System(
         with_master_dofs(scene),
         wanted.harmonics or (1,),
@@ -138,7 +139,9 @@ def _traced_curve(scene: Scene, wanted: Request, poll: Callable[[], None] | None
     response = refined(found, wanted.accuracy if by_need else None, scene, so_far, so_far.judge)
     curve = _curve(response)
     if by_need and curve.complete:
-        curve.short_of = shortfall(_reported(response), response.lost, wanted.accuracy)
+        curve.short_of = shortfall(
+            _reported(response), response.lost, wanted.accuracy, time.process_time() - begin
+        )
     return curve
 
 
