@@ -11,7 +11,7 @@ import pytest
 from fcm.cli.balance import harmonics
 from fcm.cli.columns import ranges
 from fcm.cli.curves import as_table, cost_and_error
-from fcm.cli.doubts import residual_friction
+from fcm.cli.doubts import maybe_not_unique, residual_friction
 from fcm.model.scene import InTime
 from fcm.plot.peak import draw_peak, read_peaks
 from fcm.plot.read import read_response
@@ -143,6 +143,18 @@ def test_where_the_error_of_a_balanced_peak_is_not_told_it_says_why():
     assert "unknown" not in as_table({"curves": [curve({"u": 1.0})]}, "Hz")  # of the exact motion
 
 
+def test_where_only_the_error_at_the_frequency_of_a_peak_is_known_it_is_told_as_that():
+    """It was a dash, with points beside it of which the error was told."""
+    one = curve({"u": 1.0, "v": 2.0}) | {"harmonics": [1, 2, 3]}
+    one["peak"]["u"] |= {"error": None, "error_at_frequency": 0.018}
+    one["peak"]["v"]["error"] = 0.03
+    told = as_table({"curves": [one]}, "Hz").splitlines()
+    assert "1.8e-02~" in told[1] and "3.0e-02 " in told[1]
+    assert told[-1].startswith("~ the error of the motion at that frequency. Of the peak it is unknown")
+    one["peak"]["v"]["error"] = None
+    assert as_table({"curves": [one]}, "Hz").splitlines()[-1].startswith("- unknown error")
+
+
 def test_a_range_with_residual_friction_that_is_not_known_is_a_dash_and_says_so():
     one = curve({"u": 1.0, "v": 2.0}) | {"may_not_be_unique": 3}
     for dof, change in (("u", 0.034), ("v", 0.0)):
@@ -160,6 +172,19 @@ def test_residual_friction_is_told_of_those_curves_alone_of_which_it_is_known():
     told = [residual_friction({"curves": ones} | run) for ones in ([known], [known, unknown])]
     assert "decides: it changes no peak" in told[0]
     assert "decides: on 1 of 2 curves it changes no peak" in told[1]
+
+
+def test_what_is_said_of_residual_friction_agrees_with_its_column():
+    """The column had 10 %, and below it stood that by how much was not estimated: of a peak not shown."""
+    one = curve({f"u{i}": 1.0 for i in range(9)}) | {"may_not_be_unique": 3}
+    for dof, peak in one["peak"].items():
+        peak["residual_change"] = 0.1 if dof in ("u0", "u1") else None
+    run = {"method": "exact", "exact_motion": InTime.COMPUTED.value, "curves": [one], "output": ["u0", "u1"]}
+    assert "up to 10 % of it" in residual_friction(run) and not maybe_not_unique(run)
+    cut_off = one | {"cause": "interrupted", "complete": False, "reason": "interrupted"}
+    assert not residual_friction(run | {"curves": [cut_off]}) and not maybe_not_unique(
+        run | {"curves": [cut_off]}
+    )
 
 
 def test_residual_friction_is_told_of_the_peaks_that_are_shown():

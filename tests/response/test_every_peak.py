@@ -5,7 +5,9 @@ import json
 import numpy as np
 import pytest
 
+from fcm.response import trace
 from fcm.results.local_maxima import lower_peaks
+from fcm.scene import load_scene
 
 from ..program import called
 
@@ -87,3 +89,12 @@ def test_a_maximum_is_of_one_branch_and_no_end():
     two = np.array([1.0, 3.0, 2.0, nan, 2.5, 1.0, 2.0, 1.5, nan, 9.0, 1.0])
     assert lower_peaks(two[:, None]).tolist() == [[0, 1], [0, 6]]
     assert lower_peaks(np.array([[1.0], [2.0]])).tolist() == []
+
+
+def test_where_the_error_of_a_peak_is_unknown_that_of_its_point_is_there():
+    response = trace(load_scene("yang1998-n5"), harmonics=1)
+    (curve,) = response.curves
+    assert "error_at_frequency" not in curve.summary()["peak"]["u"]
+    curve.peaks["u"] = curve.peaks["u"]._replace(error=np.nan)
+    top = int(np.nanargmax(curve.amplitude[:, 0]))
+    assert curve.summary()["peak"]["u"]["error_at_frequency"] == curve.error[top, 0] > 0.0

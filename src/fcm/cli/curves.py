@@ -34,6 +34,11 @@ _UNTOLD = (
     "- unknown error: with more harmonics no peak is near this one, or a higher one is elsewhere. "
     "More --harmonics, or --accuracy, may tell it"
 )
+_THERE = "~"  # beside an error at the frequency of a peak, where that of the peak is not known
+_OF_THERE = (
+    f"{_THERE} the error of the motion at that frequency. Of the peak it is unknown: with more harmonics "
+    "none is near, or a higher one is elsewhere. More --harmonics, or --accuracy, may tell it"
+)
 _OF_LEVELS = (
     "- unknown error: what more harmonics would change could not be estimated at this peak. "
     "More --harmonics may tell it"
@@ -94,10 +99,18 @@ def _peak_heads(unit: str) -> list[str]:
     return ["peak {}", f"at {unit}", "error"]
 
 
+def _error(peak: Mapping[str, Any]) -> str:
+    """That of a peak; where it is not known that of the motion at its frequency, with a mark."""
+    there = peak.get("error_at_frequency")
+    if peak.get("error") is None and there is not None:
+        return f"{short(there)}{_THERE}"
+    return short(peak.get("error"))
+
+
 def _cells_of_peak(peak: Mapping[str, Any]) -> list[str]:
     """Amplitude, frequency and error, with their marks."""
     at = number(peak.get("frequency")) + (_EDGE if peak.get("at_edge") else "")
-    return [number(peak.get("amplitude")) + _mark_of(peak), at, short(peak.get("error"))]
+    return [number(peak.get("amplitude")) + _mark_of(peak), at, _error(peak)]
 
 
 def _blades(curves: Sequence[Curve], names: list[str], unit: str, length: str) -> str:
@@ -246,7 +259,15 @@ def _curves(
     if any((one.get("error") or 0.0) > 1.0 for one in each):
         lines.append(_BEYOND)
     if any(_untold(curve, dof) for curve in curves for dof in dofs if curve.get("cause") != "interrupted"):
-        lines.append(_OF_LEVELS if "level_folds" in curves[0] else _UNTOLD)
+        there = [
+            "error_at_frequency" in curve["peak"][dof]
+            for curve in curves
+            for dof in dofs
+            if _untold(curve, dof)
+        ]
+        lines += [_OF_THERE] if any(there) else []
+        if not all(there):
+            lines.append(_OF_LEVELS if "level_folds" in curves[0] else _UNTOLD)
     return "\n".join(lines)
 
 

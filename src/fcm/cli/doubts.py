@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import isclose
 from typing import Any
 
@@ -202,8 +202,9 @@ def _not_looked_at(curve: Mapping[str, Any]) -> str:
 
 def maybe_not_unique(summary: Mapping[str, Any]) -> str:
     """Where the motion may be one of many, and how to learn of the others; empty if nowhere."""
-    followed = [*summary["curves"], *summary.get("tracked", {}).get("curves", ())]
-    untold = [curve for curve in followed if curve.get("may_not_be_unique") and not _range_told(curve)]
+    followed = [*_judged(summary), *summary.get("tracked", {}).get("curves", ())]
+    shown = shown_dofs(summary) if summary["curves"] and "peak" in summary["curves"][0] else []
+    untold = [curve for curve in followed if curve.get("may_not_be_unique") and not _range_told(curve, shown)]
     count = sum(curve["may_not_be_unique"] for curve in untold)
     if not count:
         return ""
@@ -217,24 +218,33 @@ def maybe_not_unique(summary: Mapping[str, Any]) -> str:
     return f"{_KEEPS}: at {points} the motion may be one of many. {tells}"
 
 
-def _range_told(curve: Mapping[str, Any]) -> bool:
-    """Whether it is known of every peak how far it ranges with residual friction; not of every level."""
+def _judged(summary: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """The curves that were not interrupted before that was looked for."""
+    return [curve for curve in summary["curves"] if curve.get("cause") != "interrupted"]
+
+
+def _range_told(curve: Mapping[str, Any], shown: Sequence[str]) -> bool:
+    """Whether it is known of every peak that is shown how far it ranges with residual friction; not of every
+    level."""
     if "level_folds" in curve:
         return False
-    peaks = [one for one in curve.get("peak", {}).values() if one]
+    peaks = [one for dof, one in curve.get("peak", {}).items() if one and dof in shown]
     return bool(peaks) and all(one.get("residual_change") is not None for one in peaks)
 
 
 def residual_friction(summary: Mapping[str, Any]) -> str:
     """How far the peaks range with the friction that contacts which always stick keep; empty if none do."""
-    curves = [one for one in summary["curves"] if one.get("may_not_be_unique") and _range_told(one)]
-    if not curves:
+    open_to_past = [one for one in _judged(summary) if one.get("may_not_be_unique")]
+    if not any("peak" in one for one in open_to_past):
         return ""
     shown = shown_dofs(summary)  # one that hardly moves may change by any part of that
+    curves = [one for one in open_to_past if _range_told(one, shown)]
+    if not curves:
+        return ""
     peaks = [curve["peak"].get(dof) for curve in curves for dof in shown]
     worst = max((one["residual_change"] for one in peaks if one), default=0.0)
     share = share_of(worst)
-    every = sum(bool(one.get("may_not_be_unique")) for one in summary["curves"])
+    every = len(open_to_past)
     where = (
         f"on {len(curves)} of {every} curves " if len(curves) < every else ""
     )  # of the others it is unknown

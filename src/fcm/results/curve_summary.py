@@ -57,8 +57,10 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
     if curve.undetermined:
         out["may_not_be_unique"] = curve.undetermined
     out["peak"] = {
-        dof: _peak(curve, peak, condensed, unit) | _stable_peak(peak, stays, unit)
-        for (dof, peak), stays in zip(curve.peaks.items(), condensed.stable_peaks.tolist(), strict=True)
+        dof: _peak(curve, peak, condensed, unit) | _error_there(curve, d) | _stable_peak(peak, stays, unit)
+        for d, ((dof, peak), stays) in enumerate(
+            zip(curve.peaks.items(), condensed.stable_peaks.tolist(), strict=True)
+        )
     }
     if peaks := _every_peak(out["peak"], condensed, unit):
         out["peaks"] = peaks
@@ -122,6 +124,18 @@ def _peak(curve: Curve, peak: Peak, condensed: CondensedCurve, unit: str) -> dic
         "at_edge": bool(at_edge),
         "residual_change": peak.residual,
     }
+
+
+def _error_there(curve: Curve, d: int) -> dict[str, float]:
+    """The error of the motion at the frequency of the peak, where that of the peak is not known; if it is.
+
+    More harmonics may have their own peak elsewhere, or a higher one.
+    """
+    column = curve.amplitude[:, d]
+    if not np.isnan(list(curve.peaks.values())[d].error) or not np.isfinite(column).any():
+        return {}
+    error = float(curve.error[int(np.nanargmax(column)), d])
+    return {"error_at_frequency": error} if np.isfinite(error) and curve.level is None else {}
 
 
 def _every_peak(
