@@ -20,7 +20,8 @@ def _none() -> FloatArray:
 class Interface:
     """The pairs of a contact: coordinates of both nodes (pair, 3), and of those without a partner.
 
-    sets: names of the two sides; one where they touch the ground, none of a file of pairs.
+    sets: names of the two sides; one where they touch the ground, none of a file of pairs. nodes: of each
+    pair, one where it touches the ground.
     """
 
     name: str
@@ -30,3 +31,4 @@ class Interface:
     alone: FloatArray = field(default_factory=_none)
     other_alone: FloatArray = field(default_factory=_none)
     plane: Plane | None = None
+    nodes: tuple[tuple[str, ...], ...] = ()

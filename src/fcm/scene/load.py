@@ -50,6 +50,7 @@ from fcm.scene.parts import (
 )
 from fcm.scene.plane import check_plane, notes_of_planes
 from fcm.scene.questionable_values import questions
+from fcm.scene.rigid_places import notes_of_places
 from fcm.scene.schedule import note_of_start, read_schedule, read_start, with_schedule
 from fcm.scene.section import Parts, Section
 from fcm.scene.shared_normal import note_of_shared_normals, notes_of_slopes
@@ -304,6 +305,8 @@ def _parts(
         parts, notes = without_rounding(with_base(parts), ends, unit)
         notes = [*modal["notes"], *notes]
     notes = [*notes, *notes_of_shares(parts["contact"])]
+    if not cyclic:
+        notes += notes_of_places(parts["modal"], files.interfaces)
     if top.mistakes.count:
         return parts, (), (), []
     asked = response is not None and "output" in response.data

@@ -81,7 +81,7 @@ def _of_floating(ratio: float, rigid: int) -> list[str]:
         return []
     return [
         "structure: its damping ratio is of modes without contacts, and rigid-body modes have none. Where "
-        f"contacts hold these, a resonance has less: see the ratios with all stuck. {_AT_ONE}, with "
+        f"contacts hold these, a resonance has less: see its ratio while stuck. {_AT_ONE}, with "
         "LOSS_FACTOR twice the ratio"
     ]
 

@@ -111,6 +111,7 @@ class ToleranceOptions:
     square: float = 1e-6  # cosine of the angle between two directions at right angles, at most
     # of lengths of directions, and cosine of the angle between them: so far are weights of three digits off
     written: float = 2e-3
+    placed: float = 0.05  # of the motion of rigid bodies: so far their nodes may be from where a file says
     undamped: float = 1e-12  # of a frequency without damping: rounding that nobody would notice
     equal_frequency: float = 1e-6  # of frequencies that are one
     rotated: float = 1e-8  # of ring shapes that are real but for a factor: what is left of the imaginary part

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
+from dataclasses import replace
 from functools import partial
 from math import nan
 from typing import Any
@@ -78,7 +79,7 @@ def _contacts(section: Section, dofs: Dofs, files: Files) -> list[dict[str, Any]
     check_axes(section, directions)
     files.noted.extend(table.said)
     if table.interface is not None:
-        files.interfaces.append(table.interface)
+        files.interfaces.append(replace(table.interface, nodes=tuple(table.pairs)))
     return [
         {key: values[i] for key, values in numbers.items()}
         | {"name": f"{name}_{i + 1}", "group": name, "share": parts[i], TOTAL: totals, "sum": totals}
