@@ -16,9 +16,11 @@ from fcm.continuation.all_branches import contains
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.modal_condensation import CONDENSATION
 from fcm.harmonic_balance.options import HARMONIC_BALANCE, HarmonicBalanceOptions, WorkOptions
+from fcm.harmonic_balance.reported_quantities import reported_quantities
 from fcm.harmonic_balance.system import System
 from fcm.response.accuracy_shortfall import shortfall
 
+from ..harmonic_balance.strips import planar_strip
 from ..harmonic_balance.truth import scene
 
 
@@ -268,3 +270,11 @@ def test_the_highest_of_more_harmonics_are_left_out_where_they_take_too_long():
         assert found.limited_harmonics(found.seconds_with(every[:count]), every) == every[:count]
     assert found.limited_harmonics(0.0, every) == (1, 2, 3)
     assert found.limited_harmonics(0.0, (1, 2)) == (1, 2)
+
+
+def test_what_is_shown_of_few_points_is_that_of_all():
+    whole = unchecked_response(System(planar_strip(frequency=(1.0, 1.1)), (1,)))
+    few = whole.thinned(12)
+    (path,), (kept,) = few.traced.branches.paths, few.shown
+    assert len(path.z) < len(whole.traced.branches.paths[0].z)
+    np.testing.assert_array_equal(kept.amplitude, reported_quantities(few.system, path).amplitude)

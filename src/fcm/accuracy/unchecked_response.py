@@ -89,9 +89,14 @@ class UncheckedResponse:
         paths = self.traced.branches.paths
         if points_of(self) <= most and len(self.shown) == len(paths):
             return self
-        few = [path.part(rows) for path, rows in zip(paths, self._rows(most), strict=True)]
+        rows = self._rows(most)
+        few = [path.part(some) for path, some in zip(paths, rows, strict=True)]
+        if len(self.shown) == len(paths):
+            shown = tuple(one.part(some) for one, some in zip(self.shown, rows, strict=True))
+        else:
+            shown = _shown(self.system, few)
         response = replace(self.traced, branches=replace(self.traced.branches, paths=tuple(few)))
-        return UncheckedResponse(self.system, response, _shown(self.system, few), self.seconds)
+        return UncheckedResponse(self.system, response, shown, self.seconds)
 
     def of_thinned(self, values: Sequence[FloatArray], most: int) -> list[FloatArray]:
         """Values (path, point) of the points that it has when it is thinned to about so many."""

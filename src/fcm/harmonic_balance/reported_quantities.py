@@ -32,7 +32,7 @@ class ReportedQuantities:
         rows = zip(vars(self).values(), vars(other).values(), strict=True)
         return ReportedQuantities(*(np.insert(mine, after + 1, its, axis=0) for mine, its in rows))
 
-    def part(self, rows: slice) -> ReportedQuantities:
+    def part(self, rows: slice | npt.NDArray[np.intp]) -> ReportedQuantities:
         """Of some points."""
         return ReportedQuantities(*(mine[rows] for mine in vars(self).values()))
 
