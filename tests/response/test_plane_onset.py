@@ -89,6 +89,13 @@ def test_more_harmonics_begin_beside_a_corner_that_they_share() -> None:
     assert curve.complete, curve.reason
 
 
+def test_more_harmonics_begin_beside_a_fold_that_they_share() -> None:
+    """All three degrees of freedom have a peak at the fold."""
+    scene = replace(random_plane(321, contacts=1), harmonics=None)
+    curve = trace(scene, method="closed-form", accuracy=3e-3).curves[0]
+    assert curve.complete, curve.reason
+
+
 def test_the_corner_behind_is_not_gone_back_to() -> None:
     """A second disc ceases to hold the slider just beyond an onset of slip, from where the curve comes."""
     curve = trace(replace(random_plane(220), harmonics=None), method="closed-form", accuracy=1e-2).curves[0]

@@ -87,6 +87,7 @@ class ProlongationOptions:
     max_of_a_kind: int = 8  # peaks, and folds
     spaced_points: int = 9  # points along the branch
     max_change: float = 0.5  # of a solution's size: what moves further has come to another one
+    same_point: float = 1e-6  # of the greatest unknown: a point nearer to a corner or a fold is at it
     harmonics_factor: int = 3  # as many harmonics at once, where all at once lead nowhere
     tolerance: float = 1e-6  # of a displacement, from which Newton's method ends at the precision of numbers
 

@@ -121,17 +121,27 @@ def _prolongated_by_stages(
 def prolongation_points(path: Path, options: ProlongationOptions = PROLONGATION) -> list[int]:
     """The points of a path that are prolongated: its peaks, ends and folds, and some between them.
 
-    In the place of a corner a point next to it: while contacts rest the corner of more harmonics is the same,
-    and from there no branch can be begun, as it has two directions.
+    In the place of a corner or a fold, or of a peak there, a point beside it: while contacts rest that of
+    more harmonics is the same, and from there no branch can be begun at its frequency.
     """
     count = len(path.z)
     marked = [path.where(Mark.PEAK), np.array([0, count - 1]), path.where(Mark.FOLD)]
     marked.append(np.linspace(0, count - 1, min(options.spaced_points, count)).astype(np.intp))
     every = np.concatenate([_spaced(one, options.max_of_a_kind) for one in marked])
-    smooth = np.flatnonzero(path.mark & Mark.CORNER == 0)
-    if smooth.size:
-        every = smooth[np.abs(every[:, None] - smooth).argmin(axis=1)]
+    plain = _plain_points(path, options)
+    if plain.size:
+        every = plain[np.abs(every[:, None] - plain).argmin(axis=1)]
     return list(dict.fromkeys(every.tolist()))
+
+
+def _plain_points(path: Path, options: ProlongationOptions) -> npt.NDArray[np.intp]:
+    """The points that are not at a corner or a fold."""
+    special = np.flatnonzero(path.mark & (Mark.CORNER | Mark.FOLD))
+    size = np.abs(path.z[special]).max(axis=1, initial=0.0)
+    there = np.zeros(len(path.z), dtype=bool)
+    for i, one in zip(special.tolist(), size.tolist(), strict=True):
+        there |= np.abs(path.z - path.z[i]).max(axis=1) < options.same_point * one
+    return np.flatnonzero(~there)
 
 
 def _spaced(places: npt.NDArray[np.intp], most: int) -> npt.NDArray[np.intp]:
