@@ -279,7 +279,7 @@ def test_the_least_so_far_of_an_interrupted_search_is_kept(fcm, scene, wanted):
     text = scene.read_text()
     scene.write_text(text + wanted)
     options = ("--harmonics", "1", "-o", "best.nc", "--sensitivity")
-    done = fcm("respond", scene, *options, messages=Interrupting("optimum", 2))
+    done = fcm("respond", scene, *options, messages=Interrupting(": 1 response traced"))
     assert done.code == 3 and "the least so far" in done.out and "the optimum was sought for" in done.err
     assert done.err.endswith("; what was traced is reported and written\n")
     assert "what is finished is kept in best.nc.unfinished: continue with --resume" in done.err
@@ -303,15 +303,16 @@ def test_an_interrupted_search_goes_on_to_the_same_optimum(fcm, scene, wanted, m
     for module in (lowest_peak, minimax):
 
         def special(system, *others, original=module.special_points):
+            found = original(system, *others)
             traced.append(system.scene)
-            return original(system, *others)
+            return found
 
         monkeypatch.setattr(module, "special_points", special)
     options = ("--harmonics", "1", "--json")
     whole = json.loads(fcm("respond", scene, *options).out)["optimum"]
     once = len(traced)
     traced.clear()
-    stopped = fcm("respond", scene, *options, "-o", "best.nc", messages=Interrupting("optimum", 2))
+    stopped = fcm("respond", scene, *options, "-o", "best.nc", messages=Interrupting(": 1 response traced"))
     before = len(traced)
     assert stopped.code == 3 and 0 < before < once
     done = fcm("respond", scene, *options, "-o", "best.nc", "--resume")

@@ -107,3 +107,17 @@ def test_a_least_peak_that_the_response_exceeds_is_not_told_as_the_least():
     shown = as_table({"optimum": [summary], "tracked": {"what": "optimum"}}, "rad/s")
     assert "NOT THE LEAST: the response there has a higher peak.u, 5.88" in shown.splitlines()[0]
     assert summary["higher"] == {"what": "peak.u", "value": 5.88}
+
+
+def test_a_least_peak_where_nothing_stable_was_found_says_so_in_its_headline():
+    """The motion is nowhere stable between 1.9 and 2.1, so the design rests on no steady motion."""
+    found = Optimal(
+        {}, {"n": 1.0}, ("peak.u",), 0.3, (("u", 2.0),), "smooth", (1,), 1e-3, stable=(0.0,), residual=(0.0,)
+    )
+    run = {"optimum": [found.summary("rad/s")], "tracked": {"what": "optimum"}}
+    for stretch, said in (
+        ([1.9, 2.1], "0.3, at which no stable motion was found ("),
+        ([1.0, 1.2], "0.3, unstable ("),
+    ):
+        shown = as_table(run | {"curves": [{"no_stable_motion": [stretch]}]}, "rad/s")
+        assert said in shown.splitlines()[0]

@@ -243,7 +243,7 @@ def _curves(
     lost = [
         dof
         for dof in dofs
-        if any(_stability(curve, dof) and _nowhere_stable(curve, curve["peak"][dof]) for curve in curves)
+        if any(_stability(curve, dof) and nowhere_stable(curve, curve["peak"][dof]) for curve in curves)
     ]
     if lost:
         lines.append(
@@ -378,7 +378,7 @@ def _folds(folds: Sequence[float | None], hooks: int = 0) -> str:
     return ", ".join(filter(None, [ends, narrow]))
 
 
-def _nowhere_stable(curve: Curve, peak: Mapping[str, Any]) -> bool:
+def nowhere_stable(curve: Curve, peak: Mapping[str, Any]) -> bool:
     """Whether a peak lies where no stable motion was found."""
     at = peak.get("frequency")
     return at is not None and any(low <= at <= high for low, high in curve.get("no_stable_motion", ()))

@@ -18,6 +18,7 @@ from fcm.cli.columns import (
     stopped_early,
     swept,
 )
+from fcm.cli.curves import nowhere_stable
 from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages
 from fcm.cli.terminal import plain
@@ -145,14 +146,17 @@ def check_scene(scene: Scene, method: str, other: bool) -> None:
 
 def as_table(result: Mapping[str, Any], unit: str) -> str:
     """A line for each optimum, one for each tracked curve, and one for each place where a number turns."""
-    parts = [_optimum(one, unit) for one in result.get("optimum", [])]
+    optima = result.get("optimum", [])
+    there = result.get("curves", ())
+    curves = there if len(there) == len(optima) else [{}] * len(optima)  # none where it was interrupted
+    parts = [_optimum(one, curve, unit) for one, curve in zip(optima, curves, strict=True)]
     tracked = result["tracked"]
     if tracked["what"] != "optimum":
         parts += [one(tracked, unit) for one in (_curves, _turns, _unstable, _errors)]
     return "\n\n".join(filter(None, parts))
 
 
-def _optimum(one: Mapping[str, Any], unit: str) -> str:
+def _optimum(one: Mapping[str, Any], curve: Mapping[str, Any], unit: str) -> str:
     """What is least, where, and how sure that is."""
     where = ", ".join(f"{plain(key)} = {value:.6g}" for key, value in one["values"].items())
     swept = ", ".join(f"{plain(key)} = {value:g}" for key, value in one["parameters"].items())
@@ -172,7 +176,7 @@ def _optimum(one: Mapping[str, Any], unit: str) -> str:
     )
     said = "".join(text for mark, text in _SAID.items() if mark in map(_mark, one["at"]))
     least = (
-        f"least {' and '.join(map(plain, one['minimise']))}: {one['value']:.6g}{_stays(one)} "
+        f"least {' and '.join(map(plain, one['minimise']))}: {one['value']:.6g}{_stays(one, curve)} "
         f"({_error(one)}{_ranges(one)})"
     )
     return f"{least} with {where}{kind}{_flat(one)}{_higher(one)}\n{at}{f'; {swept}' if swept else ''}{said}"
@@ -198,9 +202,15 @@ def _flat(one: Mapping[str, Any]) -> str:
     return f"; it does not depend on {', nor on '.join(found)}" if found else ""
 
 
-def _stays(one: Mapping[str, Any]) -> str:
-    """What is said beside the least peak where no motion stays at it, or that is not told."""
+def _stays(one: Mapping[str, Any], curve: Mapping[str, Any]) -> str:
+    """What is said beside the least peak where no motion stays at it, or that is not told.
+
+    curve: the response there.
+    """
     found = [place["stable"] for place in one["at"]]
+    lost = [place for place in one["at"] if place["stable"] is not True and nowhere_stable(curve, place)]
+    if lost:
+        return ", at which no stable motion was found"
     return ", unstable" if False in found else ", stability unknown" if None in found else ""
 
 

@@ -130,8 +130,8 @@ class _Moving:
         """Show it; called now and then by the work."""
         work = self._seconds() - self.begin
         ahead = (1.0 - self.share) * work / (work + self.usual) / 2.0
-        found = getattr(self.task.seeking, "visited_values", None)
-        traced = f": {counted(len(found), 'response')} traced" if found else ""
+        count = 0 if self.task.seeking is None else self.task.seeking.responses
+        traced = f": {counted(count, 'response')} traced" if count else ""
         self.progress(self.share + ahead, f"{self.text}{traced}")
 
     def _seconds(self) -> float:

@@ -162,6 +162,11 @@ class LowestPeakSearch:
         s = min(peaks, key=lambda value: peaks[value].value)
         return self.line.values(s), EnvelopeMinimum(s, peaks[s].value, (peaks[s],), INCOMPLETE)
 
+    @property
+    def responses(self) -> int:
+        """How many were traced until now."""
+        return len(self.visited_values)
+
     def visit(self, value: float) -> float:
         """Trace the response at a value; follow what is high and not known; the greatest of it."""
         self.visited.add(value)

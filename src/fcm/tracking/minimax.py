@@ -57,6 +57,8 @@ class LeftRangeError(Exception):
 class PeakEnvelope:
     """Peaks at numbers q (number,), scaled to 0 and 1 at their bounds."""
 
+    responses = 0  # that were traced until now
+
     def __init__(
         self,
         system: System,
@@ -107,6 +109,7 @@ class PeakEnvelope:
         """The greatest of the response at q, infinite where nothing has a peak; and all that counts there."""
         heights = [(self.height(member, q)[0], member) for member in self.peaks(q)]
         value, top = max(heights, key=lambda one: one[0], default=(np.inf, None))
+        self.responses += 1
         if top is not None and (self.lowest is None or value < self.lowest[1]):
             self.lowest = q, value, top
         return value, [member for _, member in heights]
