@@ -131,8 +131,8 @@ def _error_there(curve: Curve, d: int) -> dict[str, float]:
 
     More harmonics may have their own peak elsewhere, or a higher one.
     """
-    column = curve.amplitude[:, d]
-    if not np.isnan(list(curve.peaks.values())[d].error) or not np.isfinite(column).any():
+    column, peak = curve.amplitude[:, d], list(curve.peaks.values())[d]
+    if not np.isnan(peak.error) or np.isnan(peak.amplitude) or not np.isfinite(column).any():
         return {}
     error = float(curve.error[int(np.nanargmax(column)), d])
     return {"error_at_frequency": error} if np.isfinite(error) and curve.level is None else {}
