@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import scipy.linalg
 
 from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray, Force, Scene
@@ -135,14 +136,16 @@ def _stuck_stiffness(scene: Scene) -> FloatArray:
 
 
 def _damped_stuck(scene: Scene) -> tuple[FloatArray, FloatArray]:
-    """Frequencies [rad/s] and damping ratios (mode,) of elastic modes while all contacts stick.
+    """Frequencies [rad/s] and damping ratios (mode,) of the first elastic modes while all contacts stick.
 
     The ratio is phi^T C phi / (2 omega), C the damping of the modes without contacts.
     """
-    modal = scene.modal
-    squares, turn = np.linalg.eigh(_stuck_stiffness(scene))
+    modal, stiffness = scene.modal, _stuck_stiffness(scene)
+    floating = int((modal.frequency == 0.0).sum())  # contacts leave so many rigid-body modes at most
+    last = min(floating + MESSAGES.stuck_modes, len(stiffness)) - 1
+    squares, turn = scipy.linalg.eigh(stiffness, subset_by_index=[0, last])
     damping = (2.0 * modal.damping * modal.frequency) @ turn**2
-    elastic = squares > TOLERANCES.undamped * squares.max(initial=0.0)
+    elastic = squares > TOLERANCES.undamped * np.abs(stiffness).sum(axis=1).max(initial=0.0)
     omega = np.sqrt(squares[elastic])
     return omega, damping[elastic] / (2.0 * omega)
 
