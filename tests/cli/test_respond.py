@@ -54,6 +54,13 @@ def test_the_last_lines_say_what_it_cost_and_how_wrong_it_is(fcm, scene):
     assert error.startswith("largest relative error: ") and "of the table" in error
 
 
+@pytest.mark.parametrize("asked", [(), ("--method", "table")])
+def test_a_table_that_has_no_effect_is_said_where_it_is_asked_for(fcm, asked):
+    done = fcm("respond", "platform-damper", "--harmonics", "1", *asked)
+    said = [line for line in done.err.splitlines() if "the table: forces of contacts in a plane" in line]
+    assert done.code == 0 and len(said) == bool(asked)
+
+
 def test_json_is_all_of_standard_output(fcm, scene):
     done = fcm("respond", scene, "--json")
     result = json.loads(done.out, parse_constant=lambda name: pytest.fail(f"{name} is not JSON"))

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from fcm.model.scene import Scene
 
 
+_TABLE = "the table: "  # how one begins that says why there is none
 _NO_EFFECT = "(no effect)"  # how a sentence ends on what is left out, and is the same without it
 
 
@@ -78,16 +79,23 @@ def _say_rest(messages: Messages, scene: Scene, of: str) -> None:
 
 
 def close(
-    messages: Messages, result: dict[str, Any], defects: list[str], written: bool, resonant: bool
+    messages: Messages,
+    result: dict[str, Any],
+    defects: list[str],
+    written: bool,
+    resonant: bool,
+    table_wanted: bool,
 ) -> None:
     """What the run left out, cost, and how wrong it is; the exit code of one that stopped early.
 
-    That contacts change no state is said where a resonance is near the range: elsewhere it is no wonder.
+    That a table has no effect is said where the command line asks for one. That contacts change no state is
+    said where a resonance is near the range: elsewhere it is no wonder.
     """
     for text in dict.fromkeys(defects):
         messages.detail(text)
     for text in result["left_out"]:
-        say = messages.detail if text.endswith(_NO_EFFECT) else messages.info
+        wanted = table_wanted and text.startswith(_TABLE)
+        say = messages.detail if text.endswith(_NO_EFFECT) and not wanted else messages.info
         say(f"left out: {text}")
     if result["curves"]:
         messages.info(cost_and_error(result))

@@ -63,7 +63,7 @@ def respond(messages: Messages, /, scene: str, **options: Any) -> None:
                 exporting.take(response, loaded)
         response = visible(response, loaded)
         result = outputs.write(response, asked.to_json)
-    close(messages, result, response.defects, outputs.written, resonant)
+    close(messages, result, response.defects, outputs.written, resonant, _wants_table(asked))
 
 
 def _compare(messages: Messages, scene: str, asked: Asked) -> None:
@@ -106,6 +106,12 @@ def _files(asked: Asked) -> dict[str, Path | None]:
         "--export": asked.export,
         "--contact-forces": asked.contact_forces,
     }
+
+
+def _wants_table(asked: Asked) -> bool:
+    """Whether the command line says that a table is to be used."""
+    given = click.get_current_context().get_parameter_source("method")
+    return asked.table is not None or (asked.method == "table" and given is ParameterSource.COMMANDLINE)
 
 
 def _check_left_out(asked: Asked) -> None:
