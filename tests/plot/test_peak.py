@@ -178,7 +178,9 @@ def test_the_resonances_of_nonlinear_modes_are_the_peaks_of_a_sweep(tmp_path):
     told = np.array([[float(x) for x in row.split()] for row in rows[1:]])
     mine = [*found.parameters.values(), found.frequency[:, 0], found.damping, found.amplitude[:, 0]]
     assert told[:, [0, 1, 2, 3, 5]] == pytest.approx(np.transpose(mine)[there], rel=1e-3)
-    upper, _, lowest = draw_peak(found).axes
+    upper, middle, lowest = draw_peak(found).axes
+    none = f"{np.isnan(found.damping).sum()} of {found.damping.size} curves, left out"
+    assert title(middle) == f"no resonance within the amplitudes: {none}" and not there.all()
     assert "least resonance" in title(upper) and lowest.get_ylabel() == "Damping ratio (%)"
     assert upper.get_ylabel().startswith("Resonance amplitude of u")
 

@@ -260,12 +260,13 @@ def _say_scatter(axes: Axes, peaks: Peaks, column: int, known: BoolArray) -> Non
 
 
 def _say_left_out(axes: Axes, peaks: Peaks) -> None:
-    """How many curves are not complete, and not drawn."""
-    count, every = int((~peaks.complete).sum()), peaks.complete.size
-    if count:
-        axes.set_title(
-            f"NOT COMPLETE: {count} of {every} curves, left out", loc="right", fontsize=8, color=_MARK
-        )
+    """How many curves are not complete, or have no resonance, and are not drawn."""
+    out, what = ~peaks.complete, "NOT COMPLETE"
+    if peaks.damping is not None:
+        out, what = np.isnan(peaks.damping), "no resonance within the amplitudes"
+    if out.any():
+        said = f"{what}: {int(out.sum())} of {out.size} curves, left out"
+        axes.set_title(said, loc="right", fontsize=8, color=_MARK)
 
 
 def _mark_unstable(both: tuple[Axes, Axes], peaks: Peaks, key: str, column: int, known: BoolArray) -> None:
