@@ -88,8 +88,8 @@ def test_few_points_tell_where_further_harmonics_confirm_one(preload):
     """Beside every point: without preload a window where they do not lies between two where they do."""
     of, found = path(yang(preload), 1, (0.7, 1.7))
     even = found.orientation * np.sign(found.direction[:, -1]) > 0.0
-    workspace, most = Multipliers(of, 1.7), STABILITY.confirmation.max_addition
-    each = np.array([workspace.confirmation(z, most).stable == 1.0 for z in found.z]) & even
+    workspace = Multipliers(of, 1.7)
+    each = np.array([workspace.confirmation(z).stable == 1.0 for z in found.z]) & even
     assert 0.9 < each[even].mean() < 1.0
     np.testing.assert_array_equal(confirmed_stable(of, found.z, even), each)
 

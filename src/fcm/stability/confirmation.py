@@ -112,13 +112,13 @@ class ConfirmedPoints:
 
     def _look(self, i: int) -> Verdict:
         """The verdict of the motion that the one known at the frequency of a point leads to, or the point."""
-        most, z = self.options.confirmation.max_addition, self.z[i]
+        z = self.z[i]
         motion = self.motions.beside(self.system, z) if self.motions is not None and self.far[i] else None
         if self.motions is not None and motion is not None:
-            found = self.multipliers.continued(z, motion, most, self.motions.harmonics)
+            found = self.multipliers.continued(z, motion, self.motions.harmonics)
             if self.multipliers.beside is not None:
                 return found
-        return self.multipliers.confirmation(z, most)
+        return self.multipliers.confirmation(z)
 
     def _poll(self) -> None:
         """Of many contacts, as a look takes long: multipliers of few may be those of another curve then."""
@@ -153,7 +153,7 @@ class ConfirmedPoints:
         while motion is not None and (last - at) * way > 0:
             self._poll()
             ahead = at + way * min(step, abs(last - at))
-            if self.multipliers.continued(self.z[ahead], motion, options.max_addition).stable == 1.0:
+            if self.multipliers.continued(self.z[ahead], motion).stable == 1.0:
                 found[min(at + way, ahead) : max(at + way, ahead) + 1] = True
                 at, motion, step = ahead, self.multipliers.beside, 2 * step
             elif abs(ahead - at) == 1:

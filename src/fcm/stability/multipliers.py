@@ -3,7 +3,8 @@ r"""Floquet multipliers of a balanced solution, and what they say of its stabili
 The growth over a period of a small disturbance, slow or fast, is an eigenvalue of the `Monodromy` of the
 motion. Its motion is the `EnrichedMotion` one; that of the harmonics balanced alone tells how sure the
 verdict is. Where it is in doubt, as of light impacts, whose multipliers change severalfold where amplitudes
-change by a hundredth, the further harmonics are balanced too (`Rebalancing`).
+change by a hundredth, the further harmonics are balanced too (`Rebalancing`). That motion tells if those
+beyond add little to it.
 Where no contact changes its state the motion is linear, and stable. That an extreme of its limit holds a
 slider is no matter then: with a little less residual friction the slider rests, in the same motion.
 Neither is quite a periodic solution of the structure, so that a real multiplier passes +1 beside the fold of
@@ -283,10 +284,13 @@ class Multipliers:
 
     def _rebalanced(self, z: FloatArray, x: FloatArray, persistent: bool) -> Verdict | None:
         """Of the solution with the harmonics of the finer motion x balanced; None where there is none
-        near."""
+        near, or it lacks as much itself."""
         refined, judge = self._further()
         self.beside = there = refined.rebalance(z, x, persistent)
-        return None if there is None else judge.verdict(there)._replace(rebalanced=True)
+        if there is None:
+            return None
+        found = self._if_enough(judge, there)
+        return None if found is None else found._replace(rebalanced=True)
 
     def _further(self) -> tuple[Rebalancing, Multipliers]:
         """What balances the harmonics of the finer motion, and the multipliers of that."""
@@ -309,32 +313,30 @@ class Multipliers:
         found = self._rebalanced(z, np.array(self.finer.x), persistent=True)
         return found is not None and found.stable == stable
 
-    def confirmation(self, z: FloatArray, most: float) -> Verdict:
+    def confirmation(self, z: FloatArray) -> Verdict:
         """Of a solution with the further harmonics balanced, too: unknown where there is none near, or those
-        beyond them add more than the most to it, as `EnrichedMotion.shift` says it."""
+        beyond them add much to it."""
         self.finer.at(z)
         self.beside = None
         if self.finer.shift == 0.0:  # it has none
             return self.verdict(z)
-        refined, judge = self._further()
-        self.beside = there = refined.rebalance(z, np.array(self.finer.x), persistent=True)
-        return UNKNOWN if there is None else self._if_enough(judge, there, most)._replace(rebalanced=True)
+        return self._rebalanced(z, np.array(self.finer.x), persistent=True) or UNKNOWN
 
     def continued(
-        self, z: FloatArray, motion: FloatArray, most: float, harmonics: tuple[int, ...] | None = None
+        self, z: FloatArray, motion: FloatArray, harmonics: tuple[int, ...] | None = None
     ) -> Verdict:
         """The same of the motion to which another one with further harmonics leads, or with some others."""
         refined, judge = self._further()
         if harmonics is not None:
             motion = refined.system.extended(motion, harmonics)
         self.beside = there = refined.continue_to(z, motion)
-        return UNKNOWN if there is None else self._if_enough(judge, there, most)
+        return UNKNOWN if there is None else self._if_enough(judge, there) or UNKNOWN
 
-    @staticmethod
-    def _if_enough(judge: Multipliers, z: FloatArray, most: float) -> Verdict:
-        """Of a motion to which the harmonics beyond its own add no more than the most."""
+    def _if_enough(self, judge: Multipliers, z: FloatArray) -> Verdict | None:
+        """Of a motion with further harmonics; None where those beyond its own add more than the most to it,
+        so that it errs as much as what it is to confirm."""
         judge.finer.at(z)
-        return judge.verdict(z) if judge.finer.shift <= most else UNKNOWN
+        return judge.verdict(z) if judge.finer.shift <= self.options.confirmation.max_addition else None
 
     def _matrix(self, followed: VariationalProblem, omega: float) -> FloatArray | None:
         """The monodromy matrix of the motion that was looked at."""
