@@ -96,7 +96,7 @@ def test_the_run_says_one_number_beside_the_peak(tmp_path, fcm):
     done = fcm("respond", tmp_path / "model.toml", "--harmonics", "3", "--json")
     change = max(one["residual_change"] for one in json.loads(done.out)["curves"][0]["peak"].values())
     assert change > 0.1 and done.err.count("past decides") == 1
-    assert f"by at most {float(f'{100.0 * change:.2g}'):g} % of it" in done.err
+    assert f"by up to {float(f'{100.0 * change:.2g}'):g} % of it" in done.err
     table = fcm("respond", tmp_path / "model.toml", "--harmonics", "3").out
     assert "residual" in table and f"{float(f'{100.0 * change:.2g}'):g} %" in table
 

@@ -160,7 +160,8 @@ def notes_of_modes(scene: Scene) -> list[str]:
     of_stuck = f"{_listed(omega[:most] / UNIT[unit])} {unit}" if omega.size else "none"
     return [
         f"structure: first resonances with all contacts open: {of_open}; with all stuck: {of_stuck}. Their "
-        f"damping ratios while stuck: {_listed(ratio[:most], 3)}. Peaks lie between open and stuck"
+        f"damping ratios while stuck: {_listed(ratio[:most], 3)}. The main peak of a mode lies between "
+        "the two"
     ]
 
 
