@@ -289,7 +289,7 @@ def test_of_an_end_without_a_start_it_is_said_what_the_motion_does_there():
     with pytest.raises(SimulationError) as error:
         periodic(scene, omega)
     said = re.search(
-        r"last 160 lies between (\S+) and (\S+), and neither .*: it is irregular", str(error.value)
+        r"last 160 lies between (\S+) and (\S+), and neither .*\. It is irregular", str(error.value)
     )
     assert said and "settles only in some 2e+04 cycles" in str(error.value)
     later = [one.amplitude.max() for one in simulate(scene, omega, 4000).measures(last=160)]
@@ -334,7 +334,8 @@ def test_of_a_contact_too_stiff_to_follow_it_is_said_what_would_do():
     curve = curve_of(of(1e12), options=ResponseOptions(exact=ExactOptions(stiff_seconds=1e-9)))
     said = re.fullmatch(
         r"not finished in 1e-09 s of processor time, at the start; the k_u of contact wall is 1e\+12 times "
-        r"as stiff as the structure there, so .*: try (\S+), nearly rigid; half of that tells how nearly",
+        r"as stiff as the structure there, so that .*\. Try (\S+), nearly rigid; "
+        r"half of that tells how nearly",
         curve.reason,
     )
     assert said and not curve.complete and not curve.points

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import scipy.linalg
 
 from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray, Force, Scene
@@ -140,6 +139,8 @@ def _damped_stuck(scene: Scene) -> tuple[FloatArray, FloatArray]:
 
     The ratio is phi^T C phi / (2 omega), C the damping of the modes without contacts.
     """
+    import scipy.linalg  # which most runs do without
+
     modal, stiffness = scene.modal, _stuck_stiffness(scene)
     floating = int((modal.frequency == 0.0).sum())  # contacts leave so many rigid-body modes at most
     last = min(floating + MESSAGES.stuck_modes, len(stiffness)) - 1
