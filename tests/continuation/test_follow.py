@@ -293,7 +293,7 @@ def test_a_closed_loop_from_inside_the_range(step, forward):
     around = np.unwrap(np.arctan2(path.parameter - 2.0, path.z[:, 0] - 3.0))
     assert abs(around[-1] - around[0]) == pytest.approx(2.0 * np.pi, abs=1e-9)
     assert np.all(np.diff(around) * (-1.0 if forward else 1.0) > 0.0)
-    found = path.z[path.where(Mark.STATION)]
+    found = path.z[path.where(Mark.USER_POINT)]
     assert found[:, -1].tolist() == [3.0, 3.0]
     assert sorted(found[:, 0]) == pytest.approx([3.0 - np.sqrt(3.0), 3.0 + np.sqrt(3.0)], abs=1e-10)
 
@@ -301,7 +301,7 @@ def test_a_closed_loop_from_inside_the_range(step, forward):
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("forward", [True, False])
 @pytest.mark.parametrize("beside", [-1e-3, 1e-3])
-def test_a_closed_loop_ends_at_a_station_where_it_began_and_not_at_the_next_one(step, forward, beside):
+def test_a_closed_loop_ends_at_a_user_point_where_it_began_and_not_at_the_next_one(step, forward, beside):
     """The last step passes both; going around once is an angle of 2 pi."""
     begin = start(3.0 - np.sqrt(3.0), 3.0)
     path = follow(
@@ -327,13 +327,13 @@ def test_a_curve_that_is_lost_to_a_closed_one_goes_around_it_once():
 
     path = follow(Planar(joined), start(5.0, -1.0), (-1.0, 5.0), Events([3.0]), options=FollowOptions(0.05))
     assert path.status is Status.AROUND
-    passed = path.z[path.where(Mark.STATION), 0]
+    passed = path.z[path.where(Mark.USER_POINT), 0]
     high = 3.0 + np.sqrt(3.0)
     assert passed == pytest.approx([high, 3.0 - np.sqrt(3.0), high], abs=1e-10)
 
 
 def test_a_curve_that_is_lost_to_a_closed_one_ends_at_a_corner_that_it_comes_to_again():
-    """The same without a station: two corners of each round, at x = 2.5, are all that is known again."""
+    """The same without a user point: two corners of each round, at x = 2.5, are all that is known again."""
     loop = circle().f
 
     def joined(x, p):
@@ -400,21 +400,21 @@ def test_a_peak_and_a_least_value_within_one_step(step, back):
 
 
 @pytest.mark.parametrize("step", STEPS)
-def test_every_passing_of_a_station(step):
+def test_every_passing_of_a_user_point(step):
     """p = 2 on the S-shaped curve at x = -1, 0, 1."""
     path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), Events([2.0]), options=FollowOptions(step))
-    found = path.where(Mark.STATION)
+    found = path.where(Mark.USER_POINT)
     assert path.parameter[found].tolist() == [2.0] * 3
     assert path.z[found, 0] == pytest.approx([-1.0, 0.0, 1.0], abs=1e-10)
 
 
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("before", [1e-2, 1e-4, 1e-6, 1e-8])
-def test_a_station_next_to_a_fold_is_passed_twice(step, before):
+def test_a_user_point_next_to_a_fold_is_passed_twice(step, before):
     """The circle turns back at p = 4, where x = 3 -+ sqrt(4 before) about."""
     path = follow(circle(), start(1.0, 2.0), (-1.0, 5.0), Events([4.0 - before]), options=FollowOptions(step))
     assert path.status is Status.CLOSED
-    found = path.z[path.where(Mark.STATION)]
+    found = path.z[path.where(Mark.USER_POINT)]
     across = np.sqrt(4.0 - (2.0 - before) ** 2)
     assert found[:, -1].tolist() == [4.0 - before] * 2
     assert found[:, 0] == pytest.approx([3.0 - across, 3.0 + across], abs=1e-7)
@@ -991,7 +991,7 @@ def test_where_places_are_costly_each_may_interrupt_the_curve():
     assert 0 < len(stopped.value.path.z) < problem.evaluated == 20
 
 
-def test_folds_are_known_to_what_points_are_where_only_stations_matter():
+def test_folds_are_known_to_what_points_are_where_only_user_points_matter():
     """Folds at p = 4 and 0, with fewer looks than to rounding."""
     taken = []
     for hasty in (False, True):

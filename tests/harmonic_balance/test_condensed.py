@@ -169,7 +169,7 @@ def test_points_of_the_curve_balance():
     assert np.abs(newton.problem.residual).max() < 1e-12 * np.abs(newton.z).max()
 
 
-def stations(condensing, harmonics):
+def user_points(condensing, harmonics):
     system = System(strip(), harmonics, condensation=condensing)
     problem = system.new_balance()
     at = (1.0, 1.15, 1.3)
@@ -179,8 +179,8 @@ def stations(condensing, harmonics):
 
 @pytest.mark.parametrize("harmonics", [(1,), (1, 2, 3)])
 def test_few_modes_and_the_contacts_themselves_have_the_same_solutions(harmonics):
-    condensed, found = stations(CONDENSED, harmonics)
-    whole, expected = stations(WHOLE, harmonics)
+    condensed, found = user_points(CONDENSED, harmonics)
+    whole, expected = user_points(WHOLE, harmonics)
     modes, parts = 3, 1 + 2 * len(harmonics)
     assert (condensed.rank, whole.rank) == (modes * parts, 0)
     assert len(found) == 3
@@ -193,8 +193,8 @@ def test_modes_that_yield_too_much_to_be_left_out_are_taken_after_all():
     left_out = CondensationOptions(
         min_unknowns=1, max_fraction=1.0, compliance_limits=(1e9,), max_corrections=1
     )
-    problem, found = stations(left_out, (1,))
-    expected = stations(WHOLE, (1,))[1]
+    problem, found = user_points(left_out, (1,))
+    expected = user_points(WHOLE, (1,))[1]
     np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected[:, :-1]).max())
     assert problem.condensed is not None and problem.condensed.modes > 3
 

@@ -37,7 +37,7 @@ def test_a_hasty_curve_of_many_contacts_comes_to_the_same_with_less():
         one = level_curve(
             system,
             omega,
-            LevelRange((0.0, top), LEVEL_CURVE.max_step_stations, (1.0,), linear, True, True),
+            LevelRange((0.0, top), LEVEL_CURVE.max_step_user_points, (1.0,), linear, True, True),
         )
         other = level_curve(system, omega, LevelRange((0.0, top), LEVEL_CURVE.max_step, (1.0,), linear))
         there, true = (path.z[path.parameter == 1.0, :-1] for path in (one, other))

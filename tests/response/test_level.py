@@ -77,7 +77,7 @@ def test_where_the_level_is_not_followed_to_its_end_branches_are_not_said_to_be_
         over_slight_corners = level_curve(
             system,
             frequency,
-            LevelRange((0.0, end), linear=linear, stations_only=True, over_corners=True),
+            LevelRange((0.0, end), linear=linear, user_points_only=True, over_corners=True),
         )
         paths = exactly, over_slight_corners
         reached = any(path.parameter[-1] == pytest.approx(end) for path in paths)
@@ -97,7 +97,7 @@ def test_a_curve_of_levels_is_followed_where_next_to_no_force_is_left():
     path = level_curve(
         system,
         1.5,
-        LevelRange((0.0, 2.0), stations=(level,), linear=0.9 * lowest_linear_limit(system, 1.5)),
+        LevelRange((0.0, 2.0), user_values=(level,), linear=0.9 * lowest_linear_limit(system, 1.5)),
     )
     passings = path.z[path.parameter == level]
     passings[:, -1] = 1.5

@@ -180,7 +180,7 @@ class PairOptions:
     coarse_following: FollowOptions = field(
         default_factory=lambda: FollowOptions(
             0.2,
-            stations_only=True,
+            user_points_only=True,
             step=StepOptions(target_turn=0.4, target_miss=0.1, target_output_error=0.5, min_cosine=0.8),
             events=EventOptions(peak_threshold=math.inf),
         )

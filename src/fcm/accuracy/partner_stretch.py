@@ -193,7 +193,7 @@ class StretchFollower:
         if end is None:
             path = self._path(begin.z, None, span, Events(), forward)
             return PartnerPiece(path, reported_quantities(self.finer, path), False)
-        wanted = Events((float(end.z[-1]),), last=int(Mark.STATION))
+        wanted = Events((float(end.z[-1]),), last=int(Mark.USER_POINT))
         path, reached = self._path(begin.z, None, span, wanted, forward), False
         while path.status is Status.EVENT:
             reached = self._is_at(path, end)

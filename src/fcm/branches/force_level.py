@@ -196,27 +196,29 @@ def _to_level_one(system: System, omega: float) -> Path:
 
 
 def _coarse_curve(
-    system: System, omega: float, linear: float, top: float, stations: tuple[float, ...]
+    system: System, omega: float, linear: float, top: float, user_values: tuple[float, ...]
 ) -> Path:
-    """The curve of the level, by long steps if those come to its end, and to its stations; shorter ones may
-    where they do not."""
+    """The curve of the level, by long steps if those come to its end, and to its user points; shorter ones
+    may where they do not."""
     options = system.option(LEVEL_CURVE)
-    for step, over_corners in ((options.max_step_stations, True), (options.max_step, False)):
-        path = level_curve(system, omega, LevelRange((0.0, top), step, stations, linear, True, over_corners))
+    for step, over_corners in ((options.max_step_user_points, True), (options.max_step, False)):
+        path = level_curve(
+            system, omega, LevelRange((0.0, top), step, user_values, linear, True, over_corners)
+        )
         if path.status is Status.REVERSED:
             return path
-        if path.status in (Status.COMPLETE, Status.EVENT) and not _skips_station(path, stations):
+        if path.status in (Status.COMPLETE, Status.EVENT) and not _skips_user_point(path, user_values):
             return path
     for step in (options.max_step, options.stalled_fraction * options.max_step):
-        path = level_curve(system, omega, LevelRange((0.0, top), step, stations, linear))
+        path = level_curve(system, omega, LevelRange((0.0, top), step, user_values, linear))
         if path.status not in (Status.STALLED, Status.AROUND):
             break
-    return replace(path, status=Status.STALLED) if _skips_station(path, stations) else path
+    return replace(path, status=Status.STALLED) if _skips_user_point(path, user_values) else path
 
 
-def _skips_station(path: Path, stations: tuple[float, ...]) -> bool:
-    """Whether a curve leads across one of its stations without a point there."""
-    off = path.parameter - np.array(stations)[:, None]
+def _skips_user_point(path: Path, user_values: tuple[float, ...]) -> bool:
+    """Whether a curve leads across one of its user values without a point there."""
+    off = path.parameter - np.array(user_values)[:, None]
     return bool((off[:, :-1] * off[:, 1:] < 0.0).any())
 
 
@@ -250,21 +252,21 @@ class LevelRange:
         Lowest and highest level.
     step : float
         Longest step, as of `FollowOptions`.
-    stations : tuple of float
+    user_values : tuple of float
         Levels that are landed on.
     linear : float
         Level up to which the response is known to be linear.
-    stations_only : bool
-        Whether nothing but the stations matters, as of `FollowOptions`.
+    user_points_only : bool
+        Whether nothing but the user points matters, as of `FollowOptions`.
     over_corners : bool
         Whether slight corners are stepped over.
     """
 
     span: tuple[float, float]
     step: float = LEVEL_CURVE.max_step
-    stations: tuple[float, ...] = (1.0,)
+    user_values: tuple[float, ...] = (1.0,)
     linear: float = 0.0
-    stations_only: bool = False
+    user_points_only: bool = False
     over_corners: bool = False
 
 
@@ -275,7 +277,7 @@ def level_curve(system: System, omega: float, levels: LevelRange) -> Path:
     path, low = None, max(first, options.linear_levels[-1])
     whole = replace(levels, span=(low, last))
     shorter = options.reversed_fraction * levels.step
-    carefully = replace(whole, step=shorter, stations_only=False, over_corners=False)
+    carefully = replace(whole, step=shorter, user_points_only=False, over_corners=False)
     for weak in options.linear_levels:
         level = max(first, weak, levels.linear)
         for x in linear_responses(system, omega, level):
@@ -295,8 +297,8 @@ def level_curve(system: System, omega: float, levels: LevelRange) -> Path:
 def _follow_level(system: System, start: FloatArray, omega: float, levels: LevelRange) -> Path:
     level, stepper = system.level_problem
     level.begin(omega, levels.over_corners)
-    wanted = Events(levels.stations)
-    options = FollowOptions(levels.step, levels.stations_only, step=system.option(LEVEL_CURVE).step)
+    wanted = Events(levels.user_values)
+    options = FollowOptions(levels.step, levels.user_points_only, step=system.option(LEVEL_CURVE).step)
     if levels.over_corners and len(system.scene.contacts) >= system.option(LEVEL_REACH).min_contacts:
         reach = system.option(LEVEL_REACH)
         steps = replace(
@@ -309,7 +311,7 @@ def _follow_level(system: System, start: FloatArray, omega: float, levels: Level
         newton = replace(options.newton, preliminary_tolerance=reach.tolerance)
         events = replace(options.events, tolerance=reach.corner_tolerance)
         options = replace(options, step=steps, newton=newton, events=events)
-        if 1.0 in levels.stations:
+        if 1.0 in levels.user_values:
             enough = _WayBeyond(stepper.newton, seconds_of(system, 1, len(system.harmonics)), reach)
             wanted = replace(wanted, ends=(End(enough),))
     along = partial(follow, level, start, levels.span, wanted, options, stepper=stepper)

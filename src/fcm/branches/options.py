@@ -128,7 +128,7 @@ class LevelCurveOptions:
         Times the least level at which a contact is nonlinear: up to there nothing is to be followed.
     max_step : float
         Longest step,
-    max_step_stations : float
+    max_step_user_points : float
         and where the passings of the level 1 alone matter.
     stalled_fraction : float
         Part of the longest step, where a curve has stalled,
@@ -167,7 +167,7 @@ class LevelCurveOptions:
     linear_levels: tuple[float, ...] = (1e-3, 1e-6, 1e-9)
     linear_fraction: float = 0.9
     max_step: float = 0.2
-    max_step_stations: float = 1.0
+    max_step_user_points: float = 1.0
     stalled_fraction: float = 0.5
     reversed_fraction: float = 0.25
     reversal_tolerance: float = 1e-6

@@ -103,8 +103,8 @@ def traced(
             yield from found[-1].solutions
         yield from near
 
-    stations = [*levels, *(float(z[-1]) for z in near)]
-    branches = _branches_through(system, starts(), stations, progress)
+    user_values = [*levels, *(float(z[-1]) for z in near)]
+    branches = _branches_through(system, starts(), user_values, progress)
     response = Traced(branches, tuple(found), work, fewer_peaks=peaks)
     lost = response.lost_peaks(system.option(LEVEL_CURVE))
     further = [omega for omega in level_frequencies(system, lost) if omega not in levels] if lost else []
@@ -143,14 +143,14 @@ def _level_solutions(system: System, before: Traced) -> tuple[tuple[LevelSolutio
 
 
 def _branches_through(
-    system: System, starts: Iterable[FloatArray], stations: Sequence[float], progress: Progress | None
+    system: System, starts: Iterable[FloatArray], user_values: Sequence[float], progress: Progress | None
 ) -> Branches:
     """The branches through solutions, of which those outside the range do not count."""
     low, high = system.scene.frequency_range
     inside = (z for z in starts if low <= z[-1] <= high)
     following = Following(FollowOptions(system.scene.max_step), progress, _follow_shared(system))
-    places = [omega for omega in stations if low <= omega <= high]
-    found = all_branches(system.reset_balance, inside, (low, high), following, stations=places)
+    places = [omega for omega in user_values if low <= omega <= high]
+    found = all_branches(system.reset_balance, inside, (low, high), following, user_values=places)
     return _without_unsteady(system, found)
 
 

@@ -69,7 +69,7 @@ def all_branches(
     span: tuple[float, float],
     following: Following = FOLLOWING,
     known: Sequence[Path] = (),
-    stations: Sequence[float] | None = None,
+    user_values: Sequence[float] | None = None,
 ) -> Branches:
     """Follow every solution that no branch followed before contains.
 
@@ -84,7 +84,7 @@ def all_branches(
         How each is followed.
     known : sequence of Path
         Branches that were followed before, which are the first of those returned.
-    stations : sequence of float, optional
+    user_values : sequence of float, optional
         Parameters of all solutions, where these are found in turn.
 
     Raises
@@ -92,10 +92,10 @@ def all_branches(
     BranchesInterrupted
         With the branches up to there, where a `KeyboardInterrupt` comes.
     """
-    if stations is None:
+    if user_values is None:
         solutions = list(solutions)
-        stations = [float(z[-1]) for z in solutions]
-    events = Events(sorted(set(stations)))
+        user_values = [float(z[-1]) for z in solutions]
+    events = Events(sorted(set(user_values)))
     paths: list[Path] = list(known)
     lost: list[FloatArray] = []
     try:

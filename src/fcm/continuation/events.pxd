@@ -3,7 +3,7 @@ from fcm.continuation.problem cimport Point
 from fcm.continuation.step_control cimport Stepper
 
 cdef double NOT_FOUND
-cdef int MARGIN, FOLD, PEAK, STATION
+cdef int MARGIN, FOLD, PEAK, USER_POINT
 
 cdef class SignChange:
     cdef readonly double low, high, width, secant, at

@@ -168,7 +168,7 @@ class Events:
     Attributes
     ----------
     values : sequence of float
-        Each is an event, marked `Mark.STATION`, wherever the curve passes it.
+        Each is an event, marked `Mark.USER_POINT`, wherever the curve passes it.
     narrow : sequence of (float, float)
         Values with a width, at which the curve may have a peak that no point away from them tells of: steps
         end there where the width is less than the longest step.
@@ -193,7 +193,7 @@ NOT_FOUND = cython.declare(cython.double, -1.0)  # a root that is none
 MARGIN = cython.declare(cython.int, 0)  # the functions along a step
 FOLD = cython.declare(cython.int, 1)
 PEAK = cython.declare(cython.int, 2)
-STATION = cython.declare(cython.int, 3)
+USER_POINT = cython.declare(cython.int, 3)
 
 
 @cython.cclass
@@ -214,7 +214,7 @@ def value(stepper: Stepper, point: Point, function: TestFunction) -> cython.doub
             stepper.here.margin[k] if point is stepper.here else stepper.here.margin_at(k, point)
         )
         return margin if margin != 0.0 else stepper.here.margin[k]
-    if function.kind == STATION:
+    if function.kind == USER_POINT:
         return point.z[point.z.shape[0] - 1] - function.value
     return point.tangent[point.tangent.shape[0] - 1] if function.kind == FOLD else point.growth[k]
 
@@ -395,7 +395,7 @@ def events_within(stepper: Stepper, limit: float, values: list[float], greatest:
         events += located_root(stepper, FOLD, 0, limit, Mark.FOLD, looks)
     fold = events[0] if events else None
     for value in values:
-        events += station_crossings(stepper, value, fold)
+        events += user_point_crossings(stepper, value, fold)
     for k in peaks:
         if not costly or may_exceed(stepper, k, most[k]):
             events += located_root(stepper, PEAK, k, limit, Mark.PEAK, looks)
@@ -459,7 +459,7 @@ def bracketed_fold(stepper: Stepper) -> Event:
     return Event(at, Mark.FOLD, scale * z, scale * tangent, here.orientation)
 
 
-def station_crossings(stepper: Stepper, value: float, fold: Event | None) -> list[Event]:
+def user_point_crossings(stepper: Stepper, value: float, fold: Event | None) -> list[Event]:
     """Where the parameter passes a value: once on the way, or on either side of a fold.
 
     At a value next to a fold the equations have two solutions close together, either of which may be found,
@@ -470,7 +470,7 @@ def station_crossings(stepper: Stepper, value: float, fold: Event | None) -> lis
     end: float = stepper.there.z[n] - value
     if fold is not None:
         top = float(fold.z[n]) - value
-        return station_crossing(stepper, value, 0.0, fold.length, begin, top) + station_crossing(
+        return user_point_crossing(stepper, value, 0.0, fold.length, begin, top) + user_point_crossing(
             stepper, value, fold.length, stepper.step, top, end
         )
     if (
@@ -478,21 +478,21 @@ def station_crossings(stepper: Stepper, value: float, fold: Event | None) -> lis
         and stepper.find_at_parameter(value)
         and 0.0 <= stepper.length(stepper.between) <= stepper.step
     ):
-        return [event_at_point(stepper, stepper.length(stepper.between), Mark.STATION, stepper.between)]
-    return station_crossing(stepper, value, 0.0, stepper.step, begin, end)
+        return [event_at_point(stepper, stepper.length(stepper.between), Mark.USER_POINT, stepper.between)]
+    return user_point_crossing(stepper, value, 0.0, stepper.step, begin, end)
 
 
-def station_crossing(
+def user_point_crossing(
     stepper: Stepper, value: float, low: float, high: float, before: float, after: float
 ) -> list[Event]:
     """Where the parameter passes a value between two lengths, at which it is greater by before and after."""
     if not before * after < 0.0:
         return []
-    at = root(stepper, TestFunction(STATION, 0, value), low, high, before, after)
+    at = root(stepper, TestFunction(USER_POINT, 0, value), low, high, before, after)
     if at == NOT_FOUND or not stepper.find_between(at, False, False):
         return []
     stepper.between.z[stepper.problem.unknowns] = value
-    return [event_at_point(stepper, at, Mark.STATION, stepper.between)]
+    return [event_at_point(stepper, at, Mark.USER_POINT, stepper.between)]
 
 
 def first_end(stepper: Stepper, ends: Sequence[End]) -> tuple[int, float] | None:

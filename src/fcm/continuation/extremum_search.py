@@ -74,7 +74,7 @@ class ExtremumSearch:
             else events.peak_tolerance
         )
         # where only values of the parameter matter, points are known to no more than that
-        known = stepper.options.newton.preliminary_tolerance if stepper.options.stations_only else 0.0
+        known = stepper.options.newton.preliminary_tolerance if stepper.options.user_points_only else 0.0
         self.fold_tolerance = max(options.fold_tolerance, known)
         self.corner_tolerance = max(options.corner_tolerance, known)
         self.stepper, self.scale = stepper, np.array(stepper.newton.scale)

@@ -101,7 +101,7 @@ class Follower:
         self.stepper.reset(options)
         self.approach_distance = (
             options.max_step
-            if options.stations_only or problem.costly
+            if options.user_points_only or problem.costly
             else options.switching.approach_distance
         )
         self.recorder, self.ends = Recorder(self.stepper, span, events), events.ends
@@ -239,7 +239,7 @@ class Follower:
             return False
         if hidden_reversal(stepper, self.recorder.most) != 0.0:
             return False
-        return self.options.stations_only or not changes_sign(stepper) or parameter_is_even(stepper)
+        return self.options.user_points_only or not changes_sign(stepper) or parameter_is_even(stepper)
 
     @cython.cfunc
     def pass_straight_corner(self, step: cython.double, reach: cython.double) -> object:

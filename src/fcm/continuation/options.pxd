@@ -22,7 +22,7 @@ cdef class SwitchingOptions(Options):
 
 cdef class FollowOptions(Options):
     cdef readonly double max_step
-    cdef readonly bint stations_only
+    cdef readonly bint user_points_only
     cdef readonly NewtonOptions newton
     cdef readonly StepOptions step
     cdef readonly EventOptions events

@@ -425,7 +425,7 @@ class FollowOptions(Options):
     ----------
     max_step : float
         Longest step.
-    stations_only : bool
+    user_points_only : bool
         Whether only the passings of values of the parameter matter. Corners are then gone to, and left, by
         longer steps.
     newton, step, events, switching, labels : NewtonOptions, StepOptions, EventOptions, SwitchingOptions,\
@@ -440,7 +440,7 @@ class FollowOptions(Options):
     """
 
     max_step: cython.double = 0.05
-    stations_only: cython.bint = False
+    user_points_only: cython.bint = False
     newton: NewtonOptions = field(default_factory=NewtonOptions)
     step: StepOptions = field(default_factory=StepOptions)
     events: EventOptions = field(default_factory=EventOptions)

@@ -42,12 +42,12 @@ class Mark:
     FOLD = 2  # the parameter turns back
     CORNER = 4  # a margin changes sign
     PEAK = 8  # something reported is greatest there, or at a corner
-    STATION = 16  # the parameter has a value that was asked for
+    USER_POINT = 16  # the parameter has a value that was asked for, as of AUTO's UZ
     BRANCH = 32  # the orientation changes without a fold
     CROSSING = 64  # stability changes between folds
 
 
-SPECIAL = Mark.END | Mark.FOLD | Mark.PEAK | Mark.STATION | Mark.BRANCH | Mark.CROSSING
+SPECIAL = Mark.END | Mark.FOLD | Mark.PEAK | Mark.USER_POINT | Mark.BRANCH | Mark.CROSSING
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ cdef class Recorder:
     cdef double[::1] stops, most
     cdef double[::1] first, initial_direction
     cdef bint keep_events(self, double limit) except -1
-    cdef bint revisits_station(self) except -1
+    cdef bint revisits_user_point(self) except -1
     cdef bint revisits_corner(self) except -1
     cdef int add(self, long mark) except -1
     cdef int add_corner(self, Point point) except -1
@@ -40,5 +40,5 @@ cdef bint point_beyond(Stepper stepper, double length) except -1
 cdef bint close_to_prediction(Stepper stepper, double length) noexcept
 cdef bint without_sign_change(Stepper stepper, double length) except -1
 cdef bint predict_beyond(Stepper stepper, double length) except -1
-cdef bint passes_station(Stepper stepper, double[::1] stops) noexcept
+cdef bint passes_user_point(Stepper stepper, double[::1] stops) noexcept
 cdef int accept_beyond(Stepper stepper, double length, bint go) except -1

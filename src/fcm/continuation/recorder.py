@@ -33,7 +33,7 @@ else:
 
 END = cython.declare(cython.long, int(Mark.END))
 CORNER = cython.declare(cython.long, int(Mark.CORNER))
-STATION = cython.declare(cython.long, int(Mark.STATION))
+USER_POINT = cython.declare(cython.long, int(Mark.USER_POINT))
 
 
 FOLD = cython.declare(cython.long, int(Mark.FOLD))
@@ -44,8 +44,8 @@ PEAK = cython.declare(cython.long, int(Mark.PEAK))
 class Recorder:
     """Points are kept in `store`; `first` is where the curve began, `initial_direction` its direction there.
 
-    `values`, the same as `stops`, are those of the parameter that are landed on: stations, then the ends of
-    the range. `greatest`, the same as `most`, are the outputs so far.
+    `values`, the same as `stops`, are those of the parameter that are landed on: user values, then the ends
+    of the range. `greatest`, the same as `most`, are the outputs so far.
     """
 
     def __init__(self, stepper: Stepper, span: tuple[float, float], wanted: Events) -> None:
@@ -103,10 +103,10 @@ class Recorder:
             return False
         for event in events.events_within(self.stepper, limit, self.values, self.greatest):
             mark: cython.long = event.mark
-            ends: cython.bint = mark & STATION and event.z[self.n] in (self.low, self.high)
+            ends: cython.bint = mark & USER_POINT and event.z[self.n] in (self.low, self.high)
             mark = END if ends else mark
             self.store.put(event.z, event.direction, mark, event.orientation)
-            if mark & STATION and self.revisits_station():
+            if mark & USER_POINT and self.revisits_user_point():
                 self.came_around = True
             self.stopped = self.stopped or bool(mark & self.last)
             if ends or self.came_around or self.stopped:
@@ -126,8 +126,8 @@ class Recorder:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def revisits_station(self) -> cython.bint:
-        """Whether the last point, at a station, was passed before in its direction, or the curve began there,
+    def revisits_user_point(self) -> cython.bint:
+        """Whether the last point, a user point, was passed before in its direction, or the curve began there,
         with folds in between and elsewhere: a step that ends there may keep it, and the next one once more,
         and a curve may turn twice next to it."""
         store: PointStore = self.store
@@ -143,7 +143,7 @@ class Recorder:
             if not elsewhere:
                 elsewhere = not store.same(i, last, self.far)
                 continue
-            stopped: cython.bint = i == 0 or store.mark[i] & STATION
+            stopped: cython.bint = i == 0 or store.mark[i] & USER_POINT
             again: cython.bint = i < fold and stopped and store.z[i, n] == store.z[last, n]
             if again and store.direction[i, n] * rise > 0.0 and store.same(i, last, self.same):
                 return True
@@ -374,12 +374,12 @@ def cross_corner(stepper: Stepper, stops: cython.double[::1]) -> cython.bint:
     for count in range(stepper.options.switching.departure_tries):  # noqa: B007
         if point_beyond(stepper, length):
             if not stepper.problem.rooted or without_sign_change(stepper, 10.0 * length):
-                accept_beyond(stepper, length, not passes_station(stepper, stops))
+                accept_beyond(stepper, length, not passes_user_point(stepper, stops))
                 return True
             first = first or length
         length *= 10.0
     if first > 0.0 and point_beyond(stepper, first):
-        accept_beyond(stepper, first, not passes_station(stepper, stops))
+        accept_beyond(stepper, first, not passes_user_point(stepper, stops))
         return True
     predict_past_label(stepper, stepper.options.switching.departure_length)
     if not predict_beyond(stepper, stepper.options.switching.departure_length):
@@ -471,7 +471,7 @@ def predict_beyond(stepper: Stepper, length: cython.double) -> cython.bint:
 
 @cython.cfunc
 @cython.exceptval(check=False)
-def passes_station(stepper: Stepper, stops: cython.double[::1]) -> cython.bint:
+def passes_user_point(stepper: Stepper, stops: cython.double[::1]) -> cython.bint:
     """Whether a value of the parameter lies between here and where the corrector is."""
     n: cython.Py_ssize_t = stepper.here.z.shape[0] - 1
     k: cython.Py_ssize_t

@@ -57,7 +57,7 @@ class Stepper:
         self.newton.tolerance, self.max_newton_step = options.newton.tolerance, options.labels.max_newton_step
         self.predictor.min_cosine = options.step.min_cubic_cosine
         self.tolerance = (
-            options.newton.preliminary_tolerance if options.stations_only else options.newton.tolerance
+            options.newton.preliminary_tolerance if options.user_points_only else options.newton.tolerance
         )
 
     @cython.ccall
@@ -601,7 +601,7 @@ def next_step(stepper: Stepper) -> cython.double:
     growth: cython.double = options.target_turn / max(acos(min(stepper.cosine, 1.0)), 1e-9)
     growth = min(growth, sqrt(options.target_miss / max(stepper.miss, 1e-9)))
     growth = min(growth, options.target_output_error / max(output_error(stepper), 1e-9))
-    most: cython.double = options.max_factor_hasty if stepper.options.stations_only else options.max_factor
+    most: cython.double = options.max_factor_hasty if stepper.options.user_points_only else options.max_factor
     return min(
         stepper.step * min(max(options.safety * growth, options.min_factor), most), stepper.options.max_step
     )

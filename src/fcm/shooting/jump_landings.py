@@ -61,4 +61,4 @@ def _at(
     direction = np.asarray(newton.tangent) * np.asarray(newton.scale)
     if direction @ (other.z - one.z) < 0.0:
         direction = -direction
-    return recorded_point(problem, np.array(newton.z), direction, Mark.STATION)
+    return recorded_point(problem, np.array(newton.z), direction, Mark.USER_POINT)

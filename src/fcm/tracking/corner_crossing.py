@@ -29,7 +29,7 @@ class CornerCrossing:
         self.smooth = way.tracked(condition)
         self.low, self.high = way.system.scene.frequency_range
         self.turns = condition.kind in (Kind.FOLD, Kind.PEAK)
-        self.values = sorted({*way.span, *way.stations})
+        self.values = sorted({*way.span, *way.user_values})
         self.kinks, self.first = kinks(way), self.options.step.initial_step
         self.held = np.eye(self.smooth.n + 2)[-1]
         self._switch_equations(None)
@@ -296,7 +296,7 @@ class CornerCrossing:
                 return False
             spot = self._point(np.array(self.newton.z), np.array(self.newton.tangent))
             spot.z[i] = value
-            self.points.append(replace(spot, station=i == -1))
+            self.points.append(replace(spot, user_point=i == -1))
             if ending is not None:
                 return ending
         return True

@@ -57,7 +57,7 @@ def tracked_curves(
 
     An onset that comes and goes between two such values is first met by the highest peak. Interrupted, it
     returns the curves that are finished. once takes each costly step. Of the way the system, the line, the
-    span and the options count: the step is the scene's, and all values of s but the ends are stations.
+    span and the options count: the step is the scene's, and all values of s but the ends are user values.
     """
     values = sorted({*np.linspace(*way.span, way.options.curves.start_values).tolist(), *starts})
     way = TrackingRun(

@@ -71,7 +71,7 @@ def truncation_error(way: TrackingRun, track: SpecialPointCurve, i: int) -> Trun
     more = _more(here)
     if more == here.way.system.harmonics:
         return TruncationError(0.0, 0.0)
-    wider = replace(way, system=way.system.with_harmonics(more), stations=())
+    wider = replace(way, system=way.system.with_harmonics(more), user_values=())
     there = _landed(wider, condition, start, track.points[i], begin is not None)
     if there is None:
         return UNKNOWN

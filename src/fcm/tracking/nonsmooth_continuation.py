@@ -122,7 +122,7 @@ class Pieces(CornerCrossing):
         high = min([k for k in self.kinks if k > s] + [self.way.span[1]])
         ends = self._ends_of_piece()
         events = Events(
-            values=self.way.stations,
+            values=self.way.user_values,
             ends=[end.holds for end in ends],
             last=Mark.FOLD if self.way.peaks_only else 0,
         )
@@ -180,8 +180,8 @@ class Pieces(CornerCrossing):
         """Take the points of a path but the first, and go to the last."""
         at = None if self.corner is None else self.corner.at
         for z, way, mark in zip(path.z[1:], path.direction[1:], path.mark[1:].tolist(), strict=True):
-            station = z[-1] in self.values and bool(mark & (Mark.STATION | Mark.END))
-            self.points.append(TrackedPoint(z, way, at, turn=bool(mark & Mark.FOLD), station=station))
+            user_point = z[-1] in self.values and bool(mark & (Mark.USER_POINT | Mark.END))
+            self.points.append(TrackedPoint(z, way, at, turn=bool(mark & Mark.FOLD), user_point=user_point))
         self._go_to(path.z[-1], path.direction[-1])
         self.first = self.options.step.initial_step
 
@@ -199,7 +199,7 @@ class Pieces(CornerCrossing):
         if self._solve(guess, row) and self.newton.moved < self.options.step.initial_step:
             spot = self._point(np.array(self.newton.z), np.array(self.newton.tangent))
             spot.z[-2] = omega
-            self.points[-1] = replace(spot, turn=self.points[-1].turn, station=self.points[-1].station)
+            self.points[-1] = replace(spot, turn=self.points[-1].turn, user_point=self.points[-1].user_point)
         return Ending.RANGE
 
     def _overtaken(self) -> Ending:

@@ -41,7 +41,7 @@ class TrackedPoint:
     direction: FloatArray
     corner: Condition | None = None  # of the response, where that is what is special
     turn: bool = False  # the number turns back
-    station: bool = False  # the number has a value that was asked for
+    user_point: bool = False  # the number has a value that was asked for
     switch: bool = False  # a corner begins or ends to be what is special
 
 
@@ -52,7 +52,7 @@ class TrackingRun:
     system: System
     line: ParameterLine
     span: tuple[float, float]  # of s
-    stations: tuple[float, ...] = ()
+    user_values: tuple[float, ...] = ()
     step: float = 0.05  # longest
     peaks_only: bool = False  # a peak ends where it meets a trough, and the number turns back
     options: TrackingOptions = TRACKING
