@@ -5,6 +5,7 @@ usage: python -m tests.guide.reference [scene|commands|files|python ...], which 
 
 from __future__ import annotations
 
+import dataclasses
 import inspect
 import re
 import sys
@@ -148,10 +149,26 @@ def python() -> str:
 
 
 def signature(function) -> str:
-    """Its arguments, without their types."""
+    """Its arguments, without their types; of options only the class, whose fields are many."""
     given = inspect.signature(function)
-    bare = [one.replace(annotation=inspect.Parameter.empty) for one in given.parameters.values()]
+    bare = [
+        one.replace(annotation=inspect.Parameter.empty, default=Shown(one.default))
+        if dataclasses.is_dataclass(one.default)
+        else one.replace(annotation=inspect.Parameter.empty)
+        for one in given.parameters.values()
+    ]
     return str(given.replace(parameters=bare, return_annotation=inspect.Signature.empty))
+
+
+class Shown:
+    """A default of a class of options, as it is made."""
+
+    def __init__(self, options) -> None:
+        assert options == type(options)()
+        self.name = type(options).__name__
+
+    def __repr__(self) -> str:
+        return f"{self.name}()"
 
 
 PAGES = {"scene": scene, "commands": commands, "files": files, "python": python}
