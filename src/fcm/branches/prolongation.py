@@ -135,13 +135,11 @@ def prolongation_points(path: Path, options: ProlongationOptions = PROLONGATION)
 
 
 def _plain_points(path: Path, options: ProlongationOptions) -> npt.NDArray[np.intp]:
-    """The points that are not at a corner or a fold."""
+    """The points that are not at a corner or a fold, nor lie in one place with it along the path."""
+    size, change = np.abs(path.z).max(axis=1, initial=0.0), np.abs(np.diff(path.z, axis=0)).max(axis=1)
+    place = np.concatenate(([0], np.cumsum(change >= options.same_point * size[1:])))
     special = np.flatnonzero(path.mark & (Mark.CORNER | Mark.FOLD))
-    size = np.abs(path.z[special]).max(axis=1, initial=0.0)
-    there = np.zeros(len(path.z), dtype=bool)
-    for i, one in zip(special.tolist(), size.tolist(), strict=True):
-        there |= np.abs(path.z - path.z[i]).max(axis=1) < options.same_point * one
-    return np.flatnonzero(~there)
+    return np.flatnonzero(~np.isin(place, place[special]))
 
 
 def _spaced(places: npt.NDArray[np.intp], most: int) -> npt.NDArray[np.intp]:

@@ -77,9 +77,8 @@ class DofTable:
             for k, (dof, one) in enumerate(kept):
                 own = ["" if one[i] == ABSENT else one[i] for i in shown]
                 lines.append([*left, dof, *own, *(right if k == 0 else [""] * len(right))])
-        if (
-            not self.right
-        ):  # nothing that the lines of a row share: those of a degree of freedom stay together
+        if not self.right:
+            # nothing that the lines of a row share: those of a degree of freedom stay together
             order = {dof: d for d, dof in enumerate(self.dofs)}
             first = {tuple(left): k for k, (left, _, _) in reversed(list(enumerate(self.rows)))}
             count = len(self.left)
@@ -94,6 +93,7 @@ def _width(text: str) -> int:
     return max(map(len, text.splitlines()))
 
 
+NOT_COMPLETE = "NOT COMPLETE"
 BEYOND = "> 100 %"  # an error that is greater than what it is the error of
 
 
@@ -142,6 +142,12 @@ def stopped_early(stopped: int, count: int, what: str = "curve") -> str:
 def number(value: float | None) -> str:
     """Six digits, or a dash for a number that does not exist."""
     return "-" if value is None else f"{value:#.6g}"
+
+
+def not_complete(curve: Mapping[str, Any], names: Sequence[str]) -> str:
+    """The line that says of a curve that it is not complete, and why."""
+    given = ", ".join(f"{name} = {value}" for name, value in zip(names, swept(curve), strict=True))
+    return f"{given} {NOT_COMPLETE}: {curve.get('reason') or 'it stopped early'}".lstrip()
 
 
 def swept(curve: Mapping[str, Any]) -> list[str]:

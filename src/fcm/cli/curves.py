@@ -9,11 +9,13 @@ from fcm.cli.columns import (
     ABSENT,
     BEYOND,
     DOES_NOT_STAY,
+    NOT_COMPLETE,
     STABILITY_UNKNOWN,
     UNKNOWN,
     UNSTABLE,
     DofTable,
     aligned,
+    not_complete,
     number,
     ranges,
     share_of,
@@ -28,7 +30,6 @@ from fcm.rotational_dofs import MOST_DOFS, greatest_first, is_rotation, unit_of
 Curve = Mapping[str, Any]  # one of the summary's "curves"
 
 _AT_REST = "0 the degree of freedom does not move, beside rounding"
-_BROKEN = "NOT COMPLETE"
 _EDGE = "*"  # beside the frequency of a peak where the range ends
 _UNTOLD = (
     "- unknown error: with more harmonics no peak is near this one, or a higher one is elsewhere. "
@@ -69,9 +70,12 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
     parts = [_curves(summary, names, dofs, unit, length, shown)]
     parts += filter(None, [_every_peak(curves, names, dofs, unit, length)])
     parts += [_blades(curves, names, unit, length)] if "blades" in curves[0] else []
-    jumps = jump_table(curves, names, dofs, unit, resolution_of(summary))
-    others = (table(curves, names, dofs, unit) for table in (stable_table, untold_table))
-    parts += filter(None, [next(others), jumps, *others])
+    tables = [
+        stable_table(curves, names, dofs, unit),
+        jump_table(curves, names, dofs, unit, resolution_of(summary)),
+        untold_table(curves, names, dofs, unit),
+    ]
+    parts += filter(None, tables)
     parts += [_scatter(one, dofs, unit) for one in summary.get("scatter", ())]
     return "\n\n".join(parts)
 
@@ -220,13 +224,9 @@ def _curves(
         ],
     )
     lines = [table.text(last=1 + len(broken))]
-    for curve in begun:
-        if not curve["complete"]:
-            given = ", ".join(f"{name} = {value}" for name, value in zip(names, swept(curve), strict=True))
-            which = f"{given} " if len(curves) > 1 else ""
-            lines.append(f"{which}{_BROKEN}: {curve.get('reason') or 'it stopped early'}")
+    lines += [not_complete(curve, names) for curve in begun if not curve["complete"]]
     if left := len(curves) - len(begun):
-        lines.append(f"{left} more curve{'s' * (left > 1)} {_BROKEN}: {NOT_BEGUN}")
+        lines.append(f"{left} more curve{'s' * (left > 1)} {NOT_COMPLETE}: {NOT_BEGUN}")
     if any(hooks for _, hooks in folds_of.values()):
         lines.append(f"hooks: folds in pairs less than {least:.2g} {unit} apart, too near to be seen")
     if shown:
@@ -341,7 +341,7 @@ def _curve_row(
         each.append(cells)
     right = [ranges(curve["harmonics"]) if "harmonics" in curve else "-"] if balanced else []
     folds = _folds(*seen)
-    state = ([_BROKEN] if not curve["complete"] else [""]) if broken else []
+    state = ([NOT_COMPLETE] if not curve["complete"] else [""]) if broken else []
     return swept(curve), each, [*right, str(curve["points"]), f"{curve['seconds']:.3f}", folds, *state]
 
 

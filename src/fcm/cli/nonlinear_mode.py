@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.columns import BEYOND, aligned, number, ranges, short, swept
+from fcm.cli.columns import BEYOND, NOT_COMPLETE, aligned, not_complete, number, ranges, short, swept
 from fcm.cli.limits import SENTENCES
 from fcm.rotational_dofs import greatest_first, unit_of
 
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from fcm.response import Response
     from fcm.run import Execution
 
-_BROKEN = "NOT COMPLETE"
 OF_NO_USE = {  # with --mode, and why
     "method": "modes are followed by the balance",
     "table": "their forces are exact",
@@ -74,10 +73,7 @@ def as_table(summary: Mapping[str, Any], names: list[str], unit: str) -> str:
     told = [_of_dofs(summary), *(f"{what}, in {count}{of}" if of else what for what, count in unmet.items())]
     if any((curve.get("truncation_error") or 0.0) > 1.0 for curve in curves):
         told.append(f"{BEYOND} the error is more than the amplitude: give more by --harmonics")
-    broken = (curve for curve in curves if not curve["complete"])
-    told += [
-        f"{_given(curve, names)}{_BROKEN}: {curve.get('reason') or 'it stopped early'}" for curve in broken
-    ]
+    told += [not_complete(curve, names) for curve in curves if not curve["complete"]]
     lines = "\n".join([table, *filter(None, told)])
     return "\n\n".join(filter(None, [lines, _in_resonance(summary, names, unit)]))
 
@@ -90,7 +86,7 @@ def _lines(summary: Mapping[str, Any], names: list[str], unit: str, cost: list[s
     rows = []
     for curve in summary["curves"]:
         mode = curve.get("mode")
-        state = [_BROKEN if not curve["complete"] else ""] if broken else []
+        state = [NOT_COMPLETE if not curve["complete"] else ""] if broken else []
         if mode is None:
             rows.append([*swept(curve), *["-"] * (len(header) - len(names) - len(broken)), *state])
             continue
@@ -113,11 +109,6 @@ def _lines(summary: Mapping[str, Any], names: list[str], unit: str, cost: list[s
             ]
         )
     return aligned([header, *rows], left=1 + len(broken))
-
-
-def _given(curve: Mapping[str, Any], names: list[str]) -> str:
-    """The numbers that a curve of several is for."""
-    return "".join(f"{name} = {value} " for name, value in zip(names, swept(curve), strict=True))
 
 
 def outside_range(summary: Mapping[str, Any]) -> str:
