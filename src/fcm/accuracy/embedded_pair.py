@@ -19,11 +19,11 @@ import numpy.typing as npt
 
 from fcm.accuracy.budget import Budget
 from fcm.accuracy.contact_load_errors import contact_load_errors, relative
-from fcm.accuracy.crossings import with_crossings
 from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.partner import partner_of
 from fcm.accuracy.partner_branches import affordable_partner, further_partner_pieces
 from fcm.accuracy.partner_curve import FollowedStretch, Indices, PartnerCurve
+from fcm.accuracy.partner_errors import with_partner_errors
 from fcm.accuracy.partner_pieces import CurvePiece, ReportedPath, distinct, lengths, nearest, piece_of
 from fcm.accuracy.peaks import heights, rise_between_points
 from fcm.continuation import Mark, Path
@@ -142,7 +142,7 @@ def errors_along(
     shift = partner.shifts(compared, followed)
     contact_loads, greatest = contact_load_errors(partner, compared, shift, followed, folds)
     shift = shift[:, :dofs]
-    error = with_crossings(partner, shift, _of_points(partner, shift, change))
+    error = with_partner_errors(partner, _of_points(partner, shift, change))
     error[folds] = np.nan  # the partner has two amplitudes at that frequency, or none
     unit = partner.unit
     inside = (tops > 0) & (tops < len(path.z) - 1)

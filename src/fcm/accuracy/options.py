@@ -105,16 +105,17 @@ class PairOptions:
     partner_error : float
         Part of a displacement, by which the partner itself is off: no error at a point is told to be less.
     second_factor : int
-        Times the partner's harmonics those of its own partner are, which is looked for where amplitudes of
-        curve and partner cross,
+        Times the partner's harmonics those of its own partner are, which is looked for at peaks and where the
+        partner is not to be believed,
     second_named : int
         with so many more that the spectrum names,
     max_second_unknowns : int
         and with no more unknowns than this,
-    max_crossings, min_hidden : int, float
-        at so many places at most, those of the crossings that hide most, and at least this;
-    crossing_spacing : int
-        points apart, up to which they are one place.
+    feedback_factor : float
+        Times what harmonics do without feedback, what they do: where that of those that the partner lacks is
+        more than the error that it tells, what it is off by itself is looked for,
+    max_spectra, max_doubts : int
+        at so many points of a curve at most, of so many at which the harmonics that it lacks are known.
     peak_offsets : tuple of int
         Points to either side of a top where it is looked for, too, if it is not at the top.
     rival_fraction : float
@@ -193,9 +194,9 @@ class PairOptions:
     second_factor: int = 2
     second_named: int = 8
     max_second_unknowns: int = 480
-    max_crossings: int = 12
-    min_hidden: float = 1e-4
-    crossing_spacing: int = 4
+    feedback_factor: float = 3.0
+    max_spectra: int = 16
+    max_doubts: int = 4
     peak_offsets: tuple[int, ...] = (1, 2, 4, 8)
     rival_fraction: float = 0.8
     residual_factor: float = 1.5

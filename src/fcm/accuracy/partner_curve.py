@@ -208,6 +208,31 @@ class PartnerCurve:
             self.change, self.theirs, self.known.view(np.uint8), self.failed,
         )  # fmt: skip
 
+    @cached_property
+    def _further(self) -> FurtherHarmonics:
+        """What it lacks."""
+        return FurtherHarmonics(self.stretches.finer)
+
+    @property
+    def is_found(self) -> Mask:
+        """Points (point,) that are moved to the partner, where contacts slip or separate."""
+        found: Mask = self.known & ~self.linear & np.isfinite(self.change).all(axis=1)
+        return found
+
+    def left_out(self, points: Indices) -> FloatArray:
+        """What the harmonics that it lacks would do without feedback, all together, at points that are
+        found (place,): relative, of the degree of freedom to which each matters most."""
+        amplitude = self.amplitude[points] + self.unit[points] * self.change[points, 1:]
+        shares = self._further.shares(self.theirs[points], amplitude)
+        total: FloatArray = shares.sum(axis=1)
+        return total
+
+    @property
+    def may_have_second(self) -> bool:
+        """Whether a partner of its own is not too dear already with no more harmonics than it has."""
+        finer = self.stretches.finer
+        return 2 * finer.layout.ports * len(finer.harmonics) <= self.options.max_second_unknowns
+
     def own_error(self, i: int) -> FloatArray | None:
         """By how much (dof,) a partner of its own differs from it, in the unit of the curve, at the frequency
         to which a point is displaced; None where either has no motion there."""
@@ -282,7 +307,7 @@ class PartnerCurve:
         if self.is_costly:
             return None
         if self.second is None:
-            share = FurtherHarmonics(finer).shares(z[None], amplitude[None])[0]
+            share = self._further.shares(z[None], amplitude[None])[0]
             more = partner_of(finer.harmonics, share, finer.layout.ports, options.of_second)
             unknowns = 2 * finer.layout.ports * len(more)  # besides the means
             self.is_costly = more == finer.harmonics or unknowns > options.max_second_unknowns
