@@ -397,3 +397,20 @@ def test_a_slider_that_a_period_moves_from_one_side_of_its_place_far_to_the_othe
             w_x, w_y = a - back * d_x, b - back * d_y
             rests.append((w_x, w_y))
     assert np.mean(rests[-2000:], axis=0) == pytest.approx(place, abs=1e-5)
+
+
+@pytest.mark.parametrize("n_0", [-1.0, 0.5, 4.0])
+def test_friction_far_smaller_than_the_motion_points_along_the_velocity(n_0):
+    """f = mu n u' / |u'|, whose coefficients are those of a sum over a period."""
+    rng, mu, k_v = np.random.default_rng(12), 1e-12, 1.0
+    h, theta = np.arange(4), 2.0 * np.pi * np.arange(1 << 18) / (1 << 18)
+    turning = np.exp(1j * np.outer(h, theta))
+    for _ in range(10):
+        u_x, u_y, v = (rng.normal(size=(3, 4)) + 1j * rng.normal(size=(3, 4))) / np.maximum(h, 1) ** 2
+        velocity = (1j * h * np.array([u_x, u_y]) @ turning).real
+        load = np.maximum(n_0 + k_v * (np.append(v[0].real, v[1:]) @ turning).real, 0.0)
+        force = mu * load * velocity / np.hypot(*velocity)
+        expected = np.array([*force, load]) @ turning.conj().T * np.where(h > 0, 2.0, 1.0) / theta.size
+        *friction, normal = planar_forces(u_x, u_y, v, mu, 1.0, k_v, n_0)
+        np.testing.assert_allclose(friction, expected[:2], rtol=0, atol=1e-9 * mu * max(load.max(), 1.0))
+        np.testing.assert_allclose(normal, expected[2], rtol=0, atol=1e-9 * max(load.max(), 1.0))
