@@ -25,7 +25,7 @@ from fcm.harmonic_balance.system import System
 from fcm.scene.options import LIMITS
 from fcm.stability.along_branch import EITHER
 from fcm.stability.floquet import multipliers_of
-from fcm.stability.inserted_points import Crossing
+from fcm.stability.inserted_points import MultiplierCrossing
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class StabilityLimit:
 
 
 def stability_limits(
-    system: System, path: Path, crossings: Sequence[Crossing], accuracy: float = 0.0
+    system: System, path: Path, crossings: Sequence[MultiplierCrossing], accuracy: float = 0.0
 ) -> list[StabilityLimit]:
     """Errors of the crossings of a path, which may be as large as accuracy."""
     known: dict[tuple[int, ...], _PartnerGrowth] = {}
@@ -68,7 +68,11 @@ def _moved(
 
 
 def _lost(
-    system: System, path: Path, one: Crossing, accuracy: float, known: dict[tuple[int, ...], _PartnerGrowth]
+    system: System,
+    path: Path,
+    one: MultiplierCrossing,
+    accuracy: float,
+    known: dict[tuple[int, ...], _PartnerGrowth],
 ) -> StabilityLimit:
     """Of one; known are the curves of more harmonics that others have been looked for on."""
     z, direction = one.z[None], one.direction[None]
@@ -116,7 +120,7 @@ class _PartnerGrowth:
         growth = self.multipliers.verdict(z).growth if math.isnan(alone) else alone
         return max(growth, STABILITY_LIMITS.min_growth)
 
-    def crossing(self, one: Crossing, fine: float) -> float:
+    def crossing(self, one: MultiplierCrossing, fine: float) -> float:
         """The frequency at which growth changes its sign next to a crossing; NaN where that is not found.
 
         To within `StabilityLimitOptions.tolerance`, or until two looks are at frequencies that differ by

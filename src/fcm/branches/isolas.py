@@ -28,7 +28,7 @@ from fcm.model.scene import FloatArray
 
 
 @dataclass(frozen=True)
-class Crossings:
+class LevelOneCrossings:
     """Solutions (unknown + 1,) beside the folds at the level 1 that curves of folds come to; and the
     frequencies [rad/s] from where folds were not followed as far as they are looked at, so that others may be
     missing."""
@@ -39,7 +39,7 @@ class Crossings:
 
 def level_one_crossings(
     system: System, found: Sequence[LevelSolutions], paths: tuple[Path, ...]
-) -> Crossings:
+) -> LevelOneCrossings:
     """Those that lie on none of some paths.
 
     Parameters
@@ -64,7 +64,7 @@ def level_one_crossings(
                         solutions.append(z)
     except WorkLimitError:
         pass  # the folds from where none was followed are left
-    return Crossings(tuple(solutions), tuple(dict.fromkeys(curves.uncertain)))
+    return LevelOneCrossings(tuple(solutions), tuple(dict.fromkeys(curves.uncertain)))
 
 
 class _Curves:

@@ -8,7 +8,7 @@ cdef class SlipLimits:
     cdef double stuck_force(self) noexcept nogil
     cdef void _limits(self, double phi) noexcept nogil
 
-cdef class Cycle(SlipLimits):
+cdef class HarmonicCycle(SlipLimits):
     cdef bint opens
     cdef double theta_1, closing_rate, first_sin, first_cos, pull
     # the span that it is at
@@ -33,7 +33,7 @@ cdef double angle_from(double sin_0, double cos_0, double sin_1, double cos_1) n
 cdef double beyond_sine(double y, double sine) noexcept nogil
 cdef (double, double, double) arc(double y) noexcept nogil
 
-cdef class Sequence(Cycle):
+cdef class Sequence(HarmonicCycle):
     cdef int count
     cdef double min_change, last_slip, state, since
     cdef double[:, ::1] regions
@@ -57,7 +57,7 @@ cdef class CoefficientLaw:
         Py_ssize_t numbers,
     ) noexcept
 
-cdef class Integrals(Cycle):
+cdef class Integrals(HarmonicCycle):
     cdef bint light, gradient
     cdef double light_load
     cdef double F_b, F_s, F_c

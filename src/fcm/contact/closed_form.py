@@ -14,7 +14,8 @@ slip is the upper limit pushing w down, and ends at theta_N. Between consecutive
 the whole of sections 3.2.1 to 3.2.4 is one clip, ``w_end = max(lower, min(w_start, upper))``, and at most one
 slip, which lasts until the end of that *span*. A cycle has at most three spans: those ended by theta_P, by
 theta_N, and by the separation (or by theta_N again when the contact never opens). Nothing has to be searched
-for, and a rounding error can shift an event but never choose a wrong sequence by more than that (`Cycle`).
+for, and a rounding error can shift an event but never choose a wrong sequence by more than that
+(`HarmonicCycle`).
 
 The states of the cycle, as a word and with the angles at which they begin, are a `Sequence`.
 
@@ -132,7 +133,7 @@ def angle_from(sin_0: float, cos_0: float, sin_1: float, cos_1: float) -> float:
 
 
 @cython.cclass
-class Cycle(SlipLimits):
+class HarmonicCycle(SlipLimits):
     """Goes through the cycle of a contact, span by span; what is made of the spans is for subclasses to say.
 
     Of the cycle: ``theta_1`` is half the contact duration [rad], pi where the contact never opens, and
@@ -298,7 +299,7 @@ MOST = cython.declare(cython.int, 7)  # states of a cycle, and one more
 
 
 @cython.cclass
-class Sequence(Cycle):
+class Sequence(HarmonicCycle):
     """The regions of a cycle that float64 can tell from none, and those without which the others cannot be.
 
     Between opposite slips there is always a stick, however short. A stick after a slip ends in the opposite
@@ -444,7 +445,7 @@ class CoefficientLaw:
 
 @cython.final
 @cython.cclass
-class Integrals(Cycle):
+class Integrals(HarmonicCycle):
     """Twelve numbers of one contact; pi times the integrals while they are summed over the spans.
 
     ``b_n`` is the derivative of F_b by n0_bar, ``c_phi`` that of F_c by phi. ``kept_n``, ``kept_b``,

@@ -23,14 +23,14 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.along_branch import PathVerdicts
 from fcm.stability.bifurcation_functions import predicted_minimum
-from fcm.stability.inserted_points import Crossing, InsertedPoint, with_points
+from fcm.stability.inserted_points import InsertedPoint, MultiplierCrossing, with_points
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.spaced_points import SpacedPoints
 from fcm.stability.verdict import Bifurcation, flip_function, growth_is_linear
 
 IntArray = npt.NDArray[np.intp]
 
-__all__ = ["Bifurcation", "Crossing", "InsertedPoint", "Stability", "stability", "with_points"]
+__all__ = ["Bifurcation", "InsertedPoint", "MultiplierCrossing", "Stability", "stability", "with_points"]
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Stability:
     """stable (point,): 1 where small disturbances die out, 0 where one grows, nan where it cannot be told."""
 
     stable: FloatArray
-    crossings: tuple[Crossing, ...]
+    crossings: tuple[MultiplierCrossing, ...]
     evaluations: int  # of multipliers
     inside: tuple[InsertedPoint, ...] = ()  # of windows between two points
 
@@ -87,7 +87,7 @@ class _BifurcationSearch:
     def run(self, beyond: npt.NDArray[np.bool_]) -> Stability:
         even = self._is_even()
         stable = np.where(even & beyond, np.nan, 0.0)
-        crossings: list[Crossing] = []
+        crossings: list[MultiplierCrossing] = []
         for first, end in runs(even & ~beyond):
             last = end - 1
             self._judge(first, last)
@@ -231,7 +231,7 @@ class _BifurcationSearch:
             return False
         return not (one.passive and other.passive)
 
-    def _crossings(self, places: list[float]) -> Iterator[Crossing]:
+    def _crossings(self, places: list[float]) -> Iterator[MultiplierCrossing]:
         """Where the growth changes sign between places that are told, and what is not told between them."""
         known = [t for t in places if not math.isnan(self.verdicts[t].growth)]
         if len({self.verdicts.grows(t) for t in known}) < 2:
@@ -252,7 +252,7 @@ class _BifurcationSearch:
                 return
             yield i
 
-    def _crossing(self, a: float, b: float) -> Crossing | None:
+    def _crossing(self, a: float, b: float) -> MultiplierCrossing | None:
         """Where the growth changes sign between two places."""
         first, found, enough = int(a), None, self.verdicts.sufficient(a, b)
         curve = self.verdicts.curve(first)
@@ -276,7 +276,7 @@ class _BifurcationSearch:
             growth = max(verdict.growth, self.options.sampling.sufficient_decay)
             now = flip_function(verdict.values) if by_flip else growth
             kind = verdict.kind if growth > 0.0 else kind
-            found = Crossing(first + at, curve.z, curve.direction, curve.orientation, kind=kind)
+            found = MultiplierCrossing(first + at, curve.z, curve.direction, curve.orientation, kind=kind)
             if abs(growth) < self.options.sampling.growth_tolerance:
                 break
             sides.update(at, now)

@@ -1,4 +1,4 @@
-from fcm.contact.periodic.cycle cimport Cycle
+from fcm.contact.periodic.cycle cimport LineCycle
 from fcm.contact.periodic.motion cimport Motion
 from fcm.contact.plane.forces cimport PlanarContact
 
@@ -15,7 +15,7 @@ cdef class StateSequence:
 
 cdef class BalancedSequence(StateSequence):
     cdef readonly Motion motion
-    cdef readonly Cycle cycle
+    cdef readonly LineCycle cycle
     cdef readonly int width, moving, held
     cdef public bint yielding
     cdef readonly double[:, ::1] contact

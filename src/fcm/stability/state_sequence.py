@@ -45,7 +45,7 @@ class StateSequence:
     Attributes
     ----------
     angle, whose, into : (event,)
-        When, which contact, and into which state: those of a `Cycle`, or FREE.
+        When, which contact, and into which state: those of a `LineCycle`, or FREE.
     along : (event,)
         Where a slider comes to rest, its place varies as k_u u + along mu k_v v.
     state, remembers : (contact,)

@@ -1,9 +1,9 @@
-from fcm.contact.periodic.motion cimport Crossings, Events
+from fcm.contact.periodic.motion cimport ZeroCrossings, Events
 
 cdef int STICK, POSITIVE, NEGATIVE, SEPARATION, STUCK
 
 cdef class Slider(Events):
-    cdef readonly Crossings crossings
+    cdef readonly ZeroCrossings crossings
     cdef readonly int pieces
     cdef readonly int[::1] state, event, cause
     cdef readonly double[::1] begin, rest
@@ -16,7 +16,7 @@ cdef class Slider(Events):
     cdef void slip(self, int side, int end, double theta) noexcept nogil
     cdef double slip_begin(self, int side, int end, double theta) noexcept nogil
 
-cdef class Cycle(Slider):
+cdef class LineCycle(Slider):
     cdef readonly double overlap, greatest_lower, least_upper
     cdef readonly int behaviour, kind
     cdef readonly double start

@@ -8,8 +8,8 @@ slider and let go again. So the law there is one clip,
 
 and at most one slip, which lasts until the end of the span (`Slider`). While the contact is open, w follows
 u. The steady cycle is known from its start on: at a closing w = u; without one, the greatest top pins w if it
-is above the least bottom, and else w never moves (`Cycle`). A rounding error can shift an event, but never
-choose a wrong sequence by more than that error.
+is above the least bottom, and else w never moves (`LineCycle`). A rounding error can shift an event, but
+never choose a wrong sequence by more than that error.
 """
 
 from __future__ import annotations
@@ -36,9 +36,9 @@ if cython.compiled:
         UNKNOWN,
         UPPER,
         UPPER_RATE,
-        Crossings,
         Events,
         Motion,
+        ZeroCrossings,
     )
 else:
     from fcm.contact.periodic.motion import (
@@ -58,9 +58,9 @@ else:
         UNKNOWN,
         UPPER,
         UPPER_RATE,
-        Crossings,
         Events,
         Motion,
+        ZeroCrossings,
     )
 
 STICK = cython.declare(cython.int, 0)  # states, and what brought a slider to rest; of a slip its sign
@@ -91,7 +91,7 @@ class Slider(Events):
     """
 
     def __init__(self, motion: Motion) -> None:
-        crossings = Crossings(motion)
+        crossings = ZeroCrossings(motion)
         size = 2 * crossings.capacity + 4
         Events.__init__(self, motion, size)
         self.crossings = crossings
@@ -192,7 +192,7 @@ STUCK = cython.declare(cython.int, 4)  # of a whole cycle, beside OPEN, MIXED an
 
 
 @cython.cclass
-class Cycle(Slider):
+class LineCycle(Slider):
     """A steady cycle, its pieces those of `Slider`.
 
     Attributes

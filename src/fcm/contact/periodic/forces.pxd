@@ -1,11 +1,11 @@
-from fcm.contact.periodic.cycle cimport Cycle
+from fcm.contact.periodic.cycle cimport LineCycle
 from fcm.contact.periodic.motion cimport Motion
 
 cdef int STICKS, SIGNED_SLIPS, CONTACT, LONG
 
 cdef class Integrals:
     cdef readonly Motion motion
-    cdef readonly Cycle cycle
+    cdef readonly LineCycle cycle
     cdef readonly int most, highest
     cdef double[:, ::1] cos_sum, sin_sum, power_cos, power_sin
     cdef double[::1] total_re, total_im, stick_re, stick_im, grow_re, grow_im, points, weights, reciprocal
@@ -18,7 +18,7 @@ cdef class Integrals:
 
 cdef class Derivatives:
     cdef readonly Motion motion
-    cdef readonly Cycle cycle
+    cdef readonly LineCycle cycle
     cdef readonly Integrals integrals
     cdef readonly int outputs, unknowns
     cdef readonly int[::1] output
@@ -38,7 +38,7 @@ cdef class Derivatives:
 
 cdef class PeriodicContact:
     cdef readonly Motion motion
-    cdef readonly Cycle cycle
+    cdef readonly LineCycle cycle
     cdef readonly Integrals integrals
     cdef readonly Derivatives derivatives
     cdef readonly int kind, outputs, unknowns, equations

@@ -20,11 +20,11 @@ from fcm.contact.periodic.gauss import gauss
 
 if cython.compiled:
     from cython.cimports.fcm.contact.closed_form import NAN, PI
-    from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, Cycle
+    from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, LineCycle
     from cython.cimports.fcm.contact.periodic.motion import FORCE, LOAD, MIXED, REACH, TWO_PI, UNKNOWN, Motion
 else:
     from fcm.contact.closed_form import NAN, PI
-    from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, Cycle
+    from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, LineCycle
     from fcm.contact.periodic.motion import FORCE, LOAD, MIXED, REACH, TWO_PI, UNKNOWN, Motion
 
 # Sets of pieces over which exp(-i m theta) is integrated
@@ -42,7 +42,7 @@ _GAUSS = gauss(8)  # POINTS of them, on 0 to 1
 class Integrals:
     """Sums over the pieces of a cycle: cosine and sine of each set, and of the forces for each harmonic."""
 
-    def __init__(self, cycle: Cycle, most: int) -> None:
+    def __init__(self, cycle: LineCycle, most: int) -> None:
         self.cycle = cycle
         self.motion = cycle.motion
         self.most = most
@@ -401,7 +401,7 @@ class PeriodicContact:
 
     def __init__(self, harmonics: list[int], outputs: list[int]) -> None:
         self.motion = Motion(harmonics)
-        self.cycle = Cycle(self.motion)
+        self.cycle = LineCycle(self.motion)
         self.integrals = Integrals(self.cycle, max(outputs, default=0))
         self.derivatives = Derivatives(self.integrals, outputs)
         self.output, self.outputs = np.array(outputs, dtype=np.intc), len(outputs)

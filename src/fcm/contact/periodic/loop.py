@@ -10,7 +10,7 @@ import numpy.typing as npt
 from fcm.contact.kernel_arguments import ComplexArray, FloatArray
 from fcm.contact.options import PERIODIC
 from fcm.contact.periodic.coefficients import one_motion
-from fcm.contact.periodic.cycle import Cycle
+from fcm.contact.periodic.cycle import LineCycle
 from fcm.contact.periodic.margins import Measures
 from fcm.contact.pieces import LoadedPieces, friction, waves_at
 
@@ -133,7 +133,7 @@ def periodic_loop(
     )  # fmt: skip
 
 
-def _visible(cycle: Cycle) -> list[tuple[str, float, float]]:
+def _visible(cycle: LineCycle) -> list[tuple[str, float, float]]:
     """(state, angle at which it begins, place of the slider), without what is rounding, neighbours joined."""
     begin = np.asarray(cycle.begin)[: cycle.pieces]
     length = np.diff(begin, append=begin[0] + 2.0 * np.pi)
@@ -149,7 +149,7 @@ def _visible(cycle: Cycle) -> list[tuple[str, float, float]]:
     return regions[1:] if len(regions) > 1 and regions[0][0] == regions[-1][0] else regions
 
 
-def _slip(cycle: Cycle, p: int) -> tuple[float, bool]:
+def _slip(cycle: LineCycle, p: int) -> tuple[float, bool]:
     """Where the slider is when slip p begins, and whether it is seen to move."""
     limit = cycle.lower if cycle.state[p] > 0 else cycle.upper
     begin, end = (float(limit[cycle.event[q % cycle.pieces]]) for q in (p, p + 1))

@@ -1,13 +1,13 @@
-from fcm.contact.periodic.cycle cimport Cycle
-from fcm.contact.periodic.motion cimport Crossings, Motion
+from fcm.contact.periodic.cycle cimport LineCycle
+from fcm.contact.periodic.motion cimport ZeroCrossings, Motion
 
 cdef int CLOSES, OPENS, SLIPS, MOST, LEAST, MINIMUM, MAXIMUM, FIXED
 cdef double PAST
 
 cdef class Margins:
     cdef readonly Motion motion
-    cdef readonly Cycle cycle
-    cdef readonly Crossings crossings
+    cdef readonly LineCycle cycle
+    cdef readonly ZeroCrossings crossings
     cdef readonly int most, count
     cdef readonly double[::1] value, angle
     cdef readonly int[::1] kind
@@ -19,8 +19,8 @@ cdef class Margins:
 
 cdef class Measures:
     cdef readonly Motion motion
-    cdef readonly Cycle cycle
-    cdef readonly Crossings crossings
+    cdef readonly LineCycle cycle
+    cdef readonly ZeroCrossings crossings
     cdef readonly double least_load, greatest_load, overlap, greatest_friction, dissipation, slip_path
     cdef readonly int signature
     cdef double piece_energy, piece_path

@@ -29,7 +29,7 @@ if cython.compiled:
         SEPARATION,
         STICK,
         STUCK,
-        Cycle,
+        LineCycle,
     )
     from cython.cimports.fcm.contact.periodic.motion import (
         BOTTOM,
@@ -48,10 +48,10 @@ if cython.compiled:
         UNKNOWN,
         UPPER,
         UPPER_RATE,
-        Crossings,
+        ZeroCrossings,
     )
 else:
-    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, STUCK, Cycle
+    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK, STUCK, LineCycle
     from fcm.contact.periodic.motion import (
         BOTTOM,
         CLOSED,
@@ -69,7 +69,7 @@ else:
         UNKNOWN,
         UPPER,
         UPPER_RATE,
-        Crossings,
+        ZeroCrossings,
     )
 
 CLOSES = cython.declare(cython.int, 0)  # kinds of margins
@@ -92,9 +92,9 @@ class Margins:
     Values are divided by the scale of the load or of the motion; angles [rad] are those of the extremes.
     """
 
-    def __init__(self, cycle: Cycle) -> None:
+    def __init__(self, cycle: LineCycle) -> None:
         self.cycle, self.motion = cycle, cycle.motion
-        self.crossings = Crossings(cycle.motion)
+        self.crossings = ZeroCrossings(cycle.motion)
         self.most, self.count = FIXED + self.crossings.capacity + 2 * cycle.motion.highest + 2, 0
         self.value, self.angle = np.zeros(self.most), np.zeros(self.most)
         self.kind = np.zeros(self.most, dtype=np.intc)
@@ -206,9 +206,9 @@ class Measures:
         A number for the sequence of states; equal for equal sequences.
     """
 
-    def __init__(self, cycle: Cycle) -> None:
+    def __init__(self, cycle: LineCycle) -> None:
         self.cycle, self.motion = cycle, cycle.motion
-        self.crossings = Crossings(cycle.motion)
+        self.crossings = ZeroCrossings(cycle.motion)
         self.value = np.zeros(self.crossings.capacity)
         self.least_load = self.greatest_load = self.overlap = self.greatest_friction = 0.0
         self.dissipation = self.slip_path = self.piece_energy = self.piece_path = 0.0

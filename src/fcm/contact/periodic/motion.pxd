@@ -28,7 +28,7 @@ cdef class Motion(Nodes):
 
 cdef int CLOSES, OPENS, TOP, BOTTOM, MEETS
 
-cdef class Crossings:
+cdef class ZeroCrossings:
     cdef readonly Motion motion
     cdef readonly int count, capacity
     cdef readonly double[::1] angle

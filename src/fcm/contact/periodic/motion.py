@@ -11,8 +11,8 @@ Where a row of that changes its sign none is missed. Between two nodes a row is 
 within bound * step**4 / 384, its slope that of the interpolant within bound * step**3 sqrt(3) / 216, with the
 bound of the fourth derivative. So the Bernstein coefficients of the interpolant prove that the row has no
 zero, or that it is monotone; where they do not, the interval is halved, until what could be hidden is no more
-than the rounding of the row itself (`Crossings`). Each event has the limits of the slider there, and their
-rates (`Events`).
+than the rounding of the row itself (`ZeroCrossings`). Each event has the limits of the slider there, and
+their rates (`Events`).
 """
 
 from __future__ import annotations
@@ -99,8 +99,8 @@ class Motion(Nodes):
     """u and n_0 + k_v v with given harmonics; `load` takes one contact, `sample` fills the nodes.
 
     moving: the harmonics after so many are nothing, as where few are looked at among more.
-    taken: whether a cycle remembers the motion that is loaded; see `Cycle.take`. sampled: whether the nodes
-    are those of that motion.
+    taken: whether a cycle remembers the motion that is loaded; see `LineCycle.take`. sampled: whether the
+    nodes are those of that motion.
     """
 
     def __init__(self, harmonics: list[int], options: PeriodicOptions = PERIODIC) -> None:
@@ -292,7 +292,7 @@ class Motion(Nodes):
 
 
 @cython.cclass
-class Crossings:
+class ZeroCrossings:
     """Angles where rows of a motion change sign, in `angle` up to `count`, in the order of each search."""
 
     def __init__(self, motion: Motion, options: PeriodicOptions = PERIODIC) -> None:
@@ -470,7 +470,7 @@ class Crossings:
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
-def _of_one(found: Crossings, motion: Motion, begin: float) -> cython.void:
+def _of_one(found: ZeroCrossings, motion: Motion, begin: float) -> cython.void:
     """Append those of a rate a cos(theta) - b sin(theta), within a turn from an angle; see `search`."""
     i: cython.int
     a: float = motion.re[found.row, 0]

@@ -1,17 +1,17 @@
-from fcm.contact.periodic.motion cimport Crossings
+from fcm.contact.periodic.motion cimport ZeroCrossings
 from fcm.contact.plane.panel cimport PlaneMotion
 from fcm.contact.plane.resting cimport Resting
 from fcm.contact.plane.slider cimport Slider
 
 cdef int STUCK, UNSOLVED
 
-cdef class Cycle:
+cdef class PlanarCycle:
     cdef double double_point, slight, hardly, inside
     cdef int most_periods
     cdef readonly PlaneMotion motion
     cdef readonly Slider slider
     cdef readonly Resting resting
-    cdef readonly Crossings crossings
+    cdef readonly ZeroCrossings crossings
     cdef readonly int kind, behaviour, periods
     cdef double moved_x, moved_y, place_x, place_y
     cdef double[:, ::1] side

@@ -33,14 +33,14 @@ else:
     from fcm.contact.plane.resting import Resting
     from fcm.contact.plane.slider import SEPARATION, SLIP, STICK, Slider
 
-from fcm.contact.periodic.motion import Crossings
+from fcm.contact.periodic.motion import ZeroCrossings
 
 STUCK = cython.declare(cython.int, 4)  # of a whole cycle, beside OPEN, MIXED and UNKNOWN
 UNSOLVED = cython.declare(cython.int, 5)
 
 
 @cython.cclass
-class Cycle:
+class PlanarCycle:
     """The steady cycle of a motion; its pieces are those of `slider`, its place of rest that of `resting`.
 
     Attributes
@@ -63,7 +63,7 @@ class Cycle:
         self.motion = motion
         self.slider = Slider(motion, outputs, most_panels)
         self.resting = Resting(motion)
-        self.crossings = Crossings(motion.normal)
+        self.crossings = ZeroCrossings(motion.normal)
         self.cut = np.zeros(self.crossings.capacity)
         self.cut_kind = np.zeros(self.crossings.capacity, dtype=np.intc)
         self.kind = self.behaviour = UNKNOWN

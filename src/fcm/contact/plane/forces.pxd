@@ -1,10 +1,10 @@
 from fcm.contact.plane.panel cimport PlaneMotion
-from fcm.contact.plane.cycle cimport Cycle
+from fcm.contact.plane.cycle cimport PlanarCycle
 from fcm.contact.plane.integrals cimport Derivatives, Sums
 
 cdef class PlanarContact:
     cdef readonly PlaneMotion motion
-    cdef readonly Cycle cycle
+    cdef readonly PlanarCycle cycle
     cdef readonly Sums sums
     cdef readonly Derivatives derivatives
     cdef readonly int kind, outputs, unknowns, equations

@@ -12,13 +12,13 @@ from cython.cimports.libc.math import hypot
 if cython.compiled:
     from cython.cimports.fcm.contact.closed_form import NAN, PI
     from cython.cimports.fcm.contact.periodic.motion import CLOSED, MIXED, UNKNOWN
-    from cython.cimports.fcm.contact.plane.cycle import STUCK, UNSOLVED, Cycle
+    from cython.cimports.fcm.contact.plane.cycle import STUCK, UNSOLVED, PlanarCycle
     from cython.cimports.fcm.contact.plane.integrals import CONTACT, SLIPS_X, SLIPS_Y, STICKS
     from cython.cimports.fcm.contact.plane.panel import LOAD, REACH, SCAN, STAGES, PlaneMotion, X, Y
 else:
     from fcm.contact.closed_form import NAN, PI
     from fcm.contact.periodic.motion import CLOSED, MIXED, UNKNOWN
-    from fcm.contact.plane.cycle import STUCK, UNSOLVED, Cycle
+    from fcm.contact.plane.cycle import STUCK, UNSOLVED, PlanarCycle
     from fcm.contact.plane.integrals import CONTACT, SLIPS_X, SLIPS_Y, STICKS
     from fcm.contact.plane.panel import LOAD, REACH, SCAN, PlaneMotion, X, Y
     from fcm.contact.plane.radau import STAGES
@@ -58,7 +58,7 @@ class PlanarContact:
         options: PlanarOptions = OPTIONS,
     ) -> None:
         self.motion = PlaneMotion(harmonics, STAGES, options)
-        self.cycle = Cycle(self.motion, outputs, most_panels)
+        self.cycle = PlanarCycle(self.motion, outputs, most_panels)
         self.sums, self.derivatives = self.cycle.slider.sums, self.cycle.slider.derivatives
         self.output, self.outputs = np.array(outputs, dtype=np.intc), len(outputs)
         self.unknowns, self.equations = 3 + 6 * self.motion.count, 3 + 6 * self.outputs

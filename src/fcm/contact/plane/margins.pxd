@@ -1,14 +1,14 @@
-from fcm.contact.periodic.motion cimport Crossings
-from fcm.contact.plane.cycle cimport Cycle
+from fcm.contact.periodic.motion cimport ZeroCrossings
+from fcm.contact.plane.cycle cimport PlanarCycle
 from fcm.contact.plane.panel cimport PlaneMotion
 from fcm.contact.plane.resting cimport Resting
 
 cdef class PlanarMargins:
     cdef double steps
     cdef readonly PlaneMotion motion
-    cdef readonly Cycle cycle
+    cdef readonly PlanarCycle cycle
     cdef readonly Resting resting
-    cdef readonly Crossings crossings
+    cdef readonly ZeroCrossings crossings
     cdef readonly int most, count
     cdef readonly double[::1] value, angle
     cdef readonly int[::1] kind
@@ -26,8 +26,8 @@ cdef class PlanarMargins:
 cdef class PlanarMeasures:
     cdef double invisible, steps, growth
     cdef readonly PlaneMotion motion
-    cdef readonly Cycle cycle
-    cdef readonly Crossings crossings
+    cdef readonly PlanarCycle cycle
+    cdef readonly ZeroCrossings crossings
     cdef readonly double greatest_load, greatest_friction, dissipation, slip_path
     cdef readonly int pieces
     cdef readonly int[::1] state

@@ -36,15 +36,15 @@ if cython.compiled:
         MIXED,
         OPEN,
         UNKNOWN,
-        Crossings,
+        ZeroCrossings,
     )
-    from cython.cimports.fcm.contact.plane.cycle import STUCK, UNSOLVED, Cycle
+    from cython.cimports.fcm.contact.plane.cycle import STUCK, UNSOLVED, PlanarCycle
     from cython.cimports.fcm.contact.plane.panel import SCAN
     from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK
 else:
     from fcm.contact.periodic.margins import CLOSES, FIXED, MAXIMUM, MINIMUM, OPENS, PAST, SLIPS
-    from fcm.contact.periodic.motion import CLOSED, LOAD, LOAD_RATE, MIXED, OPEN, UNKNOWN, Crossings
-    from fcm.contact.plane.cycle import STUCK, UNSOLVED, Cycle
+    from fcm.contact.periodic.motion import CLOSED, LOAD, LOAD_RATE, MIXED, OPEN, UNKNOWN, ZeroCrossings
+    from fcm.contact.plane.cycle import STUCK, UNSOLVED, PlanarCycle
     from fcm.contact.plane.panel import SCAN
     from fcm.contact.plane.slider import SEPARATION, SLIP, STICK
 
@@ -62,11 +62,11 @@ class PlanarMargins:
     Values are divided by the scale of the load or of the motion; angles [rad] are those of the extremes.
     """
 
-    def __init__(self, cycle: Cycle) -> None:
+    def __init__(self, cycle: PlanarCycle) -> None:
         given = cycle.motion.options
         self.steps = given.samples_per_radian
         self.cycle, self.motion, self.resting = cycle, cycle.motion, cycle.resting
-        self.crossings = Crossings(cycle.motion.normal)
+        self.crossings = ZeroCrossings(cycle.motion.normal)
         self.most, self.count = FIXED + self.crossings.capacity + 4 * cycle.motion.highest + 4, 0
         self.value, self.angle = np.zeros(self.most), np.zeros(self.most)
         self.kind = np.zeros(self.most, dtype=np.intc)
@@ -261,11 +261,11 @@ class PlanarMeasures:
         The states in their order, from the first stick if there is one: STICK, SLIP, SEPARATION.
     """
 
-    def __init__(self, cycle: Cycle) -> None:
+    def __init__(self, cycle: PlanarCycle) -> None:
         given = cycle.motion.options
         self.invisible, self.steps = given.min_state_length, given.samples_per_radian
         self.cycle, self.motion = cycle, cycle.motion
-        self.crossings = Crossings(cycle.motion.normal)
+        self.crossings = ZeroCrossings(cycle.motion.normal)
         self.greatest_load = self.greatest_friction = self.dissipation = self.slip_path = 0.0
         self.growth = 0.0
         self.pieces, self.state = 0, np.zeros(cycle.slider.capacity + 1, dtype=np.intc)
