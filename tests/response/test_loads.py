@@ -288,6 +288,54 @@ def test_bolts_press_a_joint_together_where_it_does_not_open():
     assert found.peak_frequency.sel(dof="x").item() == pytest.approx(stick, rel=1e-3)
 
 
+def floating_plate(load, count=30):
+    """On an elastic one, and held by contacts in the plane alone: these just touch without the load."""
+    turn = np.linalg.qr(np.random.default_rng(3).normal(size=(4, 4)))[0]  # any basis of rigid-body modes
+    return scene_from_dict(
+        {
+            "modal": {
+                "dofs": ["x", "y", "z", "ry", "x_below", "y_below", "z_below"],
+                "frequency": [0.0, 0.0, 0.0, 0.0, 3.0, 4.0, 5.0],
+                "damping": 0.01,
+                "shapes": scipy.linalg.block_diag(turn, np.eye(3)).tolist(),
+            },
+            "contact": [
+                {
+                    "name": f"c{i}",
+                    "tangential": [{"x": 1.0, "x_below": -1.0, "ry": 0.4}, {"y": 1.0, "y_below": -1.0}],
+                    "normal": {"z": 1.0, "ry": place, "z_below": -1.0},
+                    "mu": 0.3,
+                    "k_u": 7.0,
+                    "k_v": 11.0,
+                    "n_0": 0.0,
+                }
+                for i, place in enumerate(np.linspace(-1.3, 1.1, count))
+            ],
+            "load": [{"dof": {"z": 1.0, "ry": 0.3, "z_below": -1.0}, "force": load}],
+            "force": [{"dof": "x", "amplitude": 0.1}],
+            "response": {"frequency": [0.3, 1.0], "harmonics": 1},
+        },
+        "plate",
+    )
+
+
+def test_a_floating_plate_rests_where_contacts_balance_the_load_or_nowhere():
+    """With none closed at first its equations are singular, and their solution is rounding."""
+    scene = floating_plate(6.0)
+    q = rest_of(scene)[0] @ scene.modal.shapes
+    n, f = np.zeros(30), np.zeros((30, 2))
+    for i, contact in enumerate(scene.contacts):
+        n[i] = max(11.0 * contact.normal @ q, 0.0)
+        f[i] = 7.0 * np.array([contact.tangential @ q, contact.second @ q])
+        f[i] *= min(1.0, 0.3 * n[i] / np.hypot(*f[i]))
+    assert n.sum() == pytest.approx(6.0, rel=1e-9)
+    turning = n @ [contact.normal[3] for contact in scene.contacts] + 0.4 * f[:, 0].sum()
+    assert turning == pytest.approx(1.8, rel=1e-9)
+    assert q[4:] * [9.0, 16.0, 25.0] == pytest.approx([f[:, 0].sum(), f[:, 1].sum(), 0.0], abs=1e-9)
+    with pytest.raises(RestError, match="no equilibrium"):
+        rest_of(floating_plate(-6.0))
+
+
 def test_no_peaks_are_looked_for_where_only_loads_work():
     """There rounding may be all that moves; of 40 pairs under bolts a curve took 14834 points, now 124."""
     scene = replace(YANG, reported=("u",))

@@ -138,11 +138,14 @@ class StaticLoadOptions:
         Shares are measured by themselves, and below this by this.
     max_step : float
         Along the curve of the share.
+    balance_tolerance : float
+        Sum of the forces along a rigid-body mode, relative to their sizes: less is none.
     """
 
     initial_share: float = 1e-3
     min_share_unit: float = 0.1
     max_step: float = 0.2
+    balance_tolerance: float = 1e-6
 
 
 @dataclass(frozen=True)

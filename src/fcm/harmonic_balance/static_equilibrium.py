@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+import numpy.typing as npt
 
 from fcm.continuation import FollowOptions, Status, follow
 from fcm.continuation.corrector import Newton
@@ -106,15 +107,16 @@ def at_rest(system: System) -> FloatArray:
         problem = StaticLoadProblem(single.new_balance(), omega, options.min_share_unit)
         start, span = np.append(guess, options.initial_share), (options.initial_share, 1.0)
         path = follow(problem, start, span, options=FollowOptions(options.max_step))
-        if path.status is Status.COMPLETE and path.z.shape[0] and path.parameter[-1] == 1.0:
+        complete = path.status is Status.COMPLETE and path.z.shape[0] and path.parameter[-1] == 1.0
+        if complete and _balances_rigid_body(single, problem, path.z[-1]):
             return path.z[-1][single.layout.mean_at]  # type: ignore[no-any-return]
     for guess in _linear(single, 1.0):
-        newton = Newton(StaticLoadProblem(single.new_balance(), omega, options.min_share_unit))
-        z = np.append(guess, 1.0)
-        newton.problem.measure(z)
-        newton.scale[:], newton.z[:] = newton.problem.scale, z
+        problem = StaticLoadProblem(single.new_balance(), omega, options.min_share_unit)
+        newton, z = Newton(problem), np.append(guess, 1.0)
+        problem.measure(z)
+        newton.scale[:], newton.z[:] = problem.scale, z
         newton.row[:] = np.eye(z.size)[-1]
-        if newton.correct(1.0):
+        if newton.correct(1.0) and _balances_rigid_body(single, problem, newton.z):
             return np.asarray(newton.z)[single.layout.mean_at]
     raise RestError(NO_EQUILIBRIUM)
 
@@ -136,6 +138,28 @@ def loads_move_rigid_body(linear: Linear) -> bool:
     return bool((size[linear.adrift] > RIGID_BODY.min_normal_motion * size.max(initial=0.0)).any())
 
 
+def _balances_rigid_body(system: System, problem: StaticLoadProblem, z: FloatArray) -> bool:
+    """Whether contact forces balance the loads along the rigid-body modes that contacts hold.
+
+    Where all these contacts open the equations are singular, and what solves them is rounding.
+    """
+    linear, mean = system.linear, system.layout.mean_at
+    problem.evaluate(z)
+    force, d = np.array(problem.balance.force)[mean], linear.directions_of_contact
+    force[d - 1 :: d] += linear.counted * np.asarray(z)[mean][d - 1 :: d]
+    rigid = (linear.natural == 0.0) & ~linear.adrift
+    load, ports = linear.load[rigid], linear.ports[rigid]
+    size = np.abs(load) + np.abs(ports) @ np.abs(force)
+    return bool((np.abs(load - ports @ force) <= system.options.rest.balance_tolerance * size).all())
+
+
+def _held(linear: Linear, closed: npt.NDArray[np.bool_]) -> bool:
+    """Whether closed contacts (contact,) hold the rigid-body modes that all of them would."""
+    rigid = (linear.natural == 0.0) & ~linear.adrift
+    size = np.linalg.svd(linear.normal[rigid] * (closed & (linear.counted > 0.0)), compute_uv=False)
+    return int((size > RIGID_BODY.min_normal_motion * size.max(initial=0.0)).sum()) == int(rigid.sum())
+
+
 def _linear(system: System, share: float) -> Iterator[FloatArray]:
     """Unknowns with the contacts as they are without the loads, then all stuck, then all open."""
     contacts, balance, layout = system.scene.contacts, system.new_balance(), system.layout
@@ -143,14 +167,13 @@ def _linear(system: System, share: float) -> Iterator[FloatArray]:
     n_0 = np.array([c.n_0 for c in contacts])
     static, rest = np.asarray(balance.seen.static), share * np.asarray(balance.rest)
     for closed in (n_0 > 0.0, np.ones(n_0.size, dtype=bool), np.zeros(n_0.size, dtype=bool)):
+        if not _held(system.linear, closed):
+            continue
         stiffness = system.springs(stuck=True) * np.repeat(closed, d)
         stiffness[d - 1 :: d] -= system.linear.counted
         force = np.zeros(rest.size)  # of the normal springs where v = 0
         force[d - 1 :: d] = np.where(closed, np.minimum(n_0, 0.0), -np.maximum(n_0, 0.0))
-        try:
-            ports = np.linalg.solve(np.eye(rest.size) + static * stiffness, rest - static @ force)
-        except np.linalg.LinAlgError:  # nothing holds a rigid-body mode
-            continue
+        ports = np.linalg.solve(np.eye(rest.size) + static * stiffness, rest - static @ force)
         x = np.zeros(layout.unknowns)
         x[layout.mean_at] = ports
         yield x
