@@ -121,6 +121,18 @@ def test_names_that_are_accepted_are_said(written):
     assert one.amplitude.tolist() == [1.0, 3.0]
 
 
+def test_a_unit_in_a_head_is_converted_or_refused(written):
+    """A damping in percent was taken for a ratio, and a phase in degrees for one in rad."""
+    in_percent = "frequency,amplitude,damping [%]\n1,1,0.5\n0.9,2,2\n"
+    (one,) = load_scene(written(BACKBONE, in_percent)).fit.data
+    assert one.damping.tolist() == [0.005, 0.02]
+    in_degrees = "frequency,amplitude,phase [deg]\n1,1,-90\n0.9,2,180\n"
+    (one,) = load_scene(written(FIT, in_degrees)).fit.data
+    assert one.phase.tolist() == pytest.approx([-np.pi / 2, np.pi])
+    said = mistakes(written(BACKBONE, in_percent.replace("%", "dB")))
+    assert 'its damping is in "dB"; known are "1", "%"' in said
+
+
 @pytest.mark.parametrize("of", ["response", "backbone"])
 def test_what_fcm_wrote_is_read(tmp_path, of):
     """The points of a CSV file of its own are those that it computed."""

@@ -2,7 +2,7 @@
 
 The columns of a response are frequency, amplitude, and any of phase (rad), weight, and one of levels; those
 of a backbone amplitude, frequency, damping (ratios), weight. A CSV file that ``fcm respond --csv`` wrote has
-other names for some, and units behind them, as in ``frequency [Hz]``.
+other names for some. A head may have a unit behind it, as in ``frequency [Hz]``.
 """
 
 from __future__ import annotations
@@ -23,6 +23,8 @@ from fcm.scene.options import MESSAGES
 from fcm.scene.reader_process import NAMES, read_apart
 from fcm.scene.uff_functions import read_functions
 from fcm.units import UNIT
+
+_UNITS = {"phase": {"rad": 1.0, "deg": np.pi / 180.0}, "damping": {"1": 1.0, "%": 0.01}}
 
 
 def read_measured(
@@ -174,12 +176,21 @@ def _curves(
 def _in_units(
     found: dict[str, FloatArray], heads: Mapping[str, tuple[str, str]], file: str, length: str
 ) -> dict[str, FloatArray]:
-    """Frequencies in rad/s where the file says their unit; DataFileError of another unit of amplitudes."""
+    """Frequencies in rad/s where the file says their unit, phases in rad, damping as ratios.
+
+    DataFileError of another unit.
+    """
     _, unit = heads.get("frequency", ("", ""))
     if unit in UNIT:
         found["angular_frequency"] = UNIT[unit] * found.pop("frequency")
     elif unit:
         raise DataFileError(f"{quoted(file)}: its frequency is in {quoted(unit)}; known are {choices(UNIT)}")
+    for key, known in _UNITS.items():
+        _, unit = heads.get(key, ("", ""))
+        if unit in known:
+            found[key] *= known[unit]
+        elif unit:
+            raise DataFileError(f"{quoted(file)}: its {key} is in {quoted(unit)}; known are {choices(known)}")
     _, unit = heads.get("amplitude", ("", ""))
     if unit and length and unit != length:
         raise DataFileError(

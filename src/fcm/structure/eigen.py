@@ -253,7 +253,14 @@ def _all(system: System) -> FloatArray:
 def _apart(system: System, shapes: FloatArray) -> FloatArray:
     """The modes within the space of some shapes."""
     left = shapes.conj().T
-    found: FloatArray = shapes @ scipy.linalg.eigh(left @ (system.K @ shapes), left @ (system.M @ shapes))[1]
+    try:
+        turn = scipy.linalg.eigh(left @ (system.K @ shapes), left @ (system.M @ shapes))[1]
+    except np.linalg.LinAlgError:
+        raise StructureError(
+            "the mass is singular along some of the lowest modes, as the stiffness of a body that nothing "
+            "holds is. Are stiffness and mass exchanged?"
+        ) from None
+    found: FloatArray = shapes @ turn
     return found
 
 
