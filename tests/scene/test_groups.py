@@ -58,6 +58,13 @@ def test_totals_are_shared_by_areas():
     assert any("k_u, k_v and n_0 are totals" in note for note in scene.notes)
 
 
+def test_without_areas_it_is_said_that_numbers_are_of_each_pair():
+    (said,) = (note for note in read().notes if "of each" in note)
+    assert said.startswith('contact "shroud": k_u, k_v and n_0 are those of each of its 2 pairs.')
+    (said,) = (note for note in read([PAIRS | NUMBERS | {"n_0": [5.0, -1.0]}]).notes if "of each" in note)
+    assert said.startswith('contact "shroud": k_u and k_v are those of each')
+
+
 def test_a_gap_is_that_of_each_pair():
     gap = {key: value for key, value in NUMBERS.items() if key != "n_0"} | {"gap": 0.1}
     contacts = read([PAIRS | gap | {"areas": [1.0, 2.0]}]).contacts

@@ -66,6 +66,14 @@ def test_matrices_of_no_structure(change, words):
         )
 
 
+def test_the_stiffness_of_bodies_that_nothing_holds_in_the_place_of_their_mass():
+    """Its modes without mass went through a Cholesky factorisation, which failed as a defect of fcm."""
+    slope = np.diff(np.eye(117), axis=0)
+    K = scipy.sparse.block_diag([slope.T @ slope] * 6, format="csc")
+    with pytest.raises(StructureError, match="and mass may be in each other's place"):
+        modes_of(system_of(scipy.sparse.eye_array(702, format="csc"), K), 150)
+
+
 def test_all_rigid_body_modes_are_kept_and_a_soft_mode_is_none():
     """Three masses that nothing holds, a fourth on a very soft spring."""
     K = scipy.sparse.csc_array(np.diag([0.0, 0.0, 0.0, 1e-9, 1.0]))

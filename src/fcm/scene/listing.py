@@ -8,6 +8,7 @@ import numpy as np
 
 from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray, Force, Scene
+from fcm.scene.errors import counted
 from fcm.scene.options import MESSAGES, TOLERANCES
 from fcm.structure.ring import nodal_diameters
 
@@ -155,14 +156,17 @@ def notes_of_modes(scene: Scene) -> list[str]:
     """First resonances with all contacts open and with all stuck, with their damping: are units as meant?"""
     unit, most = scene.frequency_unit, MESSAGES.stuck_modes
     opened = np.sort(_modes_alone(scene))
-    opened = opened[opened > 0.0]
+    rigid, opened = int((opened == 0.0).sum()), opened[opened > 0.0]
     omega, ratio = _damped_stuck(scene)
     of_open = f"{_listed(opened[:most] / UNIT[unit])} {unit}" if opened.size else "none"
+    if rigid:
+        of_open = f"0 ({counted(rigid, 'rigid-body mode')})" + (f", {of_open}" if opened.size else "")
+    damped = f". Their damping ratios while stuck: {_listed(ratio[:most], 3)}" if omega.size else ""
+    among = ": of the first of each, of the second, and so on" if rigid else ""
     of_stuck = f"{_listed(omega[:most] / UNIT[unit])} {unit}" if omega.size else "none"
     return [
-        f"structure: first resonances with all contacts open: {of_open}; with all stuck: {of_stuck}. Their "
-        f"damping ratios while stuck: {_listed(ratio[:most], 3)}. The main peak of a mode lies between "
-        "the two"
+        f"structure: first resonances with all contacts open: {of_open}; with all stuck: {of_stuck}{damped}. "
+        f"The main peak of a mode lies between the two{among}"
     ]
 
 

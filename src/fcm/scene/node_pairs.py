@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from math import fsum, isnan, nan
 from typing import Any
@@ -277,14 +277,31 @@ def _is_one(value: Any) -> bool:
 
 
 def notes_of_shares(drafts: Iterable[Mapping[str, Any]]) -> list[str]:
-    """What is said of contacts whose pairs share totals by their areas: which numbers these are."""
+    """What is said of pairs with one number for all: which are totals, shared by areas, which of each."""
     groups: dict[str, list[Mapping[str, Any]]] = {}
     for draft in drafts:
-        if draft.get("share"):
+        if "group" in draft:
             groups.setdefault(draft["group"], []).append(draft)
     said = []
     for name, pairs in groups.items():
-        *some, last = pairs[0]["share"]
-        totals = f"{', '.join(some)} and {last} are totals" if some else f"{last} is a total"
-        said.append(f"contact {quoted(name)}: {totals}, which its {len(pairs)} pairs share by their areas")
+        if share := pairs[0]["share"]:
+            totals = _are(list(share), "totals", "a total")
+            said.append(
+                f"contact {quoted(name)}: {totals}, which its {len(pairs)} pairs share by their areas"
+            )
+        elif len(pairs) > 1 and (same := [key for key in SHARED if _same(pairs, key)]):
+            each = f"{_are(same, 'those', 'that')} of each of its {len(pairs)} pairs"
+            said.append(f"contact {quoted(name)}: {each}. With areas one number would be a total")
     return said
+
+
+def _same(pairs: Sequence[Mapping[str, Any]], key: str) -> bool:
+    """Whether a number is given, and the same of all pairs."""
+    return key in pairs[0] and len({pair[key] for pair in pairs}) == 1
+
+
+def _are(keys: list[str], several: str, one: str) -> str:
+    """What some keys are."""
+    if len(keys) < 2:
+        return "".join(f"{key} is {one}" for key in keys)
+    return f"{', '.join(keys[:-1])} and {keys[-1]} are {several}"

@@ -257,8 +257,8 @@ def _apart(system: System, shapes: FloatArray) -> FloatArray:
         turn = scipy.linalg.eigh(left @ (system.K @ shapes), left @ (system.M @ shapes))[1]
     except np.linalg.LinAlgError:
         raise StructureError(
-            "the mass is singular along some of the lowest modes, as the stiffness of a body that nothing "
-            "holds is. Are stiffness and mass exchanged?"
+            "the mass is singular along some of the lowest modes, as the stiffness of a floating body is. "
+            "Stiffness and mass may be in each other's place"
         ) from None
     found: FloatArray = shapes @ turn
     return found
