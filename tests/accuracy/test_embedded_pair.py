@@ -186,6 +186,23 @@ def test_what_hardly_moves_says_nothing_of_what_moves():
     assert np.nanmax(truncation) < 0.1
 
 
+def test_a_peak_that_more_harmonics_have_elsewhere_is_as_wrong_as_their_greatest():
+    """None of their motions lies beside that of three harmonics."""
+    one = random_scene(15)
+    found, many = (
+        with_estimated_errors(System(one, up_to(3)), 0.0),
+        unchecked_response(System(one, up_to(9))),
+    )
+    assert not any(errors.is_same_curve.any() for errors in found.errors)
+    top, true = (
+        np.max([shown.amplitude.max(axis=0) for shown in each.shown], axis=0) for each in (found, many)
+    )
+    error = np.abs(true / top - 1.0)
+    leads = top.argmax()
+    assert 0.5 * error[leads] < found.peak[leads] < 2.0 * error[leads]
+    assert (found.peak > error / 3.0).all()
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("seed", "harmonics"), [(12, (1,)), (14, (1, 2, 3))])
 def test_beside_what_is_astray_many_harmonics_have_no_motion(seed, harmonics):

@@ -214,7 +214,9 @@ def with_nearest(
     that the branch has turned back to. So is that of a fold to the nearest.
 
     That is another motion, and a degree of freedom in which it happens to be the same says nothing: each has
-    at least the distance of the greatest. The paths before the first have theirs already.
+    at least the distance of the greatest. Of a peak that the partner has nowhere beside it, what differs is
+    the greatest amplitude of the partner, as far as that is known at every frequency of the path. The paths
+    before the first have theirs already.
     """
     if all(one.is_same_curve.all() and not np.isnan(one.fold).any() for one in errors[first:]):
         return tuple(errors)
@@ -241,7 +243,25 @@ def with_nearest(
         )
         truncation = _truncation(error, amplitude)
         every[k] = replace(every[k], amplitude=error, truncation=truncation, contact_loads=contact_loads)
+        if np.isnan(every[k].height).any() and np.isfinite(there).all():
+            every[k] = _with_greatest(every[k], amplitude.max(axis=0), pieces)
     return tuple(every)
+
+
+def _with_greatest(errors: Errors, top: FloatArray, pieces: Sequence[CurvePiece]) -> Errors:
+    """Errors of a path with tops (dof,), where those of peaks are not known by the greatest amplitudes of all
+    pieces; of its own partner the greatest is that of its own pieces."""
+    own, every = (
+        np.max([np.zeros_like(top), *(one.value[:, : len(top)].max(axis=0) for one in some)], axis=0)
+        for some in (errors.pieces, pieces)
+    )
+    off, unknown = np.abs(every - top), np.isnan(errors.height)
+    error = np.maximum(off / np.where(top > 0.0, top, 1.0), off.max() / (top.max() or 1.0))
+    return replace(
+        errors,
+        height=np.where(unknown, own, errors.height),
+        peak=np.where(unknown, error, errors.peak),
+    )
 
 
 def _flat(contact_loads: FloatArray) -> FloatArray:
