@@ -1,12 +1,14 @@
 """Units of swept values in the names of curves."""
 
 import csv
+from dataclasses import replace
 
 import pytest
 
 from fcm.plot import draw_response, read_response
 from fcm.plot.peak import draw_peak, read_peaks
 from fcm.plot.sensitivity import draw_sensitivity, read_sensitivity
+from fcm.plot.tracked import draw_tracked, read_tracked
 from fcm.response import trace
 from fcm.response.exact import trace_exact
 from fcm.response.level import trace_levels
@@ -93,3 +95,11 @@ def test_the_title_of_sensitivities_has_the_unit_of_what_was_swept(tmp_path):
     write_netcdf(found, tmp_path / "rates.nc")
     title = draw_sensitivity(read_sensitivity(tmp_path / "rates.nc"), curve=1).get_suptitle()
     assert "contact.c.n_0 = 2 N" in title
+
+def test_a_higher_peak_that_was_not_followed_is_said_above_the_picture(tmp_path):
+    aim = {"optimum": {"minimise": "peak.u", "vary": ["contact.c.n_0"], "bounds": [[2.0, 2.1]]}}
+    found = optimise(scene_from_dict(SCENE | aim), harmonics=1)
+    found.tracking.optima = [replace(one, higher=("peak.u", 123.0)) for one in found.tracking.optima]
+    write_netcdf(found, tmp_path / "optimum.nc")
+    said = written(draw_tracked(read_tracked(tmp_path / "optimum.nc")))
+    assert any("one of 123 that was not followed" in text for text in said)

@@ -42,7 +42,7 @@ _LAYOUT = {
         ("tracked_number", "tracked_frequency", "tracked_turn", "tracked_trough", "tracked_stable"), _TRACKED
     ),
     "optimum_number": ("optimum", "varied"),
-    "optimum_peak": ("optimum",),
+    **dict.fromkeys(("optimum_peak", "optimum_higher_peak"), ("optimum",)),
     **dict.fromkeys(("optimum_frequency", "optimum_stable"), ("optimum", "equal")),
 }
 _TEXTS = {
