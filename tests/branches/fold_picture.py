@@ -10,10 +10,10 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 
+from fcm.accuracy.refinement import every_branch
 from fcm.branches.fold_continuation import folds_from
 from fcm.branches.force_level import level_frequencies, solutions
 from fcm.branches.options import FOLDS, LevelCurveOptions
-from fcm.branches.search import every_branch
 from fcm.branches.surface import Surface
 from fcm.continuation import Status
 from fcm.harmonic_balance.reported_quantities import reported_quantities
@@ -56,7 +56,7 @@ def calculated():
             curve = folds_from(Surface(system.new_balance()), start, turn.directions, span)
             if curve is not None:
                 folds.append(np.column_stack((curve.frequency, curve.level)))
-    paths = every_branch(system).branches.paths
+    paths = every_branch(system).traced.branches.paths
     branches = [
         np.column_stack((path.parameter, reported_quantities(system, path).amplitude[:, 0])) for path in paths
     ]

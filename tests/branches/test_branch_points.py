@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fcm.accuracy.refinement import every_branch
 from fcm.branches.branch_points import branch_points
 from fcm.branches.mirror import mirrors
-from fcm.branches.search import every_branch
 from fcm.branches.trace import traced
 from fcm.continuation.all_branches import contains
 from fcm.harmonic_balance.system import System
@@ -43,7 +43,7 @@ def test_both_sides_of_a_branch_point_are_mirror_images_of_which_one_is_traced()
     known = traced(system)
     points = list(branch_points(system, system.harmonics, known.branches.paths))
     assert len(points) >= 4 and all(len(point.starts) == 2 for point in points)
-    found = every_branch(system)
+    found = every_branch(system).traced
     balance = system.new_balance()
     for point in points:
         one, other = point.starts

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fcm.accuracy.refinement import every_branch
 from fcm.branches.fold_continuation import Ending, Folds, folds_from
 from fcm.branches.force_level import level_frequencies, solutions
 from fcm.branches.isolas import level_one_crossings
 from fcm.branches.options import FoldOptions, LevelCurveOptions
-from fcm.branches.search import every_branch
 from fcm.branches.surface import Surface
 from fcm.branches.trace import traced
 from fcm.continuation import Mark, Status
@@ -295,6 +295,6 @@ def test_a_peak_that_more_harmonics_have_isolated_is_found_under_other_forces(am
 def test_a_closed_branch_is_traced_once():
     """From 1.2585 to 1.3581 rad/s; two crossings of the level 1 lead to it."""
     one = load_scene(KNOWN / "far_isola.toml").each_curve()[0]
-    found = every_branch(System(one, (1, 2, 3, 4, 5))).branches
+    found = every_branch(System(one, (1, 2, 3, 4, 5))).traced.branches
     (closed,) = (path for path in found.paths if path.status is Status.CLOSED)
     assert len(closed.where(Mark.FOLD)) == 2

@@ -96,6 +96,7 @@ def test_the_title_of_sensitivities_has_the_unit_of_what_was_swept(tmp_path):
     title = draw_sensitivity(read_sensitivity(tmp_path / "rates.nc"), curve=1).get_suptitle()
     assert "contact.c.n_0 = 2 N" in title
 
+
 def test_a_higher_peak_that_was_not_followed_is_said_above_the_picture(tmp_path):
     aim = {"optimum": {"minimise": "peak.u", "vary": ["contact.c.n_0"], "bounds": [[2.0, 2.1]]}}
     found = optimise(scene_from_dict(SCENE | aim), harmonics=1)

@@ -109,6 +109,18 @@ def test_a_least_peak_that_the_response_exceeds_is_not_told_as_the_least():
     assert summary["higher"] == {"what": "peak.u", "value": 5.88}
 
 
+@pytest.mark.parametrize(
+    ("error", "said"), [(2e-3, "off by 2.0e-03, relative"), (None, "off by an unknown amount")]
+)
+def test_how_far_off_the_end_of_a_higher_peak_is_stands_beside_the_number(error, said):
+    found = Optimal(
+        {}, {"n": 1.0}, ("peak.u",), 0.3, (("u", 2.0),), "end", (1,), 1e-3, stable=(1.0,), residual=(0.0,)
+    )  # fmt: skip
+    summary = found.summary("rad/s") | {"end_error": error}
+    shown = as_table({"optimum": [summary], "tracked": {"what": "optimum"}}, "rad/s")
+    assert said in shown.splitlines()[0]
+
+
 def test_a_least_peak_where_nothing_stable_was_found_says_so_in_its_headline():
     """The motion is nowhere stable between 1.9 and 2.1, so the design rests on no steady motion."""
     found = Optimal(

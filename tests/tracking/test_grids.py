@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fcm.branches.search import every_branch
+from fcm.accuracy.refinement import every_branch
 from fcm.branches.trace import traced
 from fcm.cli.track import as_table
 from fcm.continuation import FollowOptions, Mark, Status, follow
@@ -170,7 +170,7 @@ def test_an_isolated_branch_is_between_the_turns_that_are_told():
     assert min(s for _, s in turns) < value < max(s for _, s in turns)
     spots = [spot for curve in curves for spot in curve.points if abs(spot.z[-1] - value) < 1e-9]
     folds = np.unique([spot.z[-2] for spot in spots])
-    ordinary = every_branch(for_scene(way.system, gap.put(scene, value))).branches.paths
+    ordinary = every_branch(for_scene(way.system, gap.put(scene, value))).traced.branches.paths
     isolated = [path for path in ordinary if path.status is Status.CLOSED]
     others = [path for path in ordinary if path.status is not Status.CLOSED]
     at_ordinary = np.concatenate([path.parameter[path.where(Mark.FOLD)] for path in others])

@@ -19,8 +19,10 @@ from fcm.accuracy.unchecked_response import (
     with_more,
 )
 from fcm.branches.force_level import few_harmonics, with_low_harmonics
+from fcm.branches.search import with_branching, with_isolas
 from fcm.branches.trace import FoundPeak
 from fcm.continuation.follow import Progress
+from fcm.harmonic_balance.reported_quantities import reported_quantities
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
@@ -141,26 +143,41 @@ def retrace(found: RefinedResponse, harmonics: tuple[int, ...], accuracy: float)
 def with_given_harmonics(
     system: System, progress: Progress | None = None, keep: Keep | None = None
 ) -> RefinedResponse:
-    """The response with the harmonics that a system has.
+    """The response with the harmonics that a system has, see `unchecked_with_given_harmonics`."""
+    return with_errors(unchecked_with_given_harmonics(system, progress, keep), np.inf)
+
+
+def unchecked_with_given_harmonics(
+    system: System, progress: Progress | None = None, keep: Keep | None = None
+) -> UncheckedResponse:
+    """The response with the harmonics that a system has, of whose errors none is known.
 
     Traced with one of them first, then with those that tell how far the level of all is to be followed, then
     with half: what is beside its stable peaks with more is a start, too, as the level of the forces may not
     lead to it. A branch that is isolated with three harmonics may be connected with the others with one.
     """
     counts = sorted({1, few_harmonics(system), max(len(system.harmonics) // 2, few_harmonics(system))})
-    if not system.scene.contacts:
-        return with_estimated_errors(system, np.inf, progress)
     before, peaks = None, tuple[FoundPeak, ...]()
-    for count in counts:
+    for count in counts if system.scene.contacts else ():
         if count < len(system.harmonics):
             before = _after(before, system.with_harmonics(system.harmonics[:count]))
             peaks = (*before.traced.peaks, *peaks)
             if keep is not None and before.shown:
                 keep(before, np.nan, system.harmonics)
     found = _after(before, system, progress, peaks)
-    if keep is not None and found.shown:
+    if keep is not None and found.shown and system.scene.contacts:
         keep(found, np.nan, ())
-    return with_errors(found, np.inf)
+    return found
+
+
+def every_branch(system: System) -> UncheckedResponse:
+    """The response with the harmonics that a system has, isolated branches and those at branch points
+    with it."""
+    found = unchecked_with_given_harmonics(system)
+    response = with_branching(system, with_isolas(system, found.traced))
+    further = response.branches.paths[len(found.shown) :]
+    shown = (*found.shown, *(reported_quantities(system, path) for path in further))
+    return replace(found, traced=response, shown=shown)
 
 
 def _after(

@@ -1,4 +1,4 @@
-"""Every branch of a response, from those that the level of the forces leads to."""
+"""The further branches of a response that was traced: isolated ones, and those through branch points."""
 
 from __future__ import annotations
 
@@ -7,24 +7,13 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.branches.branch_points import BranchPoint, all_up_to, branch_points
-from fcm.branches.force_level import few_harmonics
 from fcm.branches.isolas import level_one_crossings
 from fcm.branches.mirror import mirrors
 from fcm.branches.options import BRANCHING, BranchingOptions
-from fcm.branches.prolongation import prolongated
-from fcm.branches.trace import Traced, traced, with_further
+from fcm.branches.trace import Traced, with_further
 from fcm.continuation import Path, Status
 from fcm.continuation.all_branches import contains
 from fcm.harmonic_balance.system import System
-from fcm.model.scene import FloatArray
-
-
-def every_branch(system: System) -> Traced:
-    """Trace all branches of the response of a system; of many harmonics from those of a few, too."""
-    few, near = system.with_harmonics(system.harmonics[: few_harmonics(system)]), list[FloatArray]()
-    if few.harmonics != system.harmonics:
-        near += prolongated(system, few.harmonics, traced(few).branches.paths)
-    return with_branching(system, with_isolas(system, traced(system, near=near)))
 
 
 def with_isolas(system: System, found: Traced) -> Traced:

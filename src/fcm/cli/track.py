@@ -162,7 +162,7 @@ def _optimum(one: Mapping[str, Any], curve: Mapping[str, Any], unit: str) -> str
     swept = ", ".join(f"{plain(key)} = {value:g}" for key, value in one["parameters"].items())
     kind = {
         "smooth": "", "kink": ", where peaks are equal", "corner": ", at a corner of the response",
-        "end": ", where a higher peak ends: on one side the peak jumps up, so keep a margin",
+        "end": ", where a higher peak ends: on one side the peak jumps up, so keep a margin" + _end(one),
         "bound": ", at a bound: beyond it there may be less", "flat": "",
         "trials": "", "unfinished": ", the least so far: the search was interrupted",
     }[one["kind"]]  # fmt: skip
@@ -180,6 +180,15 @@ def _optimum(one: Mapping[str, Any], curve: Mapping[str, Any], unit: str) -> str
         f"({_error(one)}{_ranges(one)})"
     )
     return f"{least} with {where}{kind}{_flat(one)}{_higher(one)}\n{at}{f'; {swept}' if swept else ''}{said}"
+
+
+def _end(one: Mapping[str, Any]) -> str:
+    """How far off the number is at which the higher peak ends."""
+    if one["kind"] != "end":
+        return ""
+    told = one["end_error"] is not None
+    error = f"off by {short(one['end_error'])}, relative, estimated" if told else "off by an unknown amount"
+    return f" (that end is {error})"
 
 
 def _error(one: Mapping[str, Any]) -> str:

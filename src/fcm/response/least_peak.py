@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
-from fcm.accuracy.refinement import enlarged, with_estimated_errors
+from fcm.accuracy.refinement import enlarged, every_branch, with_errors
 from fcm.harmonic_balance.cost_model import seconds_of_curve
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
@@ -20,6 +20,7 @@ from fcm.run import Progress
 from fcm.run.progress import part
 from fcm.scene.draft import Number
 from fcm.scene.errors import counted
+from fcm.tracking.ending_peak import EndingPeak, ending_peak
 from fcm.tracking.kept_steps import KeptSteps
 from fcm.tracking.lowest_peak import LowestPeak, LowestPeakSearch
 from fcm.tracking.minimax import PeakEnvelope, descend
@@ -72,7 +73,7 @@ class PeakTask:
     def needed(self, found: Optimal, harmonics: tuple[int, ...]) -> tuple[int, ...]:
         """The harmonics that the accuracy takes at an optimum, from some on."""
         most = self.options.balance.work.max_seconds_repeated
-        return _harmonics_for_peaks(self, found, harmonics, most)[0]
+        return _harmonics_for_peaks(self, found.values, harmonics, most)[0]
 
     def least_traced(self) -> Optimal | None:
         """Of a search that is interrupted: the least of what was traced; None where nothing was."""
@@ -103,8 +104,14 @@ def _optimum(task: PeakTask, harmonics: tuple[int, ...] | None, progress: Progre
         more, taken = task.steps(
             f"{chosen} harmonics at {found[0].values}",
             tuple,
-            partial(_harmonics_for_peaks, task, found[0], chosen, seconds),
+            partial(_harmonics_for_peaks, task, found[0].values, chosen, seconds),
         )
+        if more == chosen and not found[0].end_error <= task.accuracy:
+            more, taken = task.steps(
+                f"{chosen} harmonics at {found[0].beside}",
+                tuple,
+                partial(_harmonics_for_peaks, task, found[0].beside, chosen, seconds - taken),
+            )
         if more == chosen:
             break
         chosen, seconds, task.fewer = more, seconds - taken, found[0]
@@ -150,16 +157,16 @@ def _sharing(
 
 
 def _harmonics_for_peaks(
-    task: PeakTask, found: Optimal, harmonics: tuple[int, ...], seconds: float
+    task: PeakTask, values: Mapping[str, float], harmonics: tuple[int, ...], seconds: float
 ) -> tuple[tuple[int, ...], float]:
-    """The harmonics that the accuracy of the peaks to be least takes at an optimum, from some on.
+    """The harmonics that the accuracy of the peaks to be least takes at values of the numbers, from some on.
 
     No more than a response can be followed with in some seconds; and how many that takes.
     """
-    scene, taken = task.with_values(np.array(list(found.values.values()))), 0.0
+    scene, taken = task.with_values(np.array(list(values.values()))), 0.0
     dofs = [target.dof for target in task.targets]
     while True:
-        there = with_estimated_errors(task.system(scene, harmonics), task.accuracy)
+        there = with_errors(every_branch(task.system(scene, harmonics)), task.accuracy)
         height = np.max([one.amplitude.max(axis=0) for one in there.shown], axis=0, initial=0.0)[dofs]
         worst = float(
             there.peak[dofs][height > task.options.optimum.min_height * height.max()].max(initial=0.0)
@@ -185,7 +192,16 @@ def _on_line(task: PeakTask, found: LowestPeak, harmonics: tuple[int, ...]) -> F
         raise ResponseError(_no_peak(task))
     way = _search(task, harmonics).way
     curves = [as_curve(task.scene, way, *stability_along(way, one)) for one in found.curves]
-    return _optimal(task, np.array([found.best.s]), found.best, harmonics), curves
+    optimal = _optimal(task, np.array([found.best.s]), found.best, harmonics)
+    if found.best.kind != "end":
+        return optimal, curves
+    end = task.steps(
+        f"{harmonics} end at {found.best.s!r}",
+        EndingPeak,
+        partial(ending_peak, way, found.curves, found.best),
+    )
+    (number,) = task.numbers
+    return replace(optimal, end_error=end.error, beside={number.key: end.beside}), curves
 
 
 def _downhill(task: PeakTask, harmonics: tuple[int, ...], progress: Progress | None) -> Found:

@@ -193,9 +193,12 @@ def _known_of_peak(curve: Curve, dof: str, omega: float) -> Peak:
 def _say_what_is_short(tracking: Tracking, response: Response, accuracy: float) -> None:
     """Of the accuracy that was asked for, where more harmonics would take too long or tell no more."""
     for one, curve in zip(tracking.optima, response.curves, strict=True):
-        if curve.complete and not one.error <= accuracy:
-            error = "cannot be told" if np.isnan(one.error) else f"is estimated as {one.error:.1e}"
-            curve.short_of = f"{_with(one.harmonics)} the error of the least peak {error}"
+        exact = one.error <= accuracy
+        if curve.complete and not (exact and one.end_error <= accuracy):
+            off = one.end_error if exact else one.error
+            error = "cannot be told" if np.isnan(off) else f"is estimated as {off:.1e}"
+            of = "the number at which a higher peak ends" if exact else "the least peak"
+            curve.short_of = f"{_with(one.harmonics)} the error of {of} {error}"
             if one.fewer is not None:
                 at = ", ".join(f"{key} = {value:.6g}" for key, value in one.fewer.values.items())
                 curve.short_of += f"; {_with(one.fewer.harmonics)} it is {one.fewer.value:.6g} at {at}"

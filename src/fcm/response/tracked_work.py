@@ -30,6 +30,7 @@ from fcm.run import Interrupted, Report
 from fcm.scene.draft import Number
 from fcm.tracking.curve import SpecialPointCurve
 from fcm.tracking.curves import tracked_curves
+from fcm.tracking.ending_peak import EndingPeak
 from fcm.tracking.error import error_points, truncation_error
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.onset_functions import KINDS as ONSETS
@@ -55,6 +56,7 @@ class TrackedScene:
 
 KINDS = (TrackedScene, TrackedCurve, TrackedError)  # what results consist of
 STATES = (
+    EndingPeak,
     SpecialPoints,
     SpecialPointCurve,
     TrackedPoint,

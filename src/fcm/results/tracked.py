@@ -117,6 +117,10 @@ class Optimal:
     higher: tuple[str, float] | None = (
         None  # what of the minimised the response there has higher, not followed
     )
+    end_error: float = (
+        0.0  # of the number at which a higher peak ends, estimated, relative; 0 where none does
+    )
+    beside: dict[str, float] = field(default_factory=dict)  # the number where that peak still is
 
     def summary(self, unit: str) -> dict[str, Any]:
         """For JSON."""
@@ -141,6 +145,7 @@ class Optimal:
             "error": self.error,
             "between": None if self.between is None else list(self.between),
             "flat": {key: list(ends) for key, ends in self.flat.items()},
+            "end_error": self.end_error,
             "higher": None if self.higher is None else dict(zip(("what", "value"), self.higher, strict=True)),
         }
 

@@ -63,10 +63,14 @@ def error_points(track: SpecialPointCurve) -> dict[int, str]:
     return found
 
 
-def truncation_error(way: TrackingRun, track: SpecialPointCurve, i: int) -> TruncationError:
-    """At one point: to that of the partner."""
+def truncation_error(
+    way: TrackingRun, track: SpecialPointCurve, i: int, begin: int | None = None
+) -> TruncationError:
+    """At one point: to that of the partner. Of a turn this is sought from a point before, by default one that
+    is near."""
     condition, here = track.condition, _RefinedPoint(way, track.points[i])
-    value, number, begin = here.value(condition), float(here.spot.z[-1]), beginning(track, i, way.options)
+    value, number = here.value(condition), float(here.spot.z[-1])
+    begin = beginning(track, i, way.options) if begin is None else begin
     start = here if begin is None else _RefinedPoint(way, track.points[begin])
     more = _more(here)
     if more == here.way.system.harmonics:

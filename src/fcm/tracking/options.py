@@ -223,10 +223,13 @@ class TurnErrorOptions:
         Before a turn, from which the turn with more harmonics is sought.
     span_factor : float
         Times the way of the number from there to the turn, up to which it is sought.
+    before_end : float
+        Of the number at which a peak ends: way back, from where the end with more harmonics is sought.
     """
 
     points_before: int = 3
     span_factor: float = 3.0
+    before_end: float = 0.05
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from fcm.accuracy.refinement import every_branch
 from fcm.at_rest import at_rest
-from fcm.branches.search import every_branch
 from fcm.continuation import Mark, Path
-from fcm.harmonic_balance.reported_quantities import reported_quantities
+from fcm.harmonic_balance.reported_quantities import ReportedQuantities
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.structure.linear import linear_of
@@ -46,12 +46,11 @@ def special_points(
 
     Conditions that differ in which degree of freedom are sought one by one; onsets of every contact.
     """
-    curves = every_branch(system)
-    branches, levels = curves.branches, tuple(one.omega for one in curves.found if not one.complete)
-    unsure = (*levels, *curves.folds_lost)
-    found = []
-    amplitudes = _amplitudes(system, branches.paths, conditions)
-    for path, amplitude in zip(branches.paths, amplitudes, strict=True):
+    response = every_branch(system)
+    curves, branches = response.traced, response.traced.branches
+    levels = tuple(one.omega for one in curves.found if not one.complete)
+    unsure, found = (*levels, *curves.folds_lost), []
+    for path, amplitude in zip(branches.paths, _amplitudes(response.shown), strict=True):
         for condition in conditions:
             found += [(condition, z) for z in _points(system, path, amplitude, condition, options)]
     if not branches.paths:
@@ -60,12 +59,10 @@ def special_points(
     return SpecialPoints(found, wrong, unsure)
 
 
-def _amplitudes(system: System, paths: Sequence[Path], conditions: list[Condition]) -> list[FloatArray]:
-    """Along each path, (point, dof), 0 of what moves by rounding alone; none where no peak is sought."""
-    if not paths or all(condition.kind is not Kind.PEAK for condition in conditions):
-        return [np.zeros((len(path.z), 0)) for path in paths]
-    every = [reported_quantities(system, path).amplitude for path in paths]
-    moves = ~at_rest(np.max([one.max(axis=0) for one in every], axis=0))
+def _amplitudes(shown: Sequence[ReportedQuantities]) -> list[FloatArray]:
+    """Along each path, (point, dof), 0 of what moves by rounding alone."""
+    every = [one.amplitude for one in shown]
+    moves = ~at_rest(np.max([one.max(axis=0) for one in every], axis=0)) if every else 0.0
     return [one * moves for one in every]
 
 

@@ -1,0 +1,67 @@
+"""Where a higher peak ends, and so the least peak is: how far off the number is at which it does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from fcm.tracking.curve import SpecialPointCurve
+from fcm.tracking.error import truncation_error
+from fcm.tracking.peak_envelope import EnvelopeMinimum
+from fcm.tracking.tracked_point import TrackingRun
+
+
+class EndingPeak(NamedTuple):
+    """error: relative, of the number at which it ends, NaN where that cannot be told; beside: a number where
+    it still is."""
+
+    error: float
+    beside: float
+
+
+def ending_peak(way: TrackingRun, curves: Sequence[SpecialPointCurve], least: EnvelopeMinimum) -> EndingPeak:
+    """Of the higher peak that ends nearest to a least one.
+
+    Where its curve turns there, the error is that of the turn: the curve with more harmonics is followed to
+    its own. Where it ends otherwise nothing tells it.
+    """
+    ends = [
+        (abs(float(curve.s[i]) - least.s), curve, i)
+        for curve in curves
+        for i in _ends(curve)
+        if curve.amplitude[i, curve.condition.which] > least.value
+    ]
+    if not ends:
+        return EndingPeak(np.nan, least.s)
+    _, curve, i = min(ends, key=lambda one: one[0])
+    if i == 0:
+        curve, i = _turned(curve), len(curve.points) - 1
+    before = np.flatnonzero(abs(curve.s[:i] - least.s) >= way.options.error.before_end * abs(least.s))
+    begin = int(before[-1]) if before.size else 0
+    beside = float(curve.s[begin])
+    if not curve.points[i].turn or least.s == 0.0:
+        return EndingPeak(np.nan, beside)
+    return EndingPeak(truncation_error(way, curve, i, begin).number / abs(least.s), beside)
+
+
+def _ends(curve: SpecialPointCurve) -> list[int]:
+    """Where a curve of peaks ends, or what it follows ceases to be the greatest."""
+    changes = np.flatnonzero(curve.greatest[:-1] & ~curve.greatest[1:]).tolist()
+    return sorted({0, len(curve.points) - 1, *changes})
+
+
+def _turned(curve: SpecialPointCurve) -> SpecialPointCurve:
+    """The same in the other order."""
+    points = tuple(replace(one, direction=-one.direction) for one in curve.points[::-1])
+    return replace(
+        curve,
+        points=points,
+        s=curve.s[::-1],
+        frequency=curve.frequency[::-1],
+        amplitude=curve.amplitude[::-1],
+        greatest=curve.greatest[::-1],
+        endings=curve.endings[::-1],
+    )
