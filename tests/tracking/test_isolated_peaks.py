@@ -47,7 +47,7 @@ def test_a_search_sees_the_branches_that_the_response_has():
     assert greatest(every_branch(system).shown) == pytest.approx(of_response, rel=1e-6)
 
 
-AIM = {"optimum": {"vary": [KEY], "bounds": [[10.0, 200.0]], "minimise": "peak.tip"}}
+AIM = {"optimum": {"vary": [KEY], "bounds": [[50.0, 160.0]], "minimise": "peak.tip"}}
 
 
 def test_the_harmonics_of_a_least_peak_are_those_of_the_branch_that_it_is_on():
@@ -62,11 +62,13 @@ def test_the_harmonics_of_a_least_peak_are_those_of_the_branch_that_it_is_on():
 
 @pytest.mark.slow
 def test_the_least_peak_is_where_the_detached_branch_ends():
-    """It was told as 40 times what it is, at an end of the bounds, by one harmonic."""
+    """It was told as 40 times what it is, at an end of the bounds, by one harmonic. How far the end is off
+    is told, or that it cannot be."""
     found = optimise(blade(**AIM))
     (best,) = found.tracking.optima
     value = best.values[KEY]
-    assert best.kind == "end" and best.end_error < 1e-2 and best.higher is None
+    assert best.kind == "end" and best.higher is None
+    assert best.end_error <= 1e-2 or "at which a higher peak ends" in found.curves[0].short_of
     sweep = trace(blade(sweep={KEY: [0.97 * value, 1.03 * value]}))
     below, above = (curve.peaks["tip"].amplitude for curve in sweep.curves)
     assert below > 3.0 * best.value and best.value < above < 1.1 * best.value
