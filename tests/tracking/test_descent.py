@@ -56,10 +56,23 @@ class Tried:
 
 def test_trials_where_some_responses_have_no_peak():
     """The bracket was sought with infinite heights, and numpy warned of their differences."""
-    search = Tried(3.0, 2.0, 2.0, 1.0, 2.0, 2.0, 0.0, 0.0, 1.5, 1.4)
+    search = Tried(3.0, 2.5, 2.0, 1.0, 2.0, 2.0, 0.0, 0.0, 1.5, 1.4, 0.0, 3.0, 2.0, 2.0)
     search.greatest_at(np.float64(0.4))
     found = by_trials(search)
     assert (found.s, found.value) == (0.5, 1.0)
+
+
+def test_trials_about_the_second_lowest_value_may_find_the_lowest():
+    """At 0.6 is the least, in a valley of which the values that are tried first show the slopes alone."""
+
+    class Valleys(Tried):
+        def greatest_at(self, value):
+            height = min(1.0 + value, 0.7 + 4.0 * abs(value - 0.6))
+            self.visited_values[value] = PieceHeight(height, 0.0, np.zeros(0), 0)
+
+    found = by_trials(Valleys())
+    assert found.kind == "trials" and found.between[0] < 0.6 < found.between[1]
+    assert found.value < 0.9
 
 
 class Straight:

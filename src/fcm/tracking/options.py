@@ -297,8 +297,8 @@ class TrialOptions:
     ----------
     values : int
         Over the range, both ends among them.
-    closer_values : int
-        Values about the lowest of those.
+    minima, closer_values : int, int
+        About so many of the values that are lower than their neighbours so many further ones are tried.
     min_distance : float
         Part of the range, between two values that are tried.
     same_height : float
@@ -308,6 +308,7 @@ class TrialOptions:
     """
 
     values: int = 5
+    minima: int = 2
     closer_values: int = 4
     min_distance: float = 1e-4
     same_height: float = 1e-9

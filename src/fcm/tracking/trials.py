@@ -1,7 +1,7 @@
 """The least peak by trials: of ordinary curves alone, where the peaks cannot be followed.
 
-First at values of the number over all of its range, then ever nearer to the lowest. A lower one between two
-of them would be missed, so what is said is between which.
+First at values of the number over all of its range, then ever nearer to the lowest of those that are lower
+than their neighbours. A lower one between two of them would be missed, so what is said is between which.
 """
 
 from __future__ import annotations
@@ -19,13 +19,14 @@ def by_trials(search: LowestPeakSearch) -> EnvelopeMinimum | None:
     options = search.options.tracking.trials
     for value in np.linspace(low, high, options.values).tolist():
         _greatest(search, value)
-    minimize_scalar(
-        lambda value: _greatest(search, float(value)),
-        bounds=_neighbours(search, _values_about_lowest(search)),
-        method="bounded",
-        options={"xatol": options.min_distance * (high - low), "maxiter": options.closer_values},
-    )
-    s = _values_about_lowest(search)
+    for lowest in _local_minima(search)[: options.minima]:
+        minimize_scalar(
+            lambda value: _greatest(search, float(value)),
+            bounds=_neighbours(search, lowest),
+            method="bounded",
+            options={"xatol": options.min_distance * (high - low), "maxiter": options.closer_values},
+        )
+    s = _local_minima(search)[0]
     top = search.visited_values[s]
     if not top.value > 0.0:
         return None
@@ -62,8 +63,13 @@ def _greatest(search: LowestPeakSearch, value: float) -> float:
     return search.visited_values[value].value or unknown
 
 
-def _values_about_lowest(search: LowestPeakSearch) -> float:
-    return min(search.visited_values, key=lambda value: search.visited_values[value].value or np.inf)
+def _local_minima(search: LowestPeakSearch) -> list[float]:
+    """The values that were tried with a lower peak than their neighbours, the lowest first."""
+    tried = sorted(search.visited_values)
+    height = np.array([search.visited_values[value].value or np.inf for value in tried])
+    around = np.pad(height, 1, constant_values=np.inf)
+    lowest = np.flatnonzero((height <= around[:-2]) & (height <= around[2:]))
+    return [tried[i] for i in lowest[np.argsort(height[lowest], kind="stable")]]
 
 
 def _neighbours(search: LowestPeakSearch, s: float) -> tuple[float, float]:
