@@ -122,6 +122,28 @@ def test_peaks_at_which_no_motion_stays_are_crossed():
         assert not any(line.get_marker() == "x" for axes in settled.axes for line in axes.lines)
 
 
+def test_what_rises_to_an_end_of_the_range_is_no_least_peak():
+    """It was ringed: where the contact sticks its resonance may lie beyond the range."""
+    some = replace(peaks(n_0=[0, 10, 20]), at_end=np.array([[False, False], [True, False], [False, False]]))
+    upper, lower = draw_peak(some).axes
+    assert title(upper).startswith("least peak 8 at $n_{0}$ = ")
+    for axes, values in ((upper, some.amplitude), (lower, some.frequency)):
+        (triangle,) = (line for line in axes.lines if line.get_marker() == "^")
+        assert triangle.get_xdata().tolist() == [10] and triangle.get_ydata().tolist() == [values[1, 0]]
+    assert "widen" in lower.get_title(loc="left")
+    some.at_end[:, 0] = True
+    assert "least" not in title(draw_peak(some).axes[0])
+
+
+def test_a_file_says_which_peaks_are_at_an_end_of_the_range(tmp_path):
+    scene = load_scene("yang1998-n5")
+    for high, at_end in ((1.7, None), (1.0, [True, True])):
+        found = trace(replace(scene, frequency_range=(0.7, high)), harmonics=1)
+        write_netcdf(found, tmp_path / "peaks.nc")
+        told = read_peaks(tmp_path / "peaks.nc").at_end
+        assert told is at_end if at_end is None else told.tolist() == [at_end]
+
+
 @pytest.mark.parametrize(
     ("stable", "said"), [(1.0, ""), (0.0, ", unstable"), (np.nan, ", stability unknown")]
 )

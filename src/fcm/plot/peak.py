@@ -47,12 +47,13 @@ class Peaks:
     asked: tuple[str, ...] = ()  # degrees of freedom that the scene asks for, if it says so
     drawn: tuple[str, ...] = ()  # swept keys whose values are random draws
     damping: FloatArray | None = None  # (curve,) ratio, of the resonances of nonlinear modes
+    at_end: BoolArray | None = None  # (curve, dof) whether it is at an end of the range; None: none is
 
 
 @apart
 def read_peaks(path: Path) -> Peaks:
     """Read the peaks of what ``fcm respond -o`` has written; PlotError if the file is something else."""
-    with opened(path, "a response file", _NEEDED, ("peak_stable",)) as data:
+    with opened(path, "a response file", _NEEDED, ("peak_stable", "peak_at_end")) as data:
         variables = data.variables
         dofs = tuple(str(name) for name in np.atleast_1d(variables["dof"][:]))
         unit, length = getattr(data, "frequency_unit", "rad/s"), getattr(variables[_NEEDED[1]], "units", "")
@@ -66,9 +67,11 @@ def read_peaks(path: Path) -> Peaks:
             return _of_modes(told, found, path)
         amplitude, frequency, complete = (floats(variables[name]) for name in _NEEDED[1:])
         stable = floats(variables["peak_stable"]) if "peak_stable" in variables else None
+        at_end = floats(variables["peak_at_end"]) == 1 if "peak_at_end" in variables else None
     return Peaks(
-        dofs, str(unit), swept, amplitude, frequency, complete == 1, str(length), stable, units, asked, drawn
-    )
+        dofs, str(unit), swept, amplitude, frequency, complete == 1, str(length), stable, units, asked, drawn,
+        at_end=at_end,
+    )  # fmt: skip
 
 
 def _of_modes(told: Peaks, found: Sequence[Sequence[Resonance]], path: Path) -> Peaks:
@@ -123,6 +126,7 @@ def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) 
         else:
             _mark_least(panels, peaks, key, column, known)
         _mark_unstable((upper, lower), peaks, key, column, known)
+        _mark_at_end((upper, lower), peaks, key, column, known)
         _say_left_out(lower, peaks)
     return figure
 
@@ -227,9 +231,12 @@ def ring_over(panels: Sequence[Axes], x: float, y: float, color: str) -> None:
 def _mark_least(panels: Sequence[Axes], peaks: Peaks, key: str, column: int, known: BoolArray) -> None:
     """A ring around the least peak of all, a thin line down to its frequency, and its values above.
 
-    At an end of what was swept it is no minimum: a lower one may lie beyond.
+    What is greatest at an end of the range of frequencies is no peak. At an end of what was swept it is no
+    minimum: a lower one may lie beyond.
     """
-    curves = np.flatnonzero(known)
+    curves = np.flatnonzero(known if peaks.at_end is None else known & ~peaks.at_end[:, column])
+    if not curves.size:
+        return
     least = curves[np.argmin(peaks.amplitude[curves, column])]
     x, y = float(peaks.parameters[key][least]), float(peaks.amplitude[least, column])
     ring_over(panels, x, y, _MARK)
@@ -276,3 +283,15 @@ def _mark_unstable(both: tuple[Axes, Axes], peaks: Peaks, key: str, column: int,
     for axes, values in zip(both, (peaks.amplitude, peaks.frequency), strict=True):
         axes.plot(peaks.parameters[key][at], values[at, column], "x", color=_MARK, markersize=4)
     both[1].set_title("\u00d7 the motion is not stable there", loc="left", fontsize=8, color=_MARK)
+
+
+def _mark_at_end(both: tuple[Axes, Axes], peaks: Peaks, key: str, column: int, known: BoolArray) -> None:
+    """A triangle on what is greatest at an end of the range of frequencies, and what it means."""
+    if peaks.at_end is None or not (at := known & peaks.at_end[:, column]).any():
+        return
+    x = peaks.parameters[key][at]
+    for axes, values in zip(both, (peaks.amplitude, peaks.frequency), strict=True):
+        axes.plot(x, values[at, column], "^", markerfacecolor="white", color=_MARK, markersize=6)
+    said = "\u25b3 no peak: it rises to an end of the range of frequencies; widen that"
+    above = both[1].get_title(loc="left")
+    both[1].set_title("\n".join(filter(None, (above, said))), loc="left", fontsize=8, color=_MARK)

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fcm.results.condensed_curves import CondensedCurve, condense
 from fcm.results.contact_maxima import Greatest
+from fcm.results.curve_summary import at_edge
 from fcm.results.padded_arrays import Field, by_fold
 from fcm.results.result import Curve, Response
 from fcm.results.scatter import PERCENTS, SWEEPS, Scatter
@@ -81,7 +83,7 @@ def curve_fields(response: Response) -> dict[str, Field]:
     peaks = np.array([[c.peaks[d] for d in response.dofs] for c in curves]).reshape(-1, len(response.dofs), 5)
     folds = by_fold(curves, lambda c: in_unit(c.folds, unit))
     complete = np.array([c.complete for c in curves], dtype=np.int8)
-    by_dof = ("curve", "dof")
+    by_dof, at_end = ("curve", "dof"), _peaks_at_end(curves)
     return {
         "peak_amplitude": Field(by_dof, peaks[..., 0], {"long_name": "greatest amplitude of the curve"}),
         "peak_frequency": Field(
@@ -108,6 +110,7 @@ def curve_fields(response: Response) -> dict[str, Field]:
                 "units": "1",
             },
         ),
+        **({"peak_at_end": Field(by_dof, at_end, _AT_END)} if at_end.any() else {}),
         "fold_frequency": Field(
             ("curve", "fold"),
             folds,
@@ -121,6 +124,19 @@ def curve_fields(response: Response) -> dict[str, Field]:
             {"long_name": "1 where the curve reached the end of its range", "units": "1"},
         ),
     }
+
+
+_AT_END = {
+    "long_name": "1 where the greatest amplitude is at an end of the range, beyond which it may rise",
+    "units": "1",
+}
+
+
+def _peaks_at_end(curves: Sequence[Curve]) -> NDArray[np.int8]:
+    """Of each curve and degree of freedom, 1 where its greatest amplitude is none of its own peaks."""
+    every = [(curve, curve.condensed or condense(curve)) for curve in curves]
+    rows = [[at_edge(curve, one, condensed) for one in curve.peaks.values()] for curve, condensed in every]
+    return np.array(rows, dtype=np.int8)
 
 
 def _greatest_of_contacts(response: Response) -> dict[str, Field]:

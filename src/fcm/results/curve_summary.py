@@ -113,17 +113,21 @@ def _untold(one: UnknownStability, dofs: tuple[str, ...], unit: str) -> dict[str
 
 
 def _peak(curve: Curve, peak: Peak, condensed: CondensedCurve, unit: str) -> dict[str, Any]:
-    """A peak, and whether it is where the range ends, so that it is none of the curve's own."""
-    moves = peak.amplitude > 0.0
-    at_edge = moves and curve.complete and curve.level is None and peak.frequency in condensed.ends
+    """A peak, and whether it is where the range ends."""
     return {
         "amplitude": peak.amplitude,
         "frequency": float(in_unit(peak.frequency, unit)),
         "error": peak.error,
         "stable": None if np.isnan(peak.stable) else bool(peak.stable),
-        "at_edge": bool(at_edge),
+        "at_edge": at_edge(curve, peak, condensed),
         "residual_change": peak.residual,
     }
+
+
+def at_edge(curve: Curve, peak: Peak, condensed: CondensedCurve) -> bool:
+    """Whether a peak is where the range ends, so that it is none of the curve's own."""
+    moves = peak.amplitude > 0.0
+    return bool(moves and curve.complete and curve.level is None and peak.frequency in condensed.ends)
 
 
 def _error_there(curve: Curve, d: int) -> dict[str, float]:
