@@ -339,6 +339,21 @@ def test_the_numbers_that_a_fit_found_stand_beside_what_was_measured():
     ]
 
 
+def test_the_names_of_fitted_numbers_lie_within_the_picture():
+    """Three beside each other were cut off at its left."""
+    found = [
+        FittedNumber(f"contact.shroud_of_blade.{key}", 0.123456, 0.00042) for key in ("mu", "k_u", "k_v")
+    ]
+    points = DrawnMeasured("u", FREQUENCY[:3], FREQUENCY[:3])
+    figure = draw_response(
+        replace(response(resonance(9.0, 1.2, 5.0)), measured=(points,), fitted=tuple(found))
+    )
+    figure.draw_without_rendering()
+    (legend,) = figure.legends
+    assert len(legend.get_texts()) == 4
+    assert legend.get_window_extent().x0 >= 0.0
+
+
 def test_the_legend_names_no_line_that_is_too_short_to_be_seen():
     """A hook a hundred-thousandth of the range wide is unstable, and nobody finds its dashes."""
     for width, named in ((1e-6, False), (0.1, True)):

@@ -152,7 +152,7 @@ REFUSED = [
         'there is no such number in the scene to sweep; did you mean "contact.shroud.n_0"?',
     ),
     ("contact.shroud.n0", [1], 'did you mean "contact.shroud.n_0"?'),
-    ("contact.7.n_0", [1], "there is no such number in the scene to sweep"),
+    ("contact.7.n_0", [1], 'there is no such number in the scene to sweep; contacts are "shroud"'),
     ("contact.shroud", [1], "there is no such number"),
     ("contact.shroud.name", [1], "there is no such number"),
     ("modal.damping.2", [1], "there is no such number"),

@@ -193,8 +193,11 @@ def name_measured(figure: Figure, fitted: Sequence[FittedNumber] = ()) -> None:
 
     handles = [Line2D([], [], linestyle="none", marker="+", color=NEUTRAL, markersize=SIZE)]
     handles += [Line2D([], [], linestyle="none") for _ in fitted]
-    rows = 1 + LAYOUT.fitted_of_row
-    figure.legend(
-        handles, [WORD, *map(str, fitted)], loc="outside upper right", ncols=min(len(handles), rows),
-        handlelength=0.8, handletextpad=0.4,
-    )  # fmt: skip
+    for columns in range(min(len(handles), 1 + LAYOUT.fitted_of_row), 0, -1):
+        legend = figure.legend(
+            handles, [WORD, *map(str, fitted)], loc="outside upper right", ncols=columns,
+            handlelength=0.8, handletextpad=0.4,
+        )  # fmt: skip
+        if legend.get_window_extent().width <= figure.bbox.width or columns == 1:
+            return
+        legend.remove()

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from fcm.model.scene import Address
-from fcm.scene.errors import Mistakes, quoted
+from fcm.scene.errors import Mistakes, choices, nearest, quoted
 
 VECTORS = ("mass", "frequency", "damping")  # of the modal table
 SCALE = "cyclic.mistuning.scale"
@@ -43,8 +43,22 @@ class Addresses:
         if (members := self._members(key, path, mistakes)) is not None:
             return members
         if not self._excused(key, path, mistakes):
-            mistakes.add(path, "there is no such number in the scene to sweep", key, self.numbers)
+            what = "there is no such number in the scene to sweep"
+            hint = self._contact_meant(key)
+            mistakes.add(path, what + hint, *(() if hint else (key, self.numbers)))
         return ()
+
+    def _contact_meant(self, key: str) -> str:
+        """Of a contact that is not there the name that may be meant, or those that are; else nothing."""
+        kind, _, rest = key.partition(".")
+        label, _, field = rest.rpartition(".")
+        drafts = self.parts["contact"]
+        names = list(dict.fromkeys(str(one.get("group") or one["name"] or i) for i, one in enumerate(drafts)))
+        if kind != "contact" or field not in NUMBERS["contact"] or not names or label in names:
+            return ""
+        if close := nearest(label, names):
+            return f"; did you mean {quoted(f'contact.{close}.{field}')}?"
+        return f"; contacts are {choices(names)}, or * for all"
 
     def _matching(self, key: str, path: str, mistakes: Mistakes) -> tuple[Address, ...]:
         """The numbers of all contacts or forces whose names match a key path with a *; of all modes."""

@@ -15,6 +15,7 @@ from fcm.scene.errors import choices, counted, kind, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.names import DIRECTIONS, Names
 from fcm.scene.node_sets import FITTED, pairs_of_sets, with_places
+from fcm.scene.number_text import fault_of_number
 from fcm.scene.pair_file import (
     COORDINATES,
     NODES,
@@ -106,7 +107,8 @@ def _listed(section: Section, value: Any) -> list[Pair]:
 
 def _pair(section: Section, index: int, item: Any) -> Pair:
     nodes = item if isinstance(item, list | tuple) else [item]
-    right = 1 <= len(nodes) <= 2 and all(isinstance(n, int | str) and not isinstance(n, bool) for n in nodes)
+    named = [isinstance(n, int | str) and not isinstance(n, bool) and str(n).strip() for n in nodes]
+    right = 1 <= len(nodes) <= 2 and all(named)
     if not right:
         section.wrong(
             f"nodes[{index}]", "must be two nodes, or one that touches the ground, as [40, 41] or [40]"
@@ -199,7 +201,7 @@ def _of_each(section: Section, key: str, table: PairTable, files: Files) -> list
             with files.opened(value) as path:
                 value = read_numbers_of_pairs(path, table.pairs)
         except DataFileError as error:
-            for fault in error.faults:
+            for fault in _as_number(value, files) or error.faults:
                 section.wrong(key, fault)
             return nothing
     numbers = section.numbers(value, section.at(key), RULES[key])
@@ -207,6 +209,12 @@ def _of_each(section: Section, key: str, table: PairTable, files: Files) -> list
         section.wrong(key, f"must have one number for each of {counted(count, 'pair')}, has {len(numbers)}")
         return nothing
     return nothing if numbers is None else [float(number) for number in numbers]
+
+
+def _as_number(text: str, files: Files) -> list[str]:
+    """What is wrong with a text that was meant as a number; nothing if it is the name of a file."""
+    is_file = not text[:1].isdigit() or (files.folder / text).exists()
+    return [] if is_file else [f"{fault_of_number(text)}, without quotes and in the units of the scene"]
 
 
 def _is_list(value: Any) -> bool:
