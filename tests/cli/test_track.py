@@ -8,6 +8,7 @@ from pathlib import Path
 import netCDF4
 import numpy as np
 import pytest
+from matplotlib.text import Text
 
 import fcm as package
 from fcm.plot.tracked import DrawnTrack, DrawnTracking, draw_tracked, read_tracked
@@ -113,6 +114,19 @@ def test_peaks_of_one_name_have_one_colour_in_both_panels_each_its_own():
     upper, lower = ([line for line in axes.lines if len(line.get_xdata()) == 5] for axes in figure.axes[:2])
     colours = [[line.get_color() for line in lines] for lines in (upper, lower)]
     assert colours[0] == colours[1] and len(set(colours[0])) == 2 and not figure.legends
+
+
+def test_what_lines_mean_is_within_the_picture():
+    """Of peaks of every kind the sentence was cut off at the edge."""
+    number, f = np.linspace(1.0, 2.0, 5), np.linspace(10.0, 11.0, 5)
+    stable, trough = np.array([1.0, 0.0, np.nan, 1.0, 1.0]), np.array([0.0, 0.0, 0.0, 1.0, 0.0])
+    tracks = tuple(
+        DrawnTrack("peak of u", number, f + k, f[:, None], 0.0 * f, trough, stable) for k in range(2)
+    )
+    figure = draw_tracked(DrawnTracking("contact.c.n_0", ("u",), "Hz", tracks))
+    figure.draw_without_rendering()
+    (said,) = figure.findobj(lambda one: isinstance(one, Text) and "trough" in one.get_text())
+    assert said.get_window_extent().x1 <= figure.bbox.x1
 
 
 def test_a_peak_that_falls_by_decades_is_to_be_seen_at_its_least_and_named():
