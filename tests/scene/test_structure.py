@@ -564,3 +564,21 @@ def test_one_mode_is_said_to_be_one():
         "response": {"frequency": [0.5, 2.0]},
     }
     assert "structure: 1 mode of 2 degrees of freedom is kept" in scene_from_dict(data).notes[0]
+
+
+@pytest.mark.parametrize("swapped", [False, True])
+def test_stiffness_and_mass_of_a_mesh_in_each_others_place(swapped):
+    """All 120 modes were sought and kept: of a blade that took minutes, before anything was said."""
+    count = 120
+    chain = 1e6 * (2.0 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1))
+    mass = 1e-3 * np.eye(count)
+    first = 2.0 * np.sqrt(1e6 / 1e-3) * np.sin(pi / 2.0 / (count + 1))  # of equal masses between two walls
+    names = [f"{i + 1}x" for i in range(count)]
+    pair = (mass, chain) if swapped else (chain, mass)
+    table = dict(zip(("stiffness", "mass"), (one.tolist() for one in pair), strict=True))
+    top = {"response": {"frequency": [0.5 * first, 2.0 * first]}}
+    if not swapped:
+        assert read(top=top, dofs=names, **table).modal.frequency[0] == pytest.approx(first)
+        return
+    said = refused(top=top, dofs=names, **table)
+    assert "in each other's place" in said and f"which is {first:.6g} rad/s" in said

@@ -82,6 +82,7 @@ class LimitOptions:
     bytes_of_direction: float = 8 * 14
     of_no_interest: float = 0.01  # of the range's lower end: a frequency far below everything that is traced
     outputs: int = 30  # degrees of freedom of results whose own flexibility is kept
+    mesh_rows: int = 100  # from which a structure is a mesh, whose highest modes are above any range
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,14 @@ def modal_of_matrices(
     along theirs, outputs the rows that are only reported; `ends` are the lowest and highest angular frequency
     of the forces.
     """
+    if mode := _exchanged_mesh(matrices, ends):
+        top.wrong(
+            "structure",
+            "all its modes are far below the range of frequencies. "
+            "Stiffness and mass are in each other's place: "
+            f"exchanged, they have a mode at {mode / (2.0 * np.pi):.6g} Hz, which is {mode:.6g} rad/s",
+        )
+        return None, np.zeros((len(matrices.dofs), 0)), []
     directions, others = split(loads, outputs)
     top_frequency = ends[1] if np.isfinite(ends[1]) else 0.0
     try:
@@ -63,6 +71,20 @@ def modal_of_matrices(
             *of_rounding([found], damping.ratio[found.rigid :]),
         ],
     )
+
+
+def _exchanged_mesh(matrices: Matrices, ends: tuple[float, float]) -> float:
+    """As `exchanged` of a mesh, before its modes are sought: all of them would be kept, which takes long.
+
+    The highest mode is not below that of any row alone, by Rayleigh's quotient, so that of others little is
+    looked at.
+    """
+    own, low = matrices.M.diagonal(), ends[0] / MESSAGES.range_near
+    if len(own) < LIMITS.mesh_rows or not (own > 0.0).all():
+        return 0.0
+    if not (matrices.K.diagonal() / own).max() < low * low:
+        return 0.0
+    return exchanged(matrices, np.zeros(0), ends)
 
 
 def exchanged(matrices: Matrices, kept: FloatArray, ends: tuple[float, float]) -> float:
