@@ -131,7 +131,7 @@ def test_what_has_peaks_only_is_drawn_by_them(fcm, scene):
     assert fcm("respond", scene, "-o", "only.nc", "--peaks-only").code == 0
     assert fcm("plot", "peak", "only.nc", "-o", "peak.svg").code == 0
     drawn = fcm("plot", "response", "only.nc", "-o", "response.svg")
-    assert drawn.code == 2 and "no variable frequency, amplitude; try fcm plot peak" in drawn.err
+    assert drawn.code == 2 and "the peaks alone, as by --peaks-only; try fcm plot peak" in drawn.err
 
 
 def test_why_a_curve_is_not_complete_is_in_the_file(fcm, scene):

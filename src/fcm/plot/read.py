@@ -171,7 +171,8 @@ def _hint(dataset: Any) -> str:
     found = next((what for what, names in kinds if held >= names), "")
     if not found and "optimum_number" in held:
         return "; the search for its optimum was interrupted, before a response was traced"
-    return f"; try fcm plot {found}" if found else ""
+    alone = "; of curves it has the peaks alone, as by --peaks-only" if "peak_amplitude" in held else ""
+    return f"{alone if found == 'peak' else ''}; try fcm plot {found}" if found else ""
 
 
 def _response(dataset: Any) -> DrawnResponse:
