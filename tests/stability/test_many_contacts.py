@@ -1,5 +1,7 @@
 """Stability along a curve of many contacts: of which few points are looked at, and of few harmonics."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -92,6 +94,21 @@ def test_points_between_two_that_are_confirmed_are_confirmed():
     assert not found[~doubted].any()
     assert found[some].tolist() == [of.confirms(z, 1.0) for z in path.z[some]]
     assert 0.2 < found[doubted].mean() < 0.9
+
+
+def test_of_many_contacts_no_more_than_a_part_of_the_points_are_looked_at():
+    """Without any look nothing is confirmed; fewer looks confirm no other points."""
+    system = System(elastic_strip((11.3, 20.0)), (1,))
+    path = traced(system).branches.paths[-1]
+    doubted = (path.parameter > 11.35) & (path.parameter < 13.0)
+    whole = confirmed_stable(system, path.z, doubted)
+    for part in (0.0, 0.02):
+        few = replace(STABILITY, confirmation=replace(STABILITY.confirmation, max_fraction_of_many=part))
+        looks = ConfirmedPoints(system, path.z, few)
+        known = [looks.at(int(i)) for i in np.flatnonzero(doubted)]
+        assert len(looks.known) <= part * len(path.z)
+        assert sum(not np.isnan(one.stable) for one in known) <= len(looks.known)
+        assert not (confirmed_stable(system, path.z, doubted, options=few) & ~whole).any()
 
 
 def test_a_motion_that_is_far_is_found_from_beside_the_next_points():

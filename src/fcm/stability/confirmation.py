@@ -26,7 +26,7 @@ from fcm.stability.known_motions import KnownMotions
 from fcm.stability.multipliers import Multipliers
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.spaced_points import SpacedPoints
-from fcm.stability.verdict import Verdict, growth_is_linear
+from fcm.stability.verdict import UNKNOWN, Verdict, growth_is_linear
 
 Mask = npt.NDArray[np.bool_]
 
@@ -52,9 +52,9 @@ def confirmed_stable(
         Those, doubted or not, at whose frequency the same branch has a motion with more harmonics: where none
         is found from the solution, it is sought along the branch from the points beside them.
     options : StabilityOptions, optional
-        Of a row of them some are looked at, `ConfirmationOptions.point_interval` apart, and between two of
-        these the middle, until all three agree and their growths lie on a line: then so does what is between
-        them. None is where a contact has a law of its own.
+        Of a row of them some are looked at, `ConfirmationOptions.point_interval` apart, or of many contacts
+        its ends; and between two of these the middle, until all three agree and their growths lie on a line:
+        then so does what is between them. None is where a contact has a law of its own.
     motions : KnownMotions, optional
         Of the same branch with more harmonics, from which those of the far points are sought first.
     """
@@ -63,7 +63,7 @@ def confirmed_stable(
     if (doubted | far).any() and not system.own_laws:
         looks = ConfirmedPoints(system, z, options, far, motions)
         for first, end in runs(doubted):
-            nodes = looks.spaced.nodes(first, end - 1, options.confirmation.point_interval)
+            nodes = looks.nodes(first, end - 1)
             found[nodes[0]] = looks.confirms(nodes[0])
             for a, b in itertools.pairwise(nodes):
                 looks.between(a, b, found)
@@ -94,6 +94,14 @@ class ConfirmedPoints:
         self.spaced = SpacedPoints(z, self.many)
         self.far = np.zeros(len(z), dtype=np.bool_) if far is None else far
         self.known = dict[int, tuple[Verdict, FloatArray | None]]()  # verdicts, and of what
+        self.looks_left = options.confirmation.max_fraction_of_many * len(z) if self.many else math.inf
+
+    def nodes(self, first: int, last: int) -> list[int]:
+        """Points from one to another that are looked at first; of many contacts, as a look takes long, the
+        ends alone, as what is between them tells whether there is need of more."""
+        if self.many:
+            return sorted({first, last})
+        return self.spaced.nodes(first, last, self.options.confirmation.point_interval)
 
     def confirms(self, i: int) -> bool:
         """Whether the motion with further harmonics is found, and stable."""
@@ -104,8 +112,11 @@ class ConfirmedPoints:
         return math.isnan(self.at(i).growth)
 
     def at(self, i: int) -> Verdict:
-        """Of the motion with further harmonics."""
+        """Of the motion with further harmonics; unknown where there are no looks left."""
         if i not in self.known:
+            if self.looks_left < 1.0:
+                return UNKNOWN
+            self.looks_left -= 1.0
             self._poll()
             self.known[i] = self._look(i), self.multipliers.beside
         return self.known[i][0]
@@ -150,7 +161,8 @@ class ConfirmedPoints:
             return
         last, motion = self._before_turn(at, last), self.known[at][1]
         step = options.point_interval
-        while motion is not None and (last - at) * way > 0:
+        while motion is not None and (last - at) * way > 0 and self.looks_left >= 1.0:
+            self.looks_left -= 1.0
             self._poll()
             ahead = at + way * min(step, abs(last - at))
             if self.multipliers.continued(self.z[ahead], motion).stable == 1.0:

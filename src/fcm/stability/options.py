@@ -104,8 +104,11 @@ class ConfirmationOptions:
     max_unknowns : int
         From so many on these are not tried.
     point_interval : int
-        Points from one that is looked at to the next; between them the middle is, too, and more where the
-        growth is not on a line.
+        Points from one that is looked at to the next, of few contacts; between them the middle is, too, and
+        more where the growth is not on a line.
+    max_fraction_of_many : float
+        Points of a curve of many contacts that are looked at, at most, over all that it has: the others are
+        not confirmed.
     max_addition : float
         Part of the displacements that the harmonics beyond the further ones may add to a motion that
         confirms.
@@ -125,6 +128,7 @@ class ConfirmationOptions:
     homotopy_parts: tuple[float, ...] = (0.1, 0.25, 0.45, 0.7, 1.0)
     max_unknowns: int = 240
     point_interval: int = 16
+    max_fraction_of_many: float = 0.25
     max_addition: float = 0.05
 
 
