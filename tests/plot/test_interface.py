@@ -1,5 +1,6 @@
 """Pictures of the contacts of a response, and what is read for them."""
 
+import json
 import re
 from dataclasses import replace
 
@@ -180,7 +181,8 @@ def test_curves_of_a_sweep_are_columns_each_at_its_own_peak(tmp_path, fcm):
     assert "0.01" in heads[0] and "20" in heads[1]
     unknown = replace(points[0], stable=np.nan)
     said = [
-        draw_interface(read, [one]).axes[0].get_title() for one in (unknown, replace(unknown, forced=False))
+        draw_interface(read, [one]).axes[0].get_title()
+        for one in (unknown, replace(unknown, modal_amplitude=1.0))
     ]
     assert ["stability unknown" in one for one in said] == [True, False]  # a nonlinear mode has none
     done = fcm("plot", "contacts", output, "--curve", "0", "--curve", "2", "-o", tmp_path / "a.svg")
@@ -296,3 +298,56 @@ def test_the_page_has_names_of_contacts_and_coordinates_at_its_axes(file, tmp_pa
     assert '"title":{"text":"x"}' in plane and '"title":{"text":"z"}' in plane
     names = ",".join(f'"{name}"' for name in read.contacts)
     assert f'"ticktext":[{names}]' in row
+
+
+def test_of_a_nonlinear_mode_points_are_chosen_by_its_modal_amplitude(tmp_path):
+    """Its frequency says little: that of a stiff joint moves by a percent over three decades."""
+    path = tmp_path / "mode.nc"
+    run = ("respond", "yang1998-n5", "--mode", 1, "--level", "0.1:100", "--harmonics", 1, "-o", path)
+    assert called(*run).code == 0
+    read = read_interface(path)
+    with netCDF4.Dataset(path) as data:
+        amplitude, energy = (np.asarray(data[name][0]) for name in ("modal_amplitude", "dissipated_energy"))
+        frequency = np.asarray(data["frequency"][0])
+    for one in (0.1, 3.0, 20.0, 100.0):
+        (point,) = points_of(read, (), amplitude=(one,))
+        (k,) = np.flatnonzero(amplitude == point.modal_amplitude)
+        assert abs(np.log(amplitude[k] / one)) <= np.abs(np.diff(np.log(amplitude))).max()
+        assert point.frequency == frequency[k] and point.contact_loads[0].tolist() == energy[k].tolist()
+    with pytest.raises(PlotError, match=r"--amplitude 300: the curve goes from 0\.1 to 100$"):
+        points_of(read, (), amplitude=(300.0,))
+    with pytest.raises(PlotError, match=r"--at 20: .* rad/s; --amplitude takes modal amplitudes"):
+        points_of(read, (20.0,))
+    said = called("plot", "contacts", path, "--amplitude", 3, "--amplitude", 20, "-o", tmp_path / "a.png")
+    assert said.code == 0 and said.err.count("modal amplitude ") == 2
+    said = called("plot", "loop", path, "--amplitude", 20, "--json", "-o", tmp_path / "l.png")
+    (loop,) = json.loads(said.out)["loops"]
+    assert loop["frequency"] == point_at(read, 20.0).frequency
+    both = ("--at", 1.2, "--amplitude", 20)
+    assert all("both say where" in called("plot", one, path, *both).err for one in ("contacts", "loop"))
+
+
+def point_at(read, amplitude):
+    (found,) = points_of(read, (), amplitude=(amplitude,))
+    return found
+
+
+def test_of_levels_points_are_chosen_by_the_level(tmp_path):
+    """Their frequency is one, which told nothing."""
+    path = tmp_path / "level.nc"
+    run = ("respond", "yang1998-n5", "--level", "0:2", "--at", 1.2, "--harmonics", 1, "-o", path)
+    assert called(*run).code == 0
+    (point,) = points_of(read_interface(path), (1.5,))
+    assert abs(point.frequency - 1.5) < 0.1
+    assert (
+        f"at level {point.frequency:.6g};"
+        in called("plot", "contacts", path, "--at", 1.5, "-o", tmp_path / "a.png").err
+    )
+
+
+def test_the_list_has_units_and_places(file, tmp_path):
+    read = replace(read_interface(file[0]), places=np.arange(24.0).reshape(12, 2))
+    (top,) = points_of(read, (1.2,))
+    for row in greatest_takers(read, top, 5):
+        i = read.contacts.index(row[0])
+        assert row[-1] == f"{2 * i}, {2 * i + 1}"

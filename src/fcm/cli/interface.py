@@ -15,14 +15,19 @@ from fcm.cli.options import FiniteRange
 from fcm.files import replacing
 
 HEAD = ("contact", "state", "energy", "of all", "slip path", "normal force")
+OF_UNIT = {"energy": 0, "slip path": 1, "normal force": 2}  # which of the file's
 
 
 @click.command()
 @draws_file("-contacts.png", page=True)
 @click.option(
     "--at", type=FiniteRange(min=0.0), multiple=True, metavar="F",
-    help="The frequency, in the file's unit; several make a film strip.  "
+    help="The frequency, in the file's unit, or the level; several make a film strip.  "
     "[default: of the greatest peak of the scene's output]",
+)  # fmt: skip
+@click.option(
+    "--amplitude", type=FiniteRange(min=0.0), multiple=True, metavar="A",
+    help="Of a nonlinear mode, instead of --at: the modal amplitude; several make a film strip.",
 )  # fmt: skip
 @click.option(
     "--curve", "curves", type=click.IntRange(min=0), multiple=True, metavar="K", default=(0,),
@@ -38,6 +43,7 @@ def contacts(
     file: Path,
     output: Path | None,
     at: tuple[float, ...],
+    amplitude: tuple[float, ...],
     curves: tuple[int, ...],
     places: Path | None,
 ) -> None:
@@ -46,31 +52,46 @@ def contacts(
     At points of the curve: which contacts stick, slip and open. Of each the energy and the slip path of a
     cycle, and the greatest normal force. Those that take most energy are listed.
     """
-    from fcm.plot.interface import draw_interface, greatest_takers, points_of, read_interface, read_places
+    from fcm.plot.interface import (
+        draw_interface,
+        greatest_takers,
+        place_of,
+        points_of,
+        read_interface,
+        read_places,
+    )
     from fcm.plot.style import LAYOUT
     from fcm.scene.errors import counted
 
     output = picture_of(file, output, "-contacts.png", places, page=True)
-    count = max(len(at), 1) * len(curves)
+    if at and amplitude:
+        raise click.UsageError("--at and --amplitude both say where; give one of them.")
+    count = max(len(at), len(amplitude), 1) * len(curves)
     if count > LAYOUT.panels:
-        options = " and ".join(name for name, given in (("--at", at), ("--curve", curves)) if len(given) > 1)
+        asked = (("--at", at), ("--amplitude", amplitude), ("--curve", curves))
+        options = " and ".join(name for name, given in asked if len(given) > 1)
         raise click.UsageError(f"{options} ask for {count} points; a picture has room for {LAYOUT.panels}.")
     read = read_interface(file)
-    points = [point for curve in curves for point in points_of(read, at, curve)]
+    points = [point for curve in curves for point in points_of(read, at, curve, amplitude)]
     where, axes = read.places, read.axes
     if places is not None:
         where, axes = read_places(places, read.contacts), type(read).axes
-    each = [curve for curve in curves for _ in at or (0.0,)]
+    units = {key: read.units[k] for key, k in OF_UNIT.items()}
+    head = [f"{key} [{units[key]}]" if units.get(key) else key for key in HEAD]
+    head += (
+        []
+        if read.places is None
+        else [f"at {', '.join(read.axes)}" + (f" [{read.units[1]}]" if read.units[1] else "")]
+    )
+    each = [curve for curve in curves for _ in at or amplitude or (0.0,)]
     for point, curve in zip(points, each, strict=True):
         takers = greatest_takers(read, point, SENTENCES.rows)
         if takers:
-            messages.info(aligned([HEAD, *takers], left=0))
+            messages.info(aligned([head, *takers], left=0))
         swept = ", ".join(f"{key} = {value:.6g}" for key, value in point.swept.items())
         of = f", curve {curve}{f' ({swept})' if swept else ''}" if len(read.frequency) > 1 else ""
         nothing = "" if takers else ": none takes energy"
-        messages.info(
-            f"at {point.frequency:.6g} {read.unit}{of}; {counted(len(read.contacts), 'contact')}{nothing}"
-        )
+        messages.info(f"at {place_of(read, point)}{of}; {counted(len(read.contacts), 'contact')}{nothing}")
     if is_page(output):
         from fcm.plot.interactive import contacts_page
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from fcm.cli.loop_cases import Case, PlanarCase
     from fcm.cli.loop_names import Harmonic
 
-OF_FILE = ("curves", "at", "contact", "solution", "dimensionless")
+OF_FILE = ("curves", "at", "amplitudes", "contact", "solution", "dimensionless")
 OF_RATIOS = ("n0_bars", "b_bars")
 OF_CONTACT = ("mu", "k_u", "k_v", "n_0", "a", "b")
 
@@ -125,6 +125,10 @@ def _parameters(command: Any) -> Any:
     "[default: the peak of the scene's output]",
 )  # fmt: skip
 @click.option(
+    "--amplitude", "amplitudes", type=float, multiple=True, metavar="A", callback=_number(0.0),
+    help="Of FILE with a nonlinear mode, instead of --at: the modal amplitude.",
+)  # fmt: skip
+@click.option(
     "--contact", metavar="NAME", help="Of FILE: the contact.  [default: that which takes most energy]"
 )
 @click.option(
@@ -208,6 +212,7 @@ def _cases(
             options["curves"] or [None],
             options["contact"],
             options["at"] or [None],
+            options["amplitudes"] or [None],
             options["solution"],
             tell,
         )
@@ -225,6 +230,7 @@ def _check(given: set[str], of_file: bool) -> None:
     if of_file:
         others = (*OF_RATIOS, *OF_CONTACT, "phases", "harmonics")
         wrong.append(_useless(given, others, " with a FILE: its points have their own"))
+        wrong.append("--at and --amplitude both say where" if given >= {"at", "amplitudes"} else "")
     elif given.intersection(OF_CONTACT):
         wrong.append(_useless(given, OF_FILE[:-1], " without a FILE"))
         wrong.append(_useless(given, OF_RATIOS, " beside --mu, --k-u, --k-v, --n0, --a and --b"))

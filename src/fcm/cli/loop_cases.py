@@ -176,10 +176,14 @@ def of_file(
     curves: Sequence[int | None],
     contact: str | None,
     at: Sequence[float | None],
+    amplitudes: Sequence[float | None],
     solution: int | None,
     tell: Callable[[str], None],
 ) -> list[Case] | list[PlanarCase]:
-    """The loops of a contact on curves of a response file, at frequencies; which was taken is told."""
+    """The loops of a contact on curves of a response file, at frequencies or modal amplitudes.
+
+    Which contact was taken is told.
+    """
     from fcm.plot.loop_file import PlanePoint, busiest, points_at, read_loops
     from fcm.plot.read import read
 
@@ -188,8 +192,8 @@ def of_file(
         tell(said)
     cases: list[Case] = []
     planar: list[PlanarCase] = []
-    for curve, frequency in product(curves, at):
-        points = points_at(file, curve, contact, frequency)
+    for curve, frequency, amplitude in product(curves, at, amplitudes):
+        points = points_at(file, curve, contact, frequency, amplitude)
         if solution is not None and solution > len(points):
             raise click.UsageError(f"--solution {solution}: there are {len(points)} at this frequency.")
         for point in points if solution is None else points[solution - 1 : solution]:
@@ -205,7 +209,7 @@ def _said(point: LoopPoint, file: LoopFile) -> tuple[tuple[Name, ...], str, dict
     """The names of a point in a picture, what else is to be said of it, and for --json."""
     from fcm.plot.labels import curve_label
 
-    unit = file.unit
+    unit, modal = file.unit, point.modal_amplitude
     symbol = {"Hz": "$f$", "level": "level"}.get(unit, r"$\omega$")
     at = f"{point.frequency:.5g}" if unit == "level" else f"{point.frequency:.5g} {unit}"
     swept = ", ".join(
@@ -215,6 +219,7 @@ def _said(point: LoopPoint, file: LoopFile) -> tuple[tuple[Name, ...], str, dict
         Name(shorten(point.contact, SENTENCES.contact_name).replace("$", r"\$"), point.contact),
         Name(curve_label(point.parameters, units=file.units), swept),
         *((_peak(point, file),) if point.peak else ()),
+        *(() if modal is None else (Name(f"modal amplitude {modal:.4g}", f"modal amplitude {modal:.4g}"),)),
         Name(f"{symbol} = {at}", f"level {at}" if unit == "level" else at),
     )
     if point.fundamental:
@@ -224,6 +229,7 @@ def _said(point: LoopPoint, file: LoopFile) -> tuple[tuple[Name, ...], str, dict
     facts = {
         "curve": point.curve, "parameters": point.parameters, "contact": point.contact,
         ("level" if unit == "level" else "frequency"): point.frequency,
+        **({} if modal is None else {"modal_amplitude": modal}),
         "solution": point.solution, "solutions": point.solutions,
         "output": point.output, "output_amplitude": point.displacement, "peak": point.peak,
         "stable": point.stable, "a": point.amplitude, "k_u a": point.force,

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from fcm.plot.errors import PlotError
-from fcm.plot.interface import CONTACT_LOADS, STATES_OF_CONTACTS, InterfaceFile, InterfacePoint
+from fcm.plot.interface import CONTACT_LOADS, STATES_OF_CONTACTS, InterfaceFile, InterfacePoint, place_of
 from fcm.plot.labels import short_names, with_unit
 from fcm.plot.peak import Peaks
 from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, FloatArray, wide
@@ -121,7 +121,7 @@ def contacts_page(
         symbols = [_SYMBOLS[k] for k in one.state]
         x, y = (number, one.contact_loads[0]) if places is None else places.T
         figure.add_scatter(
-            x=x, y=y, mode="markers", name=f"{one.frequency:.6g} {file.unit}", visible=i == 0,
+            x=x, y=y, mode="markers", name=place_of(file, one), visible=i == 0,
             customdata=np.column_stack((names, states, *one.contact_loads[:3].astype(str))),
             marker={"symbol": symbols, "size": 10, "line": {"color": "black", "width": 0.5},
                     "color": one.contact_loads[0], "colorscale": "Viridis", "cmin": 0.0, "cmax": tops[0],
@@ -140,7 +140,7 @@ def contacts_page(
     shown = [_of_contacts(points, k, head, tops[k], places is None) for k, head in enumerate(heads)]
     frequencies = [
         {
-            "label": f"{one.curve} {one.frequency:.6g} {file.unit}{_doubt(one.stable)}".strip(),
+            "label": f"{one.curve} {place_of(file, one)}{_doubt(one.stable)}".strip(),
             "method": "restyle",
             "args": [{"visible": [j == i for j in range(len(points))]}],
         }

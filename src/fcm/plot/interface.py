@@ -15,7 +15,7 @@ from fcm.plot.dof import asked_for, greatest_column
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, short_names, with_unit
 from fcm.plot.pairs import direction_name, plane_view
-from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
+from fcm.plot.read import LEVEL, FloatArray, floats, on_curve, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
 from fcm.plot.style import COLUMN, LAYOUT, TWO_COLUMNS, house_style, new_figure
 
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _NEEDED = ("frequency", "amplitude", "contact", "regime", "dissipated_energy")
+_OPTIONAL = ("stable", "contact_position", "level", "modal_amplitude")
 CONTACT_LOADS = (("dissipated_energy", "energy in a cycle"), ("slip_path", "slip path in a cycle"),
           ("greatest_normal_force", "greatest normal force"))  # fmt: skip
 STATES_OF_CONTACTS = (  # word, colour and mark: told apart without colours, too
@@ -49,7 +50,7 @@ class InterfaceFile:
     unit: str
     contacts: tuple[str, ...]
     dofs: tuple[str, ...]
-    frequency: FloatArray  # (curve, point) in the file's unit
+    frequency: FloatArray  # (curve, point) in the file's unit; of levels these
     amplitude: FloatArray  # (curve, point, dof)
     stable: FloatArray  # (curve, point) 1, 0 or NaN
     states: npt.NDArray[np.str_]  # (curve, point, contact)
@@ -59,7 +60,7 @@ class InterfaceFile:
     axes: tuple[str, str] = ("X", "Y")  # what these two coordinates are
     names: tuple[str, ...] = ()  # of the curves of a sweep: the values of each
     swept: tuple[Mapping[str, float], ...] = ()  # these values, by their short names
-    forced: bool = True  # whether its curves are no nonlinear modes
+    modal_amplitude: FloatArray | None = None  # (curve, point) of nonlinear modes
     asked: tuple[str, ...] = ()  # degrees of freedom that the scene asks for, if it says so
 
 
@@ -74,16 +75,14 @@ class InterfacePoint:
     contact_loads: FloatArray  # (3, contact)
     curve: str = ""  # its name, where there are several
     swept: Mapping[str, float] = field(default_factory=dict)  # of a sweep, by short names
-    forced: bool = True  # and no nonlinear mode, which is neither stable nor unstable
+    modal_amplitude: float | None = None  # of a nonlinear mode, which is neither stable nor unstable
 
 
 @apart
 def read_interface(path: Path) -> InterfaceFile:
     """Read what ``fcm respond -o`` has written; PlotError if the file says nothing of its contacts."""
     names = tuple(name for name, _ in CONTACT_LOADS)
-    with opened(
-        path, "a response with contacts", (*_NEEDED, *names[1:], "dof"), ("stable", "contact_position")
-    ) as data:
+    with opened(path, "a response with contacts", (*_NEEDED, *names[1:], "dof"), _OPTIONAL) as data:
         variables = data.variables
         contacts, dofs = (
             tuple(str(one) for one in np.atleast_1d(variables[name][:])) for name in ("contact", "dof")
@@ -93,9 +92,12 @@ def read_interface(path: Path) -> InterfaceFile:
         contact_loads = np.stack([floats(variables[name]) for name in names])
         stable = floats(variables["stable"]) if "stable" in variables else np.full(frequency.shape, np.nan)
         unit = str(getattr(data, "frequency_unit", "rad/s"))
+        if "level" in variables:
+            frequency, unit = floats(variables["level"]), LEVEL
+        modal = floats(variables["modal_amplitude"]) if "modal_amplitude" in variables else None
         places, axes = _places(variables)
         energy, slip, normal = (str(getattr(variables[name], "units", "")) for name in names)
-        swept, forced = swept_values(variables), "modal_amplitude" not in variables
+        swept = swept_values(variables)
         asked = asked_for(getattr(data, "output", ""), dofs)
         units_of = swept_units(variables, swept)
     if not contacts:
@@ -118,7 +120,7 @@ def read_interface(path: Path) -> InterfaceFile:
     )
     short = short_names(swept)
     named = tuple({short[key]: value for key, value in one.items()} for one in values) if swept else ()
-    return InterfaceFile(path, unit, *of_contacts, named, forced, asked)
+    return InterfaceFile(path, unit, *of_contacts, named, modal, asked)
 
 
 def _places(variables: Any) -> tuple[FloatArray | None, tuple[str, str]]:
@@ -133,40 +135,54 @@ def _places(variables: Any) -> tuple[FloatArray | None, tuple[str, str]]:
     return places, (direction_name(along[0]), direction_name(along[1]))
 
 
-def points_of(file: InterfaceFile, at: Sequence[float], curve: int = 0) -> list[InterfacePoint]:
-    """The point of a curve nearest to each frequency; of several solutions there the highest that is not
-    unstable, or the highest. Without a frequency the point of the greatest amplitude, of the scene's output
-    where it has one.
+def points_of(
+    file: InterfaceFile, at: Sequence[float], curve: int = 0, amplitude: Sequence[float] = ()
+) -> list[InterfacePoint]:
+    """The point of a curve nearest to each frequency or level, or to each modal amplitude.
+
+    Of several solutions there it is the highest that is not unstable, or the highest. Without any it is the
+    point of the greatest amplitude, of the scene's output where it has one.
 
     Raises
     ------
     PlotError
-        If the curve or a frequency is not in the file.
+        If the curve, a frequency or a modal amplitude is not in the file.
     """
     if not 0 <= curve < len(file.frequency):
         last = len(file.frequency) - 1
         raise PlotError(f"{file.path}: there is no curve {curve}; it has the curves 0 to {last}")
-    frequency = file.frequency[curve]
-    height = np.nanmax(np.where(np.isfinite(file.amplitude[curve]), file.amplitude[curve], -1.0), axis=1)
-    if not np.isfinite(frequency).any():
+    if not np.isfinite(file.frequency[curve]).any():
         raise PlotError(f"{file.path}: curve {curve} has no points")
-    if not at:
+    if amplitude and file.modal_amplitude is None:
+        raise PlotError(f"{file.path}: --amplitude is of nonlinear modes (fcm respond --mode); take --at")
+    if not at and not amplitude:
         column = greatest_column(file.dofs, file.amplitude.reshape(-1, len(file.dofs)), file.asked)
         return [_point(file, curve, int(np.nanargmax(file.amplitude[curve, :, column])))]
-    low, high = float(np.nanmin(frequency)), float(np.nanmax(frequency))
-    found = []
-    for one in at:
-        if not low <= one <= high:
-            raise PlotError(f"--at {one:g}: the curve goes from {low:g} to {high:g} {file.unit}")
-        before, after = frequency[:-1], frequency[1:]
-        passed = np.flatnonzero((np.minimum(before, after) <= one) & (one <= np.maximum(before, after)))
-        nearer = passed + (np.abs(after[passed] - one) < np.abs(before[passed] - one))
-        if not nearer.size:  # a point alone, or beside a gap
-            nearer = np.array([int(np.nanargmin(np.abs(frequency - one)))])
-        stays = file.stable[curve, nearer] != 0.0
-        nearer = nearer[stays] if stays.any() else nearer
-        found.append(_point(file, curve, int(nearer[height[nearer].argmax()])))
-    return found
+    if file.modal_amplitude is not None and amplitude:
+        along = file.modal_amplitude[curve]
+        return [_point(file, curve, _nearest(file, curve, along, one, "--amplitude")) for one in amplitude]
+    return [_point(file, curve, _nearest(file, curve, file.frequency[curve], one, "--at")) for one in at]
+
+
+def _nearest(file: InterfaceFile, curve: int, along: FloatArray, one: float, option: str) -> int:
+    """The point whose place along the curve is nearest to one; see `points_of`."""
+    asked, one = one, on_curve(along, one)
+    if np.isnan(one):
+        low, high = np.nanmin(along), np.nanmax(along)
+        unit = "" if option != "--at" else f" {file.unit}"
+        help_ = "; --amplitude takes modal amplitudes" * (
+            option == "--at" and file.modal_amplitude is not None
+        )
+        raise PlotError(f"{option} {asked:g}: the curve goes from {low:g} to {high:g}{unit}{help_}")
+    before, after = along[:-1], along[1:]
+    passed = np.flatnonzero((np.minimum(before, after) <= one) & (one <= np.maximum(before, after)))
+    nearer = passed + (np.abs(after[passed] - one) < np.abs(before[passed] - one))
+    if not nearer.size:  # a point alone, or beside a gap
+        nearer = np.array([int(np.nanargmin(np.abs(along - one)))])
+    stays = file.stable[curve, nearer] != 0.0
+    nearer = nearer[stays] if stays.any() else nearer
+    height = file.amplitude[curve, nearer]
+    return int(nearer[np.nanmax(np.where(np.isfinite(height), height, -1.0), axis=1).argmax()])
 
 
 def _point(file: InterfaceFile, curve: int, k: int) -> InterfacePoint:
@@ -178,14 +194,23 @@ def _point(file: InterfaceFile, curve: int, k: int) -> InterfacePoint:
     omega, stable = float(file.frequency[curve, k]), float(file.stable[curve, k])
     several = len(file.names) > 1
     named = (file.names[curve], file.swept[curve]) if several else ("", {})
+    modal = None if file.modal_amplitude is None else float(file.modal_amplitude[curve, k])
     return InterfacePoint(
-        omega, stable, state.astype(np.intp), file.contact_loads[:, curve, k], *named, file.forced
+        omega, stable, state.astype(np.intp), file.contact_loads[:, curve, k], *named, modal
     )
+
+
+def place_of(file: InterfaceFile, point: InterfacePoint) -> str:
+    """The frequency or the level of a point, and its modal amplitude."""
+    if file.unit == LEVEL:
+        return f"{LEVEL} {point.frequency:.6g}"
+    modal = "" if point.modal_amplitude is None else f", modal amplitude {point.modal_amplitude:.4g}"
+    return f"{point.frequency:.6g} {file.unit}{modal}"
 
 
 def greatest_takers(file: InterfaceFile, point: InterfacePoint, most: int) -> list[tuple[str, ...]]:
     """A row for each of the contacts that take most energy, if any: name, state, energy, its share, slip
-    path and greatest normal force."""
+    path and greatest normal force, and where it is if the file says so."""
     energy = np.nan_to_num(point.contact_loads[0])
     total = float(energy.sum()) or 1.0
     order = np.argsort(-energy, kind="stable")[: min(most, np.count_nonzero(energy))]
@@ -196,6 +221,7 @@ def greatest_takers(file: InterfaceFile, point: InterfacePoint, most: int) -> li
             f"{energy[i]:.4g}",
             f"{100.0 * energy[i] / total:.1f} %",
             *(f"{value:.4g}" for value in point.contact_loads[1:, i]),
+            *([] if file.places is None else ["{:.6g}, {:.6g}".format(*file.places[i])]),
         )
         for i in order.tolist()
     ]
@@ -326,9 +352,10 @@ def _name_contacts(grid: Any, names: Sequence[str], at: FloatArray, room: float,
 
 def _head(file: InterfaceFile, point: InterfacePoint) -> str:
     """Which point of which curve it is."""
-    unknown = ", stability unknown" if point.forced else ""
+    unknown = ", stability unknown" if point.modal_amplitude is None else ""
     stays = {0.0: ", unstable", 1.0: ""}.get(point.stable, unknown)
-    return (f"{point.curve}\n" if point.curve else "") + f"{point.frequency:.6g} {file.unit}{stays}"
+    place = place_of(file, point).replace(", ", "\n")  # a film strip has narrow panels
+    return (f"{point.curve}\n" if point.curve else "") + f"{place}{stays}"
 
 
 def _in_plane(

@@ -14,11 +14,11 @@ import numpy.typing as npt
 from fcm.plot.dof import greatest_column
 from fcm.plot.errors import PlotError
 from fcm.plot.options import READ
-from fcm.plot.read import FloatArray, floats, opened, read_response
+from fcm.plot.read import FloatArray, floats, on_curve, opened, read_response
 from fcm.plot.reader_process import apart
 
 _ENERGY = "dissipated_energy"
-_ALSO = ("contact", "frequency", "level", "stable", _ENERGY, "harmonic", "regime")
+_ALSO = ("contact", "frequency", "level", "modal_amplitude", "stable", _ENERGY, "harmonic", "regime")
 _MOTION = (
     "contact_harmonic", "contact_mean", "contact_amplitude", "contact_phase",
     "contact_mu", "contact_k_u", "contact_k_v", "contact_n_0",
@@ -101,6 +101,7 @@ class LoopPoint:
     output: str = ""  # the degree of freedom whose peak is the default; see `LoopFile.column`
     displacement: float = float("nan")  # its amplitude
     peak: bool = False  # whether the point is this peak
+    modal_amplitude: float | None = None  # of a nonlinear mode
 
 
 @dataclass(frozen=True)
@@ -123,6 +124,7 @@ class LoopFile:
     amplitude: FloatArray  # (curve, point, dof)
     column: int  # of the greatest amplitude, of the degrees of freedom that the scene asks for if it does
     motions: MotionFile | None = None
+    modal_amplitude: FloatArray | None = None  # (curve, point) of nonlinear modes
 
 
 @apart
@@ -135,6 +137,7 @@ def read_loops(path: Path) -> LoopFile:
             raise PlotError(f"{path}: holds no loops: it has no variable {', '.join(missing)}")
         contacts = tuple(str(name) for name in np.atleast_1d(data["contact"][:]))
         frequency = floats(data["level" if response.frequency_unit == "level" else "frequency"])
+        modal = floats(data["modal_amplitude"]) if "modal_amplitude" in data.variables else None
         stable = floats(data["stable"]) if "stable" in data.variables else np.full(frequency.shape, np.nan)
         parts = [floats(data[name]) for name in _PARTS]
         length, force = (str(getattr(data[name], "units", "")) for name in _PARTS[3:])
@@ -153,7 +156,7 @@ def read_loops(path: Path) -> LoopFile:
         path, response.frequency_unit, contacts, swept, frequency, stable, np.stack(parts),
         _greatest(energy, len(contacts)),
         tuple(int(h) for h in orders), states, response.units, (length, force) if length and force else None,
-        response.dofs, amplitude, column, motions,
+        response.dofs, amplitude, column, motions, modal,
     )  # fmt: skip
 
 
@@ -172,19 +175,29 @@ def _motions(data: Any) -> MotionFile | None:
     return MotionFile(mean, amplitude, phase, harmonics, law, names if isinstance(names, dict) else {})
 
 
-def points_at(file: LoopFile, curve: int | None, contact: str | None, at: float | None) -> list[LoopPoint]:
-    """The points of a curve nearest to a frequency, one for each solution there, greatest amplitude first.
+def points_at(
+    file: LoopFile,
+    curve: int | None,
+    contact: str | None,
+    at: float | None,
+    modal_amplitude: float | None = None,
+) -> list[LoopPoint]:
+    """The points of a curve nearest to a frequency, a level or a modal amplitude.
 
-    Without a frequency it is the peak of the scene's output, see `LoopFile.column`. Without a contact it is
-    the `busiest`.
+    There is one for each solution there, greatest amplitude first. Without any of these it is the peak of the
+    scene's output, see `LoopFile.column`. Without a contact it is the `busiest`.
 
     Raises
     ------
     PlotError
-        If the curve, the contact or the frequency is not in the file.
+        If the curve, the contact or the place along the curve is not in the file.
     """
     row, column = _row(file, curve), _column(file, contact)
-    frequency, amplitude = file.frequency[row], file.loop[3, row, :, column]
+    along, unit, amplitude = file.frequency[row], f" {file.unit}", file.loop[3, row, :, column]
+    if modal_amplitude is not None:
+        if file.modal_amplitude is None:
+            raise PlotError(f"{file.path}: --amplitude is of nonlinear modes (fcm respond --mode); take --at")
+        along, unit, at = file.modal_amplitude[row], "", modal_amplitude
     if not np.isfinite(amplitude).any():
         raise PlotError(
             f"{file.path}: curve {row} holds no loops: no points at all, or exact motions, not harmonic ones"
@@ -194,13 +207,11 @@ def points_at(file: LoopFile, curve: int | None, contact: str | None, at: float 
             int(np.nanargmax(np.where(np.isfinite(amplitude), file.amplitude[row, :, file.column], np.nan)))
         ]
     else:
-        found = _solutions(frequency, at)
+        found = _solutions(along, on_curve(along, at))
         found.sort(key=lambda k: -amplitude[k])
     if not found:
-        low, high = np.nanmin(frequency), np.nanmax(frequency)
-        raise PlotError(
-            f"{file.path}: curve {row} goes from {low:.6g} to {high:.6g} {file.unit}, not to {at:.6g}"
-        )
+        low, high = np.nanmin(along), np.nanmax(along)
+        raise PlotError(f"{file.path}: curve {row} goes from {low:.6g} to {high:.6g}{unit}, not to {at:.6g}")
     return [_point(file, row, column, k, i + 1, len(found), at is None) for i, k in enumerate(found)]
 
 
@@ -234,6 +245,7 @@ def _point(
         file.harmonics, str(file.states[row, k, column]),
         file.motions is None and len(file.harmonics) > 1, motion,
         file.dofs[file.column], float(file.amplitude[row, k, file.column]), peak,
+        None if file.modal_amplitude is None else float(file.modal_amplitude[row, k]),
     )  # fmt: skip
 
 

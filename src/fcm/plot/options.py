@@ -11,7 +11,7 @@ class ReadOptions:
 
     dofs_named: int = 12  # degrees of freedom in a message
     contacts_named: int = 10  # contacts that a message lists
-    same_level: float = 1e-9  # relative: levels that are one
+    same_level: float = 1e-9  # relative: levels, and places along a curve, that are one
     # times the damping at both ends: where the greatest is between them, it is more
     higher_fraction: float = 1.0 + 1e-6
     max_bytes: float = 1e100  # no result is as large, in whatever units: such a number was not written as one

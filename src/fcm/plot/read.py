@@ -83,6 +83,14 @@ def ends(curves: Sequence[DrawnCurve]) -> tuple[float, float]:
     return low, max(float(np.nanmax(curve.frequency)) for curve in curves)
 
 
+def on_curve(along: FloatArray, place: float) -> float:
+    """A place along a curve (point,), or the end that rounding puts it beside; NaN where it is beyond."""
+    for end in (float(np.nanmin(along)), float(np.nanmax(along))):
+        if abs(place - end) <= READ.same_level * abs(end):
+            return end
+    return place if np.nanmin(along) <= place <= np.nanmax(along) else np.nan
+
+
 def wide(curves: Sequence[DrawnCurve]) -> bool:
     """Whether the frequencies span so much that only a logarithmic axis shows the resonances."""
     low, high = ends(curves)
