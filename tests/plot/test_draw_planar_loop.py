@@ -102,11 +102,17 @@ def test_the_work_of_both_loops_is_the_dissipation():
 
 
 def test_a_direction_in_which_there_is_rounding_alone_is_drawn_as_at_rest():
-    """Its loop was that of the rounding, at full size."""
-    path = path_of(
-        fcm.planar_loop([0.1, 1.0], [1e-19, 3e-18j], [0.0, 0.2j], mu=0.5, k_u=2.0, k_v=1.0, n_0=0.7)
-    )
-    assert np.ptp(path.f[:, 0]) > 0.5 and not path.f[:, 1].any() and not path.u[:, 1].any()
+    """Its loop was that of the rounding, at full size: of a joint a hundred thousandth of a millionth."""
+    for small in (1e-18, 1e-11):
+        y = [small / 10, 3j * small]
+        loop = fcm.planar_loop([0.1, 1.0], y, [0.0, 0.2j], mu=0.5, k_u=2.0, k_v=1.0, n_0=0.7)
+        path = path_of(loop)
+        assert np.ptp(path.f[:, 0]) > 0.5 and not path.f[:, 1].any() and not path.u[:, 1].any()
+        _, x, y = draw_planar_loop(DrawnPlanarLoop(loop, "pad")).axes
+        assert [one.get_text() for one in y.texts] == ["no motion"] and not x.texts
+        assert y.get_xlim() == x.get_xlim() and y.get_ylim() == x.get_ylim()
+    some = path_of(fcm.planar_loop([0.1, 1.0], [0.0, 3e-6j], [0.0, 0.2j], mu=0.5, k_u=2.0, k_v=1.0, n_0=0.7))
+    assert some.f[:, 1].any() and some.u[:, 1].any()
 
 
 def test_powers_of_ten_are_in_the_labels_and_not_on_them():

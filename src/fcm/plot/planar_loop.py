@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from fcm.at_rest import at_rest
+from fcm.at_rest import RestOptions, at_rest
 from fcm.contact.plane.loop import PlanarLoop
 from fcm.plot.labels import power_to_label
 from fcm.plot.loop import STATES
@@ -66,7 +66,8 @@ def path_of(loop: PlanarLoop) -> Path:
 
 def _without_rounding(values: FloatArray) -> FloatArray:
     """Both directions (sample, 2), one of them 0 where it is of the other's rounding."""
-    return np.where(at_rest(np.abs(values).max(axis=0)), 0.0, values)
+    rest = at_rest(np.abs(values).max(axis=0), RestOptions(displacement=LAYOUT.planar_rest))
+    return np.where(rest, 0.0, values)
 
 
 def draw_planar_loop(drawn: DrawnPlanarLoop) -> Figure:
@@ -82,9 +83,14 @@ def draw_planar_loop(drawn: DrawnPlanarLoop) -> Figure:
         _draw_plane(plane, drawn, path)
         plane.set_xlabel(_of_direction("$u_x$", drawn.directions[0], length))
         plane.set_ylabel(_of_direction("$u_y$", drawn.directions[1], length))
-        for i, name in enumerate("xy"):
-            axes = figure.add_subplot(grid[i, 1])
+        loops = [figure.add_subplot(grid[i, 1]) for i in range(2)]
+        for i, axes in enumerate(loops):
             _draw_direction(axes, path, i)
+        for axes, other, motion in zip(loops, loops[::-1], path.u.T, strict=True):
+            if not motion.any():
+                axes.set(xlim=other.get_xlim(), ylim=other.get_ylim())
+                axes.text(0.5, 0.75, "no motion", transform=axes.transAxes, ha="center", fontsize=7)
+        for axes, name in zip(loops, "xy", strict=True):
             axes.set_xlabel(f"$u_{name}${length}")
             axes.set_ylabel(f"$f_{name}${force}")
         handles, labels = plane.get_legend_handles_labels()

@@ -91,6 +91,9 @@ class Layout:
     loop_narrowest: float = 11.0  # [degree] a state shorter than this has no letter
     planar_room: float = 0.56  # of the extent of a planar loop, to each side of the middle
     planar_samples: int = 1440  # of a cycle of a planar loop
+    # of the motion in a plane: less than that along a direction is none. Displacements across a contact are
+    # differences of greater ones, and have fewer digits
+    planar_rest: float = 1e-9
     planar_instants: int = 4  # of a cycle at which the disc is drawn
     swept_span: float = 30.0  # positive swept values of a greater ratio are on a logarithmic axis
     peak_lines: int = 12  # more combinations of the other swept values than this are a cloud of points
