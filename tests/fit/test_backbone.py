@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fcm.fit.backbone import measured_span
 from fcm.fit.parameters import parameters_of
 from fcm.fit.solve import Problem, solved
 from fcm.harmonic_balance.system import System
@@ -67,3 +68,14 @@ def test_points_that_the_mode_does_not_come_to_are_counted():
     parameters = parameters_of(scene(), KEYS, [None] * 3)
     parts = Problem(parameters, [lost], HARMONICS, False).parts(parameters.unknowns(TRUTH))
     assert parts is not None and np.isfinite(parts[0].residual).all()
+
+
+def test_the_fitted_mode_is_shown_over_what_was_measured_and_a_tenth_beyond():
+    """It went three times beyond, as the fit does, into where there may be no steady state."""
+    data = backbone("u")
+    low, high = measured_span(System(scene(), HARMONICS), data)
+    mode = nonlinear_mode(System(scene(), HARMONICS), 1, (low, high), 0.05)
+    first = System(scene(), HARMONICS).harmonics.index(1)
+    size = np.abs(mode.displacements()[0][:, first, 0])
+    assert 0.8 * data.amplitude.min() < size.min() < data.amplitude.min()
+    assert data.amplitude.max() < size.max() < 1.25 * data.amplitude.max()

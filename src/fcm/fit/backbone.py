@@ -91,6 +91,24 @@ def modal_span(system: System, data: Measured) -> tuple[float, float]:
     return low / (shape * BACKBONE.amplitude_factor), high * BACKBONE.amplitude_factor / shape
 
 
+def measured_span(system: System, data: Measured) -> tuple[float, float]:
+    """Modal amplitudes at which a mode has the least and the greatest amplitude measured, and some more.
+
+    Raises
+    ------
+    NoMotionError, ModeError
+        As `modal_span`.
+    """
+    if not data.dof:
+        return modal_span(system, data)
+    followed = _Followed(system, data)
+    low, high = (
+        followed.problem.modal_amplitude(followed.at(one)[0])
+        for one in (float(data.amplitude.min()), float(data.amplitude.max()))
+    )
+    return low / BACKBONE.shown_factor, high * BACKBONE.shown_factor
+
+
 class _Followed:
     """A mode of the model over the amplitudes that were measured."""
 

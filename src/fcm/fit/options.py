@@ -91,6 +91,7 @@ class BackboneOptions:
 
     amplitude_factor, modal_amplitude_factor : by which it is followed past the amplitudes measured; past
         modal ones.
+    shown_factor : by which the fitted mode is shown past the amplitudes measured.
     difference : of the residual by a number, and of an amplitude along a direction, relative.
     max_steps, step_tolerance : at most, to where a displacement has its amplitude, and the last of them in
         ln a.
@@ -98,6 +99,7 @@ class BackboneOptions:
 
     amplitude_factor: float = 3.0
     modal_amplitude_factor: float = 1.01
+    shown_factor: float = 1.1
     difference: float = 1e-5
     max_steps: int = 20
     step_tolerance: float = 1e-10

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from fcm.fit.advice import advice
-from fcm.fit.backbone import backbone_errors, modal_span
+from fcm.fit.backbone import backbone_errors, measured_span
 from fcm.fit.estimate import Estimate, estimated
 from fcm.fit.forced import errors_of
 from fcm.fit.options import FIT
@@ -129,7 +129,7 @@ def _model_response(
         there = _at_levels(parameters, numbers, data)
         return trace(there, method, execution, harmonics=given, accuracy=accuracy, options=wanted.options)
     scene = parameters.at(numbers.values)
-    spans = [modal_span(System(scene, harmonics), one) for one in data]
+    spans = [measured_span(System(scene, harmonics), one) for one in data]
     span = min(low for low, _ in spans), max(high for _, high in spans)
     return trace_modes(
         scene, number, span, execution, harmonics=given, accuracy=accuracy, options=wanted.options
