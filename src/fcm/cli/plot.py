@@ -70,6 +70,10 @@ def plot() -> None:
     help="Instead of curves of random draws, these percentiles of the greatest stable amplitude at each "
     "frequency, and the median.",
 )  # fmt: skip
+@click.option(
+    "--window", type=FiniteRange(min=0.0), nargs=2, metavar="FROM TO",
+    help="Draw only this part of the axis, as beside a sharp peak.  [default: all]",
+)  # fmt: skip
 @pass_messages
 def response(
     messages: Messages,
@@ -81,6 +85,7 @@ def response(
     points: Path | None,
     backbone: Path | None,
     band: tuple[float, float] | None,
+    window: tuple[float, float] | None,
 ) -> None:
     """Draw the response curves of FILE, the netCDF file of `fcm respond -o FILE`.
 
@@ -94,6 +99,10 @@ def response(
     from fcm.plot.measured import read_measured_points
 
     output = picture_of(file, output, ".png", points, backbone, page=True)
+    if window is not None and not window[0] < window[1]:
+        raise click.UsageError(f"--window {window[0]:g} {window[1]:g}: give the lower end first.")
+    if window is not None and (band is not None or is_page(output)):
+        raise click.UsageError("--window is of curves in .png, .svg or .pdf, without --band.")
     if is_page(output):
         if band is not None or points is not None or backbone is not None:
             raise click.UsageError(
@@ -119,7 +128,7 @@ def response(
     elif points is not None:
         marked = read_points(points)
     modes = None if backbone is None else read_backbone(backbone)
-    save_picture_of(lambda: draw_response(read, dof, log, errors, marked, modes), output)
+    save_picture_of(lambda: draw_response(read, dof, log, errors, marked, modes, window), output)
     messages.info(wrote(output))
 
 

@@ -26,6 +26,7 @@ from fcm.plot.style import (
     sequence_colours,
 )
 from fcm.plot.unfinished import mark_unfinished, say_unfinished
+from fcm.plot.window import Window, within
 from fcm.rotational_dofs import unit_of
 
 if TYPE_CHECKING:
@@ -53,13 +54,15 @@ def draw_response(
     errors: bool = True,
     points: DrawnPoints | None = None,
     backbone: DrawnResponse | None = None,
+    window: Window | None = None,
 ) -> Figure:
     """The figure of one degree of freedom (by default see `leading_column`); unstable parts are dashed, those
     of which that is not told dotted.
 
     Errors that the file knows have a panel below the curves, unless errors is false. Points of the exact
-    motion are drawn over the curves, and a backbone: nonlinear modes.
+    motion are drawn over the curves, and a backbone: nonlinear modes. A window is the part of the axis drawn.
     """
+    response = response if window is None else within(response, window)
     column = response.column(dof)
     curves = _drawable(response, column, bool(log))
     with house_style():
@@ -78,6 +81,8 @@ def draw_response(
         say_unfinished(axes, response.unfinished)
         if wide(curves) and response.frequency_unit != LEVEL:
             axes.set_xscale("log")
+        if window is not None:
+            axes.set_xlim(window)
         _finish_axes(axes, response, column, _logarithmic(curves, column) if log is None else log)
         if below is not None:
             draw_errors(figure, below, curves, colours, width)
