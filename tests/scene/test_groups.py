@@ -93,6 +93,22 @@ def test_pairs_and_their_numbers_in_a_file(tmp_path):
     assert (one.k_u, other.k_u, other.k_v) == (0.25, 0.75, 1.5)
 
 
+def test_nodes_that_other_programs_write_as_floats(tmp_path):
+    """pandas does beside an empty cell, numpy's savetxt of all."""
+    (tmp_path / "pairs.csv").write_text("node,other,n_0\n40.0,41.0,1.5\n50.0,,2\n")
+    given = {key: value for key, value in (PAIRS | NUMBERS).items() if key != "n_0"}
+    one, other = of_file(tmp_path, given | {"nodes": "pairs.csv"}).contacts
+    assert weights(one.normal) == {"40z": 1.0, "41z": -1.0} and weights(other.normal) == {"50z": 1.0}
+    np.savetxt(tmp_path / "n_0.txt", [[50, -1.0], [40, 3.5]])
+    contacts = of_file(tmp_path, PAIRS | NUMBERS | {"n_0": "n_0.txt"}).contacts
+    assert [contact.n_0 for contact in contacts] == [3.5, -1.0]
+
+
+def test_a_number_in_quotes_is_no_file():
+    with pytest.raises(SceneError, match=r'k_u: must be a number, is the string "4e5"; write 400000'):
+        read([PAIRS | NUMBERS | {"k_u": "4e5"}])
+
+
 @pytest.mark.parametrize("text", ["3.5\n-1\n", "51 -1  # by its other node\n40, 3.5\n41 8\n"])
 def test_preloads_in_a_file(tmp_path, text):
     (tmp_path / "n_0.txt").write_text(text)

@@ -15,7 +15,7 @@ from fcm.scene.errors import choices, counted, kind, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.names import DIRECTIONS, Names
 from fcm.scene.node_sets import FITTED, pairs_of_sets, with_places
-from fcm.scene.number_text import fault_of_number
+from fcm.scene.number_text import fault_of_number, number_in
 from fcm.scene.pair_file import (
     COORDINATES,
     NODES,
@@ -184,7 +184,7 @@ def read_numbers(section: Section, table: PairTable, files: Files) -> dict[str, 
         if column is not None:
             path = f"{section.at('nodes')} ({key})"
             found[key] = [section.checked(one, path, RULES[key]) for one in column]
-        elif isinstance(value, str) or _is_list(value):
+        elif _is_list(value) or (isinstance(value, str) and number_in(value) is None):
             found[key] = _of_each(section, key, table, files)
         else:
             needed = key != load and not table.unread

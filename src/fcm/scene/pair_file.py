@@ -16,6 +16,8 @@ from fcm.scene.files import DataFileError
 from fcm.scene.number_text import fault_of_number, number_in
 
 _COMMA = re.compile(r"\d+,\d+", re.ASCII)
+# of nodes beside empty cells pandas writes these, and numpy of all
+_FLOAT = re.compile(r"\d+\.\d*(e[+]?\d{1,2})?", re.ASCII | re.IGNORECASE)
 NODES = ("node", "other")  # columns of the two nodes; other is empty where a node touches the ground
 NUMBERS = ("area", "mu", "k_u", "k_v", "n_0", "gap")
 COORDINATES = ("x", "y", "z")
@@ -74,7 +76,7 @@ def read_pair_table(path: Path) -> PairTable:
         row = dict(zip(header, (word.strip() for word in words), strict=True))
         if not row["node"]:
             faults.append(f"line {number}: has no node")
-        pair = tuple(row[name] for name in NODES if row[name])
+        pair = tuple(_node(row[name]) for name in NODES if row[name])
         if (before := first.setdefault(frozenset(pair), number)) < number:
             which = f"pair {', '.join(pair)}" if len(pair) > 1 else f"node {', '.join(pair)}"
             faults.append(f"line {number}: {which} is on line {before} already; each is there once")
@@ -133,7 +135,7 @@ def read_numbers_of_pairs(path: Path, pairs: Sequence[tuple[str, ...]]) -> list[
         if len(values) != len(pairs):
             raise DataFileError(f"{quoted(path.name)} has {len(values)} numbers for {len(pairs)} pairs")
         return values
-    of_node = dict(zip((words[0] for words in rows), values, strict=True))
+    of_node = dict(zip((_node(words[0]) for words in rows), values, strict=True))
     if len(of_node) < len(rows):
         raise DataFileError(f"{quoted(path.name)} has two numbers for one node")
     known = {node for pair in pairs for node in pair}
@@ -149,6 +151,16 @@ def read_numbers_of_pairs(path: Path, pairs: Sequence[tuple[str, ...]]) -> list[
     if lacking:
         raise DataFileError(f"{quoted(path.name)} has no number for the pair of node {choices(lacking)}")
     return [of_node[node] for node in found if node is not None]
+
+
+def _node(word: str) -> str:
+    """The name of a node; a whole number that was written as a float has its digits alone.
+
+    >>> _node("111.0"), _node("1.11e+02"), _node("111"), _node("1.5"), _node("tip")
+    ('111', '111', '111', '1.5', 'tip')
+    """
+    value = float(word) if _FLOAT.fullmatch(word) else 0.5
+    return str(int(value)) if value.is_integer() else word
 
 
 def _lines(path: Path) -> Iterator[tuple[int, list[str]]]:
