@@ -582,3 +582,12 @@ def test_stiffness_and_mass_of_a_mesh_in_each_others_place(swapped):
         return
     said = refused(top=top, dofs=names, **table)
     assert "in each other's place" in said and f"which is {first:.6g} rad/s" in said
+
+
+def test_stiffness_and_mass_of_a_mesh_that_are_the_same():
+    """Every mode had 1 rad/s, and of a blade the curve stopped after half a minute."""
+    count = 120
+    chain = (2.0 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1)).tolist()
+    names = [f"{i + 1}x" for i in range(count)]
+    said = refused(top={"response": {"frequency": [0.5, 2.0]}}, dofs=names, stiffness=chain, mass=chain)
+    assert "structure: stiffness and mass are the same matrix. Name the file of each" in said

@@ -31,6 +31,9 @@ def modal_of_matrices(
     along theirs, outputs the rows that are only reported; `ends` are the lowest and highest angular frequency
     of the forces.
     """
+    if len(matrices.dofs) >= LIMITS.mesh_rows and abs(matrices.K - matrices.M).max() == 0.0:
+        top.wrong("structure", "stiffness and mass are the same matrix. Name the file of each")
+        return None, np.zeros((len(matrices.dofs), 0)), []
     if mode := _exchanged_mesh(matrices, ends):
         top.wrong(
             "structure",
