@@ -30,6 +30,24 @@ def test_the_table_has_a_line_for_each_curve(fcm):
     assert rows["10"][-1] == "none"
 
 
+@pytest.mark.parametrize(("text", "number"), [("1%", "0.01"), ("0.05 %", "5e-4")])
+def test_an_accuracy_may_be_in_percent(fcm, text, number):
+    shares, percents = (
+        json.loads(fcm("respond", "yang1998-n5", "--accuracy", one, "--json").out) for one in (number, text)
+    )
+    (share,), (percent,) = shares["curves"], percents["curves"]
+    assert share["peak"] == percent["peak"] and share["harmonics"] == percent["harmonics"]
+
+
+@pytest.mark.parametrize("text", ["0%", "100%", "1%%", "one", "", "nan"])
+def test_what_is_no_accuracy_is_refused_with_one_that_is(fcm, text):
+    done = fcm("respond", "yang1998-n5", "--accuracy", text)
+    assert done.code == 2
+    assert f"{text!r} is not a relative error between 0 and 1, such as 0.01 or 1%" in " ".join(
+        done.err.split()
+    )
+
+
 def test_a_second_table_has_the_jumps_of_a_slow_sweep(fcm):
     header, *lines = fcm("respond", "yang1998-n5").out.split("\n\n")[1].splitlines()
     assert " ".join(header.split()) == "jump at rad/s u before u after v before v after sweep"

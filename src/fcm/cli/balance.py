@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import click
 
 WRONG = "is not a number of harmonics from 1 to 50, nor some of them such as 1,2,3,9 or 1-3,9"
@@ -35,10 +37,17 @@ def _from_to(word: str) -> range:
     return range(low, high + 1)
 
 
-def accuracy(_ctx: click.Context, _param: click.Parameter, value: float | None) -> float | None:
-    """The accuracy asked for, a relative error; None without it."""
-    if value is not None and not 0.0 < value < 1.0:
-        raise click.BadParameter(f"{value:g} is not a relative error between 0 and 1.")
+def accuracy(_ctx: click.Context, _param: click.Parameter, text: str | None) -> float | None:
+    """The accuracy asked for, a relative error such as 0.01 or 1%; None without it."""
+    if text is None:
+        return None
+    number, percent, rest = text.partition("%")
+    try:
+        value = float(number) / (100.0 if percent else 1.0)
+    except ValueError:
+        value = math.nan
+    if rest or not 0.0 < value < 1.0:
+        raise click.BadParameter(f"{text!r} is not a relative error between 0 and 1, such as 0.01 or 1%.")
     return value
 
 

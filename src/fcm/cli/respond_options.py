@@ -94,7 +94,7 @@ OPTIONS: list[Callable[[Any], Any]] = [  # in the order of the help
         "[default: the scene's, or as --accuracy]",
     ),
     click.option(
-        "--accuracy", type=float, metavar="E", callback=balance.accuracy,
+        "--accuracy", metavar="E", callback=balance.accuracy,
         help="As many harmonics as it takes for peaks and folds that are right to this, relative.  "
         "[default: the scene's, or 0.01]",
     ),
