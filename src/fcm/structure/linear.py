@@ -128,7 +128,7 @@ def _attached(
     dofs = np.frombuffer(of_dofs).reshape(dofs_shape)
     shares: FloatArray = np.zeros((ports.shape[1], dofs.shape[1]))
     if ports.size:
-        shares = np.asarray(np.linalg.pinv(ports, rcond=1e-10) @ dofs)  # an SVD is faster than lstsq
+        shares = np.asarray(np.linalg.lstsq(ports, dofs, rcond=1e-10)[0], dtype=np.float64)
     shares[np.abs(shares) < REDUCTION.shape_tolerance * np.abs(shares).max(axis=0, initial=1e-300)] = 0.0
     size = np.abs(dofs).max(axis=0, initial=0.0)
     off = np.abs(ports @ shares - dofs).max(axis=0, initial=0.0)
