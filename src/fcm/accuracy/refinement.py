@@ -19,10 +19,8 @@ from fcm.accuracy.unchecked_response import (
     with_more,
 )
 from fcm.branches.force_level import few_harmonics, with_low_harmonics
-from fcm.branches.search import with_branching, with_isolas
 from fcm.branches.trace import FoundPeak
 from fcm.continuation.follow import Progress
-from fcm.harmonic_balance.reported_quantities import reported_quantities
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
@@ -173,11 +171,7 @@ def unchecked_with_given_harmonics(
 def every_branch(system: System) -> UncheckedResponse:
     """The response with the harmonics that a system has, isolated branches and those at branch points
     with it."""
-    found = unchecked_with_given_harmonics(system)
-    response = with_branching(system, with_isolas(system, found.traced))
-    further = response.branches.paths[len(found.shown) :]
-    shown = (*found.shown, *(reported_quantities(system, path) for path in further))
-    return replace(found, traced=response, shown=shown)
+    return unchecked_with_given_harmonics(system).with_every_branch()
 
 
 def _after(

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from fcm.accuracy.options import REFINEMENT, RefinementOptions
 from fcm.branches.force_level import LevelSolutions
 from fcm.branches.prolongation import prolongated
+from fcm.branches.search import with_further_branches
 from fcm.branches.trace import FoundPeak, Traced, traced, traced_from, with_levels
 from fcm.continuation import Branches, BranchesInterrupted, Path
 from fcm.continuation.follow import Progress
@@ -42,6 +43,16 @@ class UncheckedResponse:
     further: tuple[int, ...] = field(default=(), kw_only=True)
     begun: bool = field(default=False, kw_only=True)
     before: UncheckedResponse | None = field(default=None, kw_only=True)
+
+    def with_traced(self, traced: Traced) -> UncheckedResponse:
+        """With further branches, which come after its own."""
+        further = traced.branches.paths[len(self.shown) :]
+        shown = (*self.shown, *(reported_quantities(self.system, path) for path in further))
+        return UncheckedResponse(self.system, traced, shown, self.seconds)
+
+    def with_every_branch(self) -> UncheckedResponse:
+        """With isolated branches, and those through branch points."""
+        return self.with_traced(with_further_branches(self.system, self.traced))
 
     def seconds_with(self, harmonics: tuple[int, ...]) -> float:
         """About what following its levels and branches with other harmonics takes."""

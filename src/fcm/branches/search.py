@@ -16,6 +16,11 @@ from fcm.continuation.all_branches import contains
 from fcm.harmonic_balance.system import System
 
 
+def with_further_branches(system: System, found: Traced) -> Traced:
+    """With isolated branches, and those through branch points."""
+    return with_branching(system, with_isolas(system, found))
+
+
 def with_isolas(system: System, found: Traced) -> Traced:
     """With the isolated branches that curves of folds come to, and where these curves were lost."""
     met = level_one_crossings(system, found.found, found.branches.paths)

@@ -78,11 +78,8 @@ def contacts(
         where, axes = read_places(places, read.contacts), type(read).axes
     units = {key: read.units[k] for key, k in OF_UNIT.items()}
     head = [f"{key} [{units[key]}]" if units.get(key) else key for key in HEAD]
-    head += (
-        []
-        if read.places is None
-        else [f"at {', '.join(read.axes)}" + (f" [{read.units[1]}]" if read.units[1] else "")]
-    )
+    if read.places is not None:
+        head.append(f"at {', '.join(read.axes)}" + (f" [{read.units[1]}]" if read.units[1] else ""))
     each = [curve for curve in curves for _ in at or amplitude or (0.0,)]
     for point, curve in zip(points, each, strict=True):
         takers = greatest_takers(read, point, SENTENCES.rows)

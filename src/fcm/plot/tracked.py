@@ -205,7 +205,8 @@ def _name_lines(axes: Axes, tracks: Sequence[DrawnTrack]) -> None:
     said += ["dotted: stability unknown"] if np.isnan(stable).any() else []
     said += ["gap: it is no peak but a trough"] if any((one.trough == 1.0).any() for one in tracks) else []
     if said:
-        lines = ["; ".join(said[k : k + 3]) for k in range(0, len(said), 3)]  # of what fits beside each other
+        row = LAYOUT.meanings_of_row
+        lines = ["; ".join(said[k : k + row]) for k in range(0, len(said), row)]
         axes.set_title("\n".join(lines), loc="left", fontsize=8)
 
 

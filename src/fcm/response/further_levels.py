@@ -14,12 +14,11 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.accuracy.refinement import RefinedResponse, with_errors
-from fcm.accuracy.unchecked_response import UncheckedResponse
 from fcm.branches.force_level import LevelSolutions, resonances, solutions
 from fcm.branches.options import LEVEL_CURVE, LEVELS, LevelOptions
 from fcm.branches.prolongation import at_its_frequency
 from fcm.branches.trace import Traced, with_further
-from fcm.harmonic_balance.reported_quantities import reported_at, reported_quantities
+from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.system import System
 from fcm.harmonic_balance.work_budget import WorkLimitError
 from fcm.model.scene import FloatArray
@@ -28,9 +27,7 @@ from fcm.stability.unstable_ranges import Stretch, stretches_of
 
 def with_traced(found: RefinedResponse, traced: Traced, accuracy: float) -> RefinedResponse:
     """A response with further branches, which come after its own."""
-    system, known = found.system, len(found.shown)
-    shown = (*found.shown, *(reported_quantities(system, path) for path in traced.branches.paths[known:]))
-    every = with_errors(UncheckedResponse(system, traced, shown, found.seconds), accuracy, found.errors)
+    every = with_errors(found.with_traced(traced), accuracy, found.errors)
     return replace(every, further=found.further, begun=found.begun)
 
 

@@ -17,7 +17,7 @@ from fcm.accuracy.refinement import Keep, RefinedResponse, enlarged, retrace
 from fcm.accuracy.stability_limits import StabilityLimit, distances_from, stability_limits
 from fcm.accuracy.stability_validity import on_other_branch, without_neighbour
 from fcm.branches.branch_points import all_up_to
-from fcm.branches.search import symmetry_lost, with_branching, with_isolas
+from fcm.branches.search import symmetry_lost, with_further_branches
 from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.response_quantities import ContactRecord
 from fcm.model.scene import FloatArray, Scene
@@ -98,7 +98,7 @@ def _with_branches(
     """With what levels below its peaks, its folds and its branch points lead to."""
     known, most = now.found.traced, _most(accuracy)
     found = with_levels_below_peaks(now.found, most)
-    traced = with_branching(found.system, with_isolas(found.system, found.traced))
+    traced = with_further_branches(found.system, found.traced)
     found = found if traced is found.traced else with_traced(found, traced, most)
     lost = symmetry_lost(found.system, found.traced)
     if lost:

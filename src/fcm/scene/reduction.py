@@ -79,8 +79,8 @@ def modal_of_matrices(
 def _exchanged_mesh(matrices: Matrices, ends: tuple[float, float]) -> float:
     """As `exchanged` of a mesh, before its modes are sought: all of them would be kept, which takes long.
 
-    The highest mode is not below that of any row alone, by Rayleigh's quotient, so that of others little is
-    looked at.
+    By Rayleigh's quotient the highest mode is not below that of any row alone. So of matrices that are in
+    their places the diagonals tell enough.
     """
     own, low = matrices.M.diagonal(), ends[0] / MESSAGES.range_near
     if len(own) < LIMITS.mesh_rows or not (own > 0.0).all():

@@ -133,17 +133,12 @@ def every_balance(whole: Scene, poll: Poll, options: ShootingOptions = SHOOTING)
     """The response of the balance with as many harmonics as it takes, and every branch; of many contacts
     with one harmonic."""
     from fcm.accuracy.refinement import refined_response
-    from fcm.accuracy.unchecked_response import UncheckedResponse, unchecked_response
-    from fcm.branches.search import with_branching, with_isolas
-    from fcm.harmonic_balance.reported_quantities import reported_quantities
+    from fcm.accuracy.unchecked_response import unchecked_response
 
+    single = _single_harmonic(whole, poll, options)
     if len(whole.contacts) >= options.balance.many_contacts:
-        return unchecked_response(_single_harmonic(whole, poll, options))
-    found = refined_response(_single_harmonic(whole, poll, options), options.balance.accuracy)
-    system = found.system
-    traced = with_branching(system, with_isolas(system, found.traced))
-    shown = (reported_quantities(system, path) for path in traced.branches.paths[len(found.shown) :])
-    return UncheckedResponse(system, traced, (*found.shown, *shown), found.seconds)
+        return unchecked_response(single)
+    return refined_response(single, options.balance.accuracy).with_every_branch()
 
 
 def states_across(
