@@ -15,7 +15,7 @@ from unittest.mock import patch
 import numpy as np
 
 from fcm.accuracy import refinement, unchecked_response
-from fcm.branches import force_level
+from fcm.branches import force_level, search
 from fcm.branches import trace as branch_trace
 from fcm.response import refined
 from fcm.response.request import Request
@@ -29,9 +29,9 @@ curve_trace = import_module("fcm.response.trace")  # not the function of that na
 
 # what is put in the place of what, where it is called
 OFF = {
-    "folds followed": [(refined, "with_isolas", lambda system, found: found)],
+    "folds followed": [(search, "with_isolas", lambda system, found: found)],
     "branch points": [
-        (refined, "with_branching", lambda system, found: found),
+        (search, "with_branching", lambda system, found: found),
         (refined, "symmetry_lost", lambda system, found: ()),
     ],
     "prolongation": [
