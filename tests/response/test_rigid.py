@@ -164,12 +164,28 @@ def test_what_would_hold_a_body_is_said_by_the_keys_that_the_scene_has():
     assert of_modes.reason.endswith("or by a small modal.frequency")
 
 
-def test_a_body_that_no_contact_holds_at_rest_is_said():
-    """Beyond a frequency the amplitude no longer closes the gap: the body may float anywhere in it."""
-    _, found = curve(JENKINS, {"tangential": "y", "normal": "x", "n_0": -5.0})
-    assert not found.complete and "closed contact" in found.reason and "Rigid-body modes" in found.reason
-    _, never = curve(JENKINS, {"tangential": "y", "normal": "x", "n_0": -50.0})
-    assert not never.complete and "Rigid-body modes are at rest only" in never.reason
+@pytest.mark.parametrize("n_0", [0.0, -5.0, -50.0])
+def test_a_body_that_no_contact_can_press_is_said_at_once(n_0):
+    """Its one contact can only push it away: in the mean it bears nothing."""
+    gap = {"tangential": "y", "normal": "x", "n_0": n_0}
+    scene, found = curve(JENKINS, gap)
+    assert not found.complete and found.frequency.size == 0 and found.seconds < 5.0
+    assert "Rigid-body modes are at rest only while closed contacts hold them" in found.reason
+    (by_level,) = trace_levels(scene, [0.5], (0.0, 1.0)).curves
+    assert by_level.reason == found.reason
+
+
+def test_a_body_between_two_gaps_is_not_refused():
+    """Two contacts that face each other bear the same mean force; one may lean on the friction of another."""
+    wall = {"normal": "x", "tangential": "y", "n_0": -0.5}
+    two = [CONTACT | wall, CONTACT | wall | {"name": "back", "normal": {"x": -1.0}}]
+    floor = CONTACT | {"name": "floor", "n_0": -0.5}
+    for contacts in (two, [two[0], floor]):
+        response = {"frequency": [0.3, 1.0], "max_step": 0.2, "harmonics": 1}
+        force = [{"dof": dof, "amplitude": 1.0} for dof in "xy"]
+        data = {"modal": JENKINS, "contact": contacts, "force": force, "response": response}
+        found = trace(scene_from_dict(data), "closed-form").curves[0]
+        assert "normal forces alone" not in found.reason
 
 
 @pytest.mark.slow

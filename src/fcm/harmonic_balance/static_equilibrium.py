@@ -26,6 +26,11 @@ RIGID_BODY_FAULT = (
     "the static loads push the structure along a rigid-body mode that no contact holds along its normal. "
     "It does not come to rest. Hold it by a contact along its normal, or by a small frequency of that mode"
 )
+FLOATING = (
+    "no contact is closed at rest, and normal forces alone cannot balance along the rigid-body modes. The first "
+    "touch ends contact for good, so that there is no steady state. Rigid-body modes are at rest only while "
+    "closed contacts hold them: give contacts a preload (n_0 above 0), or a static load that closes them"
+)
 NO_EQUILIBRIUM = "no equilibrium with the static loads was found. The contacts may not be able to hold them"
 
 
@@ -136,6 +141,38 @@ def loads_move_rigid_body(linear: Linear) -> bool:
     """Whether static loads push along a rigid-body mode that nothing holds."""
     size = np.abs(linear.load)
     return bool((size[linear.adrift] > RIGID_BODY.min_normal_motion * size.max(initial=0.0)).any())
+
+
+def check_contacts_can_close(system: System) -> None:
+    """Raise RestError where no contact can bear a normal force in the mean, though contacts must hold the
+    structure.
+
+    In the mean the forces of a steady state balance along each rigid-body mode. Without preloads or loads
+    these are normal forces, none of them negative, and friction of no more than mu times each. If they are
+    all zero wherever they balance, which a linear program tells, no contact closes. The circle of friction in
+    a plane is within a square here, so that nothing is refused that may close.
+    """
+    scene, linear = system.scene, system.linear
+    rigid = (linear.natural == 0.0) & ~linear.adrift
+    pressed = any(c.n_0 > 0.0 or c.law is not None for c in scene.contacts) or linear.load[rigid].any()
+    if pressed or not rigid.any() or scene.ring is not None or not scene.contacts:
+        return
+    from scipy.optimize import linprog
+    from scipy.sparse import block_diag
+
+    d = linear.directions_of_contact
+    ports = linear.ports[rigid] / np.abs(linear.ports[rigid]).max(axis=1, keepdims=True)
+    each = []
+    for one in scene.contacts:
+        sides = np.vstack([np.eye(d)[:-1], -np.eye(d)[:-1]])
+        sides[:, -1] = -one.mu
+        each.append(sides)
+    bounds = [((-np.inf, np.inf) if k < d - 1 else (0.0, 1.0)) for _ in each for k in range(d)]
+    normal = np.tile(np.eye(d)[-1], len(each))
+    limits = block_diag(each, format="csr")
+    found = linprog(-normal, limits, np.zeros(limits.shape[0]), ports, np.zeros(len(ports)), bounds)
+    if found.success and -found.fun <= RIGID_BODY.min_normal_motion * len(each):
+        raise RestError(FLOATING)
 
 
 def _balances_rigid_body(system: System, problem: StaticLoadProblem, z: FloatArray) -> bool:

@@ -26,7 +26,7 @@ from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.cost_model import with_twice_as_many
 from fcm.harmonic_balance.response_quantities import cycles, loops, recorded_at_levels
 from fcm.harmonic_balance.sampled_law import check_own_laws
-from fcm.harmonic_balance.static_equilibrium import RestError
+from fcm.harmonic_balance.static_equilibrium import RestError, check_contacts_can_close
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.curve_batches import anonymous, lost_curve
@@ -170,6 +170,7 @@ def _worst(curve: Curve, scene: Scene) -> float:
 def _followed(system: System, omega: float, span: tuple[float, float]) -> Curve:
     """The curve with the harmonics of a system."""
     try:
+        check_contacts_can_close(system)
         system.rest  # noqa: B018  # computed, and kept
     except RestError as error:
         return _without(system.scene, omega, str(error))

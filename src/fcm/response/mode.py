@@ -15,7 +15,7 @@ from fcm.continuation import Mark, Status
 from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.cost_model import with_twice_as_many
 from fcm.harmonic_balance.response_quantities import cycles, loops
-from fcm.harmonic_balance.static_equilibrium import RestError
+from fcm.harmonic_balance.static_equilibrium import RestError, check_contacts_can_close
 from fcm.harmonic_balance.wave_extremes import half_peak_to_peak
 from fcm.model.scene import FloatArray, Scene
 from fcm.nonlinear_modes.backbone import Mode, ModeError, nonlinear_mode, truncation
@@ -127,6 +127,7 @@ def _curve(
     begin = time.perf_counter()
     system = wanted.system(scene)
     try:
+        check_contacts_can_close(system)
         mode = nonlinear_mode(system, number, span, scene.max_step)
     except RestError as nowhere:
         return lost_curve(scene, str(nowhere))

@@ -26,7 +26,7 @@ from fcm.continuation import Mark
 from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.response_quantities import ContactRecord, PointRecord, recorded, table_errors
 from fcm.harmonic_balance.rounding import with_precise_fundamental
-from fcm.harmonic_balance.static_equilibrium import RestError
+from fcm.harmonic_balance.static_equilibrium import RestError, check_contacts_can_close
 from fcm.harmonic_balance.stiff_contacts import too_stiff
 from fcm.harmonic_balance.system import System
 from fcm.harmonic_balance.well_posedness import hold_unknown
@@ -124,6 +124,7 @@ def _traced_curve(scene: Scene, wanted: Request, poll: Callable[[], None] | None
     system.work.poll = poll or system.work.poll
     by_need = wanted.harmonics is None
     try:
+        check_contacts_can_close(system)
         found = (
             refined_response(system, wanted.accuracy, options=wanted.options.refinement, keep=so_far)
             if by_need
