@@ -139,7 +139,7 @@ def test_stability_of_all_points_is_told_by_the_multipliers_of_few():
     (path,) = traced(system).branches.paths
     found = stability(system, path)
     each = multipliers_of(system, float(path.parameter.max()))
-    np.testing.assert_array_equal(found.stable, [each.verdict(z).stable for z in path.z])
+    np.testing.assert_array_equal(found.stable, [each.classify(z).stable for z in path.z])
     assert found.evaluations < 0.6 * len(path.z)
 
 

@@ -53,7 +53,7 @@ def crossed():
     scene = replace(light(), frequency_range=(0.54, 0.55))
     problem, begin = OrbitProblem(scene), periodic(scene, 0.54)
     path = follow(problem, problem.z(begin.state, 0.54), scene.frequency_range, options=FollowOptions(0.05))
-    stable = [greatest(problem, z) <= 1.0 + SHOOTING.floquet.verdict.growth_tolerance for z in path.z]
+    stable = [greatest(problem, z) <= 1.0 + SHOOTING.floquet.classification.growth_tolerance for z in path.z]
     steps = [
         k
         for k in range(len(stable) - 1)
@@ -71,13 +71,13 @@ def test_stability_changes_at_the_place(crossed):
         place, between = crossing(problem, path, k), Segment(problem, path, k)
         assert (
             place is not None
-            and greatest(problem, place.z) <= 1.0 + SHOOTING.floquet.verdict.growth_tolerance
+            and greatest(problem, place.z) <= 1.0 + SHOOTING.floquet.classification.growth_tolerance
         )
         aside = max(1e-5, 2.0 * FollowOptions().switching.reached_distance / between.length)
         part = place.part + (aside if stable[k] else -aside)
         assert (
             between.find(part)
-            and greatest(problem, between.z) > 1.0 + SHOOTING.floquet.verdict.growth_tolerance
+            and greatest(problem, between.z) > 1.0 + SHOOTING.floquet.classification.growth_tolerance
         )
         jumps += greatest(problem, between.z) > 1.0 + 1e-3 and greatest(problem, place.z) < 1.0 + 1e-8
     assert 0 < jumps < len(steps)

@@ -17,11 +17,11 @@ from fcm.scene import Contact, Force, Modal, Scene, scene_from_dict
 from fcm.shooting import periodic
 from fcm.stability.bifurcation_functions import multiplier_sample, predicted_minimum
 from fcm.stability.bifurcations import stability, with_points
+from fcm.stability.classification import Bifurcation, Classification, MultiplierSpectrum, classify_even
 from fcm.stability.confirmation import confirmed_stable
 from fcm.stability.floquet import multipliers
 from fcm.stability.multipliers import Multipliers
 from fcm.stability.options import STABILITY
-from fcm.stability.verdict import Bifurcation, MultiplierSpectrum, Verdict, even_verdict
 from fcm.time_domain import simulate
 
 from ..harmonic_balance.strips import strip
@@ -71,14 +71,14 @@ def error(found, true):
 def test_of_several_points_each_verdict_is_as_alone(preload):
     """However many matrices are held at once: what one needs of its motion is not that of another."""
     of, found = path(yang(preload), 1, (0.7, 1.7))
-    turning = ((found.mark & Mark.FOLD) > 0).tolist()
+    at_fold = ((found.mark & Mark.FOLD) > 0).tolist()
     workspace = Multipliers(of, 1.7)
-    alone = [workspace.verdict(z, fold) for z, fold in zip(found.z, turning, strict=True)]
+    alone = [workspace.classify(z, fold) for z, fold in zip(found.z, at_fold, strict=True)]
     assert preload != 0.0 or {0.0, 1.0} <= {one.stable for one in alone}
     for held in (1, 100, 100_000):
-        options = replace(STABILITY, structure=replace(STABILITY.structure, max_held=held))
-        together = Multipliers(of, 1.7, options=options).verdicts(
-            list(found.z), turning, [False] * len(turning)
+        options = replace(STABILITY, structure=replace(STABILITY.structure, max_entries=held))
+        together = Multipliers(of, 1.7, options=options).classify_all(
+            list(found.z), at_fold, [False] * len(at_fold)
         )
         assert repr(together) == repr(alone)  # NaN is not equal to itself
 
@@ -105,10 +105,10 @@ def test_of_what_further_harmonics_are_to_confirm_the_finer_motion_is_enough():
     """The same is told, by fewer motions: that of the balanced harmonics is not looked at besides."""
     of, found = path(strip(), 1, (0.9, 1.5))
     told, looks = [], []
-    for doubted in (False, True):
+    for to_confirm in (False, True):
         polled = []
         of.work.poll = lambda polled=polled: polled.append(1)
-        told.append(stability(of, found, doubted=np.full(len(found.z), doubted)).stable)
+        told.append(stability(of, found, to_confirm=np.full(len(found.z), to_confirm)).stable)
         looks.append(len(polled))
     both = ~np.isnan(told[0])
     assert both.any()
@@ -124,7 +124,7 @@ def test_few_points_tell_the_stability_of_three_harmonics(preload, looks):
     assert judged.evaluations < looks * len(found.z)
     even = found.orientation * np.sign(found.direction[:, -1]) > 0.0
     workspace = Multipliers(of, 1.7)
-    each = np.array([workspace.verdict(z).stable for z in found.z[even]])
+    each = np.array([workspace.classify(z).stable for z in found.z[even]])
     told = ~np.isnan(each) & ~np.isnan(judged.stable[even])
     assert told.mean() > 0.9
     assert (each[told] == judged.stable[even][told]).all()
@@ -339,8 +339,8 @@ def test_a_mode_far_stiffer_than_the_others_changes_nothing_beside_a_rigid_body(
 def test_a_rigid_body_that_nothing_holds_is_no_instability():
     free = one_mode(frequency=0.0, damping=0.0, shape=(1.0, 0.0))
     z = only(free, 1.1, 3)
-    verdict = Multipliers(system(free, 3), 1.1).verdict(z)
-    assert verdict.stable == 1.0
+    classified = Multipliers(system(free, 3), 1.1).classify(z)
+    assert classified.stable == 1.0
 
 
 def test_what_is_not_finite_has_no_multipliers():
@@ -348,7 +348,7 @@ def test_what_is_not_finite_has_no_multipliers():
     z = only(scene, 1.3, 3)
     z[1] = np.nan
     assert multipliers(system(scene, 3), z).size == 0
-    assert math.isnan(Multipliers(system(scene, 3), 1.3).verdict(z).stable)
+    assert math.isnan(Multipliers(system(scene, 3), 1.3).classify(z).stable)
 
 
 PAIR = [0.6 + 0.9j, 0.6 - 0.9j]
@@ -369,7 +369,7 @@ PAIR = [0.6 + 0.9j, 0.6 - 0.9j]
     ],
 )
 def test_verdicts_of_spectra_with_an_even_number_above_one(fine, plain, stable):
-    found = even_verdict(*(MultiplierSpectrum([complex(v) for v in values]) for values in (fine, plain)))
+    found = classify_even(*(MultiplierSpectrum([complex(v) for v in values]) for values in (fine, plain)))
     assert found.stable == stable or (math.isnan(stable) and math.isnan(found.stable))
     assert math.isnan(stable) or (found.growth > 0.0) == (stable == 0.0)
 
@@ -407,15 +407,15 @@ def test_a_window_that_begins_beside_a_place_that_was_looked_at_is_found():
 
 def test_multipliers_beyond_all_bounds_are_no_trouble():
     one, other = (
-        multiplier_sample(s, Verdict(0.0, g, Bifurcation.REAL, values=(1e200 + 0j, 1e160 + 0j)))
+        multiplier_sample(s, Classification(0.0, g, Bifurcation.REAL, values=(1e200 + 0j, 1e160 + 0j)))
         for s, g in ((0.0, 9.0), (1.0, 8.0))
     )
     assert predicted_minimum(one, other, [one, other]) is None
 
 
 def test_a_pair_and_a_flip_are_told_apart():
-    assert MultiplierSpectrum([0.5 + 0j, *PAIR]).verdict().kind is Bifurcation.NEIMARK_SACKER
-    assert MultiplierSpectrum([0.5 + 0j, -1.2 + 0j]).verdict().kind is Bifurcation.PERIOD_DOUBLING
+    assert MultiplierSpectrum([0.5 + 0j, *PAIR]).classify().kind is Bifurcation.NEIMARK_SACKER
+    assert MultiplierSpectrum([0.5 + 0j, -1.2 + 0j]).classify().kind is Bifurcation.PERIOD_DOUBLING
 
 
 def test_small_disturbances_grow_as_the_multipliers_say():

@@ -7,8 +7,8 @@ from fcm.branches.force_level import solutions
 from fcm.harmonic_balance.system import System
 from fcm.scene import scene_from_dict
 from fcm.shooting import periodic
+from fcm.stability.classification import flip_distance
 from fcm.stability.multipliers import Multipliers
-from fcm.stability.verdict import flip_distance
 
 
 def halves(contacts):
@@ -49,15 +49,15 @@ def test_halves_held_together_by_contacts_have_the_further_harmonics_that_are_ba
     added, balanced = (np.reshape(x, (contacts, width))[:, 6:] for x in (finer.x, z[:-1]))
     assert np.abs(balanced).max() > 0.0
     assert np.abs(added - balanced).max() < 0.5 * np.abs(balanced).max()
-    assert few.verdict(only(scene, omega, (1,))).stable == 1.0
+    assert few.classify(only(scene, omega, (1,))).stable == 1.0
 
 
 @pytest.mark.parametrize("harmonics", [(1,), (1, 2, 3)])
 def test_a_pair_near_minus_one_that_decays_where_it_meets_is_stable(harmonics):
     """As the exact motion; contacts change their state too little to part the pair as fast as it decays."""
     scene, omega = halves(2), 0.66
-    verdict = Multipliers(System(scene, harmonics), omega).verdict(only(scene, omega, harmonics))
-    assert verdict.before_flip < 0.4 and verdict.stable == 1.0
+    classified = Multipliers(System(scene, harmonics), omega).classify(only(scene, omega, harmonics))
+    assert classified.angle_to_flip < 0.4 and classified.stable == 1.0
     assert periodic(scene, omega).stable
 
 

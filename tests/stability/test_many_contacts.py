@@ -33,7 +33,7 @@ def test_few_points_tell_the_stability_of_all(harmonics, looks):
     of = multipliers_of(system, float(path.parameter.max()))
     even = path.orientation * np.sign(path.direction[:, -1]) > 0.0
     assert not found.stable[~even & (path.mark == 0)].any()
-    each = np.array([of.verdict(z).stable for z in path.z[even]])
+    each = np.array([of.classify(z).stable for z in path.z[even]])
     told = ~np.isnan(each) & ~np.isnan(found.stable[even])
     assert told.mean() > 0.9
     assert (each[told] == found.stable[even][told]).all()
@@ -87,28 +87,28 @@ def test_points_between_two_that_are_confirmed_are_confirmed():
     """Against looks at single points; the upper branch of more harmonics ends at 11.64 rad/s."""
     system = System(elastic_strip((11.3, 20.0)), (1,))
     path = traced(system).branches.paths[-1]
-    doubted = (path.parameter > 11.35) & (path.parameter < 13.0)
-    found = confirmed_stable(system, path.z, doubted)
+    to_confirm = (path.parameter > 11.35) & (path.parameter < 13.0)
+    found = confirmed_stable(system, path.z, to_confirm)
     of = multipliers_of(system, float(path.parameter.max()))
-    some = np.flatnonzero(doubted)[::4]
-    assert not found[~doubted].any()
+    some = np.flatnonzero(to_confirm)[::4]
+    assert not found[~to_confirm].any()
     assert found[some].tolist() == [of.confirms(z, 1.0) for z in path.z[some]]
-    assert 0.2 < found[doubted].mean() < 0.9
+    assert 0.2 < found[to_confirm].mean() < 0.9
 
 
 def test_of_many_contacts_no_more_than_a_part_of_the_points_are_looked_at():
     """Without any look nothing is confirmed; fewer looks confirm no other points."""
     system = System(elastic_strip((11.3, 20.0)), (1,))
     path = traced(system).branches.paths[-1]
-    doubted = (path.parameter > 11.35) & (path.parameter < 13.0)
-    whole = confirmed_stable(system, path.z, doubted)
+    to_confirm = (path.parameter > 11.35) & (path.parameter < 13.0)
+    whole = confirmed_stable(system, path.z, to_confirm)
     for part in (0.0, 0.02):
         few = replace(STABILITY, confirmation=replace(STABILITY.confirmation, max_fraction_of_many=part))
         looks = ConfirmedPoints(system, path.z, few)
-        known = [looks.at(int(i)) for i in np.flatnonzero(doubted)]
+        known = [looks.at(int(i)) for i in np.flatnonzero(to_confirm)]
         assert len(looks.known) <= part * len(path.z)
         assert sum(not np.isnan(one.stable) for one in known) <= len(looks.known)
-        assert not (confirmed_stable(system, path.z, doubted, options=few) & ~whole).any()
+        assert not (confirmed_stable(system, path.z, to_confirm, options=few) & ~whole).any()
 
 
 def test_a_motion_that_is_far_is_found_from_beside_the_next_points():
@@ -147,9 +147,11 @@ def test_of_known_motions_the_nearest_at_the_frequency_is_taken():
     up = np.column_stack((np.outer([0.0, 1.0], np.ones(size)), [1.0, 1.1]))
     down = np.column_stack((np.outer([2.0, 1.0], np.ones(size)), [1.0, 1.1]))
     known = KnownMotions((1,), (np.concatenate((up, down[::-1])), down[:1]))
-    np.testing.assert_allclose(known.beside(system, z), np.append(np.full(size, 0.5), 1.05))
-    np.testing.assert_allclose(known.beside(system, z + 1.2 * (z < 1.0)), np.append(np.full(size, 1.5), 1.05))
-    assert known.beside(system, np.append(np.full(size, 0.4), 1.2)) is None
+    np.testing.assert_allclose(known.interpolate(system, z), np.append(np.full(size, 0.5), 1.05))
+    np.testing.assert_allclose(
+        known.interpolate(system, z + 1.2 * (z < 1.0)), np.append(np.full(size, 1.5), 1.05)
+    )
+    assert known.interpolate(system, np.append(np.full(size, 0.4), 1.2)) is None
 
 
 def test_close_to_the_last_solution_the_same_is_found_sooner():
@@ -188,10 +190,10 @@ def test_where_the_pair_has_no_neighbour_none_is_sought(monkeypatch):
     alone = path.parameter < 11.45  # the upper branch of more harmonics ends at 11.64 rad/s
     assert any(omega < 11.45 for omega in looked)
     looked.clear()
-    left = stability(system, path, alone=alone)
+    left = stability(system, path, without_neighbour=alone)
     assert looked and not any(omega < 11.45 for omega in looked)
     np.testing.assert_array_equal(left.stable, sought.stable)
-    every = stability(system, path, alone=np.ones(len(path.z), dtype=bool))
+    every = stability(system, path, without_neighbour=np.ones(len(path.z), dtype=bool))
     untold = np.isnan(every.stable) & ~np.isnan(sought.stable)
     assert (
         untold.any()
@@ -208,5 +210,5 @@ def test_three_harmonics_tell_the_stability_beside_the_fold_at_which_the_upper_b
     beside = path.z[even & (path.parameter > 11.7) & (path.parameter < 11.9)]
     assert len(beside) > 4
     for z in beside[:: len(beside) // 4]:
-        assert of.verdict(z).stable == 1.0
+        assert of.classify(z).stable == 1.0
     assert exact(system, beside[0]).stable

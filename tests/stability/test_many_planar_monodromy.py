@@ -10,12 +10,12 @@ import pytest
 import fcm
 from fcm.branches.force_level import solutions
 from fcm.harmonic_balance.system import System
+from fcm.stability.classification import Bifurcation
 from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy
 from fcm.stability.multipliers import Multipliers
 from fcm.stability.options import STABILITY
 from fcm.stability.planar_monodromy import PlanarMonodromy
 from fcm.stability.state_sequence import PlanarSequence
-from fcm.stability.verdict import Bifurcation
 
 from ..harmonic_balance.strips import planar_strip
 
@@ -149,12 +149,12 @@ def test_a_march_comes_to_rest_in_what_is_stable_and_doubles_its_period_in_what_
     """Of twelve contacts that slip, open and close again, all of them, with three harmonics."""
     scene = planar_strip()
     (z,) = solutions(System(scene, (1, 2, 3)), omega).solutions
-    verdict = Multipliers(System(scene, (1, 2, 3)), omega).verdict(z)
+    classified = Multipliers(System(scene, (1, 2, 3)), omega).classify(z)
     after = marched(scene, omega)
     once, twice = (np.linalg.norm(after[-1] - after[-1 - k]) / np.linalg.norm(after[-1]) for k in (1, 2))
-    assert verdict.stable == stable
+    assert classified.stable == stable
     assert (once < 1e-4) == stable and twice < 1e-2
-    assert stable or verdict.kind is Bifurcation.PERIOD_DOUBLING
+    assert stable or classified.kind is Bifurcation.PERIOD_DOUBLING
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""Verdicts in doubt: of light impacts, whose multipliers come slowly to those of the exact motion."""
+"""Classifications in doubt: of light impacts, whose multipliers come slowly to those of the exact motion."""
 
 from __future__ import annotations
 
@@ -54,49 +54,49 @@ TOUCHING = impacts(  # its normal motion is 3 % of the tangential
 
 
 def judged(scene, omega, highest):
-    """The verdict of the balanced solution, and whether the exact motion beside it is stable."""
+    """The classification of the balanced solution, and whether the exact motion beside it is stable."""
     of = system(scene, highest)
     z = only(scene, omega, highest)
     orbit = periodic(scene, omega, state(of, z))
     balance = of.new_balance()
     balance.report(z, np.zeros_like(z))
     np.testing.assert_allclose(orbit.measure.amplitude, np.asarray(balance.output), rtol=0.02)
-    return Multipliers(of, omega).verdict(z), orbit.stable
+    return Multipliers(of, omega).classify(z), orbit.stable
 
 
 @pytest.mark.parametrize(("scene", "omega", "highest"), [(ONE_MODE, 1.129, 4), (FOUR_MODES, 0.9953, 9)])
 def test_light_impacts_that_any_start_leads_to_are_not_called_unstable(scene, omega, highest):
-    verdict, true = judged(scene, omega, highest)
+    classified, true = judged(scene, omega, highest)
     assert true
-    assert verdict.stable == 1.0
+    assert classified.stable == 1.0
 
 
 def test_a_pair_about_to_meet_at_minus_one_is_not_called_stable():
-    verdict, true = judged(TWO_MODES, 2.1997, 3)
+    classified, true = judged(TWO_MODES, 2.1997, 3)
     assert not true
-    assert verdict.stable != 1.0
+    assert classified.stable != 1.0
 
 
 def test_a_decay_that_further_harmonics_make_a_growth_is_not_called_stable():
     """Ten harmonics have a multiplier of -0.96, twenty by their own forces -0.98; the exact motion flips."""
-    verdict, true = judged(FOUR_MODES, 0.76054, 10)
+    classified, true = judged(FOUR_MODES, 0.76054, 10)
     assert not true
-    assert verdict.stable != 1.0
+    assert classified.stable != 1.0
 
 
 @pytest.mark.parametrize(("omega", "highest"), [(0.6231, 15), (0.625, 15), (0.6209, 12), (0.625, 12)])
 def test_a_small_normal_motion_that_is_not_yet_what_it_will_be_is_not_called_stable(omega, highest):
     """Amplitudes err by 1e-4 of the greatest; the exact motion flips with a multiplier of about -2."""
-    verdict, true = judged(TOUCHING, omega, highest)
+    classified, true = judged(TOUCHING, omega, highest)
     assert not true
-    assert verdict.stable != 1.0
+    assert classified.stable != 1.0
 
 
 def test_a_verdict_in_doubt_is_that_of_forces_of_another_level():
     of, twice = (system(scene, 4) for scene in (ONE_MODE, _doubled(ONE_MODE)))
     z = only(_doubled(ONE_MODE), 1.129, 4)
     of_level, of_forces = (Multipliers(one, 1.129) for one in (of, twice))
-    assert of_level.verdict(z).growth == pytest.approx(of_forces.verdict(z).growth, abs=1e-8)
+    assert of_level.classify(z).growth == pytest.approx(of_forces.classify(z).growth, abs=1e-8)
     assert of_level.further is not None
 
 

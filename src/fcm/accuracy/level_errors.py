@@ -42,7 +42,7 @@ def stable_at_levels(system: System, z: FloatArray, even: npt.NDArray[np.bool_])
     if not system.scene.contacts:
         return np.ones(len(z))
     of = multipliers_of(system, float(z[:, -1].max()))
-    return np.array([of.verdict(one).stable if here else 0.0 for one, here in zip(z, even, strict=True)])
+    return np.array([of.classify(one).stable if here else 0.0 for one, here in zip(z, even, strict=True)])
 
 
 def evenness(path: Path) -> npt.NDArray[np.bool_]:

@@ -116,8 +116,8 @@ class _PartnerGrowth:
             return math.nan
         self.frequency = float(self.lifted.newton.z[-1])
         z = np.array(self.lifted.newton.z)
-        alone = self.multipliers.verdict(z, enough=EITHER).growth
-        growth = self.multipliers.verdict(z).growth if math.isnan(alone) else alone
+        alone = self.multipliers.classify(z, sufficient=EITHER).growth
+        growth = self.multipliers.classify(z).growth if math.isnan(alone) else alone
         return max(growth, STABILITY_LIMITS.min_growth)
 
     def crossing(self, one: MultiplierCrossing, fine: float) -> float:

@@ -154,9 +154,9 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
     paths, shown, errors = list(every[:known]), list(found.shown[:known]), list(found.errors[:known])
     for path, seen, error in zip(every[known:], found.shown[known:], found.errors[known:], strict=True):
         beyond = on_other_branch(error.on_same_branch, options) if short else None
-        alone = without_neighbour(error.truncation, error.is_same_curve, options)
-        doubted = error.on_same_branch > options.max_error
-        judged = stability(found.system, path, beyond, alone=alone, doubted=doubted)
+        unmatched = without_neighbour(error.truncation, error.is_same_curve, options)
+        to_confirm = error.on_same_branch > options.max_error
+        judged = stability(found.system, path, beyond, without_neighbour=unmatched, to_confirm=to_confirm)
         inserted = judged.inserted
         bifurcations += [(one.kind.value, one.frequency) for one in judged.crossings]
         if accuracy is not None and not short:

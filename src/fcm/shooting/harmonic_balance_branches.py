@@ -55,7 +55,7 @@ def is_stable(found: UncheckedResponse, z: FloatArray) -> bool:
     from fcm.stability.floquet import multipliers_of
 
     of = multipliers_of(found.system, found.system.scene.frequency_range[1])
-    return bool(of.verdict(z, enough=(1.0,)).stable == 1.0)
+    return bool(of.classify(z, sufficient=(1.0,)).stable == 1.0)
 
 
 def states_of_branches(

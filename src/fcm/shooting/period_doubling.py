@@ -20,7 +20,7 @@ from fcm.shooting.periodic_orbit import Poll, converged, never_interrupt
 from fcm.shooting.problem import OrbitProblem, correct_at_frequency
 from fcm.shooting.residual import Shot
 from fcm.shooting.steady_state import SteadyMotion, steady
-from fcm.stability.verdict import Bifurcation, bifurcation_of
+from fcm.stability.classification import Bifurcation, bifurcation_of
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.state import State
 

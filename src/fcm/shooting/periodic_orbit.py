@@ -64,7 +64,7 @@ class Orbit:
 
 def within_unit_circle(multipliers: npt.NDArray[np.complex128], options: ShootingOptions = SHOOTING) -> bool:
     """Whether no disturbance grows, but for rounding."""
-    return bool(np.abs(multipliers).max(initial=0.0) <= 1.0 + options.floquet.verdict.growth_tolerance)
+    return bool(np.abs(multipliers).max(initial=0.0) <= 1.0 + options.floquet.classification.growth_tolerance)
 
 
 def periodic(

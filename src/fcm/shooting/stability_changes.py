@@ -55,7 +55,7 @@ def _place(problem: OrbitProblem, part: float, z: FloatArray, direction: FloatAr
     """Its excess is counted from half of what is sure below the limit, so that what is there is stable."""
     shot = problem.shot(z)
     others = np.zeros(0) if shot is None else np.abs(shot.other_multipliers)
-    excess = problem.options.floquet.verdict.growth_tolerance
+    excess = problem.options.floquet.classification.growth_tolerance
     room = 0.5 * problem.options.stability.certain_fraction * excess
     beyond = float(np.log(others.max(initial=1e-300)) - np.log1p(excess) + room)
     return CrossingPoint(part, beyond, z, direction, abs(beyond) <= room)

@@ -29,8 +29,8 @@ from fcm.stability.bifurcation_functions import (
     predicted_minimum,
     products,
 )
+from fcm.stability.classification import Bifurcation, Classification
 from fcm.stability.options import StabilityOptions
-from fcm.stability.verdict import Bifurcation, Verdict
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -173,8 +173,8 @@ def _multiplier_sample(
     """A point; of contacts that always stick, or stay closed smooth, multipliers are 1 and tell nothing."""
     values = tuple(multipliers[multipliers != 1.0].tolist()[: options.windows.max_multipliers])
     growth = math.log(max((abs(value) for value in values), default=0.0) + 1e-300)
-    verdict = Verdict(float(stable), growth, Bifurcation.NEIMARK_SACKER, values=values)
-    return multiplier_sample(length, verdict, options)
+    classified = Classification(float(stable), growth, Bifurcation.NEIMARK_SACKER, values=values)
+    return multiplier_sample(length, classified, options)
 
 
 def _path_samples(path: Path, points: Sequence[Point], options: StabilityOptions) -> _PathSamples:

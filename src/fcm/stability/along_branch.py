@@ -17,39 +17,41 @@ from fcm.continuation import Mark, Path, Segment
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.stability.bifurcation_functions import MultiplierSample, multiplier_sample
+from fcm.stability.classification import Classification, meeting_angle
 from fcm.stability.floquet import multipliers_of
 from fcm.stability.inserted_points import InsertedPoint
 from fcm.stability.multipliers import quasi_static_modes
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.spaced_points import path_lengths
-from fcm.stability.verdict import Verdict, meeting_angle
 
 Mask = npt.NDArray[np.bool_]
 EITHER = (0.0, 1.0)  # what the finer motion says is enough, stable or not
 
 
-class PathVerdicts:
-    """The verdicts of places, those between the points of the path, and how many were calculated.
+class PathClassification:
+    """The classifications of places, those between the points of the path, and how many were calculated.
 
-    alone (point,): beside which no solution with more harmonics is near. doubted (point,): of which it is
-    enough that the finer motion says that they are stable.
-    rotation (point,) [rad]: by how much multipliers that are not small have turned up to each point, about.
+    without_neighbour (point,): beside which no solution with more harmonics is near. to_confirm (point,): of
+    which it is enough that the finer motion says that they are stable. rotation (point,) [rad]: by how much
+    multipliers that are not small have turned up to each point, about.
     """
 
     def __init__(
         self,
         system: System,
         path: Path,
-        alone: Mask | None = None,
+        without_neighbour: Mask | None = None,
         options: StabilityOptions = STABILITY,
-        doubted: Mask | None = None,
+        to_confirm: Mask | None = None,
     ) -> None:
         self.path, self.evaluations, self.options = path, 0, options
-        self.alone = np.zeros(len(path.z), dtype=np.bool_) if alone is None else alone
-        self.doubted = np.zeros(len(path.z), dtype=np.bool_) if doubted is None else doubted
-        self._verdicts: dict[float, Verdict] = {}
+        self.without_neighbour = (
+            np.zeros(len(path.z), dtype=np.bool_) if without_neighbour is None else without_neighbour
+        )
+        self.to_confirm = np.zeros(len(path.z), dtype=np.bool_) if to_confirm is None else to_confirm
+        self._classified: dict[float, Classification] = {}
         self.between: dict[float, InsertedPoint] = {}
-        self._places: list[float] = []  # with a verdict, in order
+        self._places: list[float] = []  # with a classification, in order
         self.multipliers = multipliers_of(system, float(path.parameter.max(initial=0.0)), self.options)
         self.fold = (path.mark & Mark.FOLD) != 0
         self.rotation = _rotation(system, path, self.options)
@@ -64,45 +66,45 @@ class PathVerdicts:
         """Way along the path up to each point, which only where a window may be hidden is asked for."""
         return path_lengths(self.path.z)
 
-    def __getitem__(self, t: float) -> Verdict:
-        return self._verdicts[t]
+    def __getitem__(self, t: float) -> Classification:
+        return self._classified[t]
 
-    def at(self, i: int) -> Verdict:
+    def at(self, i: int) -> Classification:
         """Of a point, which has it then."""
-        if i not in self._verdicts:
-            self.look_at((i,))
-        return self._verdicts[i]
+        if i not in self._classified:
+            self.classify_points((i,))
+        return self._classified[i]
 
-    def look_at(self, points: Sequence[int], enough: Sequence[float] = ()) -> None:
-        """At several points, which have verdicts then; `enough` as of `Multipliers.verdict`."""
-        new = [i for i in points if i not in self._verdicts]
-        doubted = [i for i in new if self.doubted[i]]
-        for some, sufficient in (
-            ([i for i in new if not self.doubted[i]], enough),
-            (doubted, (*enough, 1.0)),
+    def classify_points(self, points: Sequence[int], sufficient: Sequence[float] = ()) -> None:
+        """At several points, which have classifications then; `sufficient` as of `Multipliers.classify`."""
+        new = [i for i in points if i not in self._classified]
+        to_confirm = [i for i in new if self.to_confirm[i]]
+        for some, accepted in (
+            ([i for i in new if not self.to_confirm[i]], sufficient),
+            (to_confirm, (*sufficient, 1.0)),
         ):
             if not some:
                 continue
             self.evaluations += len(some)
             z, fold = [self.path.z[i] for i in some], self.fold[some].tolist()
-            found = self.multipliers.verdicts(z, fold, self.alone[some].tolist(), sufficient)
-            for i, verdict in zip(some, found, strict=True):
-                self._keep(i, verdict)
+            found = self.multipliers.classify_all(z, fold, self.without_neighbour[some].tolist(), accepted)
+            for i, classified in zip(some, found, strict=True):
+                self._keep(i, classified)
 
-    def _keep(self, t: float, verdict: Verdict) -> Verdict:
-        if t not in self._verdicts:
+    def _keep(self, t: float, classified: Classification) -> Classification:
+        if t not in self._classified:
             insort(self._places, t)
-        self._verdicts[t] = verdict
-        return verdict
+        self._classified[t] = classified
+        return classified
 
-    def judge(self, z: FloatArray, enough: Sequence[float] = ()) -> Verdict:
-        """Of a solution that is not kept; `sufficient` as of `Multipliers.verdict`."""
+    def classify(self, z: FloatArray, sufficient: Sequence[float] = ()) -> Classification:
+        """Of a solution that is not kept; `sufficient` as of `Multipliers.classify`."""
         self.evaluations += 1
-        return self.multipliers.verdict(z, enough=enough)
+        return self.multipliers.classify(z, sufficient=sufficient)
 
     def confirmed(self, i: int, stable: float) -> bool:
         """Whether a point is as stable as told (1 or 0) with the further harmonics balanced, too."""
-        known = self._verdicts.get(i)
+        known = self._classified.get(i)
         if known is not None and known.rebalanced:
             return known.stable == stable
         self.evaluations += 1
@@ -115,7 +117,7 @@ class PathVerdicts:
         return [i for i in lone.tolist() if not self.confirmed(i, stable[i])]
 
     def places_between(self, first: int, last: int) -> list[float]:
-        """The places from one point to another of which there is a verdict, in order."""
+        """The places from one point to another of which there is a classification, in order."""
         return self._places[bisect_left(self._places, first) : bisect_right(self._places, last)]
 
     def same_on_both_sides(self, a: float, b: float) -> bool:
@@ -125,21 +127,21 @@ class PathVerdicts:
         after = next((t for t in self._places[k + 1 :] if self._is_known(t)), None)
         if before is None or after is None:
             return False
-        return self._verdicts[before].stable == self._verdicts[after].stable
+        return self._classified[before].stable == self._classified[after].stable
 
     def _is_known(self, t: float) -> bool:
-        return not math.isnan(self._verdicts[t].stable)
+        return not math.isnan(self._classified[t].stable)
 
     def grows(self, t: float) -> bool:
-        """Whether a disturbance does at a place with a verdict."""
-        return self._verdicts[t].growth > 0.0
+        """Whether a disturbance does at a place with a classification."""
+        return self._classified[t].growth > 0.0
 
-    def sufficient(self, *places: float) -> Sequence[float]:
+    def sufficient_between(self, *places: float) -> Sequence[float]:
         """What is enough to find where growth changes sign between places: EITHER, if the finer motion alone
-        says the same of these as their verdicts."""
+        says the same of these as their classifications."""
         for t in places:
-            alone = self.judge(self._z(t), EITHER)
-            if alone.rebalanced or (alone.growth > 0.0) != self.grows(t):
+            fine = self.classify(self._z(t), EITHER)
+            if fine.rebalanced or (fine.growth > 0.0) != self.grows(t):
                 return ()
         return EITHER
 
@@ -147,17 +149,17 @@ class PathVerdicts:
         return self.between[t].z if t in self.between else self.path.z[int(t)]
 
     def multiplier_sample(self, t: float) -> MultiplierSample:
-        """What is known of a place with a verdict."""
+        """What is known of a place with a classification."""
         if t not in self._multiplier_sample:
             k, part = int(t), t - int(t)
             length = self.length[k] + (part * (self.length[k + 1] - self.length[k]) if part else 0.0)
-            self._multiplier_sample[t] = multiplier_sample(float(length), self._verdicts[t], self.options)
+            self._multiplier_sample[t] = multiplier_sample(float(length), self._classified[t], self.options)
         return self._multiplier_sample[t]
 
     def meeting_angle(self, t: float) -> float:
-        """[rad] by which multipliers at a place with a verdict have to turn until two of them meet."""
+        """[rad] by which multipliers at a place with a classification have to turn until two of them meet."""
         if t not in self._meeting_angles:
-            self._meeting_angles[t] = meeting_angle(self._verdicts[t], self.options)
+            self._meeting_angles[t] = meeting_angle(self._classified[t], self.options)
         return self._meeting_angles[t]
 
     def rotation_between(self, a: float, b: float) -> float:
@@ -168,20 +170,20 @@ class PathVerdicts:
         """From a point to the next."""
         return Segment(self._system.reset_balance(), self.path, k)
 
-    def find(self, length: float, enough: Sequence[float] = ()) -> float | None:
-        """The place at a length, if it is found between two points; it has a verdict then."""
+    def find(self, length: float, sufficient: Sequence[float] = ()) -> float | None:
+        """The place at a length, if it is found between two points; it has a classification then."""
         k = int(np.searchsorted(self.length, length)) - 1
         t = k + float((length - self.length[k]) / (self.length[k + 1] - self.length[k]))
         curve = self.curve(k)
         if not k < t < k + 1 or not curve.find(t - k):
             return None
-        verdict = self._keep(t, self.judge(curve.z, enough))
-        self.between[t] = InsertedPoint(t, curve.z, curve.direction, curve.orientation, verdict.stable)
+        classified = self._keep(t, self.classify(curve.z, sufficient))
+        self.between[t] = InsertedPoint(t, curve.z, curve.direction, curve.orientation, classified.stable)
         return t
 
 
 def _rotation(system: System, path: Path, options: StabilityOptions = STABILITY) -> FloatArray:
-    """As of `PathVerdicts`; 0 where there are so many multipliers that two are always about to meet."""
+    """As of `PathClassification`; 0 where there are so many multipliers that two are always about to meet."""
     linear, omega = system.linear, path.parameter
     near = ~quasi_static_modes(
         linear.natural,
@@ -192,7 +194,7 @@ def _rotation(system: System, path: Path, options: StabilityOptions = STABILITY)
     )
     lasting = (
         np.exp(-2.0 * np.pi * linear.damping * linear.natural / omega.min(initial=np.inf))
-        > options.verdict.small_multiplier
+        > options.classification.small_multiplier
     )
     few = 2 * near.sum() + len(system.scene.contacts) <= options.windows.max_multipliers
     fastest = float(linear.natural[lasting & near].max(initial=0.0)) if few else 0.0

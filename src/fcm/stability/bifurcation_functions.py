@@ -20,8 +20,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.model.scene import FloatArray
+from fcm.stability.classification import Classification
 from fcm.stability.options import STABILITY, StabilityOptions
-from fcm.stability.verdict import Verdict
 
 MIN_LOGARITHM = 1e-300  # a product, or a length
 
@@ -37,18 +37,18 @@ class MultiplierSample(NamedTuple):
 
 
 def multiplier_sample(
-    length: float, verdict: Verdict, options: StabilityOptions = STABILITY
+    length: float, classified: Classification, options: StabilityOptions = STABILITY
 ) -> MultiplierSample:
-    """A place with its verdict; of the products where it is stable, otherwise they are of no use."""
-    if verdict.stable != 1.0:
-        return MultiplierSample(length, verdict.stable, verdict.growth, 0.0, 0.0)
+    """A place with its classification; of the products where it is stable, otherwise they are of no use."""
+    if classified.stable != 1.0:
+        return MultiplierSample(length, classified.stable, classified.growth, 0.0, 0.0)
     values = np.array(
-        [value for value in verdict.values if abs(value) > options.windows.min_size], dtype=np.complex128
+        [value for value in classified.values if abs(value) > options.windows.min_size], dtype=np.complex128
     )
     i, j = _pairs(values.size)
     products = np.abs(1.0 + values), np.abs(1.0 - values[i] * values[j])
     sums = (float(np.log(product + MIN_LOGARITHM).sum()) for product in products)
-    return MultiplierSample(length, verdict.stable, verdict.growth, *sums)
+    return MultiplierSample(length, classified.stable, classified.growth, *sums)
 
 
 @lru_cache(maxsize=16)
@@ -88,9 +88,11 @@ def predicted_minimum(
                 continue
             place = min(max(place, low.length + near), high.length - near)
             greatest = max(values)
-            doubt = (windows.doubt * windows.doubt_reduction**divided * (greatest - least) - least) / greatest
-            if doubt > most:
-                most, at = doubt, place
+            excess = (
+                windows.margin * windows.margin_reduction**divided * (greatest - least) - least
+            ) / greatest
+            if excess > most:
+                most, at = excess, place
     return at
 
 
@@ -151,6 +153,6 @@ def predicted_minima(
         up = bend > 0.0
         at = 0.5 * (s[:-2] + s[1:-1] - slope[0] / np.where(up, bend, 1.0))
         least = three[0] + (at - s[:-2]) * (slope[0] + bend * (at - s[1:-1]))
-        deep = up & (options.windows.doubt * (three.max(axis=0) - least) > least)
+        deep = up & (options.windows.margin * (three.max(axis=0) - least) > least)
     sides, wide = (slice(-1), slice(1, None)), width >= options.windows.min_length
     return tuple(deep & (s[:-1][k] <= at) & (at <= s[1:][k]) & wide[k] for k in sides)

@@ -21,12 +21,12 @@ from fcm.continuation.events import SignChange
 from fcm.harmonic_balance.consecutive_points import runs
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
-from fcm.stability.along_branch import PathVerdicts
+from fcm.stability.along_branch import PathClassification
 from fcm.stability.bifurcation_functions import predicted_minimum
+from fcm.stability.classification import Bifurcation, flip_function, growth_is_linear
 from fcm.stability.inserted_points import InsertedPoint, MultiplierCrossing, with_points
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.spaced_points import SpacedPoints
-from fcm.stability.verdict import Bifurcation, flip_function, growth_is_linear
 
 IntArray = npt.NDArray[np.intp]
 
@@ -53,27 +53,31 @@ def stability(
     path: Path,
     beyond: npt.NDArray[np.bool_] | None = None,
     options: StabilityOptions = STABILITY,
-    alone: npt.NDArray[np.bool_] | None = None,
-    doubted: npt.NDArray[np.bool_] | None = None,
+    without_neighbour: npt.NDArray[np.bool_] | None = None,
+    to_confirm: npt.NDArray[np.bool_] | None = None,
 ) -> Stability:
     """Stability of the points of a path followed in the frequency, and where it changes between folds.
 
     A fold counts to the stable side, a crossing to neither. What is stable with the balanced harmonics and
     not with the next ones that their forces make, or the other way round, is nan; and so is what is
-    beyond (point,), too far from the motion, and that the determinant allows to be stable. Beside what is
-    alone (point,) it is known that there is no solution with more harmonics: there a doubt remains one.
-    What is doubted (point,) is not believed to be stable unless further harmonics, balanced, confirm it (see
-    `fcm.stability.confirmation`): that the finer motion says so is enough here.
+    beyond (point,), too far from the motion, and that the determinant allows to be stable. Of what is
+    without_neighbour (point,) it is known that no solution with more harmonics is near: there a doubt remains
+    one. What is to_confirm (point,) is not believed to be stable unless further harmonics, balanced, confirm
+    it (see `fcm.stability.confirmation`): that the finer motion says so is enough here.
     """
     none = np.zeros(path.z.shape[0], dtype=np.bool_)
-    known = PathVerdicts(system, path, none if alone is None else alone, options, doubted)
+    known = PathClassification(
+        system, path, none if without_neighbour is None else without_neighbour, options, to_confirm
+    )
     search = _BifurcationSearch(system, path, options, known)
     return search.run(none if beyond is None else beyond)
 
 
 class _BifurcationSearch:
-    def __init__(self, system: System, path: Path, options: StabilityOptions, verdicts: PathVerdicts) -> None:
-        self.path, self.options, self.verdicts = path, options, verdicts
+    def __init__(
+        self, system: System, path: Path, options: StabilityOptions, classified: PathClassification
+    ) -> None:
+        self.path, self.options, self.classified = path, options, classified
         self.many = len(system.scene.contacts) >= self.options.structure.many_contacts
         self.spaced = SpacedPoints(path.z, self.many)
         self.step_span = (
@@ -93,72 +97,73 @@ class _BifurcationSearch:
             self._judge(first, last)
             if not self.many:
                 self._search_windows(first, last)
-            places = self.verdicts.places_between(first, last)
+            places = self.classified.places_between(first, last)
             at = np.array([int(t) for t in places if t == int(t)])
-            known = np.array([self.verdicts[i].stable for i in at.tolist()])
+            known = np.array([self.classified[i].stable for i in at.tolist()])
             # points between two that were looked at have neighbours that agree
-            stable[first : last + 1] = known[_nearer(at, first, last)]
-            stable[self.verdicts.unconfirmed(stable, first, last)] = math.nan
+            stable[first : last + 1] = known[_nearest_index(at, first, last)]
+            stable[self.classified.unconfirmed(stable, first, last)] = math.nan
             found = list(self._crossings(places))
             for one in found:
                 for way in (range(one.after, first - 1, -1), range(one.after + 1, end)):
                     stable[list(self._confirmed_after(stable, way))] = math.nan
             crossings += found
         return Stability(
-            stable, tuple(crossings), self.verdicts.evaluations, tuple(self._inserted_points(stable))
+            stable, tuple(crossings), self.classified.evaluations, tuple(self._inserted_points(stable))
         )
 
     def _is_even(self) -> npt.NDArray[np.bool_]:
         """Whether the number of real multipliers above 1 is even, folds included on that side."""
         sign = self.path.orientation * np.sign(self.path.direction[:, -1])
-        even: npt.NDArray[np.bool_] = (sign > 0.0) | self.verdicts.fold
+        even: npt.NDArray[np.bool_] = (sign > 0.0) | self.classified.fold
         return even
 
     def _judge(self, first: int, last: int) -> None:
         """Enough points of a run."""
-        angle = self.verdicts.rotation[first : last + 1]
+        angle = self.classified.rotation[first : last + 1]
         passed = np.floor((angle - angle[0]) / self.options.sampling.max_phase)
         some = self.spaced.nodes(first, last, self.step_span)
         nodes = {*some, *(first + 1 + (passed[1:] != passed[:-1]).nonzero()[0]).tolist()}
         if self.many:  # of a fold no doubt is told: its neighbour is looked at, too
-            beside = (i + way for i, way in ((first, 1), (last, -1)) if self.verdicts.fold[i])
-            nodes |= {i for i in beside if first < i < last}
-        self.verdicts.look_at(sorted(nodes))
+            neighbours = (i + way for i, way in ((first, 1), (last, -1)) if self.classified.fold[i])
+            nodes |= {i for i in neighbours if first < i < last}
+        self.classified.classify_points(sorted(nodes))
         self._refine_between(list(itertools.pairwise(sorted(nodes))))
 
     def _search_windows(self, first: int, last: int) -> None:
         """Look where a window may be hidden between two places of a run that were looked at."""
-        places = self.verdicts.places_between(first, last)
+        places = self.classified.places_between(first, last)
         for k, (a, b) in enumerate(itertools.pairwise(places)):
-            self._divide(places[max(k - 1, 0) : k], (a, b), places[k + 2 : k + 3], 0)
+            self._bisect(places[max(k - 1, 0) : k], (a, b), places[k + 2 : k + 3], 0)
 
-    def _divide(
+    def _bisect(
         self, before: list[float], ends: tuple[float, float], after: list[float], divided: int
     ) -> None:
         """Divide the way between two places as long as what both and their neighbours tell is in doubt."""
         t = (
-            self._doubtful_place(before, ends, after, divided)
+            self._uncertain_place(before, ends, after, divided)
             if divided < self.options.windows.max_divisions
             else None
         )
         if t is None or not ends[0] < t < ends[1]:
             return
-        one, found, other = (self.verdicts[place].stable for place in (ends[0], t, ends[1]))
+        one, found, other = (self.classified[place].stable for place in (ends[0], t, ends[1]))
         if found in (one, other) or math.isnan(found):
-            self._divide(before, (ends[0], t), [ends[1]], divided + 1)
-            self._divide([ends[0]], (t, ends[1]), after, divided + 1)
+            self._bisect(before, (ends[0], t), [ends[1]], divided + 1)
+            self._bisect([ends[0]], (t, ends[1]), after, divided + 1)
             return
-        self.verdicts.look_at(sorted({int(t), math.ceil(t)}))
+        self.classified.classify_points(sorted({int(t), math.ceil(t)}))
         self._refine_between([(math.ceil(ends[0]), int(t)), (math.ceil(t), int(ends[1]))])
 
-    def _doubtful_place(
+    def _uncertain_place(
         self, before: list[float], ends: tuple[float, float], after: list[float], divided: int
     ) -> float | None:
-        """A place between two, with its verdict, at which stability may be another; None if there is none."""
-        one, other = self.verdicts[ends[0]], self.verdicts[ends[1]]
+        """A place between two, with its classification, at which stability may be another; None if there is
+        none."""
+        one, other = self.classified[ends[0]], self.classified[ends[1]]
         if (
-            one.passive
-            or other.passive
+            one.is_linear
+            or other.is_linear
             or max(one.growth, other.growth) < self.options.sampling.sufficient_decay
         ):
             return None
@@ -168,54 +173,54 @@ class _BifurcationSearch:
             return self._window_edge(*ends)
         if one.stable != other.stable or (one.stable == 1.0 and not self._may_meet(*ends)):
             return None
-        verdicts, seen = self.verdicts, self.verdicts.multiplier_sample
-        alike = [t for t in (*before, *ends, *after) if verdicts[t].stable == one.stable]
+        classified, seen = self.classified, self.classified.multiplier_sample
+        alike = [t for t in (*before, *ends, *after) if classified[t].stable == one.stable]
         low, high = (seen(t) for t in ends)
         length = predicted_minimum(
-            low, high, [seen(t) for t in alike if not verdicts[t].passive], divided, self.options
+            low, high, [seen(t) for t in alike if not classified[t].is_linear], divided, self.options
         )
         # a place like its ends is no window, whatever the balanced harmonics say of it
-        return None if length is None else self.verdicts.find(length, enough=(one.stable,))
+        return None if length is None else self.classified.find(length, sufficient=(one.stable,))
 
     def _window_edge(self, a: float, b: float) -> float | None:
         """A place between one that is told and one that is not: this may be the edge of a window."""
-        verdicts = self.verdicts
+        classified = self.classified
         apart = self.options.windows.edge_distance < b - a <= 1.0
-        if verdicts.grows(a) == verdicts.grows(b) or not apart or not verdicts.same_on_both_sides(a, b):
+        if classified.grows(a) == classified.grows(b) or not apart or not classified.same_on_both_sides(a, b):
             return None
-        return verdicts.find(
-            0.5 * (verdicts.multiplier_sample(a).length + verdicts.multiplier_sample(b).length)
+        return classified.find(
+            0.5 * (classified.multiplier_sample(a).length + classified.multiplier_sample(b).length)
         )
 
     def _may_meet(self, a: float, b: float) -> bool:
         """Whether two multipliers may meet between two places of a stable way."""
-        nearest = self.verdicts.meeting_angle(a) + self.verdicts.meeting_angle(b)
+        nearest = self.classified.meeting_angle(a) + self.classified.meeting_angle(b)
         return (
             nearest
-            < self.options.windows.angle_factor * self.verdicts.rotation_between(a, b)
+            < self.options.windows.angle_factor * self.classified.rotation_between(a, b)
             + self.options.windows.angle_margin
         )
 
     def _inserted_points(self, stable: FloatArray) -> Iterator[InsertedPoint]:
         """The places between points that are stable where both neighbours are not, or the other way round."""
-        for t, one in self.verdicts.between.items():
+        for t, one in self.classified.between.items():
             before, after = stable[int(t) : int(t) + 2].tolist()
             if before == after != one.stable and not math.isnan(one.stable):
                 yield one
 
     def _refine_between(self, ways: list[tuple[int, int]]) -> None:
-        """Look between pairs of points that were looked at until neither the verdict nor a change of its sign
-        can hide there.
+        """Look between pairs of points that were looked at until neither the classification nor a change of
+        its sign can hide there.
 
         Of many contacts, what the finer motion says between two stable points is enough where that is the
         same: both are confirmed, and it shows whether anything has changed between them.
         """
-        seen = self.verdicts
+        seen = self.classified
         while ways:
             wide = [(a, self.spaced.middle(a, b), b) for a, b in ways if b - a > 1 and self._may_differ(a, b)]
             alike = {middle for a, middle, b in wide if self.many and seen[a].stable == seen[b].stable == 1.0}
-            seen.look_at(sorted(alike), (1.0,))
-            seen.look_at([middle for _, middle, _ in wide])
+            seen.classify_points(sorted(alike), (1.0,))
+            seen.classify_points([middle for _, middle, _ in wide])
             bent = (
                 (a, middle, b)
                 for a, middle, b in wide
@@ -226,20 +231,20 @@ class _BifurcationSearch:
     def _may_differ(self, a: int, b: int) -> bool:
         """Whether anything between two points may be told otherwise than at both; with many contacts nothing
         is told between two of which it is not."""
-        one, other = self.verdicts[a], self.verdicts[b]
+        one, other = self.classified[a], self.classified[b]
         if self.many and math.isnan(one.stable) and math.isnan(other.stable):
             return False
-        return not (one.passive and other.passive)
+        return not (one.is_linear and other.is_linear)
 
     def _crossings(self, places: list[float]) -> Iterator[MultiplierCrossing]:
         """Where the growth changes sign between places that are told, and what is not told between them."""
-        known = [t for t in places if not math.isnan(self.verdicts[t].growth)]
-        if len({self.verdicts.grows(t) for t in known}) < 2:
+        known = [t for t in places if not math.isnan(self.classified[t].growth)]
+        if len({self.classified.grows(t) for t in known}) < 2:
             return
-        told = [k for k, t in enumerate(known) if not math.isnan(self.verdicts[t].stable)]
+        told = [k for k, t in enumerate(known) if not math.isnan(self.classified[t].stable)]
         for first, last in itertools.pairwise(told):
             ways = itertools.pairwise(known[first : last + 1])
-            changes = [(a, b) for a, b in ways if self.verdicts.grows(a) != self.verdicts.grows(b)]
+            changes = [(a, b) for a, b in ways if self.classified.grows(a) != self.classified.grows(b)]
             if len(changes) == 1 and math.ceil(changes[0][1]) == int(changes[0][0]) + 1:
                 found = self._crossing(*changes[0])
                 if found is not None:
@@ -248,34 +253,36 @@ class _BifurcationSearch:
     def _confirmed_after(self, stable: FloatArray, way: range) -> Iterator[int]:
         """The points from a crossing on until further harmonics, balanced, confirm one: they may move it."""
         for i in way:
-            if stable[i] != stable[way[0]] or self.verdicts.confirmed(i, stable[i]):
+            if stable[i] != stable[way[0]] or self.classified.confirmed(i, stable[i]):
                 return
             yield i
 
     def _crossing(self, a: float, b: float) -> MultiplierCrossing | None:
         """Where the growth changes sign between two places."""
-        first, found, enough = int(a), None, self.verdicts.sufficient(a, b)
-        curve = self.verdicts.curve(first)
-        before, after = (max(self.verdicts[t].growth, self.options.sampling.sufficient_decay) for t in (a, b))
-        kind = self.verdicts[a if before > 0.0 else b].kind
-        flips = tuple(flip_function(self.verdicts[t].values) for t in (a, b))
+        first, found, sufficient = int(a), None, self.classified.sufficient_between(a, b)
+        curve = self.classified.curve(first)
+        before, after = (
+            max(self.classified[t].growth, self.options.sampling.sufficient_decay) for t in (a, b)
+        )
+        kind = self.classified[a if before > 0.0 else b].kind
+        flips = tuple(flip_function(self.classified[t].values) for t in (a, b))
         by_flip = kind is Bifurcation.PERIOD_DOUBLING and flips[0] * before > 0.0 > flips[0] * flips[1]
         if by_flip:
             before, after = flips
         bracket = self.options.sampling.sign_change
         sides = SignChange(a - first, b - first, before, after, True, bracket)
         fine = self.options.sampling.tolerance
-        narrow = fine if enough else self.options.sampling.confirmed_tolerance
+        narrow = fine if sufficient else self.options.sampling.confirmed_tolerance
         for _ in range(self.options.sampling.max_evaluations):
             at = sides.at
             if sides.width < narrow or (found is not None and sides.converged(fine)) or not curve.find(at):
                 break
-            verdict = self.verdicts.judge(curve.z, enough)
-            if math.isnan(verdict.growth):
+            classified = self.classified.classify(curve.z, sufficient)
+            if math.isnan(classified.growth):
                 break
-            growth = max(verdict.growth, self.options.sampling.sufficient_decay)
-            now = flip_function(verdict.values) if by_flip else growth
-            kind = verdict.kind if growth > 0.0 else kind
+            growth = max(classified.growth, self.options.sampling.sufficient_decay)
+            now = flip_function(classified.values) if by_flip else growth
+            kind = classified.kind if growth > 0.0 else kind
             found = MultiplierCrossing(first + at, curve.z, curve.direction, curve.orientation, kind=kind)
             if abs(growth) < self.options.sampling.growth_tolerance:
                 break
@@ -283,6 +290,6 @@ class _BifurcationSearch:
         return found
 
 
-def _nearer(at: IntArray, first: int, last: int) -> IntArray:
+def _nearest_index(at: IntArray, first: int, last: int) -> IntArray:
     """For each of first to last the number of the nearest in at, which holds both."""
     return np.rint(np.interp(np.arange(first, last + 1), at, np.arange(at.size))).astype(np.intp)

@@ -21,12 +21,12 @@ import numpy.typing as npt
 from fcm.harmonic_balance.consecutive_points import runs
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
+from fcm.stability.classification import UNKNOWN, Classification, growth_is_linear
 from fcm.stability.floquet import multipliers_of
 from fcm.stability.known_motions import KnownMotions
 from fcm.stability.multipliers import Multipliers
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.spaced_points import SpacedPoints
-from fcm.stability.verdict import UNKNOWN, Verdict, growth_is_linear
 
 Mask = npt.NDArray[np.bool_]
 
@@ -34,23 +34,23 @@ Mask = npt.NDArray[np.bool_]
 def confirmed_stable(
     system: System,
     z: FloatArray,
-    doubted: Mask,
+    to_confirm: Mask,
     far: Mask | None = None,
     options: StabilityOptions = STABILITY,
     motions: KnownMotions | None = None,
 ) -> Mask:
-    """Which of the doubted points (point,) have a stable motion with further harmonics near them.
+    """Which of the points to_confirm (point,) have a stable motion with further harmonics near them.
 
     Parameters
     ----------
     system : System
     z : (point, unknown + 1)
         Points of a curve of its balance, in order, found stable.
-    doubted : (point,) bool
-        Those that are to be confirmed.
+    to_confirm : (point,) bool
+        Those to be confirmed.
     far : (point,) bool, optional
-        Those, doubted or not, at whose frequency the same branch has a motion with more harmonics: where none
-        is found from the solution, it is sought along the branch from the points beside them.
+        Those, to be confirmed or not, at whose frequency the same branch has a motion with more harmonics:
+        where none is found from the solution, it is sought along the branch from the points beside them.
     options : StabilityOptions, optional
         Of a row of them some are looked at, `ConfirmationOptions.point_interval` apart, or of many contacts
         its ends; and between two of these the middle, until all three agree and their growths lie on a line:
@@ -59,19 +59,19 @@ def confirmed_stable(
         Of the same branch with more harmonics, from which those of the far points are sought first.
     """
     found = np.zeros(len(z), dtype=np.bool_)
-    far = np.zeros_like(doubted) if far is None else far
-    if (doubted | far).any() and not system.own_laws:
-        looks = ConfirmedPoints(system, z, options, far, motions)
-        for first, end in runs(doubted):
-            nodes = looks.nodes(first, end - 1)
-            found[nodes[0]] = looks.confirms(nodes[0])
+    far = np.zeros_like(to_confirm) if far is None else far
+    if (to_confirm | far).any() and not system.own_laws:
+        points = ConfirmedPoints(system, z, options, far, motions)
+        for first, end in runs(to_confirm):
+            nodes = points.nodes(first, end - 1)
+            found[nodes[0]] = points.confirms(nodes[0])
             for a, b in itertools.pairwise(nodes):
-                looks.between(a, b, found)
+                points.between(a, b, found)
         for first, end in runs(far & ~found):
-            if looks.is_far(first):
-                looks.along(first - 1, end - 1, found)
-            if looks.is_far(end - 1):
-                looks.along(end, first, found)
+            if points.is_far(first):
+                points.along(first - 1, end - 1, found)
+            if points.is_far(end - 1):
+                points.along(end, first, found)
     return found
 
 
@@ -93,8 +93,8 @@ class ConfirmedPoints:
         self.system, self.work, self.z, self.motions = system, system.work, z, motions
         self.spaced = SpacedPoints(z, self.many)
         self.far = np.zeros(len(z), dtype=np.bool_) if far is None else far
-        self.known = dict[int, tuple[Verdict, FloatArray | None]]()  # verdicts, and of what
-        self.looks_left = options.confirmation.max_fraction_of_many * len(z) if self.many else math.inf
+        self.known = dict[int, tuple[Classification, FloatArray | None]]()  # classifications, and of what
+        self.evaluations_left = options.confirmation.max_fraction_of_many * len(z) if self.many else math.inf
 
     def nodes(self, first: int, last: int) -> list[int]:
         """Points from one to another that are looked at first; of many contacts, as a look takes long, the
@@ -111,23 +111,26 @@ class ConfirmedPoints:
         """Whether no motion with further harmonics that tells is found from a point."""
         return math.isnan(self.at(i).growth)
 
-    def at(self, i: int) -> Verdict:
-        """Of the motion with further harmonics; unknown where there are no looks left."""
+    def at(self, i: int) -> Classification:
+        """Of the motion with further harmonics; unknown where there are no evaluations left."""
         if i not in self.known:
-            if self.looks_left < 1.0:
+            if self.evaluations_left < 1.0:
                 return UNKNOWN
-            self.looks_left -= 1.0
+            self.evaluations_left -= 1.0
             self._poll()
-            self.known[i] = self._look(i), self.multipliers.beside
+            self.known[i] = self._classify(i), self.multipliers.refined_solution
         return self.known[i][0]
 
-    def _look(self, i: int) -> Verdict:
-        """The verdict of the motion that the one known at the frequency of a point leads to, or the point."""
+    def _classify(self, i: int) -> Classification:
+        """The classification of the motion that the one known at the frequency of a point leads to, or the
+        point."""
         z = self.z[i]
-        motion = self.motions.beside(self.system, z) if self.motions is not None and self.far[i] else None
+        motion = (
+            self.motions.interpolate(self.system, z) if self.motions is not None and self.far[i] else None
+        )
         if self.motions is not None and motion is not None:
             found = self.multipliers.continued(z, motion, self.motions.harmonics)
-            if self.multipliers.beside is not None:
+            if self.multipliers.refined_solution is not None:
                 return found
         return self.multipliers.confirmation(z)
 
@@ -161,13 +164,13 @@ class ConfirmedPoints:
             return
         last, motion = self._before_turn(at, last), self.known[at][1]
         step = options.point_interval
-        while motion is not None and (last - at) * way > 0 and self.looks_left >= 1.0:
-            self.looks_left -= 1.0
+        while motion is not None and (last - at) * way > 0 and self.evaluations_left >= 1.0:
+            self.evaluations_left -= 1.0
             self._poll()
             ahead = at + way * min(step, abs(last - at))
             if self.multipliers.continued(self.z[ahead], motion).stable == 1.0:
                 found[min(at + way, ahead) : max(at + way, ahead) + 1] = True
-                at, motion, step = ahead, self.multipliers.beside, 2 * step
+                at, motion, step = ahead, self.multipliers.refined_solution, 2 * step
             elif abs(ahead - at) == 1:
                 return
             else:

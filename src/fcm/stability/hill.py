@@ -24,8 +24,8 @@ import numpy.typing as npt
 
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
+from fcm.stability.classification import UNKNOWN, Classification, MultiplierSpectrum
 from fcm.stability.options import STABILITY, StabilityOptions
-from fcm.stability.verdict import UNKNOWN, MultiplierSpectrum, Verdict
 from fcm.structure.layout import Layout
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -51,10 +51,10 @@ class HillMultipliers:
         self.wide = Layout(layout.contacts, layout.directions, len(self.harmonics))
         self.laws = system.exact_laws_of(self.harmonics, self.harmonics)
         modes, each = linear.natural.size, 1 + 2 * len(self.harmonics)
-        self.turning = np.zeros((each, each))  # D / omega
+        self.at_fold = np.zeros((each, each))  # D / omega
         for j, h in enumerate(self.harmonics):
             a = 1 + 2 * j
-            self.turning[a, a + 1], self.turning[a + 1, a] = -h, h
+            self.at_fold[a, a + 1], self.at_fold[a + 1, a] = -h, h
         # where the unknowns of a port are among those of the balance, means first
         waves = np.stack((self.wide.waves_at, self.wide.waves_at + 1), axis=1).reshape(-1, self.wide.ports)
         self.place = np.vstack((self.wide.mean_at, waves)).T  # (port, each)
@@ -68,7 +68,7 @@ class HillMultipliers:
         if not np.isfinite(stiffness).all():
             return None
         linear, one = self.system.linear, np.eye(self.each)
-        D = omega * self.turning
+        D = omega * self.at_fold
         rate = 2.0 * linear.damping * linear.natural
         first = np.kron(np.eye(self.modes), 2.0 * D) + np.kron(np.diag(rate), one)
         none = np.kron(np.eye(self.modes), D @ D) + np.kron(np.diag(rate), D)
@@ -110,25 +110,29 @@ class HillMultipliers:
             found += np.einsum("mp,paqb,nq->manb", shapes, tangent, shapes, optimize=True)
         return found.reshape(self.modes * self.each, -1)
 
-    def verdict(
-        self, z: FloatArray, turning: bool = False, enough: Sequence[float] = (), alone: bool = False
-    ) -> Verdict:
-        """Of a solution with an even number of real multipliers above 1, or of a fold (turning)."""
+    def classify(
+        self,
+        z: FloatArray,
+        at_fold: bool = False,
+        sufficient: Sequence[float] = (),
+        without_neighbour: bool = False,
+    ) -> Classification:
+        """Of a solution with an even number of real multipliers above 1, or of a fold (at_fold)."""
         values = self.of(z)
         if values is None:
             return UNKNOWN
         spectrum = MultiplierSpectrum(values, self.options)
-        return spectrum.verdict(spectrum.odd or turning)
+        return spectrum.classify(spectrum.odd or at_fold)
 
-    def verdicts(
+    def classify_all(
         self,
         z: Sequence[FloatArray],
-        turning: Sequence[bool],
-        alone: Sequence[bool],
-        enough: Sequence[float] = (),
-    ) -> list[Verdict]:
+        at_fold: Sequence[bool],
+        without_neighbour: Sequence[bool],
+        sufficient: Sequence[float] = (),
+    ) -> list[Classification]:
         """Of several solutions."""
-        return [self.verdict(*one) for one in zip(z, turning, strict=True)]
+        return [self.classify(*one) for one in zip(z, at_fold, strict=True)]
 
     def confirms(self, z: FloatArray, stable: float) -> bool:
         """Whether further harmonics say the same of a solution: none are balanced."""

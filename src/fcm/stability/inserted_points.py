@@ -10,7 +10,7 @@ import numpy as np
 
 from fcm.continuation import Mark, Path
 from fcm.model.scene import FloatArray
-from fcm.stability.verdict import Bifurcation
+from fcm.stability.classification import Bifurcation
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ class KnownMotions:
     harmonics: tuple[int, ...]
     pieces: tuple[FloatArray, ...]
 
-    def beside(self, system: System, z: FloatArray) -> FloatArray | None:
+    def interpolate(self, system: System, z: FloatArray) -> FloatArray | None:
         """The motion (unknown + 1,) at the frequency of a solution of a system, between two that are known;
         of several the nearest, None if there is none."""
         here, near = self._with_harmonics(system, z), list[FloatArray]()

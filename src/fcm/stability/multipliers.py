@@ -2,14 +2,13 @@ r"""Floquet multipliers of a balanced solution, and what they say of its stabili
 
 The growth over a period of a small disturbance, slow or fast, is an eigenvalue of the `Monodromy` of the
 motion. Its motion is the `EnrichedMotion` one; that of the harmonics balanced alone tells how sure the
-verdict is. Where it is in doubt, as of light impacts, whose multipliers change severalfold where amplitudes
-change by a hundredth, the further harmonics are balanced too (`Rebalancing`). That motion tells if those
-beyond add little to it.
-Where no contact changes its state the motion is linear, and stable. That an extreme of its limit holds a
-slider is no matter then: with a little less residual friction the slider rests, in the same motion.
-Neither is quite a periodic solution of the structure, so that a real multiplier passes +1 beside the fold of
-the curve of solutions. The parity of the balance's determinant is, in the limit of many harmonics, that of
-the number of real multipliers above +1, and changes exactly at the folds: it decides.
+classification is. Where it is uncertain, as of light impacts, whose multipliers change severalfold where
+amplitudes change by a hundredth, the further harmonics are balanced too (`Rebalancing`). That motion tells if
+those beyond add little to it. Where no contact changes its state the motion is linear, and stable. That an
+extreme of its limit holds a slider is no matter then: with a little less residual friction the slider rests,
+in the same motion. Neither is quite a periodic solution of the structure, so that a real multiplier passes +1
+beside the fold of the curve of solutions. The parity of the balance's determinant is, in the limit of many
+harmonics, that of the number of real multipliers above +1, and changes exactly at the folds: it decides.
 """
 
 from __future__ import annotations
@@ -24,6 +23,16 @@ import numpy.typing as npt
 from fcm.harmonic_balance.residual_spectrum import EnrichedMotion, enriched_harmonics
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
+from fcm.stability.classification import (
+    LINEAR,
+    UNKNOWN,
+    Classification,
+    MultiplierSpectrum,
+    classify_even,
+    combine_one_sided,
+    flip_distance,
+    is_uncertain,
+)
 from fcm.stability.disturbance import Propagator, Stiffness
 from fcm.stability.eigenvalues import eigenvalues
 from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy
@@ -32,16 +41,6 @@ from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.planar_monodromy import PlanarMonodromy
 from fcm.stability.rebalanced import Rebalancing
 from fcm.stability.state_sequence import BalancedSequence, PlanarSequence
-from fcm.stability.verdict import (
-    PASSIVE,
-    UNKNOWN,
-    MultiplierSpectrum,
-    Verdict,
-    doubtful,
-    either_slider,
-    even_verdict,
-    flip_distance,
-)
 
 
 class VariationalProblem(NamedTuple):
@@ -51,14 +50,15 @@ class VariationalProblem(NamedTuple):
     monodromy: Monodromy | ManyMonodromy | PlanarMonodromy | ManyPlanarMonodromy
 
 
-class _Look(NamedTuple):
-    """A solution that was looked at, and its finer motion x: whether it is a fold, and alone; how much the
-    finer motion adds, contacts of that which are held, see `Verdict`, and the monodromy matrix of that."""
+class _MotionSample(NamedTuple):
+    """A solution that was looked at, and its finer motion x: whether it is a fold, and without_neighbour; how
+    much the finer motion adds, contacts of that which are held, see `Classification`, and the monodromy
+    matrix of that."""
 
     z: FloatArray
     x: FloatArray
-    turning: bool
-    alone: bool
+    at_fold: bool
+    without_neighbour: bool
     shift: float
     held: int
     matrix: FloatArray
@@ -70,7 +70,7 @@ class Multipliers:
     def __init__(
         self, system: System, highest: float, last: bool = False, options: StabilityOptions = STABILITY
     ) -> None:
-        """The last balances no further harmonics where the finer motion leaves a verdict in doubt."""
+        """The last balances no further harmonics where the finer motion leaves a classification uncertain."""
         linear, self.options = system.linear, options
         self.system, self.highest, self.last = system, highest, last
         self.contacts = len(system.scene.contacts)
@@ -95,7 +95,9 @@ class Multipliers:
             self.states = BalancedSequence(contact, finer), BalancedSequence(contact, harmonics)
         self.fine, self.plain = self._followed()
         self.further: tuple[Rebalancing, Multipliers] | None = None
-        self.beside: FloatArray | None = None  # the motion with further harmonics that was found last
+        self.refined_solution: FloatArray | None = (
+            None  # the motion with further harmonics that was found last
+        )
 
     def take(self, system: System) -> None:
         """A system with the same structure and harmonics, whose contacts may be others."""
@@ -140,88 +142,104 @@ class Multipliers:
         """The multipliers of a period from the eigenvalues of what the monodromy follows."""
         return values
 
-    def verdict(
-        self, z: FloatArray, turning: bool = False, enough: Sequence[float] = (), alone: bool = False
-    ) -> Verdict:
-        """Of a solution with an even number of real multipliers above 1, or of a fold (turning).
+    def classify(
+        self,
+        z: FloatArray,
+        at_fold: bool = False,
+        sufficient: Sequence[float] = (),
+        without_neighbour: bool = False,
+    ) -> Classification:
+        """Of a solution with an even number of real multipliers above 1, or of a fold (at_fold).
 
-        Where the finer motion says what is `enough`, stable (1) or unstable (0), it is not confirmed by that
-        of the balanced harmonics. Of a solution that is alone none with further harmonics is near.
+        Where the finer motion says what is `sufficient`, stable (1) or unstable (0), it is not confirmed by
+        that of the balanced harmonics. Of a solution that is without_neighbour none with further harmonics is
+        near.
         """
-        return self.verdicts((z,), (turning,), (alone,), enough)[0]
+        return self.classify_all((z,), (at_fold,), (without_neighbour,), sufficient)[0]
 
-    def verdicts(
+    def classify_all(
         self,
         z: Sequence[FloatArray],
-        turning: Sequence[bool],
-        alone: Sequence[bool],
-        enough: Sequence[float] = (),
-    ) -> list[Verdict]:
+        at_fold: Sequence[bool],
+        without_neighbour: Sequence[bool],
+        sufficient: Sequence[float] = (),
+    ) -> list[Classification]:
         """The same of several solutions (unknown + 1,): LAPACK is called once for as many as can be held."""
-        found, count = list[Verdict](), 0
+        found, count = list[Classification](), 0
         while count < len(z):
-            looks, held = list[_Look | Verdict](), 0
-            while count < len(z) and held < self.options.structure.max_held:
-                one = self._look(z[count], turning[count], alone[count])
-                looks.append(one)
-                held += one.matrix.size if isinstance(one, _Look) else 0
+            samples, entries = list[_MotionSample | Classification](), 0
+            while count < len(z) and entries < self.options.structure.max_entries:
+                one = self._sample(z[count], at_fold[count], without_neighbour[count])
+                samples.append(one)
+                entries += one.matrix.size if isinstance(one, _MotionSample) else 0
                 count += 1
-            found += self._verdicts_of(looks, enough)
+            found += self._classify_samples(samples, sufficient)
         return found
 
-    def _look(self, z: FloatArray, turning: bool, alone: bool) -> _Look | Verdict:
-        """At a solution and its finer motion; the verdict where no multipliers are needed for it."""
+    def _sample(
+        self, z: FloatArray, at_fold: bool, without_neighbour: bool
+    ) -> _MotionSample | Classification:
+        """At a solution and its finer motion; the classification where no multipliers are needed for it."""
         fine, plain = self.fine.states, self.plain.states
         self.finer.at(z)
         if self.finer.shift < self.options.confirmation.min_addition:
             if not self.find_states(plain, z):
                 return UNKNOWN
             if plain.moving == 0:  # nor does the finer motion, which has no further harmonics
-                return PASSIVE._replace(held=plain.held) if plain.held else PASSIVE
+                return LINEAR._replace(held=plain.held) if plain.held else LINEAR
         x = np.array(self.finer.x)
         if not self.find_states(fine, x):
             return UNKNOWN
         matrix = self._matrix(self.fine, float(z[-1]))
-        return UNKNOWN if matrix is None else _Look(z, x, turning, alone, self.finer.shift, fine.held, matrix)
+        return (
+            UNKNOWN
+            if matrix is None
+            else _MotionSample(z, x, at_fold, without_neighbour, self.finer.shift, fine.held, matrix)
+        )
 
-    def _verdicts_of(self, looks: Sequence[_Look | Verdict], enough: Sequence[float]) -> list[Verdict]:
-        """The verdicts, which the motion of the balanced harmonics alone confirms where that may matter."""
-        seen = [one for one in looks if isinstance(one, _Look)]
+    def _classify_samples(
+        self, samples: Sequence[_MotionSample | Classification], sufficient: Sequence[float]
+    ) -> list[Classification]:
+        """The classifications, which the motion of the balanced harmonics alone confirms where that may
+        matter."""
+        seen = [one for one in samples if isinstance(one, _MotionSample)]
         fine = dict(zip(map(id, seen), self._spectra([one.matrix for one in seen]), strict=True))
-        known, left = dict[int, Verdict](), list[_Look]()
+        known, left = dict[int, Classification](), list[_MotionSample]()
         for one in seen:
-            verdict = self._alone(one, fine[id(one)], enough)
-            if verdict is None:
+            classified = self._from_finer(one, fine[id(one)], sufficient)
+            if classified is None:
                 left.append(one)
             else:
-                known[id(one)] = verdict
+                known[id(one)] = classified
         both = [self._plain_matrix(one.z) for one in left]
         for one, plain in zip(left, self._spectra(both), strict=True):
             known[id(one)] = self._of_both(one, fine[id(one)], plain)
         for one in seen:
             if one.held and fine[id(one)] is not None:
                 resting = self._with_sliders_at_rest(one)
-                known[id(one)] = either_slider(known[id(one)], resting)._replace(held=one.held)
-        return [known[id(one)] if isinstance(one, _Look) else one for one in looks]
+                known[id(one)] = combine_one_sided(known[id(one)], resting)._replace(held=one.held)
+        return [known[id(one)] if isinstance(one, _MotionSample) else one for one in samples]
 
-    def _alone(self, one: _Look, fine: MultiplierSpectrum | None, enough: Sequence[float]) -> Verdict | None:
+    def _from_finer(
+        self, one: _MotionSample, fine: MultiplierSpectrum | None, sufficient: Sequence[float]
+    ) -> Classification | None:
         """What the finer motion alone says; None where that is to be confirmed."""
         if fine is None:
             return UNKNOWN
-        alone, options = fine.verdict(one.turning), self.options.confirmation
-        safe = alone.growth < -max(options.doubtful_decay, options.decay_ratio * one.shift)
-        if not fine.odd and (safe or alone.stable in enough):
-            return alone
+        finer, options = fine.classify(one.at_fold), self.options.confirmation
+        safe = finer.growth < -max(options.safe_decay, options.decay_ratio * one.shift)
+        if not fine.odd and (safe or finer.stable in sufficient):
+            return finer
         if one.shift == 0.0:  # both motions are the same, as where no contact slips but one just would
-            return even_verdict(fine, fine, one.turning, self.options)
+            return classify_even(fine, fine, one.at_fold, self.options)
         return None
 
     def _plain_matrix(self, z: FloatArray) -> FloatArray | None:
         return self._matrix(self.plain, float(z[-1])) if self.find_states(self.plain.states, z) else None
 
     def _of_both(
-        self, one: _Look, fine: MultiplierSpectrum | None, plain: MultiplierSpectrum | None
-    ) -> Verdict:
+        self, one: _MotionSample, fine: MultiplierSpectrum | None, plain: MultiplierSpectrum | None
+    ) -> Classification:
         """What both motions say.
 
         What the one does not confirm, or only just, is that of a motion with the further harmonics balanced
@@ -230,29 +248,38 @@ class Multipliers:
         if fine is None or plain is None:
             return UNKNOWN
         options = self.options.confirmation
-        found = even_verdict(fine, plain, one.turning, self.options)
-        if one.turning:
+        found = classify_even(fine, plain, one.at_fold, self.options)
+        if one.at_fold:
             return found
         if self.last:
-            doubt = self._doubtful(found, fine, plain, 1.0, one)
+            doubt = self._is_uncertain(found, fine, plain, 1.0, one)
             return found._replace(stable=math.nan) if doubt else found
-        slight = 0.0 < found.growth < max(options.doubtful_decay, options.growth_ratio * one.shift)
-        if slight or self._doubtful(found, fine, plain, options.growth_ratio, one):
-            better = None if one.alone else self._rebalanced(one.z, one.x, persistent=found.stable == 1.0)
+        slight = 0.0 < found.growth < max(options.safe_decay, options.growth_ratio * one.shift)
+        if slight or self._is_uncertain(found, fine, plain, options.growth_ratio, one):
+            better = (
+                None
+                if one.without_neighbour
+                else self._rebalanced(one.z, one.x, persistent=found.stable == 1.0)
+            )
             return better or found._replace(stable=math.nan)
         return found
 
-    def _doubtful(
-        self, found: Verdict, fine: MultiplierSpectrum, plain: MultiplierSpectrum, times: float, one: _Look
+    def _is_uncertain(
+        self,
+        found: Classification,
+        fine: MultiplierSpectrum,
+        plain: MultiplierSpectrum,
+        times: float,
+        one: _MotionSample,
     ) -> bool:
-        """As `doubtful`, but for a pair that decays also where it meets at -1."""
-        if not doubtful(found, fine, plain, times, options=self.options):
+        """As `is_uncertain`, but for a pair that decays also where it meets at -1."""
+        if not is_uncertain(found, fine, plain, times, options=self.options):
             return False
-        return doubtful(found, fine, plain, times, False, self.options) or not self._pair_decays_at_flip(
+        return is_uncertain(found, fine, plain, times, False, self.options) or not self._pair_decays_at_flip(
             found.values, one
         )
 
-    def _pair_decays_at_flip(self, values: Sequence[complex], one: _Look) -> bool:
+    def _pair_decays_at_flip(self, values: Sequence[complex], one: _MotionSample) -> bool:
         """Whether the pair nearest to -1, of values of the finer motion, decays where it meets there.
 
         The same motion is taken at frequencies at which the pair comes to -1: as far as it parts there, the
@@ -282,14 +309,14 @@ class Multipliers:
         least = level - 0.25 * tilt**2 / bend if bend > 0.0 else -math.inf
         return bool(math.sqrt(max(-least, 0.0)) + seen[-1][1] < -self.options.confirmation.meeting_decay)
 
-    def _rebalanced(self, z: FloatArray, x: FloatArray, persistent: bool) -> Verdict | None:
+    def _rebalanced(self, z: FloatArray, x: FloatArray, persistent: bool) -> Classification | None:
         """Of the solution with the harmonics of the finer motion x balanced; None where there is none
         near, or it lacks as much itself."""
-        refined, judge = self._further()
-        self.beside = there = refined.rebalance(z, x, persistent)
+        refined, multipliers = self._further()
+        self.refined_solution = there = refined.rebalance(z, x, persistent)
         if there is None:
             return None
-        found = self._if_enough(judge, there)
+        found = self._classify_if_sufficient(multipliers, there)
         return None if found is None else found._replace(rebalanced=True)
 
     def _further(self) -> tuple[Rebalancing, Multipliers]:
@@ -299,11 +326,11 @@ class Multipliers:
                 self.system, enriched_harmonics([int(h) for h in self.system.harmonics]), self.options
             )
             self.further = refined, type(self)(refined.system, self.highest, True, self.options)
-        refined, judge = self.further
+        refined, multipliers = self.further
         if refined.fewer is not self.system:
             refined.take(self.system)
-            judge.take(refined.system)
-        return refined, judge
+            multipliers.take(refined.system)
+        return refined, multipliers
 
     def confirms(self, z: FloatArray, stable: float) -> bool:
         """Whether a solution is as stable as told (1 or 0) with the further harmonics balanced, too."""
@@ -313,30 +340,34 @@ class Multipliers:
         found = self._rebalanced(z, np.array(self.finer.x), persistent=True)
         return found is not None and found.stable == stable
 
-    def confirmation(self, z: FloatArray) -> Verdict:
+    def confirmation(self, z: FloatArray) -> Classification:
         """Of a solution with the further harmonics balanced, too: unknown where there is none near, or those
         beyond them add much to it."""
         self.finer.at(z)
-        self.beside = None
+        self.refined_solution = None
         if self.finer.shift == 0.0:  # it has none
-            return self.verdict(z)
+            return self.classify(z)
         return self._rebalanced(z, np.array(self.finer.x), persistent=True) or UNKNOWN
 
     def continued(
         self, z: FloatArray, motion: FloatArray, harmonics: tuple[int, ...] | None = None
-    ) -> Verdict:
+    ) -> Classification:
         """The same of the motion to which another one with further harmonics leads, or with some others."""
-        refined, judge = self._further()
+        refined, multipliers = self._further()
         if harmonics is not None:
             motion = refined.system.extended(motion, harmonics)
-        self.beside = there = refined.continue_to(z, motion)
-        return UNKNOWN if there is None else self._if_enough(judge, there) or UNKNOWN
+        self.refined_solution = there = refined.continue_to(z, motion)
+        return UNKNOWN if there is None else self._classify_if_sufficient(multipliers, there) or UNKNOWN
 
-    def _if_enough(self, judge: Multipliers, z: FloatArray) -> Verdict | None:
+    def _classify_if_sufficient(self, multipliers: Multipliers, z: FloatArray) -> Classification | None:
         """Of a motion with further harmonics; None where those beyond its own add more than the most to it,
         so that it errs as much as what it is to confirm."""
-        judge.finer.at(z)
-        return judge.verdict(z) if judge.finer.shift <= self.options.confirmation.max_addition else None
+        multipliers.finer.at(z)
+        return (
+            multipliers.classify(z)
+            if multipliers.finer.shift <= self.options.confirmation.max_addition
+            else None
+        )
 
     def _matrix(self, followed: VariationalProblem, omega: float) -> FloatArray | None:
         """The monodromy matrix of the motion that was looked at."""
@@ -351,33 +382,34 @@ class Multipliers:
         """The multipliers of the motion that was looked at."""
         matrix = self._matrix(followed, omega)
         found = None if matrix is None else eigenvalues((matrix,))[0]
-        return None if found is None else self._disturbing(found)
+        return None if found is None else self._without_neutral(found)
 
     def _spectra(self, matrices: Sequence[FloatArray | None]) -> list[MultiplierSpectrum | None]:
         """The spectrum of each; None of those of which it is not known."""
         known = iter(eigenvalues([one for one in matrices if one is not None]))
         each = (None if one is None else next(known) for one in matrices)
         return [
-            None if one is None else MultiplierSpectrum(self._disturbing(one), self.options) for one in each
+            None if one is None else MultiplierSpectrum(self._without_neutral(one), self.options)
+            for one in each
         ]
 
-    def _disturbing(self, found: list[complex]) -> list[complex]:
+    def _without_neutral(self, found: list[complex]) -> list[complex]:
         """The multipliers of a period, without those of what nothing holds."""
         values = self.of_period(found)
         for _ in range(2 * self.has_rigid_body_modes):
-            nearest = min(values, key=_from_one)
-            if _from_one(nearest) < self.options.verdict.neutral_tolerance:
+            nearest = min(values, key=_distance_from_one)
+            if _distance_from_one(nearest) < self.options.classification.neutral_tolerance:
                 values.remove(nearest)
         return values
 
-    def _with_sliders_at_rest(self, one: _Look) -> Verdict:
+    def _with_sliders_at_rest(self, one: _MotionSample) -> Classification:
         """With the sliders that an extreme of a limit holds left where they are."""
         states = self.fine.states
         states.yielding = False
         self.find_states(states, one.x)
         values = self._values(self.fine, float(one.z[-1])) if states.moving else []
         states.yielding = True
-        return UNKNOWN if values is None else MultiplierSpectrum(values, self.options).verdict()
+        return UNKNOWN if values is None else MultiplierSpectrum(values, self.options).classify()
 
 
 def _few_contacts(
@@ -431,5 +463,5 @@ def quasi_static_modes(
     return far
 
 
-def _from_one(value: complex) -> float:
+def _distance_from_one(value: complex) -> float:
     return abs(value - 1.0)

@@ -11,7 +11,7 @@ from fcm.continuation.options import SIGN_CHANGE, SignChangeOptions
 
 
 @dataclass(frozen=True)
-class VerdictOptions:
+class ClassificationOptions:
     """What multipliers say of one solution.
 
     Attributes
@@ -66,13 +66,13 @@ class StructureOptions:
     above_harmonics: float = 1.5
     above_of_few: float = 2.0
     max_cached: int = 12
-    max_held: int = 20_000
+    max_entries: int = 20_000
     max_disturbances: int = 600
 
 
 @dataclass(frozen=True)
 class ConfirmationOptions:
-    """Whether further harmonics may change a verdict.
+    """Whether further harmonics may change a classification.
 
     Attributes
     ----------
@@ -114,7 +114,7 @@ class ConfirmationOptions:
         confirms.
     """
 
-    doubtful_decay: float = 0.05
+    safe_decay: float = 0.05
     decay_ratio: float = 200.0
     growth_ratio: float = 4.0
     min_addition: float = 1e-6
@@ -138,7 +138,7 @@ class WindowOptions:
 
     Attributes
     ----------
-    doubt : float
+    margin : float
         Part of the differences between three values, by which what they foretell may be too high.
     doubt_reduction : float
         Of it, each time that the way was divided, as differences fall by squares and errors by cubes.
@@ -159,8 +159,8 @@ class WindowOptions:
         Times the angle by which multipliers turn, and [rad], by which two may come nearer to one another.
     """
 
-    doubt: float = 0.1
-    doubt_reduction: float = 0.5
+    margin: float = 0.1
+    margin_reduction: float = 0.5
     max_multipliers: int = 60
     min_size: float = 0.5
     min_length: float = 1e-3
@@ -194,7 +194,8 @@ class SamplingOptions:
     tolerance : float
         Part of a step, to which a crossing is known.
     confirmed_tolerance : float
-        The same where verdicts are confirmed and the growth jumps, as it may from one motion to a finer one.
+        The same where classifications are confirmed and the growth jumps, as it may from one motion to a
+        finer one.
     growth_tolerance : float
         Growth at a crossing.
     max_evaluations : int
@@ -312,7 +313,7 @@ class PropagationOptions:
 class StabilityOptions:
     """All of the package, by what they are for: see the class of each field."""
 
-    verdict: VerdictOptions = VerdictOptions()
+    classification: ClassificationOptions = ClassificationOptions()
     structure: StructureOptions = StructureOptions()
     confirmation: ConfirmationOptions = ConfirmationOptions()
     windows: WindowOptions = WindowOptions()

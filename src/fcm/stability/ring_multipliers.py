@@ -18,13 +18,13 @@ from fcm.harmonic_balance.residual_spectrum import EnrichedMotion, enriched_harm
 from fcm.harmonic_balance.system import System
 from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray
+from fcm.stability.classification import Classification
 from fcm.stability.disturbance import Stiffness
 from fcm.stability.monodromy import RingMonodromy
 from fcm.stability.multipliers import Multipliers, VariationalProblem, quasi_static_modes
 from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.stability.planar_monodromy import PlanarMonodromy
 from fcm.stability.state_sequence import BalancedSequence, PlanarSequence
-from fcm.stability.verdict import Verdict
 from fcm.structure.ring import RingLinear
 
 MAX_NAMED = 8  # diameters in a sentence
@@ -130,19 +130,19 @@ class RingMultipliers(Multipliers):
         whole[..., d:] = shifted.reshape(len(shift), self.contacts, d * count).view(np.float64)
         return bool(states.find_events(whole.ravel()))
 
-    def verdicts(
+    def classify_all(
         self,
         z: Sequence[FloatArray],
-        turning: Sequence[bool],
-        alone: Sequence[bool],
-        enough: Sequence[float] = (),
-    ) -> list[Verdict]:
-        """As `Multipliers.verdicts`; in a part of a period multipliers turn by as much less towards -1."""
-        found = Multipliers.verdicts(self, z, turning, alone, enough)
+        at_fold: Sequence[bool],
+        without_neighbour: Sequence[bool],
+        sufficient: Sequence[float] = (),
+    ) -> list[Classification]:
+        """As `Multipliers.classified`; in a part of a period multipliers turn by as much less towards -1."""
+        found = Multipliers.classify_all(self, z, at_fold, without_neighbour, sufficient)
         if self.planar:
             return found
         n = self.ring.period
-        return [one._replace(before_flip=min(one.before_flip * n, np.pi)) for one in found]
+        return [one._replace(angle_to_flip=min(one.angle_to_flip * n, np.pi)) for one in found]
 
     def of_period(self, values: list[complex]) -> list[complex]:
         """Magnitudes of a whole period, with the angles of its part."""

@@ -85,8 +85,8 @@ class _StabilityAlongCurve:
         signs = {1.0, -1.0} if fold else _signs(problem, spot)
         if max(signs) < 0.0:  # of the real multipliers an odd number is above 1
             return 0.0
-        turning = min(signs) < 0.0
-        return self._multipliers().verdict(np.array(spot.z[:-1]), turning).stable
+        at_fold = min(signs) < 0.0
+        return self._multipliers().classify(np.array(spot.z[:-1]), at_fold).stable
 
     def _multipliers(self) -> Multipliers:
         """With the numbers as the problem has them."""
@@ -100,7 +100,7 @@ class _StabilityAlongCurve:
 
 
 def _same(one: float, other: float) -> bool:
-    """Whether two verdicts are one, not to be told among them."""
+    """Whether two classifications are one, not to be told among them."""
     return one == other or bool(np.isnan(one) and np.isnan(other))
 
 

@@ -18,21 +18,21 @@ class Bifurcation(Enum):
     REAL = "multiplier +1"  # one at +1 beside a fold: of a motion smooth only on one side of the balance's
 
 
-class Verdict(NamedTuple):
+class Classification(NamedTuple):
     """Of one solution."""
 
     stable: float  # 1, 0, or nan where it cannot be told
     growth: float  # logarithm of what a disturbance grows by in a period, other than at a fold
     kind: Bifurcation  # of what grows most
-    before_flip: float = math.pi  # [rad] from the negative real axis to the nearest pair that is not small
-    passive: bool = False  # no contact slips or opens
+    angle_to_flip: float = math.pi  # [rad] from the negative real axis to the nearest pair that is not small
+    is_linear: bool = False  # no contact slips or opens
     held: int = 0  # contacts that never slip, but for an extreme of a limit that holds the slider
     values: tuple[complex, ...] = ()  # the multipliers
     rebalanced: bool = False  # of the motion with further harmonics balanced
 
 
-PASSIVE = Verdict(1.0, -math.inf, Bifurcation.NEIMARK_SACKER, passive=True)
-UNKNOWN = Verdict(math.nan, math.nan, Bifurcation.NEIMARK_SACKER)
+LINEAR = Classification(1.0, -math.inf, Bifurcation.NEIMARK_SACKER, is_linear=True)
+UNKNOWN = Classification(math.nan, math.nan, Bifurcation.NEIMARK_SACKER)
 
 
 class MultiplierSpectrum:
@@ -49,47 +49,49 @@ class MultiplierSpectrum:
     real_but_nearest: float
     other: float  # greatest of the others, -inf if there is none
     kind: Bifurcation  # of that
-    before_flip: float  # as in `Verdict`
+    angle_to_flip: float  # as in `Classification`
 
     def __init__(self, values: list[complex], options: StabilityOptions = STABILITY) -> None:
         self.options = options
-        self.values, self.kind, self.before_flip = tuple(values), Bifurcation.NEIMARK_SACKER, math.pi
+        self.values, self.kind, self.angle_to_flip = tuple(values), Bifurcation.NEIMARK_SACKER, math.pi
         self.nearest, self.odd, self.real, self.real_but_nearest = math.nan, False, -math.inf, -math.inf
         self.other = 0.0
         for value in values:
             size = math.hypot(value.real, value.imag)
             if value.imag == 0.0 and value.real > 0.0:
-                self.leaves_at_folds(math.log(size))
+                self.add_positive(math.log(size))
                 continue
             if size > self.other:
                 self.other, self.kind = (
                     size,
                     Bifurcation.NEIMARK_SACKER if value.imag != 0.0 else Bifurcation.PERIOD_DOUBLING,
                 )
-            if size > self.options.verdict.small_multiplier and value.imag != 0.0:
-                self.before_flip = min(self.before_flip, math.pi - abs(math.atan2(value.imag, value.real)))
+            if size > self.options.classification.small_multiplier and value.imag != 0.0:
+                self.angle_to_flip = min(
+                    self.angle_to_flip, math.pi - abs(math.atan2(value.imag, value.real))
+                )
         self.other = math.log(self.other) if self.other > 0.0 else -math.inf
 
-    def leaves_at_folds(self, size: float) -> None:
+    def add_positive(self, size: float) -> None:
         """Take a real multiplier above 0."""
         farther = size
         if not abs(size) >= abs(self.nearest):
             farther, self.nearest = self.nearest, size
-        if farther > self.options.verdict.growth_tolerance:
+        if farther > self.options.classification.growth_tolerance:
             self.real_but_nearest = max(self.real_but_nearest, farther)
-        if size > self.options.verdict.growth_tolerance:
+        if size > self.options.classification.growth_tolerance:
             self.odd = not self.odd
             self.real = max(self.real, size)
 
-    def verdict(self, without_nearest: bool = False) -> Verdict:
+    def classify(self, without_nearest: bool = False) -> Classification:
         """By all multipliers but the real ones between 0 and 1, and if wanted the nearest to that."""
         most = self.real_but_nearest if without_nearest else self.real
         kind = self.kind
         growth = self.other
         if not growth >= most:
             growth, kind = most, Bifurcation.REAL
-        stable = 1.0 if growth <= self.options.verdict.growth_tolerance else 0.0
-        return Verdict(stable, growth, kind, self.before_flip, False, 0, self.values)
+        stable = 1.0 if growth <= self.options.classification.growth_tolerance else 0.0
+        return Classification(stable, growth, kind, self.angle_to_flip, False, 0, self.values)
 
 
 def bifurcation_of(multipliers: Sequence[complex]) -> Bifurcation:
@@ -98,15 +100,15 @@ def bifurcation_of(multipliers: Sequence[complex]) -> Bifurcation:
     >>> bifurcation_of([-1.1, 0.3 + 0.2j, 0.3 - 0.2j]).value
     'period doubling'
     """
-    return MultiplierSpectrum(list(multipliers)).verdict().kind
+    return MultiplierSpectrum(list(multipliers)).classify().kind
 
 
-def meeting_angle(verdict: Verdict, options: StabilityOptions = STABILITY) -> float:
+def meeting_angle(classified: Classification, options: StabilityOptions = STABILITY) -> float:
     """[rad] that multipliers which are not small have to turn at least until two of them meet."""
     angles: list[float] = []
-    for value in verdict.values:
+    for value in classified.values:
         angle = abs(math.atan2(value.imag, value.real))
-        if angle > 0.0 and math.hypot(value.real, value.imag) > options.verdict.small_multiplier:
+        if angle > 0.0 and math.hypot(value.real, value.imag) > options.classification.small_multiplier:
             angles.append(angle)
     angles.sort()
     nearest: float = math.pi - angles[len(angles) - 1] if angles else math.inf
@@ -115,38 +117,40 @@ def meeting_angle(verdict: Verdict, options: StabilityOptions = STABILITY) -> fl
     return nearest
 
 
-def even_verdict(
+def classify_even(
     fine: MultiplierSpectrum,
     plain: MultiplierSpectrum,
-    turning: bool = False,
+    at_fold: bool = False,
     options: StabilityOptions = STABILITY,
-) -> Verdict:
-    """Verdict of two approximations to a spectrum whose number of real multipliers above 1 is even.
+) -> Classification:
+    """Classification of two approximations to a spectrum whose number of real multipliers above 1 is even.
 
     Where it is odd, the nearest to 1 is on the wrong side, if it is shifted enough from one to the other. At
-    a fold (turning) that one does not count.
+    a fold (at_fold) that one does not count.
     """
-    if fine.odd and plain.odd and not turning:
+    if fine.odd and plain.odd and not at_fold:
         off = abs(fine.nearest)
         if off > max(
-            options.verdict.real_uncertainty, options.verdict.shift_factor * abs(plain.nearest - fine.nearest)
+            options.classification.real_uncertainty,
+            options.classification.shift_factor * abs(plain.nearest - fine.nearest),
         ):
             return UNKNOWN
-    found = fine.verdict(fine.odd or turning)
-    if found.stable != plain.verdict(plain.odd or turning).stable:
+    found = fine.classify(fine.odd or at_fold)
+    if found.stable != plain.classify(plain.odd or at_fold).stable:
         return found._replace(stable=math.nan)
     return found
 
 
-def doubtful(
-    found: Verdict,
+def is_uncertain(
+    found: Classification,
     fine: MultiplierSpectrum,
     plain: MultiplierSpectrum,
     times: float,
     meetings: bool = True,
     options: StabilityOptions = STABILITY,
 ) -> bool:
-    """Whether a verdict may be another once the motion has changed further, as it did from plain to fine.
+    """Whether a classification may be another once the motion has changed further, as it did from plain to
+    fine.
 
     That is so where it is none, of a decay that is less than its change, of a growth that is less than some
     times that, and (meetings) where a pair turns so fast that it may meet at -1, of which one multiplier
@@ -155,14 +159,16 @@ def doubtful(
     """
     if math.isnan(found.stable):
         return True
-    one, other = fine.verdict(fine.odd), plain.verdict(plain.odd)
+    one, other = fine.classify(fine.odd), plain.classify(plain.odd)
     change = abs(one.growth - other.growth)
     if found.stable != 1.0:
         return found.growth < times * change
     near, turned = flip_angle(one, options), abs(flip_angle(one, options) - flip_angle(other, options))
-    flips = near < min(max(options.verdict.flip_angle, turned), options.verdict.shift_factor * turned)
-    far = (fine.odd and abs(fine.nearest) > options.verdict.real_uncertainty) or (
-        plain.odd and abs(plain.nearest) > options.verdict.real_uncertainty
+    flips = near < min(
+        max(options.classification.flip_angle, turned), options.classification.shift_factor * turned
+    )
+    far = (fine.odd and abs(fine.nearest) > options.classification.real_uncertainty) or (
+        plain.odd and abs(plain.nearest) > options.classification.real_uncertainty
     )
     return (meetings and flips) or -found.growth < change or far
 
@@ -181,9 +187,14 @@ def flip_function(values: Sequence[complex]) -> float:
 
 
 def growth_is_linear(
-    one: Verdict, middle: Verdict, other: Verdict, many: bool, options: StabilityOptions = STABILITY
+    one: Classification,
+    middle: Classification,
+    other: Classification,
+    many: bool,
+    options: StabilityOptions = STABILITY,
 ) -> bool:
-    """Whether three verdicts agree, with growths so nearly on a line that none between has another sign.
+    """Whether three classifications agree, with growths so nearly on a line that none between has another
+    sign.
 
     Of many contacts one begins to slip everywhere, and of their many multipliers one is near to a flip: there
     that is no reason to look more closely.
@@ -195,13 +206,14 @@ def growth_is_linear(
     if (
         not many
         and stable[0] == 1.0
-        and min(one.before_flip, middle.before_flip, other.before_flip) < options.verdict.flip_angle
+        and min(one.angle_to_flip, middle.angle_to_flip, other.angle_to_flip)
+        < options.classification.flip_angle
     ):
         return False
     safe = max(growth) < options.sampling.safe_growth
     if not many and not safe and not one.held == middle.held == other.held:
         return False
-    if stable[0] == 1.0 and (safe or one.passive or middle.passive or other.passive):
+    if stable[0] == 1.0 and (safe or one.is_linear or middle.is_linear or other.is_linear):
         return True
     a, b, c = (max(size, options.sampling.sufficient_decay) for size in growth)
     return abs(b - 0.5 * (a + c)) < options.sampling.max_deviation * min(abs(a), abs(b), abs(c))
@@ -216,10 +228,10 @@ def flip_distance(values: Sequence[complex], options: StabilityOptions = STABILI
     pairs = [
         value
         for value in values
-        if value.imag > 0.0 and abs(value) > options.verdict.small_multiplier and value.real < 0.0
+        if value.imag > 0.0 and abs(value) > options.classification.small_multiplier and value.real < 0.0
     ]
     axis = sorted(value.real for value in values if value.imag == 0.0 and value.real < 0.0)
-    if len(axis) > 1 and axis[0] * axis[1] > options.verdict.small_multiplier**2:
+    if len(axis) > 1 and axis[0] * axis[1] > options.classification.small_multiplier**2:
         size = math.sqrt(axis[0] * axis[1])
         return (axis[0] + axis[1]) / size + 2.0, math.log(size)
     if not pairs:
@@ -228,15 +240,15 @@ def flip_distance(values: Sequence[complex], options: StabilityOptions = STABILI
     return 2.0 * nearest.real / abs(nearest) + 2.0, math.log(abs(nearest))
 
 
-def flip_angle(verdict: Verdict, options: StabilityOptions = STABILITY) -> float:
+def flip_angle(classified: Classification, options: StabilityOptions = STABILITY) -> float:
     """[rad] from the negative real axis to the nearest pair that is not small; 0 where one has come there."""
-    met = verdict.kind is Bifurcation.PERIOD_DOUBLING and verdict.growth > math.log(
-        options.verdict.small_multiplier
+    met = classified.kind is Bifurcation.PERIOD_DOUBLING and classified.growth > math.log(
+        options.classification.small_multiplier
     )
-    return 0.0 if met else verdict.before_flip
+    return 0.0 if met else classified.angle_to_flip
 
 
-def either_slider(pushed: Verdict, resting: Verdict) -> Verdict:
+def combine_one_sided(pushed: Classification, resting: Classification) -> Classification:
     """Of a motion whose slider, just held by its limit, follows that while it is pushed and rests while not.
 
     What grows at rest grows with a little less residual friction, too. What grows only while it is pushed is
@@ -246,5 +258,5 @@ def either_slider(pushed: Verdict, resting: Verdict) -> Verdict:
     if resting.stable != 1.0:
         return resting
     if pushed.stable == 1.0:
-        return max(pushed, resting, key=lambda verdict: verdict.growth)
+        return max(pushed, resting, key=lambda classified: classified.growth)
     return pushed if pushed.kind is Bifurcation.REAL else pushed._replace(stable=math.nan)
