@@ -27,7 +27,7 @@ RIGID_BODY_FAULT = (
     "It does not come to rest. Hold it by a contact along its normal, or by a small frequency of that mode"
 )
 FLOATING = (
-    "no contact is closed at rest, and normal forces alone cannot balance along the rigid-body modes. The first "
+    "no contact is closed at rest, and contact forces cannot balance along the rigid-body modes. The first "
     "touch ends contact for good, so that there is no steady state. Rigid-body modes are at rest only while "
     "closed contacts hold them: give contacts a preload (n_0 above 0), or a static load that closes them"
 )
