@@ -76,9 +76,6 @@ def resonance_doubt(scene: Scene) -> str:
         places += f" without contacts, at {_nearest(stuck, ends) / UNIT[unit]:.6g} {unit} while all stick"
     margin = (ends[1] / ends[0]) ** MESSAGES.range_margin  # at the very end a mode may be by chance
     slip = _slip_of_units(opened[:1], stuck[:1], (ends[0] * margin, ends[1] / margin), unit)
-    if scene.exchanged:
-        mode = f"{scene.exchanged / UNIT[unit]:.6g} {unit}"
-        slip = f"stiffness and mass may be in each other's place: exchanged, they have one at {mode}"
     if not slip:
         slip = "are the units of the structure, of the contacts' stiffness and of the range those meant?"
     return f"no resonance is near the range of frequencies: {places}; {slip}"

@@ -154,6 +154,11 @@ def scene_from_dict(
     except MistuningError as error:
         mistakes.add(MISTUNING, str(error))
         mistakes.raise_if_any()
+    if scene.exchanged and _in_doubt(scene):
+        from fcm.scene.reduction import in_each_others_place
+
+        top.wrong("structure", in_each_others_place(scene.exchanged))
+        mistakes.raise_if_any()
     scene = replace(scene, files=tuple(dict.fromkeys(files.read)))
     _check_curves(scene, mistakes)
     return scene
@@ -228,8 +233,6 @@ def _made(name: str, fields: dict[str, Any], told: Told | None) -> Scene:
         told.curves(scene, curves_of(draft.swept))
     curves = tuple(draft.curve(scene, values) for values in combinations(draft.swept))
     scene = replace(scene, curves=curves)
-    if scene.exchanged and _in_doubt(scene):  # which is all that is to be said of such a structure
-        return replace(scene, notes=tuple(one for one in scene.notes if not one.startswith("structure: ")))
     return replace(
         scene,
         notes=(

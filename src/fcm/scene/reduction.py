@@ -35,12 +35,7 @@ def modal_of_matrices(
         top.wrong("structure", "stiffness and mass are the same matrix. Name the file of each")
         return None, np.zeros((len(matrices.dofs), 0)), []
     if mode := _exchanged_mesh(matrices, ends):
-        top.wrong(
-            "structure",
-            "all its modes are far below the range of frequencies. "
-            "Stiffness and mass are in each other's place: "
-            f"exchanged, they have a mode at {mode / (2.0 * np.pi):.6g} Hz, which is {mode:.6g} rad/s",
-        )
+        top.wrong("structure", in_each_others_place(mode))
         return None, np.zeros((len(matrices.dofs), 0)), []
     directions, others = split(loads, outputs)
     top_frequency = ends[1] if np.isfinite(ends[1]) else 0.0
@@ -109,6 +104,14 @@ def exchanged(matrices: Matrices, kept: FloatArray, ends: tuple[float, float]) -
     elastic = np.sqrt(other.modes.stiffness[other.rigid :])
     near = elastic[(elastic >= low) & (elastic <= high)]
     return float(near[0]) if near.size and 1.0 / elastic[0] < low else 0.0
+
+
+def in_each_others_place(mode: float) -> str:
+    """What is said of such matrices, and of a mode [rad/s] that they have when they are exchanged."""
+    return (
+        "all its modes are far below the range of frequencies. Stiffness and mass are in each other's place: "
+        f"exchanged, they have a mode at {mode / (2.0 * np.pi):.6g} Hz, which is {mode:.6g} rad/s"
+    )
 
 
 def split(loads: FloatArray, outputs: list[int]) -> tuple[FloatArray, list[int]]:
