@@ -105,17 +105,17 @@ def test_the_error_of_a_closed_branch_of_twice_the_true_height():
 def test_errors_and_multipliers_do_not_depend_on_the_curve_before():
     """What the contacts of one curve were looked at with is taken again for the next, in the same thread."""
 
-    def judged(preload):
+    def errors_of(preload):
         found = with_estimated_errors(System(scene("yang1998", preload)), 0.0)
         (path,) = found.traced.branches.paths
         top = found.shown[0].amplitude[:, 0].argmax()
         return found.errors[0].amplitude, found.peak, multipliers(found.system, path.z[top])
 
     with ThreadPoolExecutor(1) as alone:
-        expected = alone.submit(judged, 5).result()
+        expected = alone.submit(errors_of, 5).result()
     for before in (-5, 20):
-        judged(before)
-        for found, value in zip(judged(5), expected, strict=True):
+        errors_of(before)
+        for found, value in zip(errors_of(5), expected, strict=True):
             assert np.array_equal(found, value, equal_nan=True)
 
 
@@ -198,8 +198,8 @@ def test_a_peak_that_more_harmonics_have_elsewhere_is_as_wrong_as_their_greatest
         np.max([shown.amplitude.max(axis=0) for shown in each.shown], axis=0) for each in (found, many)
     )
     error = np.abs(true / top - 1.0)
-    leads = top.argmax()
-    assert 0.5 * error[leads] < found.peak[leads] < 2.0 * error[leads]
+    extends = top.argmax()
+    assert 0.5 * error[extends] < found.peak[extends] < 2.0 * error[extends]
     assert (found.peak > error / 3.0).all()
 
 
@@ -243,7 +243,7 @@ def test_a_branch_that_more_harmonics_do_not_have_is_as_far_as_the_motion_there(
     ("name", "omegas"),
     [("stiff-tangential", (1.015, 1.025, 1.035)), ("stiff-tangential-soft-normal", (1.04, 1.052, 1.06))],
 )
-def test_where_curve_and_partner_cross_the_error_is_that_of_the_partner(name, omegas):
+def test_where_curve_and_reference_cross_the_error_is_that_of_the_reference(name, omegas):
     """Their amplitudes are the same to 6e-4 where the exact motion is 8e-2 off."""
     one = load_scene(f"extreme/{name}")
     found = with_estimated_errors(System(one), 0.0)
@@ -310,7 +310,7 @@ def test_a_row_of_contacts_in_partial_slip_is_told_of_everywhere():
     assert (few.peak > true / 1.1).all() and (few.peak < 1.1 * true).all()
 
 
-def test_points_are_moved_to_the_partner_as_the_work_allows():
+def test_points_are_moved_to_the_reference_as_the_work_allows():
     """An interrupted curve is not looked at for longer than somebody waits."""
     system = System(strip(), (1,))
     outline = with_estimated_errors(system, np.inf)
@@ -339,7 +339,7 @@ def test_a_curve_of_which_more_harmonics_have_another_is_told_of():
 
 
 @pytest.mark.slow
-def test_a_partner_that_is_another_curve_is_told_of_by_fewer_harmonics_where_its_own_take_long():
+def test_a_reference_that_is_another_curve_is_told_of_by_fewer_harmonics_where_its_own_take_long():
     """As far as the work allows three times as many harmonics come along a curve that four times do not: a
     fifth of all points are told of by them alone."""
     outline = unchecked_response(System(random_scene(7), (1, 2, 3)))
@@ -347,11 +347,11 @@ def test_a_partner_that_is_another_curve_is_told_of_by_fewer_harmonics_where_its
     for options in (PAIR, replace(PAIR, fewer_factors=())):
         errors = with_errors(outline, 1e-2, options=options).errors
         told.append(np.concatenate([np.isfinite(one.truncation) for one in errors]).mean())
-        count.append(len(errors[0].partner))
+        count.append(len(errors[0].reference))
     assert count[0] < count[1] and told[0] > told[1] + 0.2
 
 
-def test_the_partner_of_a_further_branch_takes_no_more_than_its_part_of_the_work():
+def test_the_reference_of_a_further_branch_takes_no_more_than_its_part_of_the_work():
     """A branch that took a tenth of the evaluations is not looked at as long as all of them are."""
     work, part = WorkCount(), share_of([900, 100], 1)
     work.add(1.0)

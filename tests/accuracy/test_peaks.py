@@ -178,9 +178,9 @@ def test_a_peak_in_a_stretch_beside_which_nothing_is_found_is_not_told_from_far_
     [(45, (*up_to(6), 8)), pytest.param(165, up_to(21), marks=pytest.mark.slow)],
     ids=["seventh-meets-a-mode", "slow-decrease"],
 )
-def test_a_peak_of_the_partner_that_its_points_miss_is_not_told_too_low(seed, harmonics):
-    """The seventh harmonic meets a mode between points, where the partner is 2.2 % higher than the curve; of
-    four contacts that rattle three more harmonics than 21 do a fifth of what all others do."""
+def test_a_peak_of_the_reference_that_its_points_miss_is_not_told_too_low(seed, harmonics):
+    """The seventh harmonic meets a mode between points, where the reference is 2.2 % higher than the curve;
+    of four contacts that rattle three more harmonics than 21 do a fifth of what all others do."""
     one = replace(random_scene(seed), harmonics=None)
     found = with_estimated_errors(System(one, harmonics), 0.0)
     true = abs(found.shown[0].amplitude[:, 2].max() / height(found, OrbitProblem(one), [], 0, 2) - 1.0)

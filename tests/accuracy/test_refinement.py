@@ -40,7 +40,7 @@ EXACT = {
 
 def test_a_linear_response_takes_one_harmonic_and_one_pass():
     kept = []
-    found = refined_response(System(scene("yang1998", 100)), 1e-6, keep=lambda *told: kept.append(told))
+    found = refined_response(System(scene("yang1998", 100)), 1e-6, on_traced=lambda *told: kept.append(told))
     assert found.system.harmonics == (1,)
     assert found.reached
     assert found.max_error == 0.0
@@ -125,7 +125,7 @@ def test_folds_that_cannot_be_told_ask_for_no_more_harmonics():
 def test_levels_are_followed_with_the_last_harmonics_and_lead_to_no_branch_that_is_missed():
     """The rounds between go on from the branches of fewer harmonics; every solution is on a branch."""
     kept = []
-    found = refined_response(System(scene("yang1998", 5)), 1e-4, keep=lambda one, *_: kept.append(one))
+    found = refined_response(System(scene("yang1998", 5)), 1e-4, on_traced=lambda one, *_: kept.append(one))
     rounds = [set(h) for h in dict.fromkeys(one.system.harmonics for one in (*kept, found))]
     assert found.reached and len(rounds) == 3 and all(few < more for few, more in pairwise(rounds))
     assert found.before is None  # the levels are followed
@@ -160,10 +160,10 @@ def test_what_has_been_taken_counts_in_what_takes_too_long():
     """A round that alone is not too long is not begun after others."""
     first, more = unchecked_response(System(scene("yang1998", 5))), (1, 2, 3)
     most, work = first.system.options.work.max_seconds, first.system.work
-    then, further, _ = with_more(first, more, told=True)
+    then, further, _ = with_more(first, more, is_known=True)
     assert then.system.harmonics == more and not further
     work.add(most - work.seconds - 0.5 * first.seconds_with(more))
-    assert with_more(first, more, told=True) == (None, more, False)
+    assert with_more(first, more, is_known=True) == (None, more, False)
 
 
 def test_what_is_taken_is_levels_branches_and_error_points():
@@ -210,7 +210,7 @@ def test_a_round_that_takes_longer_than_was_foreseen_is_given_up():
     first.prolongated(more, prolongated_solutions(first, more), None)
     system = System(first.system.scene, options=limited(0.99 * first.system.work.seconds))
     foreseen = replace(unchecked_response(system), seconds=0.0)
-    assert with_more(foreseen, more, told=True) == (None, more, True)
+    assert with_more(foreseen, more, is_known=True) == (None, more, True)
     assert system.work.limit == np.inf
 
 
@@ -246,21 +246,21 @@ def test_where_nothing_is_told_of_more_harmonics_they_take_no_longer_than_some_s
     """The lowest three are added all the same: one harmonic may have a branch of no motion at all."""
     first, more = unchecked_response(System(scene("yang1998", 5))), (1, 2, 3, 4, 5)
     for seconds, harmonics in ((0.0, (1, 2, 3)), (np.inf, more)):
-        options = RefinementOptions(max_doubtful_seconds=seconds)
-        found, further, _ = with_more(first, more, told=False, options=options)
+        options = RefinementOptions(max_seconds_without_progress=seconds)
+        found, further, _ = with_more(first, more, is_known=False, options=options)
         assert found.system.harmonics == harmonics and not further
-    none = RefinementOptions(max_doubtful_seconds=0.0)
-    assert with_more(found, (*more, 7), told=False, options=none) == (None, (*more, 7), False)
+    none = RefinementOptions(max_seconds_without_progress=0.0)
+    assert with_more(found, (*more, 7), is_known=False, options=none) == (None, (*more, 7), False)
 
 
 def test_where_all_that_an_accuracy_takes_is_too_long_the_lowest_three_are_taken():
     first, more = unchecked_response(System(scene("yang1998", 5))), (1, 2, 3, 4, 5)
     allowed = first.seconds + 0.5 * (first.seconds_with((1, 2, 3)) + first.seconds_with(more))
     first = unchecked_response(System(first.system.scene, options=limited(allowed)))
-    quick = RefinementOptions(max_doubtful_seconds=0.0)
-    found, further, _ = with_more(first, more, told=True, options=quick)
+    quick = RefinementOptions(max_seconds_without_progress=0.0)
+    found, further, _ = with_more(first, more, is_known=True, options=quick)
     assert found.system.harmonics == (1, 2, 3) and not further
-    assert with_more(found, more, told=True, options=quick) == (None, more, False)
+    assert with_more(found, more, is_known=True, options=quick) == (None, more, False)
 
 
 def test_the_highest_of_more_harmonics_are_left_out_where_they_take_too_long():

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from fcm.accuracy.curve_distance import PartnerCurveData, rises, shifted
+from fcm.accuracy.curve_distance import ReferenceCurveData, rises, shifted
 
 
 def beside(place, parameter, rate, value, slope, wanted, forward):
     out = np.empty((len(wanted), 1))
-    other = PartnerCurveData(place, parameter, rate)
+    other = ReferenceCurveData(place, parameter, rate)
     other.values(wanted, np.asarray(forward, dtype=float), value[:, None], slope[:, None], out)
     return out[:, 0]
 

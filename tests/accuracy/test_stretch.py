@@ -8,8 +8,8 @@ import pytest
 from fcm.accuracy.budget import Budget
 from fcm.accuracy.embedded_pair import errors_along
 from fcm.accuracy.options import OF_GIVEN
-from fcm.accuracy.partner import prolongation_to
-from fcm.accuracy.partner_stretch import StretchFollower
+from fcm.accuracy.reference_harmonics import prolongation_to
+from fcm.accuracy.reference_stretch import StretchFollower
 from fcm.accuracy.refinement import with_given_harmonics
 from fcm.branches.trace import traced
 from fcm.continuation import Status
@@ -87,7 +87,7 @@ def test_a_wide_stretch_whose_error_is_not_known_is_not_called_stable():
     assert np.nanmax(curve.amplitude) > 10.0 and stable_at(curve).max(initial=0.0) < 0.2
 
 
-def test_the_partner_is_followed_to_the_other_end_of_a_stretch_and_no_further():
+def test_the_reference_is_followed_to_the_other_end_of_a_stretch_and_no_further():
     system, more = System(planar_strip(frequency=(1.0, 1.2)), (1,)), (1, 2, 3)
     path, finer = traced(system).branches.paths[0], system.with_harmonics(more)
     lifted = prolongation_to(system, more)
@@ -100,7 +100,7 @@ def test_the_partner_is_followed_to_the_other_end_of_a_stretch_and_no_further():
     assert piece.path.parameter.max() - piece.path.parameter.min() == pytest.approx(high - low, rel=0.1)
 
 
-def test_each_look_at_the_partner_of_many_contacts_may_interrupt():
+def test_each_look_at_the_reference_of_many_contacts_may_interrupt():
     system = System(planar_strip(frequency=(1.0, 1.1)), (1,))
     path = traced(system).branches.paths[0]
     polled = []

@@ -136,7 +136,11 @@ def test_where_the_error_of_a_balanced_peak_is_not_told_it_says_why():
     assert (
         as_table({"curves": [one]}, "Hz").splitlines()[-1].startswith("- unknown error: with more harmonics")
     )
-    broken = one | {"complete": False, "reason": "interrupted before it was judged", "cause": "interrupted"}
+    broken = one | {
+        "complete": False,
+        "reason": "interrupted before its stability was known",
+        "cause": "interrupted",
+    }
     assert "unknown" not in as_table({"curves": [broken]}, "Hz")  # it was not sought
     one["peak"]["u"]["error"] = 0.01
     assert "unknown" not in as_table({"curves": [one]}, "Hz")

@@ -40,11 +40,11 @@ def test_a_cross_is_where_it_ends_and_the_axis_has_all_that_was_sought():
 
 
 def test_a_curve_of_several_that_is_cut_off_is_counted():
-    response = drawn(("", "interrupted before it was judged", "stopped"), *(curve(1.0, 2.0),) * 3)
+    response = drawn(("", "interrupted before its stability was known", "stopped"), *(curve(1.0, 2.0),) * 3)
     (axes,) = draw_response(response).axes
     assert crosses(axes) == []  # both come to the end of the range
     said = axes.get_title(loc="left")
-    assert said == "NOT COMPLETE: 2 of 3 curves; the first: interrupted before it was judged"
+    assert said == "NOT COMPLETE: 2 of 3 curves; the first: interrupted before its stability was known"
 
 
 def test_whole_curves_have_neither():

@@ -18,7 +18,7 @@ def test_it_is_said_whose_peaks_fall_short():
         reached=False, folds=np.empty(0), peak=np.array([1e-3, 2e-2, 9.0, 3e-2]),
         max_error=3e-2, max_known_error=3e-2,
         further=(), system=SimpleNamespace(harmonics=(1,), scene=scene_at("tip", "root", "still", "axis")),
-        judged=np.array([True, True, False, True]),
+        dofs_of_interest=np.array([True, True, False, True]),
     )  # fmt: skip
     assert shortfall(found, [], 1e-2).endswith("error of 3.0e-02 remains (of 3 peaks, those of axis, root)")
 
@@ -30,7 +30,7 @@ def test_an_error_within_the_accuracy_is_no_reason(accuracy, remains):
         reached=False, folds=np.array([np.nan, 1e-3]), peak=np.array([2.8e-2]),
         max_error=np.nan, max_known_error=2.8e-2,
         further=(), system=SimpleNamespace(harmonics=(1, 2, 3), scene=scene_at("u")),
-        judged=np.array([True]),
+        dofs_of_interest=np.array([True]),
     )  # fmt: skip
     said = shortfall(found, [], accuracy)
     assert ("an estimated error of 2.8e-02 remains" in said) == remains

@@ -120,7 +120,7 @@ def test_before_the_errors_the_curve_of_given_harmonics_is_kept():
         traced_curve(scene("yang1998", 5), Request((1,)), tell=stops)
     (curve,) = stopped.value.results
     assert stops.told == ["1 harmonic, error not told yet; now its errors"]
-    assert curve.harmonics == (1,) and "before it was judged" in curve.reason
+    assert curve.harmonics == (1,) and "before its stability was known" in curve.reason
     assert curve.peaks["u"].amplitude == pytest.approx(15.831, abs=1e-3)
 
 

@@ -150,7 +150,9 @@ def test_what_creeps_is_no_steady_state(fcm, tmp_path, analysis):
 @pytest.mark.parametrize("analysis", [*MISSED])
 def test_what_misses_the_accuracy_says_so(fcm, tmp_path, analysis):
     work = WorkOptions(max_seconds=0.0, max_seconds_repeated=0.0)
-    none = ResponseOptions(HarmonicBalanceOptions(work=work), RefinementOptions(max_doubtful_seconds=0.0))
+    none = ResponseOptions(
+        HarmonicBalanceOptions(work=work), RefinementOptions(max_seconds_without_progress=0.0)
+    )
     done, found = run(fcm, tmp_path, PAIR, analysis, "--accuracy", 1e-7, response=none)
     assert "the accuracy that was asked for" in done.err, done.err
     if analysis == "peaks tracked":

@@ -1,4 +1,4 @@
-"""How much following the partners of a response may take."""
+"""How much following the references of a response may take."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Budget:
 
     @classmethod
     def elsewhere(cls, work: WorkCount, options: PairOptions, part: float = 1.0) -> Budget:
-        """The same for what the partners have elsewhere."""
+        """The same for what the references have elsewhere."""
         most = max(options.work_fraction_elsewhere * work.seconds, options.min_seconds_elsewhere)
         return cls(part * min(most, options.max_seconds_elsewhere))
 

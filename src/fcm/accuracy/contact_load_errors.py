@@ -8,12 +8,12 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.options import PairOptions
-from fcm.accuracy.partner_curve import ComparedQuantities, FollowedStretch, PartnerCurve
+from fcm.accuracy.reference_curve import ComparedQuantities, FollowedStretch, ReferenceCurve
 from fcm.model.scene import FloatArray
 
 
 def contact_load_errors(
-    partner: PartnerCurve,
+    reference: ReferenceCurve,
     compared: ComparedQuantities,
     shift: FloatArray,
     followed: Sequence[FollowedStretch],
@@ -23,20 +23,20 @@ def contact_load_errors(
 
     shift (point, column): differences at the same frequency, in the units of what is compared. At the
     greatest, where the curve is not at its end, the difference is that of the greatest of both. NaN where the
-    partner has none, or, at folds, two.
+    reference has none, or, at folds, two.
     """
-    columns = slice(partner.amplitude.shape[1], None)
+    columns = slice(reference.amplitude.shape[1], None)
     own, unit = compared.value[:, columns], compared.unit[:, columns]
     error = np.abs(shift[:, columns])
-    # differences may cancel at a frequency, but not what the partner itself is off by
-    moved = partner.options.partner_error * _moved(partner, compared, columns)
-    error = np.where(partner.linear[:, None], 0.0, np.maximum(error, np.where(np.isnan(moved), 0.0, moved)))
+    # differences may cancel at a frequency, but not what the reference itself is off by
+    moved = reference.options.reference_error * _moved(reference, compared, columns)
+    error = np.where(reference.linear[:, None], 0.0, np.maximum(error, np.where(np.isnan(moved), 0.0, moved)))
     error[folds] = np.nan
     top, last, c = own.argmax(axis=0), len(own) - 1, np.arange(own.shape[1])
     inside = (top > 0) & (top < last)
-    theirs = _greatest(partner, compared, columns, followed)
-    error[top[inside], c[inside]] = (np.abs(theirs - own[top, c]) / unit[top, c])[inside]
-    error = relative(error * unit, own, unit, partner.options)
+    of_reference = _greatest(reference, compared, columns, followed)
+    error[top[inside], c[inside]] = (np.abs(of_reference - own[top, c]) / unit[top, c])[inside]
+    error = relative(error * unit, own, unit, reference.options)
     shape = (len(own), -1, 4)
     return error.reshape(shape), error[top, c].reshape(shape[1:])
 
@@ -51,13 +51,13 @@ def relative(change: FloatArray, own: FloatArray, most: FloatArray, options: Pai
         return np.where(off <= options.rounding * most, 0.0, off / own)
 
 
-def _moved(partner: PartnerCurve, compared: ComparedQuantities, columns: slice) -> FloatArray:
-    """How far the partner is away (point, column): by the frequency and by what is compared, in its unit.
+def _moved(reference: ReferenceCurve, compared: ComparedQuantities, columns: slice) -> FloatArray:
+    """How far the reference is away (point, column): by the frequency and by what is compared, in its unit.
 
     That of the frequency counts by how steep the curve is, up to a limit.
     """
     own, unit, change = compared.value[:, columns], compared.unit[:, columns], compared.change
-    omega, most = partner.path.parameter, partner.options.max_steepness
+    omega, most = reference.path.parameter, reference.options.max_steepness
     k = np.arange(len(omega))
     before, after = np.maximum(k - 1, 0), np.minimum(k + 1, len(omega) - 1)
     rise, run = np.abs(own[after] - own[before]), np.abs(omega[after] / omega[before] - 1.0)[:, None]
@@ -68,18 +68,21 @@ def _moved(partner: PartnerCurve, compared: ComparedQuantities, columns: slice) 
 
 
 def _greatest(
-    partner: PartnerCurve, compared: ComparedQuantities, columns: slice, followed: Sequence[FollowedStretch]
+    reference: ReferenceCurve,
+    compared: ComparedQuantities,
+    columns: slice,
+    followed: Sequence[FollowedStretch],
 ) -> FloatArray:
-    """The greatest of the partner (column,); NaN where it may be on a stretch that it was not followed
+    """The greatest of the reference (column,); NaN where it may be on a stretch that it was not followed
     along."""
     own, unit = compared.value[:, columns], compared.unit[:, columns]
     expected = own + unit * compared.change[:, 1:][:, columns]
     greatest: FloatArray = np.fmax.reduce(expected, axis=0, initial=-np.inf)
     for one in followed:
         for piece in one.pieces:
-            greatest = np.fmax(greatest, partner.contact_loads_of(piece).max(axis=0))
+            greatest = np.fmax(greatest, reference.contact_loads_of(piece).max(axis=0))
     for one in followed:
         if not any(piece.whole for piece in one.pieces):
-            rival = own[one.first : one.end].max(axis=0) > partner.options.rival_fraction * own.max(axis=0)
+            rival = own[one.first : one.end].max(axis=0) > reference.options.rival_fraction * own.max(axis=0)
             greatest[rival] = np.nan
     return greatest

@@ -1,7 +1,7 @@
 """Where a curve lies beside another, at the same parameter and near the same place along it.
 
 What is known at some points is known of those between, with how far that is off (`PartialInterpolant`).
-What the other curve has at the same parameter is found along it (`PartnerCurveData`), and what a partner
+What the other curve has at the same parameter is found along it (`ReferenceCurveData`), and what a reference
 with more harmonics has near a point by Newton's method in the normal plane (`PointwiseDisplacement`).
 """
 
@@ -229,7 +229,7 @@ NAN = cython.declare(cython.double, float("nan"))
 
 
 @cython.cclass
-class PartnerCurveData:
+class ReferenceCurveData:
     """The other curve at its points (point,): where along the curve, its parameter and the rate of that."""
 
     place: cython.double[::1]
@@ -283,15 +283,15 @@ class PartnerCurveData:
         slope: cython.double[:, ::1],
         wanted: cython.double[::1],
         even: cython.double[::1],
-        reference: cython.double[:, ::1],
+        target: cython.double[:, ::1],
         number: cython.int[::1],
         out: cython.double[:, ::1],
     ) -> None:
         """Values (place, value) of the other curve where it passes given parameters `wanted` (place,).
 
         Of several passings that with a number, counted along the curve from 0; where that is -1 the one whose
-        first values are nearest to a reference (place, some of the values), of those that are as even as it:
-        even (place,) and orientation (point,) times the sign of the rate. NaN where there is none.
+        first values are nearest to target values (place, some of the values), of those that are as even as
+        it: even (place,) and orientation (point,) times the sign of the rate. NaN where there is none.
         """
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -322,8 +322,8 @@ class PartnerCurveData:
                     at[j] = cubic(
                         value[k, j], value[k + 1, j], slope[k, j] * length, slope[k + 1, j] * length, self.at
                     )
-                    if j < reference.shape[1]:
-                        off = max(off, fabs(at[j] - reference[i, j]))
+                    if j < target.shape[1]:
+                        off = max(off, fabs(at[j] - target[i, j]))
                 if off < least:
                     least = off
                     for j in range(value.shape[1]):
@@ -418,7 +418,7 @@ def shifted(
     z, direction (point, unknown + 1): the parameter is the last. change (point, 1 + dof): from each point to
     one of the other curve, of the parameter, relative, and of the amplitudes in their unit, in which the
     differences are, too. growth (point, dof) is that of the amplitudes along the curve. NaN as of
-    `PartnerCurveData.values`.
+    `ReferenceCurveData.values`.
     """
     i: cython.Py_ssize_t
     d: cython.Py_ssize_t
@@ -442,7 +442,7 @@ def shifted(
         moved[1, i] = direction[i, n] + slope(place, off, i, 0)
         for d in range(dofs):
             other[1, i, d] = growth[i, d] + slope(place, off, i, 1 + d)
-    PartnerCurveData(place, along[0], along[1]).values(along[2], along[3], across[0], across[1], out)
+    ReferenceCurveData(place, along[0], along[1]).values(along[2], along[3], across[0], across[1], out)
     for i in range(count):
         for d in range(dofs):
             found[i, d] = (found[i, d] - amplitude[i, d]) / unit[i, d]
@@ -507,7 +507,7 @@ def rises(
 
 @cython.cclass
 class PointwiseDisplacement:
-    """`find` displaces points to the curve of the partner's balance, that of lifted."""
+    """`find` displaces points to the curve of the reference's balance, that of lifted."""
 
     def __init__(self, lifted: Prolongation) -> None:
         self.lifted, self.missed = lifted, 0.0
@@ -520,7 +520,7 @@ class PointwiseDisplacement:
         amplitude: cython.double[:, ::1],
         unit: cython.double[:, ::1],
         change: cython.double[:, ::1],
-        theirs: cython.double[:, ::1],
+        reference_unknowns: cython.double[:, ::1],
         known: cython.uchar[::1],
         most: cython.double,
     ) -> None:
@@ -528,9 +528,9 @@ class PointwiseDisplacement:
 
         z, direction (point, unknown + 1); the first displacement is that of the frequency, relative,
         the others
-        are those of amplitude (point, dof) in their unit (point, dof). theirs (point, partner's unknown + 1)
-        is the partner there. NaN where Newton's method finds no point of the partner near, and where more
-        than the most evaluations were spent on such points.
+        are those of amplitude (point, dof) in their unit (point, dof). reference_unknowns (point, reference's
+        unknown + 1) is the reference there. NaN where Newton's method finds no point of the reference near,
+        and where more than the most evaluations were spent on such points.
         """
         n: cython.Py_ssize_t = z.shape[1] - 1
         p: cython.Py_ssize_t
@@ -541,13 +541,13 @@ class PointwiseDisplacement:
                 continue
             known[i] = 1
             before: cython.double = self.lifted.newton.evaluations
-            self.predict_from_nearest(i, z, theirs, known)
+            self.predict_from_nearest(i, z, reference_unknowns, known)
             if self.missed > most or not self.lifted.find_normal(z[i], direction[i], True):
                 self.missed += self.lifted.newton.evaluations - before
                 change[i, :] = NAN
-                theirs[i, :] = NAN
+                reference_unknowns[i, :] = NAN
                 continue
-            theirs[i, :] = self.lifted.newton.z
+            reference_unknowns[i, :] = self.lifted.newton.z
             change[i, 0] = (self.lifted.found[0] - z[i, n]) / z[i, n]
             for d in range(amplitude.shape[1]):
                 change[i, 1 + d] = (self.lifted.found[1 + d] - amplitude[i, d]) / unit[i, d]
@@ -558,7 +558,7 @@ class PointwiseDisplacement:
         self,
         i: cython.Py_ssize_t,
         z: cython.double[:, ::1],
-        theirs: cython.double[:, ::1],
+        reference_unknowns: cython.double[:, ::1],
         known: cython.uchar[::1],
     ) -> cython.int:
         """Begin at the displacement of the nearest point of which that is known."""
@@ -566,6 +566,10 @@ class PointwiseDisplacement:
         j: cython.Py_ssize_t
         for off in range(1, known.shape[0]):
             for j in (i - off, i + off):
-                if 0 <= j < known.shape[0] and known[j] and theirs[j, 0] == theirs[j, 0]:
-                    return self.lifted.predict_from(z[j], theirs[j])
+                if (
+                    0 <= j < known.shape[0]
+                    and known[j]
+                    and reference_unknowns[j, 0] == reference_unknowns[j, 0]
+                ):
+                    return self.lifted.predict_from(z[j], reference_unknowns[j])
         return 0

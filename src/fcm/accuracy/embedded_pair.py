@@ -1,9 +1,9 @@
-r"""How wrong a curve of a balance is, told by its embedded pair: the curve and that of a partner with
+r"""How wrong a curve of a balance is, told by its embedded pair: the curve and that of a reference with
 more harmonics.
 
 As of an embedded pair of Runge-Kutta formulas the difference of both is the error of the lower,
 
-    e = |a_partner - a| / a
+    e = |a_reference - a| / a
 
 at the same frequency; of a peak it is the difference of the heights, of a fold that of the frequencies.
 """
@@ -20,12 +20,12 @@ import numpy.typing as npt
 from fcm.accuracy.budget import Budget
 from fcm.accuracy.contact_load_errors import contact_load_errors, relative
 from fcm.accuracy.options import PAIR, PairOptions
-from fcm.accuracy.partner import partner_of
-from fcm.accuracy.partner_branches import affordable_partner, further_partner_pieces
-from fcm.accuracy.partner_curve import FollowedStretch, Indices, PartnerCurve
-from fcm.accuracy.partner_errors import with_partner_errors
-from fcm.accuracy.partner_pieces import CurvePiece, ReportedPath, distinct, lengths, nearest, piece_of
 from fcm.accuracy.peaks import heights, rise_between_points
+from fcm.accuracy.reference_branches import affordable_reference, further_reference_pieces
+from fcm.accuracy.reference_curve import FollowedStretch, Indices, ReferenceCurve
+from fcm.accuracy.reference_errors import with_reference_errors
+from fcm.accuracy.reference_harmonics import reference_harmonics
+from fcm.accuracy.reference_pieces import CurvePiece, ReportedPath, distinct, lengths, nearest, piece_of
 from fcm.continuation import Mark, Path
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
@@ -42,23 +42,20 @@ Mask = npt.NDArray[np.bool_]
 class Errors:
     """Of a path; relative; NaN where the pair cannot tell.
 
-    amplitude (point, dof): by how much the partner differs at the same frequency.
+    amplitude (point, dof): by how much the reference differs at the same frequency.
     truncation (point,): the greatest difference of an amplitude over the greatest amplitude.
-    is_same_curve (point,): whether the partner's own branch comes to that frequency. Where it does not, as
-    beside a fold that it has elsewhere, errors are the distance to the nearest motion that the partner has
-    there. ends_before (point,): where the partner has fewer motions of the branch than the curve, as it turns
-    back before.
-    peak (dof,): of the height of the greatest amplitude.
-    height (dof,): the greatest amplitude of the partner, as an amplitude.
-    fold (fold,): of the frequencies of the folds, in their order.
-    share (harmonic,), from the first to the greatest that can be asked for: what each harmonic left out would
-    have without feedback, at peaks and folds, of the greatest amplitude of the degree of freedom to which it
-    matters most.
-    partner: the harmonics with which it is followed elsewhere.
-    contact_loads (point, contact, 4): of what the contacts bear, see `response_quantities.cycles`, each
-    relative to itself; infinite where it is nothing, and something in the partner. greatest (contact, 4): of
-    the greatest of each along the path. contacts: what those of the path itself do and bear. pieces: what
-    is known of the partner's curve; motions: those of the partner that were found.
+    is_same_curve (point,): whether the reference's own branch comes to that frequency. Where it does not, as
+    beside a fold that it has elsewhere, errors are the distance to the nearest motion that the reference has
+    there. ends_before (point,): where the reference has fewer motions of the branch than the curve, as it
+    turns back before. peak (dof,): of the height of the greatest amplitude. height (dof,): the greatest
+    amplitude of the reference, as an amplitude. fold (fold,): of the frequencies of the folds, in their
+    order. share (harmonic,), from the first to the greatest that can be asked for: what each harmonic left
+    out would have without feedback, at peaks and folds, of the greatest amplitude of the degree of freedom to
+    which it matters most. reference: the harmonics with which it is followed elsewhere. contact_loads (point,
+    contact, 4): of what the contacts bear, see `response_quantities.cycles`, each relative to itself;
+    infinite where it is nothing, and something in the reference. greatest (contact, 4): of the greatest of
+    each along the path. contacts: what those of the path itself do and bear. pieces: what is known of the
+    reference's curve; motions: those of the reference that were found.
     """
 
     amplitude: FloatArray
@@ -69,7 +66,7 @@ class Errors:
     height: FloatArray
     fold: FloatArray
     share: FloatArray
-    partner: tuple[int, ...]
+    reference: tuple[int, ...]
     contact_loads: FloatArray
     greatest: FloatArray
     contacts: ContactRecord
@@ -84,7 +81,7 @@ class Errors:
 
     @property
     def on_same_branch(self) -> FloatArray:
-        """Truncation (point,) where the partner has that branch, too; NaN elsewhere."""
+        """Truncation (point,) where the reference has that branch, too; NaN elsewhere."""
         return np.where(self.is_same_curve, self.truncation, np.nan)
 
 
@@ -97,7 +94,7 @@ def errors_along(
 ) -> Errors:
     """Errors of the points of a path of a system's balance; shown is what is reported along it, if known.
 
-    Where the partner's own branch does not come to a frequency nothing is told, see `with_nearest`.
+    Where the reference's own branch does not come to a frequency nothing is told, see `with_nearest`.
     """
     shown = shown or reported_quantities(system, path)
     contacts = ContactRecord.at(system, path.z)
@@ -106,16 +103,16 @@ def errors_along(
     folds, size = path.where(Mark.FOLD), shown.amplitude.max(axis=0)
     special = np.unique(np.concatenate((folds, path.where(Mark.PEAK), tops)))
     share, met = _spectrum(system, path, shown, special, size, options)
-    more = partner_of(system.harmonics, share, system.layout.ports, options)
+    more = reference_harmonics(system.harmonics, share, system.layout.ports, options)
     nothing = not share.any() and max(system.harmonics) < LIMITS.harmonics  # beyond that it is not looked at
     if shown.linear.all() or nothing or more == system.harmonics:
         none = np.full_like(shown.amplitude, 0.0 if shown.linear.all() or nothing else np.nan)
         of_folds = np.full(len(folds), none[0, 0])
         contact_loads = np.full((len(path.z), len(system.scene.contacts), 4), none[0, 0])
-        known: Mask = np.isfinite(none[:, 0])  # then the partner's curve is this one
+        known: Mask = np.isfinite(none[:, 0])  # then the reference's curve is this one
         own = (piece_of(reported),) if known.all() and len(path.z) > 1 else ()
         more = system.harmonics
-        told = (
+        values = (
             none,
             none[:, 0],
             known,
@@ -128,63 +125,65 @@ def errors_along(
             contact_loads,
             contact_loads[0],
         )
-        return Errors(*told, contacts, own)
+        return Errors(*values, contacts, own)
     seconds = budget or Budget(options.max_seconds)
-    partner = PartnerCurve(system, reported, more, options, seconds)
+    reference = ReferenceCurve(system, reported, more, options, seconds)
     elsewhere = more
-    if not partner.is_same_curve():
-        elsewhere = affordable_partner(system, path, share, options)
+    if not reference.is_same_curve():
+        elsewhere = affordable_reference(system, path, share, options)
     if elsewhere != more:  # only with these it is followed
-        partner.stretches.budget = Budget(0.0)
-    change = partner.displacements(np.concatenate((partner.distinct_points(special), folds, met)))
-    followed = partner.follow_stretches(change)
-    compared, dofs = partner.compared_quantities(change), shown.amplitude.shape[1]
-    shift = partner.shifts(compared, followed)
-    contact_loads, greatest = contact_load_errors(partner, compared, shift, followed, folds)
+        reference.stretches.budget = Budget(0.0)
+    change = reference.displacements(np.concatenate((reference.distinct_points(special), folds, met)))
+    followed = reference.follow_stretches(change)
+    compared, dofs = reference.compared_quantities(change), shown.amplitude.shape[1]
+    shift = reference.shifts(compared, followed)
+    contact_loads, greatest = contact_load_errors(reference, compared, shift, followed, folds)
     shift = shift[:, :dofs]
-    error = with_partner_errors(partner, _of_points(partner, shift, change))
-    error[folds] = np.nan  # the partner has two amplitudes at that frequency, or none
-    unit = partner.unit
+    error = with_reference_errors(reference, _of_points(reference, shift, change))
+    error[folds] = np.nan  # the reference has two amplitudes at that frequency, or none
+    unit = reference.unit
     inside = (tops > 0) & (tops < len(path.z) - 1)
     at_ends = shown.amplitude[tops, d] + unit[tops, d] * shift[tops, d]
-    for end in {0, len(path.z) - 1}.intersection(tops.tolist()):  # which the partner is known beyond, or not
-        there = partner.amplitude_at_frequency(end)
+    for end in {0, len(path.z) - 1}.intersection(
+        tops.tolist()
+    ):  # which the reference is known beyond, or not
+        there = reference.amplitude_at_frequency(end)
         at_ends = at_ends if there is None else np.where(tops == end, there, at_ends)
-    height = np.where(inside, heights(partner, change[:, 1:], followed, tops, met), at_ends)
-    rise = rise_between_points(partner, np.zeros_like(unit), tops)  # no error
+    height = np.where(inside, heights(reference, change[:, 1:], followed, tops, met), at_ends)
+    rise = rise_between_points(reference, np.zeros_like(unit), tops)  # no error
     now = shown.amplitude[tops, d] + np.where(inside, rise, 0.0)
-    settles = inside | ~partner.linear[tops]
-    told = settles & np.isfinite(height)
-    every = np.unique(tops[told])
-    further, beyond = partner.errors_at_peaks(
+    settles = inside | ~reference.linear[tops]
+    determined = settles & np.isfinite(height)
+    every = np.unique(tops[determined])
+    further, beyond = reference.errors_at_peaks(
         every, np.array([inside[tops == top][0] for top in every], dtype=bool)
     )
-    which = np.searchsorted(every, tops[told])
-    height[told] += further[which, d[told]]
-    at_tops = (np.abs(height - now) / unit[tops, d])[told]
-    left = np.abs(beyond[which, d[told]]) / unit[tops[told], d[told]]
-    error[tops[told], d[told]] = np.maximum(at_tops, left)
+    which = np.searchsorted(every, tops[determined])
+    height[determined] += further[which, d[determined]]
+    at_tops = (np.abs(height - now) / unit[tops, d])[determined]
+    left = np.abs(beyond[which, d[determined]]) / unit[tops[determined], d[determined]]
+    error[tops[determined], d[determined]] = np.maximum(at_tops, left)
     at_rest = shown.amplitude <= np.finfo(float).eps * unit  # but for rounding
     error *= unit / np.where(at_rest, unit, shown.amplitude)
     comes: Mask = ~np.any(np.isnan(error), axis=1)
-    system.work.add(partner.seconds())
-    of_folds = _of_folds(partner, folds, change, followed)
-    partner.release()
+    system.work.add(reference.seconds())
+    of_folds = _of_folds(reference, folds, change, followed)
+    reference.release()
     return Errors(
         amplitude=error,
         truncation=_truncation(error, shown.amplitude),
         is_same_curve=comes,
-        ends_before=partner.ends_before,
-        peak=np.where(told | ~settles, error[tops, d], np.nan),
+        ends_before=reference.ends_before,
+        peak=np.where(determined | ~settles, error[tops, d], np.nan),
         height=height,
         fold=of_folds,
         share=share,
-        partner=elsewhere,
+        reference=elsewhere,
         contact_loads=contact_loads,
         greatest=greatest,
         contacts=contacts,
-        pieces=partner.pieces(compared, followed),
-        motions=partner.motions(followed),
+        pieces=reference.pieces(compared, followed),
+        motions=reference.motions(followed),
     )
 
 
@@ -209,19 +208,19 @@ def with_nearest(
     first: int = 0,
     options: PairOptions = PAIR,
 ) -> tuple[Errors, ...]:
-    """Errors of the paths of a response, where the partner's own branch does not come to a frequency the
+    """Errors of the paths of a response, where the reference's own branch does not come to a frequency the
     distance to the nearest motion that it is known to have there: a motion that it has on another branch, or
     that the branch has turned back to. So is that of a fold to the nearest.
 
     That is another motion, and a degree of freedom in which it happens to be the same says nothing: each has
-    at least the distance of the greatest. Of a peak that the partner has nowhere beside it, what differs is
-    the greatest amplitude of the partner, as far as that is known at every frequency of the path. The paths
+    at least the distance of the greatest. Of a peak that the reference has nowhere beside it, what differs is
+    the greatest amplitude of the reference, as far as that is known at every frequency of the path. The paths
     before the first have theirs already.
     """
     if all(one.is_same_curve.all() and not np.isnan(one.fold).any() for one in errors[first:]):
         return tuple(errors)
     every = list(errors)
-    for k, further in enumerate(further_partner_pieces(system, paths, shown, errors, first, options)):
+    for k, further in enumerate(further_reference_pieces(system, paths, shown, errors, first, options)):
         every[k] = replace(every[k], pieces=(*every[k].pieces, *further)) if further else every[k]
     pieces = [piece for one in every for piece in one.pieces]
     for k in range(first, len(every)):
@@ -250,7 +249,7 @@ def with_nearest(
 
 def _with_greatest(errors: Errors, top: FloatArray, pieces: Sequence[CurvePiece]) -> Errors:
     """Errors of a path with tops (dof,), where those of peaks are not known by the greatest amplitudes of all
-    pieces; of its own partner the greatest is that of its own pieces."""
+    pieces; of its own reference the greatest is that of its own pieces."""
     own, every = (
         np.max([np.zeros_like(top), *(one.value[:, : len(top)].max(axis=0) for one in some)], axis=0)
         for some in (errors.pieces, pieces)
@@ -297,51 +296,51 @@ def _spectrum(
     share = further.shares(path.z[special], np.tile(size, (len(special), 1))).max(axis=0)
     if met.size:  # there it leads, however small the motion is
         local = further.shares(path.z[met], shown.amplitude[met])
-        leads = local > options.leading_share * local.max(axis=1, keepdims=True)
+        extends = local > options.leading_share * local.max(axis=1, keepdims=True)
         share = np.maximum(
-            share, np.where(leads & (local > options.min_resonant_share), local, 0.0).max(axis=0)
+            share, np.where(extends & (local > options.min_resonant_share), local, 0.0).max(axis=0)
         )
     return share[: LIMITS.harmonics], met
 
 
-def _of_points(partner: PartnerCurve, shift: FloatArray, change: FloatArray) -> FloatArray:
-    """Errors (point, dof) at the same frequency, in units of the partner's curve."""
-    error = np.where(partner.linear[:, None], 0.0, np.abs(shift))
-    # displacements may cancel at a frequency, but not what the partner itself is off by
-    moved = partner.weight[:, None] * np.abs(change[:, :1]) + np.abs(change[:, 1:])
+def _of_points(reference: ReferenceCurve, shift: FloatArray, change: FloatArray) -> FloatArray:
+    """Errors (point, dof) at the same frequency, in units of the reference's curve."""
+    error = np.where(reference.linear[:, None], 0.0, np.abs(shift))
+    # displacements may cancel at a frequency, but not what the reference itself is off by
+    moved = reference.weight[:, None] * np.abs(change[:, :1]) + np.abs(change[:, 1:])
     moved[np.isnan(moved).any(axis=1)] = 0.0  # where it was followed the shifts alone tell
-    every: FloatArray = np.maximum(error, partner.options.partner_error * moved)
+    every: FloatArray = np.maximum(error, reference.options.reference_error * moved)
     return every
 
 
 def _of_folds(
-    partner: PartnerCurve, folds: Indices, change: FloatArray, followed: list[FollowedStretch]
+    reference: ReferenceCurve, folds: Indices, change: FloatArray, followed: list[FollowedStretch]
 ) -> FloatArray:
-    """Errors (fold,) of the frequencies of folds: to the partner's own beside them, or in their order where
-    the partner was followed and has as many; NaN elsewhere."""
-    error, parameter = np.full(len(folds), np.nan), partner.path.parameter
-    theirs = parameter * (1.0 + change[:, 0])
+    """Errors (fold,) of the frequencies of folds: to the reference's own beside them, or in their order where
+    the reference was followed and has as many; NaN elsewhere."""
+    error, parameter = np.full(len(folds), np.nan), reference.path.parameter
+    of_reference = parameter * (1.0 + change[:, 0])
     for k, fold in enumerate(folds.tolist()):
-        around = theirs[max(fold - 2, 0) : fold + 3]
+        around = of_reference[max(fold - 2, 0) : fold + 3]
         if np.isfinite(around[[0, -1]]).all():  # at a corner that has moved the fold itself may be missed
             own = np.nanmax(around) if _side(parameter, fold) >= 0.0 else np.nanmin(around)
             error[k] = abs(own / parameter[fold] - 1.0)
-        elif np.isfinite(theirs[fold]):
+        elif np.isfinite(of_reference[fold]):
             error[k] = abs(change[fold, 0])
     for one in followed:
         mine = (one.first <= folds) & (folds < one.end)
-        theirs = np.concatenate(
+        of_reference = np.concatenate(
             [np.empty(0), *(p.path.parameter[p.path.where(Mark.FOLD)] for p in one.pieces)]
         )
-        if len(one.pieces) == 1 and len(theirs) == mine.sum():
-            error[mine] = np.abs(theirs / parameter[folds[mine]] - 1.0)
+        if len(one.pieces) == 1 and len(of_reference) == mine.sum():
+            error[mine] = np.abs(of_reference / parameter[folds[mine]] - 1.0)
     return error
 
 
 def _with_nearest_folds(
     path: Path, amplitude: FloatArray, errors: Errors, pieces: Sequence[CurvePiece], options: PairOptions
 ) -> FloatArray:
-    """Errors (fold,), where these are not told the relative distances in frequency to the nearest folds of
+    """Errors (fold,), where these are unknown the relative distances in frequency to the nearest folds of
     pieces, of those where the frequency turns back to the same side; NaN where there is none near.
 
     Near is one whose amplitudes and frequency are both within `PairOptions.end_tolerance`: with the same

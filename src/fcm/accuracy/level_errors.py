@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from fcm.accuracy.contact_load_errors import relative
 from fcm.accuracy.options import PAIR, VALIDITY, PairOptions
-from fcm.accuracy.partner import partner_of
+from fcm.accuracy.reference_harmonics import reference_harmonics
 from fcm.continuation import Path
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.harmonic_balance.response_quantities import contact_loads_along, recorded_at_levels
@@ -35,7 +35,7 @@ class LevelPoints(NamedTuple):
 
 
 def stable_at_levels(system: System, z: FloatArray, even: npt.NDArray[np.bool_]) -> FloatArray:
-    """Whether the points z (point, unknown + 1) of a curve of levels are stable, 1 or 0; NaN where untold.
+    """Whether the points z (point, unknown + 1) of a curve of levels are stable, 1 or 0; NaN where unknown.
 
     even : (point,) of `evenness`.
     """
@@ -54,8 +54,8 @@ def evenness(path: Path) -> npt.NDArray[np.bool_]:
 def errors_at_levels(
     system: System, points: LevelPoints, options: PairOptions = PAIR
 ) -> tuple[FloatArray, FloatArray]:
-    """By how much the partner's amplitudes and what its contacts bear differ from those of points at the same
-    levels, relative.
+    """By how much the reference's amplitudes and what its contacts bear differ from those of points at the
+    same levels, relative.
 
     NaN where that is not found, as beside folds, where the curve with them has no such solution.
     """
@@ -66,18 +66,18 @@ def errors_at_levels(
     if not bent.size:
         return error, contact_load_errors
     share = further.shares(z[bent], amplitude[bent]).max(axis=0)
-    more = partner_of(system.harmonics, share, system.layout.ports, options)
+    more = reference_harmonics(system.harmonics, share, system.layout.ports, options)
     if more == system.harmonics:
         error[bent], contact_load_errors[bent] = np.nan, np.nan
         return error, contact_load_errors
-    there, theirs = _balanced(system, system.with_harmonics(more), z[bent], level[bent], even[bent])
+    there, of_reference = _balanced(system, system.with_harmonics(more), z[bent], level[bent], even[bent])
     now, size = amplitude[bent], amplitude[bent].max(axis=1, keepdims=True)
     change = np.abs(there - now)
     far = (change > VALIDITY.max_change * size).any(axis=1)
-    change[far], theirs[far] = np.nan, np.nan
+    change[far], of_reference[far] = np.nan, np.nan
     error[bent] = change / np.where(now > 0.0, now, 1.0)
     contact_load_errors[bent] = relative(
-        theirs - contact_loads[bent], contact_loads[bent], contact_loads.max(axis=0), options
+        of_reference - contact_loads[bent], contact_loads[bent], contact_loads.max(axis=0), options
     )
     return error, contact_load_errors
 

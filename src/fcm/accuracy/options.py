@@ -39,12 +39,12 @@ CURVE_DISTANCE = CurveDistanceOptions()
 
 @dataclass(frozen=True)
 class PairOptions:
-    """How the partner of a curve is chosen, and how closely it is looked at.
+    """How the reference of a curve is chosen, and how closely it is looked at.
 
     Attributes
     ----------
     harmonics_factor, min_harmonic, max_added : int
-        The partner has the harmonics up to so many times the number of those of the curve, and up to
+        The reference has the harmonics up to so many times the number of those of the curve, and up to
         the least, but no more than the most beyond that number.
     max_named : int
         So many more that the spectrum of the exact forces names,
@@ -64,56 +64,56 @@ class PairOptions:
     max_steepness : float
         Relative change of an amplitude over that of the frequency, up to which both count.
     max_seconds : float
-        Of work, as of `fcm.harmonic_balance.cost_model`, that following the partner may take where no
+        Of work, as of `fcm.harmonic_balance.cost_model`, that following the reference may take where no
         point of it lies normal to the curve; as much again for points that are not found;
     work_fraction, min_seconds : float
         but no more than this part of the work that the response itself took, or so many seconds;
     long_fraction : float
         and, where that took long, this part of it.
     max_seconds_elsewhere, work_fraction_elsewhere, min_seconds_elsewhere : float
-        The same of what the partner has elsewhere.
+        The same of what the reference has elsewhere.
     piece_fraction : float
-        Part of that, that following the partner one way may take before others are followed,
+        Part of that, that following the reference one way may take before others are followed,
     level_fraction : float
         and part of what is left of it, that the level of the forces may take at one frequency, times
         the part of the points of which nothing is told yet.
     interval_factor : int
-        `point_interval` over the next one, at which motions are tried that may lead to the partner.
+        `point_interval` over the next one, at which motions are tried that may lead to the reference.
     probes, min_found : int, float
         About so many points along a curve are displaced first. Where less than this part of them is found,
-        the partner is another curve.
+        the reference is another curve.
     fewer_factors : tuple of int
         `harmonics_factor` where following it takes longer than it may: about as many evaluations as the curve
         did, for so many times as many harmonics. The first with which it does not is taken.
     following, following_of_many, coarse_following : FollowOptions
-        How the partner is followed; that of many contacts, most of whose corners are slight; and what it has
-        elsewhere, of which only the passings of frequencies matter.
+        How the reference is followed; that of many contacts, most of whose corners are slight; and what it
+        has elsewhere, of which only the passings of frequencies matter.
     many_contacts : int
         Contacts that are many.
     max_point_seconds : float
-        The same that all points may take that are moved to the partner, those that are found too.
+        The same that all points may take that are moved to the reference, those that are found too.
     span_margin : float
-        Times the width of a stretch, how far beyond it the partner is followed.
+        Times the width of a stretch, how far beyond it the reference is followed.
     end_tries : int
-        Points at an end of a stretch, from which the partner is sought.
+        Points at an end of a stretch, from which the reference is sought.
     end_tolerance : float
-        Relative difference of amplitudes up to which the partner has come to the other end of a stretch; of
+        Relative difference of amplitudes up to which the reference has come to the other end of a stretch; of
         amplitudes and frequency, up to which a fold elsewhere is that of the curve.
     peak_spacing : float
         Part of the length of a curve: of the greatest amplitudes of degrees of freedom that lie so closely
         together one tells for all what the harmonics do that are left out, and of tops and folds which.
-    partner_error : float
-        Part of a displacement, by which the partner itself is off: no error at a point is told to be less.
+    reference_error : float
+        Part of a displacement, by which the reference itself is off: no error at a point is told to be less.
     second_factor : int
-        Times the partner's harmonics those of its own partner are, which is looked for at peaks and where the
-        partner is not to be believed,
+        Times the reference's harmonics those of its own reference are, which is looked for at peaks and where
+        the reference is not to be believed,
     second_named : int
         with so many more that the spectrum names,
     max_second_unknowns : int
         and with no more unknowns than this,
     feedback_factor : float
-        Times what harmonics do without feedback, what they do: where that of those that the partner lacks is
-        more than the error that it tells, what it is off by itself is looked for,
+        Times what harmonics do without feedback, what they do: where that of those that the reference lacks
+        is more than the error that it tells, what it is off by itself is looked for,
     max_spectra, max_doubts : int
         at so many points of a curve at most, of so many at which the harmonics that it lacks are known.
     peak_offsets : tuple of int
@@ -121,7 +121,7 @@ class PairOptions:
     rival_fraction : float
         Part of the greatest amplitude: what is this high may become the greatest.
     residual_factor : float
-        Times the harmonic that meets the highest mode, up to which is looked at what the partner lacks,
+        Times the harmonic that meets the highest mode, up to which is looked at what the reference lacks,
     max_residual_harmonic, max_products : int
         the last that is looked at, and the multiplications of modes that this may take.
     samples_per_period : int
@@ -190,13 +190,13 @@ class PairOptions:
     end_tries: int = 8
     end_tolerance: float = 0.02
     peak_spacing: float = 0.005
-    partner_error: float = 0.05
+    reference_error: float = 0.05
     second_factor: int = 2
     second_named: int = 8
     max_second_unknowns: int = 480
     feedback_factor: float = 3.0
     max_spectra: int = 16
-    max_doubts: int = 4
+    max_uncertain: int = 4
     peak_offsets: tuple[int, ...] = (1, 2, 4, 8)
     rival_fraction: float = 0.8
     residual_factor: float = 1.5
@@ -211,8 +211,8 @@ class PairOptions:
     distance: CurveDistanceOptions = CURVE_DISTANCE
 
     @cached_property
-    def of_second(self) -> PairOptions:
-        """Of the partner's own partner."""
+    def second_pair(self) -> PairOptions:
+        """Of the reference's own reference."""
         return replace(
             self,
             harmonics_factor=self.second_factor,
@@ -224,7 +224,7 @@ class PairOptions:
 PAIR = PairOptions()
 # of harmonics that are given: the pair is for the errors alone, and nothing is traced again
 OF_GIVEN = PairOptions(work_fraction=2.0, max_seconds=8.0, long_fraction=1.0, work_fraction_elsewhere=2.0)
-# at single points, where many harmonics take little: as many as the partner of a partner has
+# at single points, where many harmonics take little: as many as the reference of a reference has
 AT_POINTS = PairOptions(
     harmonics_factor=PAIR.harmonics_factor * PAIR.second_factor,
     min_harmonic=PAIR.min_harmonic * PAIR.second_factor,
@@ -251,7 +251,7 @@ class RefinementOptions:
     min_amplitude : float
         Part of the greatest amplitude: of degrees of freedom that move less no accuracy is asked.
     peak_offsets : tuple of int
-        Points to either side of a top, where the partner may be found if it is not at the top.
+        Points to either side of a top, where the reference may be found if it is not at the top.
     max_folds : int
         Folds of a branch that are looked at, at most.
     complete_harmonics : int
@@ -270,7 +270,7 @@ class RefinementOptions:
     peak_offsets: tuple[int, ...] = (1, 2, 4, 8)
     max_folds: int = 24
     complete_harmonics: int = 3
-    max_doubtful_seconds: float = 3.0
+    max_seconds_without_progress: float = 3.0
 
 
 REFINEMENT = RefinementOptions()
@@ -287,7 +287,7 @@ class ValidityOptions:
     max_fold_error : float
         Part of its frequency, by which a fold may be moved where nothing is said of the accuracy.
     max_unknown_points : int
-        Points in a row without a partner, after which a branch is not one of more harmonics.
+        Points in a row without a reference, after which a branch is not one of more harmonics.
     max_change : float
         Part of the greatest displacement: a change by more is not believed, as another branch may be there.
     """

@@ -1,4 +1,4 @@
-"""The greatest amplitudes of the partner of a curve, and where they cannot be told."""
+"""The greatest amplitudes of the reference of a curve, and where they cannot be told."""
 
 from __future__ import annotations
 
@@ -6,35 +6,36 @@ import numpy as np
 
 from fcm.accuracy.curve_distance import rises
 from fcm.accuracy.options import PAIR
-from fcm.accuracy.partner_curve import FollowedStretch, Indices, PartnerCurve
+from fcm.accuracy.reference_curve import FollowedStretch, Indices, ReferenceCurve
 from fcm.continuation import Mark
 from fcm.harmonic_balance.consecutive_points import runs
 from fcm.model.scene import FloatArray
 
 
 def heights(
-    partner: PartnerCurve,
+    reference: ReferenceCurve,
     change: FloatArray,
     followed: list[FollowedStretch],
     tops: Indices,
     resonant: Indices,
 ) -> FloatArray:
-    """Greatest amplitudes (dof,) of the partner of a curve that is highest at the tops (dof,).
+    """Greatest amplitudes (dof,) of the reference of a curve that is highest at the tops (dof,).
 
     change (point, dof): of the amplitudes along the curve, in their unit. resonant: points where a harmonic
-    that only the partner has meets a mode: between these it may have a peak, and is followed where they are
-    nearly as high. Unknown along a stretch that is as high, and that the partner could not be followed along.
+    that only the reference has meets a mode: between these it may have a peak, and is followed where they are
+    nearly as high. Unknown along a stretch that is as high, and that the reference could not be followed
+    along.
     """
-    amplitude, options = partner.amplitude, partner.options
+    amplitude, options = reference.amplitude, reference.options
     d = np.arange(len(tops))
     now = amplitude[tops, d]
-    change, highest = _highest(partner, change)
-    greatest: FloatArray = amplitude[highest, d] + partner.unit[highest, d] * change[highest, d]
-    greatest += rise_between_points(partner, partner.unit * change, highest)
+    change, highest = _highest(reference, change)
+    greatest: FloatArray = amplitude[highest, d] + reference.unit[highest, d] * change[highest, d]
+    greatest += rise_between_points(reference, reference.unit * change, highest)
     near = np.zeros(len(amplitude), dtype=np.bool_)
     near[resonant] = True
     high = [run for run in runs(near) if (amplitude[slice(*run)] > options.rival_fraction * now).any()]
-    between = [FollowedStretch(*run, partner.stretches.between(run[0] - 1, run[1])) for run in high]
+    between = [FollowedStretch(*run, reference.stretches.between(run[0] - 1, run[1])) for run in high]
     for one in (*followed, *between):
         for piece in one.pieces:
             greatest = np.fmax(greatest, piece.shown.amplitude.max(axis=0))
@@ -44,43 +45,43 @@ def heights(
     return greatest
 
 
-def rise_between_points(partner: PartnerCurve, moved: FloatArray, places: Indices) -> FloatArray:
+def rise_between_points(reference: ReferenceCurve, moved: FloatArray, places: Indices) -> FloatArray:
     """By how much (dof,) a curve whose amplitudes are moved (point, dof) is higher between its highest points
     and the next; places: the indices of the highest.
 
     Of the amplitudes that is the cubic with their growth, of what they are moved by a straight line. Nothing
     is told of what lies between a point and a corner.
     """
-    corner = ((partner.path.mark & Mark.CORNER) > 0).view(np.uint8)
+    corner = ((reference.path.mark & Mark.CORNER) > 0).view(np.uint8)
     return rises(
-        partner.place,
-        partner.amplitude,
-        partner.shown.growth,
+        reference.place,
+        reference.amplitude,
+        reference.shown.growth,
         moved,
         corner,
         places,
-        partner.options.distance,
+        reference.options.distance,
     )
 
 
-def _highest(partner: PartnerCurve, change: FloatArray) -> tuple[FloatArray, Indices]:
-    """Changes (point, dof) and where (dof,) with them the partner is highest of the points where it is found:
-    also at those near the highest that are expected to be higher, as an interpolated one may be, by more than
-    nothing."""
+def _highest(reference: ReferenceCurve, change: FloatArray) -> tuple[FloatArray, Indices]:
+    """Changes (point, dof) and where (dof,) with them the reference is highest of the points where it is
+    found: also at those near the highest that are expected to be higher, as an interpolated one may be, by
+    more than nothing."""
     change, count, near = (
         change.copy(),
         len(change),
         np.arange(-PAIR.peak_neighbours, PAIR.peak_neighbours + 1)[:, None],
     )
     while True:
-        expected = partner.amplitude + partner.unit * change
-        value = np.where(partner.known[:, None] & np.isfinite(change), expected, 0.0)
+        expected = reference.amplitude + reference.unit * change
+        value = np.where(reference.known[:, None] & np.isfinite(change), expected, 0.0)
         places = value.argmax(axis=0)
         d, around = np.arange(len(places)), np.clip(places + near, 0, count - 1)
-        least = value[places, d] * (1.0 + partner.options.negligible_displacement)
-        higher = ~partner.known[around] & (expected[around, d] > least)
+        least = value[places, d] * (1.0 + reference.options.negligible_displacement)
+        higher = ~reference.known[around] & (expected[around, d] > least)
         if not higher.any():
             return change, places
         new = np.unique(around[higher])
-        partner.find(new)
-        change[new] = partner.change[new, 1:]
+        reference.find(new)
+        change[new] = reference.change[new, 1:]

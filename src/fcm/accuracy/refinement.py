@@ -1,4 +1,4 @@
-"""As many harmonics as an accuracy takes: trace, compare with the partner, add what the spectrum
+"""As many harmonics as an accuracy takes: trace, compare with the reference, add what the spectrum
 names, again."""
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import numpy as np
 from fcm.accuracy.budget import Budget, share_of
 from fcm.accuracy.embedded_pair import Errors, Mask, errors_along, unknown_errors, with_nearest
 from fcm.accuracy.options import OF_GIVEN, PAIR, REFINEMENT, PairOptions, RefinementOptions
-from fcm.accuracy.required_harmonics import judged, needed, required_harmonics
+from fcm.accuracy.required_harmonics import dofs_of_interest, needed, required_harmonics
 from fcm.accuracy.unchecked_response import (
     UncheckedResponse,
     prolongated_solutions,
@@ -24,8 +24,8 @@ from fcm.continuation.follow import Progress
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
-# what has been traced, by how much its partner changes it (NaN: not told), and the harmonics that come next
-Keep = Callable[[UncheckedResponse, float, tuple[int, ...]], None]
+# what has been traced, by how much its reference changes it (NaN: unknown), and the harmonics that come next
+OnTraced = Callable[[UncheckedResponse, float, tuple[int, ...]], None]
 
 
 @dataclass(frozen=True)
@@ -33,8 +33,8 @@ class RefinedResponse(UncheckedResponse):
     """A response, its errors, and the accuracy that was asked for.
 
     errors (path,) belong to the branches' paths, too; peak (dof,) is the relative error of the greatest
-    amplitude over all of them; worst the greatest of these and of the errors of the folds, NaN where one
-    cannot be told, and told the greatest of those that can.
+    amplitude over all of them; max_error the greatest of these and of the errors of the folds, NaN where
+    one is unknown, and max_known_error the greatest of those that are known.
     """
 
     errors: tuple[Errors, ...]
@@ -63,16 +63,16 @@ class RefinedResponse(UncheckedResponse):
         return RefinedResponse(*own, self.peak, self.max_error, self.max_known_error, self.accuracy)
 
     @property
-    def judged(self) -> Mask:
+    def dofs_of_interest(self) -> Mask:
         """Degrees of freedom (dof,) of whose peaks the accuracy is asked."""
         heights = [one.amplitude.max(axis=0) for one in self.shown]
-        return judged(self.system.scene, np.max(heights, axis=0))
+        return dofs_of_interest(self.system.scene, np.max(heights, axis=0))
 
     @property
     def agrees(self) -> bool:
         """Whether the pair does: it is accurate, or folds alone cannot be told, which more do not change."""
-        untold = np.isnan(self.peak[self.judged]).any()
-        return self.reached or (self.max_known_error <= self.accuracy and not untold)
+        unknown = np.isnan(self.peak[self.dofs_of_interest]).any()
+        return self.reached or (self.max_known_error <= self.accuracy and not unknown)
 
 
 def refined_response(
@@ -80,51 +80,51 @@ def refined_response(
     accuracy: float,
     progress: Progress | None = None,
     options: RefinementOptions = REFINEMENT,
-    keep: Keep | None = None,
+    on_traced: OnTraced | None = None,
 ) -> RefinedResponse:
     """The response of a scene (of one curve) with the harmonics that an accuracy takes; system has one.
 
-    As long as a peak of a degree of freedom, or a fold, differs from the partner's by more than the accuracy
-    (relative), the harmonics are added that the spectrum names, and all is traced again: from what the
-    branches before, and their stable peaks, lead to with more. Only with what is foreseen to be enough the
-    level of the forces is followed, which may lead to branches that fewer harmonics do not have. What would
-    take longer, with all before it, than anyone waits is not begun, see `WorkOptions`, and what does take
-    longer is given up. Whether the branches are complete is another question, see their status. What has been
-    traced is told to keep, before more is.
+    As long as a peak of a degree of freedom, or a fold, differs from the reference's by more than the
+    accuracy (relative), the harmonics are added that the spectrum names, and all is traced again: from what
+    the branches before, and their stable peaks, lead to with more. Only with what is foreseen to be enough
+    the level of the forces is followed, which may lead to branches that fewer harmonics do not have. What
+    would take longer, with all before it, than anyone waits is not begun, see `WorkOptions`, and what does
+    take longer is given up. Whether the branches are complete is another question, see their status. What has
+    been traced goes to on_traced, before more is.
     """
     found: UncheckedResponse = unchecked_response(system, progress)
-    if keep is not None and found.shown:
-        keep(found, np.nan, ())
-    sure: RefinedResponse | None = None
+    if on_traced is not None and found.shown:
+        on_traced(found, np.nan, ())
+    checked: RefinedResponse | None = None
     further, begun = tuple[int, ...](), False
     for _ in range(options.max_rounds):
         if not found.shown:
             break
-        sure, ahead = None, required_harmonics(found, options)
-        if ahead.is_known and ahead.change <= accuracy:
+        checked, required = None, required_harmonics(found, options)
+        if required.is_known and required.change <= accuracy:
             found = found.with_levels()
             if found.further:
                 break
-            sure = with_errors(found, accuracy)
-            if sure.agrees:
+            checked = with_errors(found, accuracy)
+            if checked.agrees:
                 more = with_low_harmonics(found.system, found.traced.found)
                 if more == found.system.harmonics:
-                    return sure
+                    return checked
             else:
-                more = enlarged(sure, accuracy)
+                more = enlarged(checked, accuracy)
         else:
-            more = needed(ahead, found.system.harmonics, accuracy, options)
-        if keep is not None:
-            keep(sure or found, ahead.change if ahead.is_known else np.nan, more)
-        then, further, begun = with_more(found, more, ahead.is_known, progress, options)
+            more = needed(required, found.system.harmonics, accuracy, options)
+        if on_traced is not None:
+            on_traced(checked or found, required.change if required.is_known else np.nan, more)
+        then, further, begun = with_more(found, more, required.is_known, progress, options)
         if then is None:
             break
-        found, sure = then, None
-    if sure is None:
+        found, checked = then, None
+    if checked is None:
         found = found.with_levels()
         further, begun = (found.further, found.begun) if found.further else (further, begun)
-        sure = with_errors(found, accuracy)
-    return replace(sure, further=further, begun=begun)
+        checked = with_errors(found, accuracy)
+    return replace(checked, further=further, begun=begun)
 
 
 def retrace(found: RefinedResponse, harmonics: tuple[int, ...], accuracy: float) -> RefinedResponse | None:
@@ -139,14 +139,14 @@ def retrace(found: RefinedResponse, harmonics: tuple[int, ...], accuracy: float)
 
 
 def with_given_harmonics(
-    system: System, progress: Progress | None = None, keep: Keep | None = None
+    system: System, progress: Progress | None = None, on_traced: OnTraced | None = None
 ) -> RefinedResponse:
     """The response with the harmonics that a system has, see `unchecked_with_given_harmonics`."""
-    return with_errors(unchecked_with_given_harmonics(system, progress, keep), np.inf)
+    return with_errors(unchecked_with_given_harmonics(system, progress, on_traced), np.inf)
 
 
 def unchecked_with_given_harmonics(
-    system: System, progress: Progress | None = None, keep: Keep | None = None
+    system: System, progress: Progress | None = None, on_traced: OnTraced | None = None
 ) -> UncheckedResponse:
     """The response with the harmonics that a system has, of whose errors none is known.
 
@@ -160,11 +160,11 @@ def unchecked_with_given_harmonics(
         if count < len(system.harmonics):
             before = _after(before, system.with_harmonics(system.harmonics[:count]))
             peaks = (*before.traced.peaks, *peaks)
-            if keep is not None and before.shown:
-                keep(before, np.nan, system.harmonics)
+            if on_traced is not None and before.shown:
+                on_traced(before, np.nan, system.harmonics)
     found = _after(before, system, progress, peaks)
-    if keep is not None and found.shown and system.scene.contacts:
-        keep(found, np.nan, ())
+    if on_traced is not None and found.shown and system.scene.contacts:
+        on_traced(found, np.nan, ())
     return found
 
 
@@ -211,10 +211,10 @@ def with_errors(
         return RefinedResponse(*own, none, np.nan, np.nan, accuracy)
     heights = np.array([one.amplitude.max(axis=0) for one in shown])
     height, peak = heights.max(axis=0), _peaks(heights, errors)
-    matter = peak[judged(system.scene, height)]
+    matter = peak[dofs_of_interest(system.scene, height)]
     each = np.concatenate((matter, *(one.fold for one in errors)))
-    worst, told = float(each.max(initial=0.0)), float(each[np.isfinite(each)].max(initial=0.0))
-    return RefinedResponse(*own, peak, worst, told, accuracy)
+    worst, worst_known = float(each.max(initial=0.0)), float(each[np.isfinite(each)].max(initial=0.0))
+    return RefinedResponse(*own, peak, worst, worst_known, accuracy)
 
 
 def without_errors(outline: UncheckedResponse) -> RefinedResponse:
@@ -236,16 +236,16 @@ def with_estimated_errors(
 def _peaks(heights: FloatArray, errors: tuple[Errors, ...]) -> FloatArray:
     """Relative error of the greatest of heights (path, dof) of each degree of freedom.
 
-    Another path may be the highest of the partner's; unknown where that of one nearly as high is.
+    Another path may be the highest of the reference's; unknown where that of one nearly as high is.
     """
     which, d = heights.argmax(axis=0), np.arange(heights.shape[1])
     now = heights[which, d]
     peak = np.array([one.peak for one in errors])[which, d]
-    theirs = np.array([one.height for one in errors])
-    greatest = np.where(np.isnan(theirs), 0.0, theirs).max(axis=0)
-    other = greatest > theirs[which, d]
+    of_reference = np.array([one.height for one in errors])
+    greatest = np.where(np.isnan(of_reference), 0.0, of_reference).max(axis=0)
+    other = greatest > of_reference[which, d]
     peak = np.where(other, np.abs(greatest - now) / np.where(now > 0.0, now, 1.0), peak)
-    unknown = (np.isnan(theirs) & (heights > PAIR.rival_fraction * now)).any(axis=0)
+    unknown = (np.isnan(of_reference) & (heights > PAIR.rival_fraction * now)).any(axis=0)
     return np.where(unknown, np.nan, peak)
 
 
@@ -254,11 +254,11 @@ def enlarged(found: RefinedResponse, accuracy: float, seconds: float = np.inf) -
 
     No more are added than can be followed in some seconds.
     """
-    has, ahead = found.system.harmonics, required_harmonics(found)
+    has, required = found.system.harmonics, required_harmonics(found)
     if np.isfinite(found.max_error):
-        ahead = replace(ahead, change=found.max_error, is_known=True)
-    share = ahead.share
-    more = sorted(set(needed(ahead, has, accuracy)) - set(has), key=lambda h: -share[h - 1])
+        required = replace(required, change=found.max_error, is_known=True)
+    share = required.share
+    more = sorted(set(needed(required, has, accuracy)) - set(has), key=lambda h: -share[h - 1])
     while more and found.seconds_with((*has, *more)) > seconds:
         more.pop()
     return tuple(sorted((*has, *more)))

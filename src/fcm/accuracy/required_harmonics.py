@@ -1,10 +1,10 @@
 r"""Which harmonics an accuracy takes: the spectrum of the exact forces times the receptance of the structure.
 
-The peaks and folds of a curve are displaced to its partner. There every harmonic has, or would have without
+The peaks and folds of a curve are displaced to its reference. There every harmonic has, or would have without
 feedback, |G(h omega) F_h| of the amplitude. What those that the curve lacks do together is more, as
 they change one another: by the gain, which the pair tells,
 
-    gain = change / sum of the shares of the partner's further harmonics
+    gain = change / sum of the shares of the reference's further harmonics
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from fcm.accuracy.embedded_pair import Mask
 from fcm.accuracy.options import PAIR, REFINEMENT, PairOptions, RefinementOptions
-from fcm.accuracy.partner import give_back, partner_of, prolongation_to
+from fcm.accuracy.reference_harmonics import keep_for_next, prolongation_to, reference_harmonics
 from fcm.accuracy.unchecked_response import UncheckedResponse
 from fcm.continuation import Mark, Path
 from fcm.harmonic_balance.prolongation import Prolongation
@@ -28,21 +28,22 @@ from fcm.scene.options import LIMITS
 
 @dataclass(frozen=True)
 class RequiredHarmonics:
-    """change: by how much a peak or fold is changed by the partner, relative, at most, as far as it is told.
+    """change: by how much a peak or fold is changed by the reference, relative, at most, as far as it is
+    told.
 
-    is_known: whether it is of all peaks. share (harmonic,): what each has, or would have, at most. partner:
+    is_known: whether it is of all peaks. share (harmonic,): what each has, or would have, at most. reference:
     its harmonics.
     """
 
     change: float
     is_known: bool
     share: FloatArray
-    partner: tuple[int, ...]
+    reference: tuple[int, ...]
 
 
 @dataclass(frozen=True)
 class _SpecialPoint:
-    """A peak or a fold: places of a path where the partner is looked for, one after the other, and
+    """A peak or a fold: places of a path where the reference is looked for, one after the other, and
     which of the
     frequency and the amplitudes (1 + dof,) count there."""
 
@@ -52,7 +53,7 @@ class _SpecialPoint:
     counts: npt.NDArray[np.bool_]
 
 
-def judged(scene: Scene, height: FloatArray, options: RefinementOptions = REFINEMENT) -> Mask:
+def dofs_of_interest(scene: Scene, height: FloatArray, options: RefinementOptions = REFINEMENT) -> Mask:
     """Degrees of freedom (dof,) whose greatest amplitudes, the height, are to be as accurate as is asked.
 
     Those of `output` where the scene has it, else all in the results; not those that hardly move beside them.
@@ -65,47 +66,49 @@ def judged(scene: Scene, height: FloatArray, options: RefinementOptions = REFINE
 def required_harmonics(
     found: UncheckedResponse, options: RefinementOptions = REFINEMENT, pair: PairOptions = PAIR
 ) -> RequiredHarmonics:
-    """What the partner changes of a response, at its peaks and folds alone."""
+    """What the reference changes of a response, at its peaks and folds alone."""
     system, amplitudes = found.system, [one.amplitude for one in found.shown]
     height = np.max([one.max(axis=0) for one in amplitudes], axis=0)
-    size = np.where(judged(system.scene, height, options), height, np.inf)
+    size = np.where(dofs_of_interest(system.scene, height, options), height, np.inf)
     places = list(_places(found.traced.branches.paths, amplitudes, size, options))
     share = _greatest_shares(
         FurtherHarmonics(system), np.array([one.path.z[one.tries[0]] for one in places]), size
     )
-    more = partner_of(system.harmonics, share, system.layout.ports, pair)
+    more = reference_harmonics(system.harmonics, share, system.layout.ports, pair)
     if not share.any() or more == system.harmonics:
         return RequiredHarmonics(0.0, True, share, system.harmonics)
-    lifted, motions, change, told = prolongation_to(system, more), [], 0.0, True
+    lifted, motions, change, is_known = prolongation_to(system, more), [], 0.0, True
     for place in places:
         values = _displaced(lifted, place)
         if values is None:
-            told &= bool(place.counts[0])
+            is_known &= bool(place.counts[0])
             continue
         motions.append(np.array(lifted.newton.z))
         change = max(change, float((values / np.append(1.0, size))[place.counts].max(initial=0.0)))
-    give_back(lifted, system, more)
+    keep_for_next(lifted, system, more)
     if motions:
         finer = FurtherHarmonics(system.with_harmonics(more))
-        theirs = _greatest_shares(finer, np.array(motions), size, ())
-        share = theirs if told else np.maximum(share, theirs)  # where a peak is missed its own spectrum names
-    return RequiredHarmonics(change, told, share, more)
+        of_reference = _greatest_shares(finer, np.array(motions), size, ())
+        share = (
+            of_reference if is_known else np.maximum(share, of_reference)
+        )  # where a peak is missed its own spectrum names
+    return RequiredHarmonics(change, is_known, share, more)
 
 
 def needed(
-    ahead: RequiredHarmonics,
+    required: RequiredHarmonics,
     harmonics: tuple[int, ...],
     accuracy: float,
     options: RefinementOptions = REFINEMENT,
 ) -> tuple[int, ...]:
     """Harmonics, and those that have most of what they lack, until what is left is a part of the accuracy."""
-    share = ahead.share.copy()
+    share = required.share.copy()
     share[np.array(harmonics) - 1] = 0.0
     order = np.argsort(-share, kind="stable")
     left = share.sum() - np.cumsum(share[order])
-    new = [h - 1 for h in ahead.partner if h not in harmonics and h <= LIMITS.harmonics]
-    known = ahead.is_known and ahead.change > accuracy and share[new].any()
-    gain = max(ahead.change / share[new].sum(), 1.0) if known else options.feedback_factor
+    new = [h - 1 for h in required.reference if h not in harmonics and h <= LIMITS.harmonics]
+    known = required.is_known and required.change > accuracy and share[new].any()
+    gain = max(required.change / share[new].sum(), 1.0) if known else options.feedback_factor
     count = 1 + int(np.count_nonzero(gain * left > options.safety * accuracy))
     count = min(
         count,
@@ -137,7 +140,7 @@ def _places(
 
 
 def _displaced(lifted: Prolongation, place: _SpecialPoint) -> FloatArray | None:
-    """By how much the frequency, relative, and the amplitudes (1 + dof,) of the partner differ beside
+    """By how much the frequency, relative, and the amplitudes (1 + dof,) of the reference differ beside
     a place."""
     for i in place.tries:
         if lifted.find_normal(place.path.z[i], place.path.direction[i], True):

@@ -1,4 +1,4 @@
-r"""What the harmonics that the partner lacks would still do to a motion of it, without feedback.
+r"""What the harmonics that the reference lacks would still do to a motion of it, without feedback.
 
 Each is the coefficient of the exact forces times the receptance, as in `residual_spectrum`; all of them
 together are added to the motion, whose half peak-to-peak displacement then differs. Far below some

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fcm.accuracy.options import AT_POINTS, STABILITY_LIMITS
-from fcm.accuracy.partner import give_back, partner_of, prolongation_to
+from fcm.accuracy.reference_harmonics import keep_for_next, prolongation_to, reference_harmonics
 from fcm.accuracy.required_harmonics import RequiredHarmonics, needed
 from fcm.continuation import Path, Segment
 from fcm.continuation.events import SignChange
@@ -42,10 +42,10 @@ def stability_limits(
     system: System, path: Path, crossings: Sequence[MultiplierCrossing], accuracy: float = 0.0
 ) -> list[StabilityLimit]:
     """Errors of the crossings of a path, which may be as large as accuracy."""
-    known: dict[tuple[int, ...], _PartnerGrowth] = {}
+    known: dict[tuple[int, ...], _ReferenceGrowth] = {}
     found = [_lost(system, path, one, accuracy, known) for one in crossings]
     for more, beside in known.items():
-        give_back(beside.lifted, system, more)
+        keep_for_next(beside.lifted, system, more)
     return found
 
 
@@ -72,26 +72,28 @@ def _lost(
     path: Path,
     one: MultiplierCrossing,
     accuracy: float,
-    known: dict[tuple[int, ...], _PartnerGrowth],
+    known: dict[tuple[int, ...], _ReferenceGrowth],
 ) -> StabilityLimit:
     """Of one; known are the curves of more harmonics that others have been looked for on."""
     z, direction = one.z[None], one.direction[None]
     amplitude = reported_at(system, z, direction).amplitude[0]
     share = FurtherHarmonics(system).shares(z, amplitude[None])[0]
-    more = partner_of(system.harmonics, share, system.layout.ports, AT_POINTS)
+    more = reference_harmonics(system.harmonics, share, system.layout.ports, AT_POINTS)
     if more == system.harmonics:  # nothing is left out
         return StabilityLimit(one.frequency, 0.0, more)
     if more not in known:
-        known[more] = _PartnerGrowth(system.with_harmonics(more), path, prolongation_to(system, more), system)
+        known[more] = _ReferenceGrowth(
+            system.with_harmonics(more), path, prolongation_to(system, more), system
+        )
     found = known[more].crossing(one, STABILITY_LIMITS.relative_tolerance * accuracy)
     error = abs(found / one.frequency - 1.0)
-    ahead = RequiredHarmonics(
+    required = RequiredHarmonics(
         0.0 if math.isnan(error) else error, not math.isnan(error), share[: LIMITS.harmonics], more
     )
-    return StabilityLimit(one.frequency, error, needed(ahead, system.harmonics, accuracy))
+    return StabilityLimit(one.frequency, error, needed(required, system.harmonics, accuracy))
 
 
-class _PartnerGrowth:
+class _ReferenceGrowth:
     """The curve of more harmonics beside a path, at places of this: points, by number, and part of a way."""
 
     def __init__(self, finer: System, path: Path, lifted: Prolongation, system: System) -> None:

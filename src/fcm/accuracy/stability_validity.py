@@ -34,8 +34,8 @@ def unreliable_points(
     """
     truncation = np.concatenate(truncations)
     lost = np.concatenate([on_other_branch(one, options) for one in truncations])
-    untold = _without_error(frequency, truncation, stable, fold, options)
-    far: Mask = (truncation > options.max_error) | lost | untold
+    unknown = _without_error(frequency, truncation, stable, fold, options)
+    far: Mask = (truncation > options.max_error) | lost | unknown
     return far
 
 
@@ -52,7 +52,7 @@ def without_neighbour(
 ) -> Mask:
     """Beside which points (point,) the pair has looked for a motion with more harmonics, and found none.
 
-    truncation: how far they are from the partner's curve, or from its nearest motion, relative.
+    truncation: how far they are from the reference's curve, or from its nearest motion, relative.
     """
     far: Mask = ~is_same_curve & (truncation > options.max_change)
     return far
@@ -66,9 +66,9 @@ def _without_error(
     Of those at a fold, which has no error either, whose stable part is no more than that of a fold, nothing
     is said. A point alone with an error, as one of several at a corner may be, does not part a stretch.
     """
-    found, untold = np.zeros(len(truncation), dtype=np.bool_), np.isnan(truncation)
-    untold[1:-1] |= untold[:-2] & untold[2:] & (truncation[1:-1] <= options.max_error)
-    for first, end in runs(untold):
+    found, unknown = np.zeros(len(truncation), dtype=np.bool_), np.isnan(truncation)
+    unknown[1:-1] |= unknown[:-2] & unknown[2:] & (truncation[1:-1] <= options.max_error)
+    for first, end in runs(unknown):
         own = frequency[first:end][stable[first:end] == 1.0]
         wide = own.size > 0 and np.ptp(own) > options.max_fold_error * own.max()
         found[first:end] = wide or not fold[max(first - 1, 0) : end + 1].any()

@@ -190,16 +190,16 @@ def _shown(system: System, paths: Sequence[Path]) -> tuple[ReportedQuantities, .
 def with_more(
     found: UncheckedResponse,
     more: tuple[int, ...],
-    told: bool,
+    is_known: bool,
     progress: Progress | None = None,
     options: RefinementOptions = REFINEMENT,
 ) -> tuple[UncheckedResponse | None, tuple[int, ...], bool]:
     """The response with more harmonics; if there is none, those that take too long, and whether they had
-    been begun. told: whether something tells that they bring the accuracy nearer. Where it does not, or they
-    take too long, as many as are quick, the lowest three at least."""
+    been begun. is_known: whether something tells that they bring the accuracy nearer. Where it does not, or
+    they take too long, as many as are quick, the lowest three at least."""
     work, wanted, most = found.system.work, more, found.system.options.work.max_seconds
-    if not told or work.seconds + found.seconds_with(more) > most:
-        more = found.limited_harmonics(options.max_doubtful_seconds - work.seconds, more, options)
+    if not is_known or work.seconds + found.seconds_with(more) > most:
+        more = found.limited_harmonics(options.max_seconds_without_progress - work.seconds, more, options)
     if more == found.system.harmonics:
         return None, () if more == wanted else wanted, False
     if work.seconds + found.seconds_with(more) > most:

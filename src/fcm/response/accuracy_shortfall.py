@@ -30,14 +30,14 @@ def shortfall(
 def _of_harmonics(found: RefinedResponse, accuracy: float, spent: float) -> str:
     """Too large errors of peaks and folds, and how long it takes with more harmonics."""
     folds, said = found.folds, _with_harmonics(found)
-    untold = np.count_nonzero(np.isnan(folds))
-    if np.isnan(found.max_error) and np.isnan(found.peak[found.judged]).any():
+    unknown = np.count_nonzero(np.isnan(folds))
+    if np.isnan(found.max_error) and np.isnan(found.peak[found.dofs_of_interest]).any():
         said += f" the errors of some peaks cannot be told{_dofs_short(found, accuracy)}"
-    elif untold and found.max_known_error <= accuracy:
-        said += f" the errors of {untold} of {folds.size} folds cannot be told"
-    elif untold:
+    elif unknown and found.max_known_error <= accuracy:
+        said += f" the errors of {unknown} of {folds.size} folds cannot be told"
+    elif unknown:
         said += f" an estimated error of {found.max_known_error:.1e} remains{_dofs_short(found, accuracy)}"
-        said += f", and that of {untold} of {folds.size} folds cannot be told"
+        said += f", and that of {unknown} of {folds.size} folds cannot be told"
     else:
         said += f" an estimated error of {found.max_error:.1e} remains{_dofs_short(found, accuracy)}"
     if not found.further:
@@ -59,7 +59,7 @@ def _seconds(found: RefinedResponse, more: tuple[int, ...], spent: float) -> flo
 
 def _dofs_short(found: RefinedResponse, accuracy: float) -> str:
     """The degrees of freedom whose peaks fall short, the worst of them first; empty where all do, or none."""
-    asked, dofs = found.judged, found.system.scene.modal.dofs
+    asked, dofs = found.dofs_of_interest, found.system.scene.modal.dofs
     off = np.flatnonzero(asked & ~(found.peak <= accuracy))
     if not 0 < off.size < np.count_nonzero(asked):
         return ""

@@ -15,7 +15,7 @@ Tell = Callable[[str], None]  # what there is, and what is at work
 
 
 class BestSoFar:
-    """Is told of every response that has been traced, as `fcm.accuracy.refinement.Keep`; found is the
+    """Receives every response that has been traced, as `fcm.accuracy.refinement.OnTraced`; found is the
     last, and stable (path,) whether each of its points is, once that is known."""
 
     def __init__(self, tell: Tell | None) -> None:
@@ -29,7 +29,7 @@ class BestSoFar:
         if self.tell is not None:
             self.tell(f"{self._harmonics_reached()}; now {self._missing()}")
 
-    def judge(self, found: UncheckedResponse, stable: list[FloatArray]) -> None:
+    def take_stability(self, found: UncheckedResponse, stable: list[FloatArray]) -> None:
         """The same response with its stability, which more harmonics may still confirm."""
         self.found, self.stable = found, stable
 
@@ -51,7 +51,9 @@ class BestSoFar:
 
     def reason(self) -> str:
         """Why the curve is not complete, and what is missing."""
-        missing = f" before it was traced with {self.next}" if self.next else " before it was judged"
+        missing = (
+            f" before it was traced with {self.next}" if self.next else " before its stability was known"
+        )
         missing = " before it came to its end" if self.cut else missing
         lacks = "not confirmed by more harmonics" if self.stable else "missing"
         part, reached = "the part up to there" if self.cut else "the curve", self._harmonics_reached()

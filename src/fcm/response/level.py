@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from fcm.accuracy.level_errors import LevelPoints, errors_at_levels, evenness, stable_at_levels
 from fcm.accuracy.options import VALIDITY
-from fcm.accuracy.required_harmonics import judged
+from fcm.accuracy.required_harmonics import dofs_of_interest
 from fcm.branches.force_level import LevelRange, level_curve
 from fcm.branches.linear_limits import highest_linear_limit
 from fcm.continuation import Mark, Status
@@ -161,7 +161,7 @@ def _worst(curve: Curve, scene: Scene) -> float:
     that of a peak is not. What hardly moves is not asked for."""
     assert curve.level is not None
     height = np.nanmax(curve.amplitude, axis=0)
-    moves = judged(scene, height)
+    moves = dofs_of_interest(scene, height)
     peaks = np.array([peak.error for peak in curve.peaks.values()])[moves]
     there = curve.error[curve.level == 1.0][:, moves]
     return float(np.max([*peaks, *there[np.isfinite(there)]], initial=0.0))

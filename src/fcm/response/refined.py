@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.options import VALIDITY
-from fcm.accuracy.refinement import Keep, RefinedResponse, enlarged, retrace
+from fcm.accuracy.refinement import OnTraced, RefinedResponse, enlarged, retrace
 from fcm.accuracy.stability_limits import StabilityLimit, distances_from, stability_limits
 from fcm.accuracy.stability_validity import on_other_branch, without_neighbour
 from fcm.branches.branch_points import all_up_to
@@ -58,19 +58,23 @@ class Refined:
     every: RefinedResponse | None = None
 
 
-Judge = Callable[[RefinedResponse, list[FloatArray]], None]  # what there is, with its stability
+OnClassified = Callable[[RefinedResponse, list[FloatArray]], None]  # what there is, with its stability
 # the response, the one before with fewer harmonics, the accuracy (None: the harmonics are given), the scene
 # with all degrees of freedom; to the response with more of it known, and the harmonics that this takes
 Stage = Callable[[Refined, Refined | None, float | None, Scene], tuple[Refined, Harmonics]]
 
 
 def refined(
-    found: RefinedResponse, accuracy: float | None, scene: Scene, keep: Keep, judge: Judge
+    found: RefinedResponse,
+    accuracy: float | None,
+    scene: Scene,
+    on_traced: OnTraced,
+    on_classified: OnClassified,
 ) -> Refined:
     """A response that was traced with every branch, its events, and all degrees of freedom of a scene.
 
     With an accuracy also with the harmonics that these take, unless that takes longer than is worth it.
-    What there is is told to keep, before more is traced, and to judge, once its stability is known.
+    What there is goes to on_traced, before more is traced, and to on_classified, once its stability is known.
     """
     now, before = Refined(found), None
     stages: Sequence[Stage] = (_with_branches, _with_events, _with_all_dofs)
@@ -79,15 +83,15 @@ def refined(
         for stage in stages:
             now, more = stage(now, before, accuracy, scene)
             if accuracy is not None and left and more != now.found.system.harmonics:
-                keep(now.found, now.found.max_error, more)
+                on_traced(now.found, now.found.max_error, more)
                 again = retrace(now.found, more, accuracy)
                 if again is not None:
                     break
             if len(now.stable) == len(now.found.shown):
-                judge(now.found, now.stable)
+                on_classified(now.found, now.stable)
         if again is None:
             break
-        keep(again, again.max_error, ())
+        on_traced(again, again.max_error, ())
         now, before = Refined(again), now
     return now
 

@@ -126,9 +126,9 @@ def _traced_curve(scene: Scene, wanted: Request, poll: Callable[[], None] | None
     try:
         check_contacts_can_close(system)
         found = (
-            refined_response(system, wanted.accuracy, options=wanted.options.refinement, keep=so_far)
+            refined_response(system, wanted.accuracy, options=wanted.options.refinement, on_traced=so_far)
             if by_need
-            else with_given_harmonics(system, keep=so_far)
+            else with_given_harmonics(system, on_traced=so_far)
         )
     except RestError as nowhere:
         return lost_curve(scene, str(nowhere))
@@ -137,7 +137,7 @@ def _traced_curve(scene: Scene, wanted: Request, poll: Callable[[], None] | None
         why = "no solution was found at either end of the range; try another range"
         return lost_curve(scene, f"{why}{FLOATING if rigid else too_stiff(system)}")
     so_far(found, found.max_error, ())
-    response = refined(found, wanted.accuracy if by_need else None, scene, so_far, so_far.judge)
+    response = refined(found, wanted.accuracy if by_need else None, scene, so_far, so_far.take_stability)
     curve = _curve(response)
     if by_need and curve.complete:
         curve.short_of = shortfall(

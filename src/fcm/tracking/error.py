@@ -1,6 +1,6 @@
 r"""What the harmonics left out would change at chosen points of a tracked curve.
 
-The same extended system with the harmonics of the partner's partner is solved at the same value of the
+The same extended system with the harmonics of the reference's reference is solved at the same value of the
 number. Where the number turns back that has no solution on one side: there the curve with more harmonics is
 followed from beside the turn to its own turn.
 """
@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.accuracy.options import AT_POINTS
-from fcm.accuracy.partner import partner_of
+from fcm.accuracy.reference_harmonics import reference_harmonics
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.tracking.curve import SpecialPointCurve
 from fcm.tracking.extended_system import Condition, Kind
@@ -66,8 +66,8 @@ def error_points(track: SpecialPointCurve) -> dict[int, str]:
 def truncation_error(
     way: TrackingRun, track: SpecialPointCurve, i: int, begin: int | None = None
 ) -> TruncationError:
-    """At one point: to that of the partner. Of a turn this is sought from a point before, by default one that
-    is near."""
+    """At one point: to that of the reference. Of a turn this is sought from a point before, by default one
+    that is near."""
     condition, here = track.condition, _RefinedPoint(way, track.points[i])
     value, number = here.value(condition), float(here.spot.z[-1])
     begin = beginning(track, i, way.options) if begin is None else begin
@@ -94,7 +94,7 @@ def beginning(track: SpecialPointCurve, i: int, options: TrackingOptions = TRACK
 
 
 def _more(found: _RefinedPoint) -> tuple[int, ...]:
-    """The harmonics of the partner; none more where nothing slips or opens."""
+    """The harmonics of the reference; none more where nothing slips or opens."""
     z, s = found.spot.z, float(found.spot.z[-1])
     system = for_scene(found.way.system, found.way.line.scene(found.way.system.scene, s))
     further, y = FurtherHarmonics(system), z[None, :-1]
@@ -104,7 +104,7 @@ def _more(found: _RefinedPoint) -> tuple[int, ...]:
     problem.measure(z)
     amplitude = problem.along(z)[1]
     share = further.shares(y, amplitude[None])[0]
-    return partner_of(system.harmonics, share, system.layout.ports, AT_POINTS)
+    return reference_harmonics(system.harmonics, share, system.layout.ports, AT_POINTS)
 
 
 def _landed(

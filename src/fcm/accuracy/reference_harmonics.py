@@ -1,4 +1,4 @@
-"""The harmonics of the partner of a curve, and its balance."""
+"""The harmonics of the reference of a curve, and its balance."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from fcm.model.scene import FloatArray
 from fcm.scene.options import LIMITS
 
 
-def partner_of(
+def reference_harmonics(
     harmonics: Sequence[int], share: FloatArray, ports: int, options: PairOptions = PAIR
 ) -> tuple[int, ...]:
-    """Harmonics of the partner of a curve that has some, as of `PairOptions`.
+    """Harmonics of the reference of a curve that has some, as of `PairOptions`.
 
     Parameters
     ----------
@@ -31,11 +31,11 @@ def partner_of(
     Examples
     --------
     >>> import numpy as np
-    >>> partner_of((1,), np.zeros(50), 2)
+    >>> reference_harmonics((1,), np.zeros(50), 2)
     (1, 2, 3, 4, 5)
     >>> named = np.zeros(50)
     >>> named[11] = 0.01
-    >>> partner_of((1, 2), named, 2)
+    >>> reference_harmonics((1, 2), named, 2)
     (1, 2, 3, 4, 5, 6, 7, 8, 12)
     """
     has, count = set(harmonics), len(harmonics)
@@ -62,7 +62,7 @@ _BALANCES = _BalanceCache()
 
 
 def prolongation_to(system: System, more: tuple[int, ...]) -> Prolongation:
-    """From points of a system to those of its partner; as if it were new: in a sweep the contacts are
+    """From points of a system to those of its reference; as if it were new: in a sweep the contacts are
     others. Nobody else has it until it is given back, see `give_back`."""
     made = _BALANCES.by_key.pop(_key(system, more), None) if _is_shareable(system) else None
     if made is None:
@@ -79,7 +79,7 @@ def prolongation_to(system: System, more: tuple[int, ...]) -> Prolongation:
     return made
 
 
-def give_back(lifted: Prolongation, system: System, more: tuple[int, ...]) -> None:
+def keep_for_next(lifted: Prolongation, system: System, more: tuple[int, ...]) -> None:
     """Keep what `prolongation_to` the same has made for the next curve."""
     lifted.newton.poll = None
     if _is_shareable(system):

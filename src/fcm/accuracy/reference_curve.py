@@ -1,4 +1,4 @@
-"""The partner of a curve: point by point normal to it, interpolated in between, followed where that
+"""The reference of a curve: point by point normal to it, interpolated in between, followed where that
 leads nowhere."""
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from fcm.accuracy.curve_distance import (
     steepness,
 )
 from fcm.accuracy.options import PAIR, PairOptions
-from fcm.accuracy.partner import give_back, partner_of, prolongation_to
-from fcm.accuracy.partner_pieces import (
+from fcm.accuracy.reference_harmonics import keep_for_next, prolongation_to, reference_harmonics
+from fcm.accuracy.reference_pieces import (
     CurvePiece,
     ReportedPath,
     distinct,
@@ -29,7 +29,7 @@ from fcm.accuracy.partner_pieces import (
     piece_through,
     rates,
 )
-from fcm.accuracy.partner_stretch import PartnerPiece, StretchFollower
+from fcm.accuracy.reference_stretch import ReferencePiece, StretchFollower
 from fcm.accuracy.residual import changes_left_out
 from fcm.continuation import Mark, Path
 from fcm.harmonic_balance.consecutive_points import runs
@@ -47,18 +47,19 @@ Mask = npt.NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class FollowedStretch:
-    """A stretch of a curve, points first to before end, beside which the partner was followed: its pieces."""
+    """A stretch of a curve, points first to before end, beside which the reference was followed: its
+    pieces."""
 
     first: int
     end: int
-    pieces: list[PartnerPiece]
+    pieces: list[ReferencePiece]
 
 
 @dataclass(frozen=True)
 class ComparedQuantities:
-    """What is compared of a curve with its partner: amplitudes, and then what the contacts bear.
+    """What is compared of a curve with its reference: amplitudes, and then what the contacts bear.
 
-    value, growth along the curve, unit (point, column); change (point, 1 + column) to the partner, that of
+    value, growth along the curve, unit (point, column); change (point, 1 + column) to the reference, that of
     the frequency first, the others in their unit.
     """
 
@@ -68,8 +69,8 @@ class ComparedQuantities:
     change: FloatArray
 
 
-class SecondPartner:
-    """The partner of a partner, looked for at single points of that."""
+class SecondReference:
+    """The reference of a reference, looked for at single points of that."""
 
     def __init__(self, finer: System, more: tuple[int, ...]) -> None:
         self.finer, self.more = finer, more
@@ -78,7 +79,7 @@ class SecondPartner:
         self.amplitude = np.empty(0)
 
     def found(self, z: FloatArray, direction: FloatArray | None) -> bool:
-        """Whether it is found from a point of the partner: at its frequency, or normal to a direction;
+        """Whether it is found from a point of the reference: at its frequency, or normal to a direction;
         amplitude (dof,) is then there."""
         if direction is None:
             there = self.lifted.find_at_frequency(self.system.extended(z, self.finer.harmonics), True)
@@ -93,14 +94,15 @@ class SecondPartner:
         return float(count * seconds_of(self.finer, 1, len(self.more)))
 
 
-class PartnerCurve:
-    """Relative displacements from the points of a path to its partner: of the frequency, then of amplitudes.
+class ReferenceCurve:
+    """Relative displacements from the points of a path to its reference: of the frequency, then of
+    amplitudes.
 
     unit (point, dof) is what those of the amplitudes are relative to: the amplitude or, of a degree of
     freedom that hardly moves, a part of the greatest, as the others would be lost in its rounding.
     linear (point,): where no contact slips or separates, so that nothing is displaced.
     contact_loads (point, 4 contact): what the contacts bear.
-    ends_before (point,): whose frequency the partner passes less often, as it turns back.
+    ends_before (point,): whose frequency the reference passes less often, as it turns back.
     """
 
     def __init__(
@@ -123,7 +125,7 @@ class PartnerCurve:
         self.finding = PointwiseDisplacement(lifted)
         self.stretches = StretchFollower(system, finer, lifted, path, options, budget)
         self.each = seconds_of(finer, 1, len(more))  # evaluation
-        self.second: SecondPartner | None = None  # its own partner, if that is not too dear
+        self.second: SecondReference | None = None  # its own reference, if that is not too dear
         self.is_costly = False
         self.failed, self.before = budget.seconds / self.each, lifted.newton.evaluations
         count, dofs = self.amplitude.shape
@@ -131,7 +133,7 @@ class PartnerCurve:
         arc_lengths(path.z, path.direction, np.ptp(path.parameter) or 1.0, self.place)
         steepness(np.ascontiguousarray(path.parameter), self.amplitude, options.max_steepness, self.weight)
         self.change = np.zeros((count, 1 + dofs))
-        self.theirs = np.full((count, len(lifted.newton.z)), np.nan)  # where it was found
+        self.reference_unknowns = np.full((count, len(lifted.newton.z)), np.nan)  # where it was found
         self.known, self.ends_before = self.linear.copy(), np.zeros_like(self.linear)
         self.filled = PartialInterpolant(self.place, self.change, self.known.view(np.uint8), options.distance)
 
@@ -160,7 +162,7 @@ class PartnerCurve:
         return self.interpolated(np.arange(count))
 
     def is_same_curve(self) -> bool:
-        """Whether the partner is found from most of some points evenly along the curve."""
+        """Whether the reference is found from most of some points evenly along the curve."""
         even = np.arange(0, len(self.known), self.options.point_interval)
         some = even[:: max(len(even) // self.options.probes, 1)].copy()
         self.find(some)
@@ -169,16 +171,16 @@ class PartnerCurve:
     def distinct_points(self, points: Indices) -> Indices:
         """Those of points, in order, that are not next to another of them.
 
-        Of many degrees of freedom each has its own peak; what the partner has at one is interpolated to the
+        Of many degrees of freedom each has its own peak; what the reference has at one is interpolated to the
         next.
         """
         return points[distinct(self.place[points], self._near)]
 
     def release(self) -> None:
         """Give back what the next curve can use."""
-        give_back(self.finding.lifted, self.system, self.more)
+        keep_for_next(self.finding.lifted, self.system, self.more)
         if self.second is not None:
-            give_back(self.second.lifted, self.second.finer, self.second.more)
+            keep_for_next(self.second.lifted, self.second.finer, self.second.more)
 
     def seconds(self) -> float:
         """About what all that was looked for has taken."""
@@ -194,7 +196,7 @@ class PartnerCurve:
             for k, i in enumerate(points.tolist()):
                 if self.finding.lifted.newton.evaluations - self.before > most:
                     rest = points[k:][~self.known[points[k:]]]
-                    self.change[rest], self.theirs[rest], self.known[rest] = np.nan, np.nan, True
+                    self.change[rest], self.reference_unknowns[rest], self.known[rest] = np.nan, np.nan, True
                     return
                 if not self.known[i]:
                     self._find(points[k : k + 1])
@@ -205,7 +207,7 @@ class PartnerCurve:
         path = self.path
         self.finding.find(
             points, path.z, path.direction, self.amplitude, self.unit,
-            self.change, self.theirs, self.known.view(np.uint8), self.failed,
+            self.change, self.reference_unknowns, self.known.view(np.uint8), self.failed,
         )  # fmt: skip
 
     @cached_property
@@ -215,7 +217,7 @@ class PartnerCurve:
 
     @property
     def is_found(self) -> Mask:
-        """Points (point,) that are moved to the partner, where contacts slip or separate."""
+        """Points (point,) that are moved to the reference, where contacts slip or separate."""
         found: Mask = self.known & ~self.linear & np.isfinite(self.change).all(axis=1)
         return found
 
@@ -223,21 +225,21 @@ class PartnerCurve:
         """What the harmonics that it lacks would do without feedback, all together, at points that are
         found (place,): relative, of the degree of freedom to which each matters most."""
         amplitude = self.amplitude[points] + self.unit[points] * self.change[points, 1:]
-        shares = self._further.shares(self.theirs[points], amplitude)
+        shares = self._further.shares(self.reference_unknowns[points], amplitude)
         total: FloatArray = shares.sum(axis=1)
         return total
 
     @property
     def may_have_second(self) -> bool:
-        """Whether a partner of its own is not too dear already with no more harmonics than it has."""
+        """Whether a reference of its own is not too dear already with no more harmonics than it has."""
         finer = self.stretches.finer
         return 2 * finer.layout.ports * len(finer.harmonics) <= self.options.max_second_unknowns
 
     def own_error(self, i: int) -> FloatArray | None:
-        """By how much (dof,) a partner of its own differs from it, in the unit of the curve, at the frequency
-        to which a point is displaced; None where either has no motion there."""
+        """By how much (dof,) a reference of its own differs from it, in the unit of the curve, at the
+        frequency to which a point is displaced; None where either has no motion there."""
         self.find(np.array([i]))
-        z, amplitude = self.theirs[i], self.amplitude[i] + self.unit[i] * self.change[i, 1:]
+        z, amplitude = self.reference_unknowns[i], self.amplitude[i] + self.unit[i] * self.change[i, 1:]
         if np.isnan(amplitude).any():
             return None
         second = self._second(z, amplitude)
@@ -247,8 +249,8 @@ class PartnerCurve:
         return off
 
     def errors_at_peaks(self, tops: Indices, inside: Mask) -> tuple[FloatArray, FloatArray]:
-        """What the partner lacks at tops, in their order: by how much (top, dof) the amplitudes of a partner
-        of its own differ, and by how much the harmonics that this lacks, too, would change them.
+        """What the reference lacks at tops, in their order: by how much (top, dof) the amplitudes of a
+        reference of its own differ, and by how much the harmonics that this lacks, too, would change them.
 
         Normal to its curve inside of that, beside the nearest point that has both, else at the frequency of
         the end. Nothing of the first where there is none. Of tops closely together as at the first.
@@ -294,28 +296,28 @@ class PartnerCurve:
         return [i for i in places if not self.linear[i]]
 
     def _has_point(self, i: int, normal: bool) -> bool:
-        """Whether the partner has a point normal to a point of the curve, or at its frequency."""
+        """Whether the reference has a point normal to a point of the curve, or at its frequency."""
         lifted, path = self.finding.lifted, self.path
         if normal and lifted.find_normal(path.z[i], path.direction[i], True):
             return True
         return not normal and bool(lifted.find_at_frequency(self._guesses[i], True))
 
-    def _second(self, z: FloatArray, amplitude: FloatArray) -> SecondPartner | None:
-        """A partner of its own; None where that has no more harmonics, or too many unknowns. It is that of
+    def _second(self, z: FloatArray, amplitude: FloatArray) -> SecondReference | None:
+        """A reference of its own; None where that has no more harmonics, or too many unknowns. It is that of
         the place from which it is asked first."""
         finer, options = self.stretches.finer, self.options
         if self.is_costly:
             return None
         if self.second is None:
             share = self._further.shares(z[None], amplitude[None])[0]
-            more = partner_of(finer.harmonics, share, finer.layout.ports, options.of_second)
+            more = reference_harmonics(finer.harmonics, share, finer.layout.ports, options.second_pair)
             unknowns = 2 * finer.layout.ports * len(more)  # besides the means
             self.is_costly = more == finer.harmonics or unknowns > options.max_second_unknowns
-            self.second = None if self.is_costly else SecondPartner(finer, more)
+            self.second = None if self.is_costly else SecondReference(finer, more)
         return self.second
 
     def amplitude_at_frequency(self, i: int) -> FloatArray | None:
-        """Amplitudes (dof,) of the partner at the frequency of a point; None where Newton's method finds
+        """Amplitudes (dof,) of the reference at the frequency of a point; None where Newton's method finds
         none that is as even."""
         lifted, path = self.finding.lifted, self.path
         if self.linear[i] or not lifted.find_at_frequency(self._guesses[i], True):
@@ -327,7 +329,7 @@ class PartnerCurve:
 
     @cached_property
     def _guesses(self) -> FloatArray:
-        """The points (point, unknown + 1) as guesses for the partner."""
+        """The points (point, unknown + 1) as guesses for the reference."""
         return self.stretches.finer.extended(self.path.z, self.fewer)
 
     def interpolated(self, points: Indices) -> FloatArray:
@@ -356,7 +358,7 @@ class PartnerCurve:
         return more.view(np.bool_)
 
     def follow_stretches(self, change: FloatArray) -> list[FollowedStretch]:
-        """The stretches without displacements, with the pieces of the partner there; the highest
+        """The stretches without displacements, with the pieces of the reference there; the highest
         are first."""
         found = [run for run in runs(np.any(np.isnan(change), axis=1)) if not self._is_bridged(*run, change)]
         found.sort(key=lambda run: -float(self.amplitude[run[0] : run[1]].max()))
@@ -390,10 +392,10 @@ class PartnerCurve:
         found = np.zeros((len(change), 1 + self.contact_loads.shape[1]))
         found[:, 0] = self.change[:, 0]
         there = self.known & ~self.linear & np.isfinite(self.change[:, 0])
-        theirs = contact_loads_along(self.stretches.finer, self.theirs[there]).reshape(
+        of_reference = contact_loads_along(self.stretches.finer, self.reference_unknowns[there]).reshape(
             -1, self.contact_loads.shape[1]
         )
-        found[there, 1:] = (theirs - self.contact_loads[there]) / unit[there]
+        found[there, 1:] = (of_reference - self.contact_loads[there]) / unit[there]
         found[np.isnan(found[:, 0])] = np.nan
         every = np.empty_like(found)
         PartialInterpolant(self.place, found, self.known.view(np.uint8), self.options.distance).interpolate(
@@ -407,42 +409,45 @@ class PartnerCurve:
         )
 
     def shifts(self, compared: ComparedQuantities, followed: list[FollowedStretch]) -> FloatArray:
-        """Differences (point, column) at the same frequency, in their unit; NaN where the partner does not
+        """Differences (point, column) at the same frequency, in their unit; NaN where the reference does not
         come to that."""
         path, change = self.path, compared.change
         shift = shifted(
             self.place, path.z, path.direction, compared.value, compared.growth, compared.unit, change
         )
         shift[np.isnan(change).any(axis=1)] = np.nan
-        self._where_it_turns_back(compared, followed, shift)
+        self._fill_beyond_folds(compared, followed, shift)
         for one in followed:
-            self._by_pieces(one, compared, shift)
+            self._fill_from_pieces(one, compared, shift)
         return shift
 
-    def _where_it_turns_back(
+    def _fill_beyond_folds(
         self, compared: ComparedQuantities, followed: list[FollowedStretch], shift: FloatArray
     ) -> None:
-        """Of points that are missing although the partner is known there, as it turns back: fill those whose
-        frequency both pass but once, and remember those that it passes less often, where all of it is known.
+        """Of points that are missing although the reference is known there, as it turns back: fill those
+        whose frequency both pass but once, and remember those that it passes less often, where all of it is
+        known.
         """
         missing = np.isnan(shift).any(axis=1) & np.isfinite(compared.change).all(axis=1)
         whole = all(len(one.pieces) == 1 and one.pieces[0].reached_end for one in followed)
         rows, own = np.flatnonzero(missing), self.path.parameter
         if not whole or not rows.size:
             return
-        pieces, mine = self.pieces(compared, followed), passings(own, own[rows])
-        theirs = sum((passings(one.frequency, own[rows]) for one in pieces), np.zeros_like(mine))
-        self.ends_before[rows] = theirs < mine
-        some = rows[(mine == 1) & (theirs == 1)]
+        pieces, of_curve = self.pieces(compared, followed), passings(own, own[rows])
+        of_reference = sum((passings(one.frequency, own[rows]) for one in pieces), np.zeros_like(of_curve))
+        self.ends_before[rows] = of_reference < of_curve
+        some = rows[(of_curve == 1) & (of_reference == 1)]
         if not some.size:
             return
         now, even = compared.value[some], np.zeros(len(some))
         by = np.ascontiguousarray(now[:, : self.amplitude.shape[1]])
         shift[some] = (nearest(pieces, own[some], even, by) - now) / compared.unit[some]
 
-    def _by_pieces(self, one: FollowedStretch, compared: ComparedQuantities, shift: FloatArray) -> None:
+    def _fill_from_pieces(
+        self, one: FollowedStretch, compared: ComparedQuantities, shift: FloatArray
+    ) -> None:
         """Fill those along a stretch, and next to it where the way to the same frequency leads into
-        it: by the pieces, else by the partner before and behind them."""
+        it: by the pieces, else by the reference before and behind them."""
         first, end = one.first, one.end
         missing: Mask = np.any(np.isnan(shift), axis=1)
         while first > 0 and missing[first - 1]:
@@ -453,7 +458,7 @@ class PartnerCurve:
         omega, sign = self.path.parameter[rows], np.sign(self.path.direction[rows, -1])
         number = np.full(len(rows), -1, dtype=np.intc)
         if (self.path.mark[first:end] & Mark.FOLD).any():
-            number = self._numbers(one, rows)
+            number = self._passing_numbers(one, rows)
         now, even = compared.value[rows], self.path.orientation[rows] * sign
         dofs = self.amplitude.shape[1]  # by which the same motion is known
         by = np.ascontiguousarray(now[:, :dofs])
@@ -468,7 +473,7 @@ class PartnerCurve:
             shift[rows], number = new, np.minimum(number, -1)
 
     def _pieces_near(self, compared: ComparedQuantities, first: int, end: int) -> Iterator[CurvePiece]:
-        """The partner at the points before a stretch, and behind it, as far as it is known there."""
+        """The reference at the points before a stretch, and behind it, as far as it is known there."""
         missed = np.flatnonzero(np.isnan(compared.change).any(axis=1))
         low = max(missed[missed < first], default=-1) + 1
         high = min(missed[missed >= end], default=len(compared.change))
@@ -478,41 +483,45 @@ class PartnerCurve:
                 yield piece
 
     def pieces(self, compared: ComparedQuantities, followed: list[FollowedStretch]) -> tuple[CurvePiece, ...]:
-        """All that is known of the partner: what points are displaced to, and what was followed."""
+        """All that is known of the reference: what points are displaced to, and what was followed."""
         missed: Mask = np.any(np.isnan(compared.change), axis=1)
         through = [self._displaced(compared, slice(first, end)) for first, end in runs(~missed)]
         along = [self._of_piece(piece) for one in followed for piece in one.pieces]
         return tuple(one for one in (*through, *along) if one is not None)
 
     def motions(self, followed: list[FollowedStretch]) -> KnownMotions:
-        """All motions of the partner that were found, in order along its curve."""
-        found = [self.theirs[np.isfinite(self.theirs).all(axis=1)]]
+        """All motions of the reference that were found, in order along its curve."""
+        found = [self.reference_unknowns[np.isfinite(self.reference_unknowns).all(axis=1)]]
         found += [piece.path.z for one in followed for piece in one.pieces]
         return KnownMotions(self.stretches.finer.harmonics, tuple(one for one in found if len(one) > 1))
 
     def _displaced(self, compared: ComparedQuantities, rows: slice) -> CurvePiece | None:
-        """The partner at some points, all of them displaced to it."""
+        """The reference at some points, all of them displaced to it."""
         change = compared.change[rows]
         omega = self.path.parameter[rows] * (1.0 + change[:, 0])
         value = compared.value[rows] + compared.unit[rows] * change[:, 1:]
         return piece_through(self.place[rows], omega, self.path.orientation[rows], value)
 
-    def _of_piece(self, piece: PartnerPiece) -> CurvePiece:
+    def _of_piece(self, piece: ReferencePiece) -> CurvePiece:
         return curve_piece(self.stretches.finer, piece)
 
-    def contact_loads_of(self, piece: PartnerPiece) -> FloatArray:
+    def contact_loads_of(self, piece: ReferencePiece) -> FloatArray:
         """What the contacts bear along a piece (point, 4 contact)."""
         return contact_loads_along(self.stretches.finer, piece.path.z).reshape(len(piece.path.z), -1)
 
-    def _numbers(self, one: FollowedStretch, rows: Indices) -> npt.NDArray[np.intc]:
-        """Which passing of the partner (row,) belongs to points of a stretch with folds: the same in
-        their order where both have as many, the nearest (-1) where the partner has more, none (-2) where it
+    def _passing_numbers(self, one: FollowedStretch, rows: Indices) -> npt.NDArray[np.intc]:
+        """Which passing of the reference (row,) belongs to points of a stretch with folds: the same in
+        their order where both have as many, the nearest (-1) where the reference has more, none (-2) where it
         has fewer."""
         own, omega = self.path.parameter[max(rows[0] - 1, 0) : rows[-1] + 2], self.path.parameter[rows]
-        offset, mine = rows[0] - max(rows[0] - 1, 0), passings(own, omega)
-        theirs = sum((passings(piece.path.parameter, omega) for piece in one.pieces), np.zeros_like(mine))
-        number = np.where(theirs < mine, -2, -1).astype(np.intc)
-        same = np.flatnonzero(theirs == mine) if len(one.pieces) == 1 else np.empty(0, dtype=np.intp)
+        offset, of_curve = rows[0] - max(rows[0] - 1, 0), passings(own, omega)
+        of_reference = sum(
+            (passings(piece.path.parameter, omega) for piece in one.pieces), np.zeros_like(of_curve)
+        )
+        number = np.where(of_reference < of_curve, -2, -1).astype(np.intc)
+        same = (
+            np.flatnonzero(of_reference == of_curve) if len(one.pieces) == 1 else np.empty(0, dtype=np.intp)
+        )
         for first in range(0, len(same), PAIR.batch):
             some = same[first : first + PAIR.batch]
             passes = _passes(own, omega[some])
@@ -521,8 +530,8 @@ class PartnerCurve:
         return number
 
 
-def curve_piece(finer: System, piece: PartnerPiece) -> CurvePiece:
-    """A piece of the partner that was followed, with what the contacts bear."""
+def curve_piece(finer: System, piece: ReferencePiece) -> CurvePiece:
+    """A piece of the reference that was followed, with what the contacts bear."""
     contact_loads = contact_loads_along(finer, piece.path.z).reshape(len(piece.path.z), -1)
     return piece_of(ReportedPath(piece.path, piece.shown, contact_loads))
 

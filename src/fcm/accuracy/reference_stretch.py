@@ -1,7 +1,7 @@
-"""Stretches of the partner that are followed: beside them no point of it lies normal to the curve.
+"""Stretches of the reference that are followed: beside them no point of it lies normal to the curve.
 
 Where a corner or a pair of folds has moved, Newton's method in the normal plane leads nowhere. But it does on
-both sides, and from one of them the partner can be followed to the other.
+both sides, and from one of them the reference can be followed to the other.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ from fcm.model.scene import FloatArray
 
 
 class BudgetSpentError(Exception):
-    """Following the partner takes more than it may."""
+    """Following the reference takes more than it may."""
 
 
 @dataclass(frozen=True)
-class PartnerPiece:
-    """A piece of the partner, from one end of a stretch; reached_end: up to the other."""
+class ReferencePiece:
+    """A piece of the reference, from one end of a stretch; reached_end: up to the other."""
 
     path: Path
     shown: ReportedQuantities
@@ -39,13 +39,13 @@ class PartnerPiece:
 
     @property
     def whole(self) -> bool:
-        """Whether it ends where the partner does, or the stretch."""
+        """Whether it ends where the reference does, or the stretch."""
         return self.path.status not in (Status.INTERRUPTED, Status.STALLED)
 
 
 @dataclass(frozen=True)
 class StretchEnd:
-    """A point of the partner at an end of a stretch, and whether the frequency rises there along the
+    """A point of the reference at an end of a stretch, and whether the frequency rises there along the
     curve."""
 
     number: int
@@ -55,7 +55,7 @@ class StretchEnd:
 
 
 class StretchFollower:
-    """`between` two points of a curve the partner is followed, as long as the budget allows."""
+    """`between` two points of a curve the reference is followed, as long as the budget allows."""
 
     def __init__(
         self,
@@ -73,8 +73,8 @@ class StretchFollower:
         self.each = seconds_of(finer, 1, len(finer.harmonics))
         self.budget, self.evaluations = budget, 0
 
-    def between(self, first: int, last: int) -> list[PartnerPiece]:
-        """The partner between point first and point last of the curve, which may be beyond its ends.
+    def between(self, first: int, last: int) -> list[ReferencePiece]:
+        """The reference between point first and point last of the curve, which may be beyond its ends.
 
         One piece that leads from one to the other, or what hangs on both as far as that stays near the
         stretch, and as the work allows.
@@ -86,17 +86,17 @@ class StretchFollower:
             self._end(range(first, max(first - tries, -1), -1)) if first >= 0 else self._same_frequency(0)
         )
         behind = self._end(range(last, min(last + tries, count))) if last < count else None
-        pieces = self._hanging_on(before, behind)
+        pieces = self._from_ends(before, behind)
         if first < 0 and before is None and not any(piece.whole for piece in pieces):
-            before = self._nearest_passed(0, True)  # the level takes more than the partner from an end
-            pieces += self._hanging_on(before, None)
+            before = self._nearest_passed(0, True)  # the level takes more than the reference from an end
+            pieces += self._from_ends(before, None)
         if before is None and behind is None:
-            pieces += self._hanging_on(None, self._alike(last - 1))
+            pieces += self._from_ends(None, self._same_parity(last - 1))
         return pieces
 
-    def _hanging_on(self, before: StretchEnd | None, behind: StretchEnd | None) -> list[PartnerPiece]:
+    def _from_ends(self, before: StretchEnd | None, behind: StretchEnd | None) -> list[ReferencePiece]:
         """One piece that leads from one end to the other, or those that hang on each that there is."""
-        span, pieces = self._span(before, behind), list[PartnerPiece]()
+        span, pieces = self._span(before, behind), list[ReferencePiece]()
         for begin, end in ((before, behind), (behind, before)):
             if begin is None or not span[0] < span[1]:
                 continue
@@ -109,7 +109,7 @@ class StretchFollower:
         return pieces
 
     def start(self, i: int, by_level: bool) -> FloatArray | None:
-        """A motion of the partner at the frequency of a point, if one is found as the work allows: what the
+        """A motion of the reference at the frequency of a point, if one is found as the work allows: what the
         motion there leads to, or that the level of the forces passes."""
         before = self.lifted.newton.evaluations
         begin = self._nearest_passed(i, False) if by_level else self._same_frequency(i)
@@ -120,11 +120,11 @@ class StretchFollower:
 
     def along(
         self, z: FloatArray, direction: FloatArray | None, span: tuple[float, float], forward: bool
-    ) -> PartnerPiece:
-        """The partner from a point, where its direction may be known, as far as it stays in a span and the
+    ) -> ReferencePiece:
+        """The reference from a point, where its direction may be known, as far as it stays in a span and the
         work allows."""
         path = self._path(z, direction, span, Events(), forward)
-        return PartnerPiece(path, reported_quantities(self.finer, path), False)
+        return ReferencePiece(path, reported_quantities(self.finer, path), False)
 
     def _end(self, places: Iterable[int]) -> StretchEnd | None:
         """At the first of some places where there is one."""
@@ -140,11 +140,11 @@ class StretchFollower:
         guess = self.finer.extended(self.curve.z[i], self.fewer)
         return self._found(i) if self.lifted.find_at_frequency(guess, True) else None
 
-    def _alike(self, i: int) -> StretchEnd | None:
+    def _same_parity(self, i: int) -> StretchEnd | None:
         """At the frequency of a point: what its motion leads to, or one as even that the level passes."""
         return self._same_frequency(i) or self._nearest_passed(i, True)
 
-    def _nearest_passed(self, i: int, alike: bool) -> StretchEnd | None:
+    def _nearest_passed(self, i: int, same_parity: bool) -> StretchEnd | None:
         """At the frequency of a point the nearest motion that the level of the forces passes; alike with an
         odd or even number of real multipliers above 1 as it has."""
         lifted, curve = self.lifted, self.curve
@@ -154,7 +154,7 @@ class StretchFollower:
         for one in sorted(known, key=lambda one: float(np.linalg.norm((one - guess) / lifted.newton.scale))):
             if not lifted.find_at_frequency(one, False):
                 continue
-            if not alike or lifted.newton.orientation * lifted.newton.tangent[-1] * even > 0.0:
+            if not same_parity or lifted.newton.orientation * lifted.newton.tangent[-1] * even > 0.0:
                 return self._found(i)
         return None
 
@@ -170,7 +170,7 @@ class StretchFollower:
             self.budget.seconds -= work.seconds - before
 
     def _found(self, i: int) -> StretchEnd:
-        """Where the partner was found last, beside a point."""
+        """Where the reference was found last, beside a point."""
         newton = self.lifted.newton
         rises = bool(newton.tangent[-1] * self.curve.direction[i, -1] > 0.0)
         return StretchEnd(i, np.array(newton.z), np.array(self.lifted.found[1:]), rises)
@@ -188,11 +188,11 @@ class StretchFollower:
 
     def _followed(
         self, begin: StretchEnd, end: StretchEnd | None, span: tuple[float, float], forward: bool
-    ) -> PartnerPiece:
-        """The partner from one end to the other, or as far as it stays in the span."""
+    ) -> ReferencePiece:
+        """The reference from one end to the other, or as far as it stays in the span."""
         if end is None:
             path = self._path(begin.z, None, span, Events(), forward)
-            return PartnerPiece(path, reported_quantities(self.finer, path), False)
+            return ReferencePiece(path, reported_quantities(self.finer, path), False)
         wanted = Events((float(end.z[-1]),), last=int(Mark.USER_POINT))
         path, reached = self._path(begin.z, None, span, wanted, forward), False
         while path.status is Status.EVENT:
@@ -203,7 +203,7 @@ class StretchFollower:
             path = path.then(further) if len(further.z) else replace(path, status=further.status)
         if path.status is Status.EVENT and not reached:
             path = replace(path, status=Status.INTERRUPTED)
-        return PartnerPiece(path, reported_quantities(self.finer, path), reached)
+        return ReferencePiece(path, reported_quantities(self.finer, path), reached)
 
     def _is_at(self, path: Path, end: StretchEnd) -> bool:
         """Whether a path ends there, and not at another motion of that frequency."""
@@ -220,7 +220,7 @@ class StretchFollower:
         wanted: Events,
         forward: bool,
     ) -> Path:
-        """The partner from a point, as far as the work allows."""
+        """The reference from a point, as far as the work allows."""
         balance, stepper, known = self.finer.reset_balance(), self.finer.shared_stepper, 0
 
         def pay() -> None:

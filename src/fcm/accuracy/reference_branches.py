@@ -1,6 +1,6 @@
-"""Motions of the partner at frequencies to which no branch of it is known to come.
+"""Motions of the reference at frequencies to which no branch of it is known to come.
 
-Where the partner is another curve, few of its points lie normal to the path, and it is followed here alone,
+Where the reference is another curve, few of its points lie normal to the path, and it is followed here alone,
 with as many harmonics as the work allows.
 They belong to the whole response: what is followed from one branch tells the others, too, and all of it has
 one budget.
@@ -16,10 +16,10 @@ import numpy as np
 
 from fcm.accuracy.budget import Budget, share_of
 from fcm.accuracy.options import PairOptions
-from fcm.accuracy.partner import partner_of
-from fcm.accuracy.partner_curve import curve_piece
-from fcm.accuracy.partner_pieces import CurvePiece
-from fcm.accuracy.partner_stretch import StretchFollower
+from fcm.accuracy.reference_curve import curve_piece
+from fcm.accuracy.reference_harmonics import reference_harmonics
+from fcm.accuracy.reference_pieces import CurvePiece
+from fcm.accuracy.reference_stretch import StretchFollower
 from fcm.continuation import Path, Status
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.options import DampedOptions, ProlongationOptions
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 OF_FAR_MOTIONS = ProlongationOptions(damped=DampedOptions(min_contacts=0))
 
 
-def further_partner_pieces(
+def further_reference_pieces(
     system: System,
     paths: Sequence[Path],
     shown: Sequence[ReportedQuantities],
@@ -43,44 +43,44 @@ def further_partner_pieces(
     first: int,
     options: PairOptions,
 ) -> list[list[CurvePiece]]:
-    """For each path pieces of its partner, of which at least one passes each frequency that no piece is known
-    to pass, as far as the work allows.
+    """For each path pieces of its reference, of which at least one passes each frequency that no piece is
+    known to pass, as far as the work allows.
 
-    They are followed from points of the paths from the first on whose errors are not told, those of the
-    smallest motions before the others: there the partner has fewest. Where no motion of such a path leads to
-    one of its partner, the level of the forces may; then points between those that were tried.
+    They are followed from points of the paths from the first on whose errors are unknown, those of the
+    smallest motions before the others: there the reference has fewest. Where no motion of such a path leads
+    to one of its reference, the level of the forces may; then points between those that were tried.
     """
     search = _Search(system, paths, shown, errors, first, options)
     interval = options.point_interval
-    while interval and search.is_open and search.leads(interval):
+    while interval and search.is_open and search.extends(interval):
         interval //= options.interval_factor
     # what the levels took is paid already
     system.work.add(sum(one.each * one.evaluations for one in search.followers.values()))
     return search.found
 
 
-def affordable_partner(
+def affordable_reference(
     system: System, path: Path, share: FloatArray, options: PairOptions
 ) -> tuple[int, ...]:
-    """The partner's harmonics where it is another curve; fewer where following it takes longer than it may.
+    """The reference's harmonics where it is another curve; fewer where following it takes longer than it may.
 
     That is about as many evaluations as the path took, for so many times as many harmonics. share as of
-    `partner_of`.
+    `reference_harmonics`.
     """
     most, ports = Budget.elsewhere(system.work, options).seconds, system.layout.ports
-    more = partner_of(system.harmonics, share, ports, options)
+    more = reference_harmonics(system.harmonics, share, ports, options)
     for times in options.fewer_factors:
         growth = len(more) / len(system.harmonics)
         if seconds_of(system, 1, len(more)) * path.evaluations * growth <= most:
             break
         fewer = replace(options, harmonics_factor=times, max_named=1)
-        more = partner_of(system.harmonics, share, ports, fewer)
+        more = reference_harmonics(system.harmonics, share, ports, fewer)
     return more
 
 
 @dataclass(eq=False)
 class _Front:
-    """Where following the partner of a path begins or was left: a point, the direction there, and how many
+    """Where following the reference of a path begins or was left: a point, the direction there, and how many
     points its last piece told of in a second of work."""
 
     path: int
@@ -91,7 +91,7 @@ class _Front:
 
 
 class _Search:
-    """Pieces of partners found for each path, within a budget, until every frequency is passed."""
+    """Pieces of references found for each path, within a budget, until every frequency is passed."""
 
     def __init__(
         self,
@@ -108,26 +108,26 @@ class _Search:
         self.each = self.budget.seconds * options.piece_fraction
         self.found: list[list[CurvePiece]] = [[] for _ in paths]
         self.known = [piece for one in errors for piece in one.pieces]
-        self.untold = [
+        self.unknown = [
             _UnknownError(*one, system.harmonics) for one in zip(paths, shown, errors, strict=True)
         ]
         self.followers = dict[int, StretchFollower]()
         for piece in self.known:
-            _told_by(piece, self.untold)
+            _newly_known(piece, self.unknown)
 
     @property
     def is_open(self) -> bool:
         """Whether there is something to tell, and work that it may take."""
-        return self.budget.seconds > 0.0 and self.untold_fraction > 0.0
+        return self.budget.seconds > 0.0 and self.unknown_fraction > 0.0
 
     @property
-    def untold_fraction(self) -> float:
+    def unknown_fraction(self) -> float:
         """Part of the points of the paths from the first on of which nothing is told yet."""
-        size = np.concatenate([one.size for one in self.untold[self.first :]])
+        size = np.concatenate([one.size for one in self.unknown[self.first :]])
         return float(np.isfinite(size).mean()) if size.size else 0.0
 
-    def leads(self, interval: int) -> bool:
-        """Whether points at least so far apart lead to any motion of a partner, and on from there."""
+    def extends(self, interval: int) -> bool:
+        """Whether points at least so far apart lead to any motion of a reference, and on from there."""
         before = len(self.known)
         self.from_motions(interval)
         if interval == self.options.point_interval:
@@ -152,21 +152,21 @@ class _Search:
 
     def _places(self, interval: int) -> Iterator[tuple[int, int]]:
         """Paths and points on them, of the smallest motions of which nothing is told yet."""
-        for one in self.untold:
+        for one in self.unknown:
             one.tried[:] = False
         while self.budget.seconds > 0.0:
-            k = min(range(self.first, len(self.paths)), key=lambda k: self.untold[k].least, default=-1)
-            if k < 0 or not np.isfinite(self.untold[k].least):
+            k = min(range(self.first, len(self.paths)), key=lambda k: self.unknown[k].least, default=-1)
+            if k < 0 or not np.isfinite(self.unknown[k].least):
                 break
-            i = self.untold[k].smallest
-            self.untold[k].tried[max(i - interval + 1, 0) : i + interval] = True
+            i = self.unknown[k].smallest
+            self.unknown[k].tried[max(i - interval + 1, 0) : i + interval] = True
             yield k, i
 
     def _fronts(self, k: int, i: int, by_level: bool) -> list[_Front]:
         """Both ways from a motion at a point of a path, if there is one."""
         stretches, most = self._stretches(k), self.each
         if by_level:
-            most = self.budget.seconds * self.options.level_fraction * self.untold_fraction
+            most = self.budget.seconds * self.options.level_fraction * self.unknown_fraction
         stretches.budget = Budget(most)
         z = stretches.start(i, by_level)
         self.budget.seconds -= most - stretches.budget.seconds
@@ -183,7 +183,7 @@ class _Search:
 
     def _followed(self, front: _Front) -> list[_Front]:
         """The front where the piece from another is left, if that told of any point."""
-        stretches, told = self._stretches(front.path), 0
+        stretches, count = self._stretches(front.path), 0
         given = min(self.each, self.budget.seconds)
         if given <= 0.0:
             return []
@@ -197,15 +197,15 @@ class _Search:
             new = curve_piece(stretches.finer, piece)
             self.found[front.path].append(new)
             self.known.append(new)
-            told = _told_by(new, self.untold)
-        if not told or path.status is not Status.INTERRUPTED:
+            count = _newly_known(new, self.unknown)
+        if not count or path.status is not Status.INTERRUPTED:
             return []
-        return [_Front(front.path, path.z[-1], path.direction[-1], True, told / spent)]
+        return [_Front(front.path, path.z[-1], path.direction[-1], True, count / spent)]
 
     def _stretches(self, k: int) -> StretchFollower:
-        """Of the partner of a path, sought from motions that lie far from it."""
+        """Of the reference of a path, sought from motions that lie far from it."""
         if k not in self.followers:
-            more = self.errors[k].partner
+            more = self.errors[k].reference
             finer, options = self.system.with_harmonics(more), self.options
             lifted = Prolongation(
                 finer.new_balance(),
@@ -221,7 +221,7 @@ class _Search:
 
 
 class _UnknownError:
-    """The points of a path whose errors are not told, and whether they were tried, with the sizes of their
+    """The points of a path whose errors are unknown, and whether they were tried, with the sizes of their
     motions."""
 
     def __init__(
@@ -229,7 +229,7 @@ class _UnknownError:
     ) -> None:
         self.path, self.size = path, shown.amplitude.max(axis=1)
         self.size[errors.is_same_curve] = np.inf
-        if errors.partner == harmonics:  # it has none
+        if errors.reference == harmonics:  # it has none
             self.size[:] = np.inf
         self.tried = np.zeros(len(self.size), dtype=np.bool_)
 
@@ -242,10 +242,10 @@ class _UnknownError:
         return int(np.where(self.tried, np.inf, self.size).argmin())
 
 
-def _told_by(piece: CurvePiece, untold: Sequence[_UnknownError]) -> int:
+def _newly_known(piece: CurvePiece, unknown: Sequence[_UnknownError]) -> int:
     """Of how many points a piece tells, that nothing was told of."""
     count = 0
-    for one in untold:
+    for one in unknown:
         passed = piece.passes(one.path.parameter)
         count += int(np.isfinite(one.size[passed]).sum())
         one.size[passed] = np.inf

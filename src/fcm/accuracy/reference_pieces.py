@@ -1,4 +1,4 @@
-"""Pieces of the partner of a curve as they are known, and what it has at the frequencies of the curve."""
+"""Pieces of the reference of a curve as they are known, and what it has at the frequencies of the curve."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from fcm.accuracy.curve_distance import PartnerCurveData, arc_lengths
+from fcm.accuracy.curve_distance import ReferenceCurveData, arc_lengths
 from fcm.continuation import Path
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities
 from fcm.model.scene import FloatArray
@@ -23,7 +23,7 @@ class CurvePiece:
     multipliers above 1 is even.
     """
 
-    curve: PartnerCurveData
+    curve: ReferenceCurveData
     frequency: FloatArray
     orientation: FloatArray
     value: FloatArray
@@ -44,16 +44,16 @@ class CurvePiece:
         self,
         omega: FloatArray,
         even: FloatArray,
-        reference: FloatArray,
+        target: FloatArray,
         number: npt.NDArray[np.intc] | None = None,
     ) -> FloatArray:
         """Values (place, column) where it passes frequencies omega (place,), whose amplitudes are nearest to
-        a reference (place, dof); as of `PartnerCurveData.values_at_crossings`, with no number where all
+        target values (place, dof); as of `ReferenceCurveData.values_at_crossings`, with no number where all
         count."""
         found, every = np.empty((len(omega), self.value.shape[1])), np.full(len(omega), -1, dtype=np.intc)
         which = every if number is None else number
         self.curve.values_at_crossings(
-            self.orientation, self.value, self.slope, omega, even, reference, which, found
+            self.orientation, self.value, self.slope, omega, even, target, which, found
         )
         return found
 
@@ -73,7 +73,7 @@ def piece_of(reported: ReportedPath) -> CurvePiece:
     parameter, rate = (np.ascontiguousarray(one[:, -1]) for one in (path.z, path.direction))
     place = lengths(path)
     return CurvePiece(
-        PartnerCurveData(place, parameter, rate),
+        ReferenceCurveData(place, parameter, rate),
         parameter,
         np.ascontiguousarray(path.orientation),
         np.hstack((shown.amplitude, contact_loads)),
@@ -92,7 +92,7 @@ def piece_through(
     place, omega, orientation, value = place[apart], omega[apart], orientation[apart], value[apart]
     rate = np.gradient(np.column_stack((omega, value)), place, axis=0)
     return CurvePiece(
-        PartnerCurveData(place, omega, np.ascontiguousarray(rate[:, 0])),
+        ReferenceCurveData(place, omega, np.ascontiguousarray(rate[:, 0])),
         omega,
         np.ascontiguousarray(orientation),
         np.ascontiguousarray(value),
@@ -101,30 +101,30 @@ def piece_through(
 
 
 def nearest(
-    pieces: Iterable[CurvePiece], omega: FloatArray, even: FloatArray, reference: FloatArray
+    pieces: Iterable[CurvePiece], omega: FloatArray, even: FloatArray, target: FloatArray
 ) -> FloatArray:
     """Values (place, column) of the nearest of all motions that pieces have at frequencies omega (place,).
 
-    The nearest to a reference (place, dof) of those that are as even, else of all; NaN where there is none.
+    The nearest to target values (place, dof) of those that are as even, else of all; NaN where there is none.
     """
     known = tuple(pieces)
-    found = _nearest(known, omega, even, reference)
+    found = _nearest(known, omega, even, target)
     none = np.isnan(found).any(axis=1)
     if none.any():
-        found[none] = _nearest(known, omega[none], np.zeros(int(none.sum())), reference[none])
+        found[none] = _nearest(known, omega[none], np.zeros(int(none.sum())), target[none])
     return found
 
 
 def _nearest(
-    pieces: tuple[CurvePiece, ...], omega: FloatArray, even: FloatArray, reference: FloatArray
+    pieces: tuple[CurvePiece, ...], omega: FloatArray, even: FloatArray, target: FloatArray
 ) -> FloatArray:
     """The same of those that are as even, or of all where that is zero."""
-    best, dofs = np.full((len(omega), pieces[0].value.shape[1]), np.nan), reference.shape[1]
+    best, dofs = np.full((len(omega), pieces[0].value.shape[1]), np.nan), target.shape[1]
     omega, even = np.ascontiguousarray(omega), np.ascontiguousarray(even)
-    reference = np.ascontiguousarray(reference)
+    target = np.ascontiguousarray(target)
     for piece in pieces:
-        other = piece.values_at(omega, even, reference)
-        off, before = (np.abs(one[:, :dofs] - reference).max(axis=1) for one in (other, best))
+        other = piece.values_at(omega, even, target)
+        off, before = (np.abs(one[:, :dofs] - target).max(axis=1) for one in (other, best))
         nearer = np.isfinite(off) & ~(off >= before)
         best[nearer] = other[nearer]
     return best

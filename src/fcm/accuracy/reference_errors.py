@@ -1,0 +1,44 @@
+r"""What a reference is off by itself, where that may be more than the error that it tells.
+
+What the harmonics that it lacks would do without feedback is known all along of the spectrum of its exact
+forces times the receptance. Feedback makes
+
+    e_reference = g sum_h s_h
+
+of it. The gain g is that of a reference of its own, at a few points where this may be more than what is told:
+where amplitudes of curve and reference cross, or harmonics converge slowly. No error is less than
+e_reference.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fcm.accuracy.reference_curve import ReferenceCurve
+from fcm.harmonic_balance.consecutive_points import runs
+from fcm.model.scene import FloatArray
+
+
+def with_reference_errors(reference: ReferenceCurve, error: FloatArray) -> FloatArray:
+    """Errors (point, dof) in units of the reference's curve, at least what that is off by itself. NaN
+    stays."""
+    options, place = reference.options, reference.place
+    known = np.flatnonzero(reference.is_found & ~np.isnan(error).any(axis=1))
+    known = known[:: -(-len(known) // options.max_spectra) or 1]
+    if not known.size or not reference.may_have_second:
+        return error
+    largest = reference.amplitude.max(axis=1)
+    estimated = (error * reference.unit).max(axis=1) / np.where(largest > 0.0, largest, 1.0)
+    left = np.interp(place, place[known], reference.left_out(known))
+    uncertain = (options.feedback_factor * left > estimated) & ~reference.linear
+    asked = list[int]()
+    for first, end in runs(uncertain):
+        asked += known[(first <= known) & (known < end)].tolist() or [(first + end) // 2]
+    asked = asked[:: -(-len(asked) // options.max_uncertain) or 1]
+    gain = {i: own / left[i] for i in asked if (own := reference.own_error(i)) is not None}
+    if not gain:
+        return error
+    raised, at, rows = error.copy(), place[list(gain)], ~reference.linear
+    for d, each in enumerate(np.transpose(list(gain.values()))):
+        raised[rows, d] = np.maximum(raised[rows, d], left[rows] * np.interp(place[rows], at, each))
+    return raised
