@@ -238,6 +238,44 @@ def test_paraviews_file_has_the_mesh_and_the_displacements(made):
         assert not read.point_data[f"{label}_h1_real"][[0, 4, 8, 12]].any()
 
 
+def test_paraviews_file_has_what_the_contacts_bear_at_their_nodes(made):
+    """Energy by the harmonics of force and displacement, the normal force by the displacement in time."""
+    folder, _ = made
+    read, forces = meshio.read(folder / "c.vtu").point_data, forces_of(folder)
+    rows, waves, mean, _ = waves_of(folder)
+    h, turn = np.arange(1, 4), np.exp(1j * np.outer(np.arange(1, 4), np.linspace(0.0, 2.0 * np.pi, 4001)))
+    for m, label in enumerate(("at_4500_rad_s", "at_4680.5_rad_s")):
+        u, v = (waves[m, :, rows.index(name)] for name in ("16y", "16z"))
+        load = 20.0 + 1e6 * (mean[m, rows.index("16z")] + (v @ turn).imag)
+        expected = {
+            "energy": np.pi * np.sum(h * (forces[m, 0, 0, 1:] * u.conj()).imag),
+            "greatest_normal_force": load.max(),
+            "state": 2 if load.min() < 0.0 else 1,
+        }
+        for name, value in expected.items():
+            found = read[f"{label}_{name}"]
+            assert found[15] == pytest.approx(value, rel=1e-6) and value > 0.0
+            assert set(found[:15]) == {-1 if name == "state" else 0.0}
+        slip = read[f"{label}_slip_path"]  # friction of at most mu n takes the energy along it
+        assert slip[15] * 0.3 * load.max() > expected["energy"] and not slip[:15].any()
+
+
+def test_a_mesh_of_some_nodes_will_do(made, tmp_path):
+    folder, _ = made
+    (tmp_path / "some.csv").write_text("node,x,y,z\n16,0.3,0.05,0.04\n8,0.3,0.05,0\n1,0,0,0\n")
+    options = ("--motion-at", 4500, "--motion-at", 4680.5, "--export", tmp_path / "some.vtu")
+    done = called("respond", folder / "model.toml", *options, "--mesh", tmp_path / "some.csv")
+    assert done.code == 0, done.err
+    assert (
+        done.err.count("has 2 of the 12 nodes of the structure") == 1
+        and "10 nodes (2, 3, 4, ...)" in done.err
+    )
+    some, every = (meshio.read(one).point_data for one in (tmp_path / "some.vtu", folder / "c.vtu"))
+    assert some.keys() == every.keys()
+    for name, values in some.items():
+        assert values == pytest.approx(every[name][[15, 7, 0]])
+
+
 def test_the_universal_file_has_shapes_and_spectra(made):
     folder, _ = made
     rows, waves, _, _ = waves_of(folder)
@@ -384,11 +422,11 @@ def test_motions_at_an_optimum_are_those_of_the_scene_with_its_numbers(tmp_path)
 
 def test_the_mesh_of_another_structure_is_refused(tmp_path):
     (tmp_path / "model.toml").write_text(SCENE)
-    (tmp_path / "xyz.csv").write_text("node,x,y,z\n1,0,0,0\n2,0.1,0,0\n")
+    (tmp_path / "xyz.csv").write_text("node,x,y,z\n1,0,0,0\n5,0.1,0,0\n")
     done = called(
         "respond", tmp_path / "model.toml", "--export", tmp_path / "a.vtu", "--mesh", tmp_path / "xyz.csv"
     )
-    assert done.code == 2 and "has no node 3, 4, 6, which the structure has (11 nodes in all)" in done.err
+    assert done.code == 2 and "none of the 12 nodes of the structure, which begin with 2, 3, 4" in done.err
 
 
 STEADY = """*STEP

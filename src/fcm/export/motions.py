@@ -14,7 +14,7 @@ import numpy as np
 
 from fcm.continuation.corrector import Newton
 from fcm.export.options import EXPORT, ExportOptions
-from fcm.harmonic_balance.response_quantities import amplitudes_at
+from fcm.harmonic_balance.response_quantities import ContactRecord, amplitudes_at
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Modal, Scene
 from fcm.reduction.restore import unknowns
@@ -88,6 +88,7 @@ def _of_modes(response: Response, scene: Scene, at: Sequence[float]) -> list[Mot
         for one in curve.mode.motions:
             force, modal = contact_forces(system, one.contacts), turn.T @ one.modes
             motion = Motion(number, swept, (), one.frequency, np.nan, harmonics, force, modal, one.amplitude)
+            motion = with_contacts(motion, system, one.contacts)
             found.append(motion)
     for amplitude in at:
         if not any(
@@ -177,9 +178,17 @@ class _Solver:
             X, mean = amplitudes_at(self.in_modes, z[None])
             modal = np.concatenate((mean[0, :, None], 1j * X[0].T), axis=1)
         force = contact_forces(self.system, z)
-        return Motion(
-            number, dict(self.curve.parameters), of, float(z[-1]), stable, self.system.harmonics, force, modal
-        )
+        swept, harmonics = dict(self.curve.parameters), self.system.harmonics
+        found = Motion(number, swept, of, float(z[-1]), stable, harmonics, force, modal)
+        return with_contacts(found, self.system, z)
+
+
+def with_contacts(motion: Motion, system: System, z: FloatArray) -> Motion:
+    """With what the contacts do over a cycle, and bear, at the point z (unknown + 1,)."""
+    if not system.scene.contacts:
+        return motion
+    record = ContactRecord.at(system, z[None])
+    return replace(motion, states=tuple(record.words[0].tolist()), contact_loads=record.contact_loads[0])
 
 
 def contact_forces(system: System, z: FloatArray) -> ComplexArray:

@@ -106,18 +106,25 @@ def check_mesh(rows: Rows, mesh: Mesh, name: str) -> list[str]:
     Raises
     ------
     ExportError
-        If the structure has nodes that the mesh has not, or none at all.
+        If the structure has no nodes, or none that the mesh has.
     """
     check_nodes(rows)
     lacking = rows.nodes[~np.isin(rows.nodes, mesh.nodes)]
-    if lacking.size:
-        which = ", ".join(str(node) for node in lacking[:3].tolist())
+    which = ", ".join(str(node) for node in lacking[:3].tolist())
+    there = rows.nodes.size - lacking.size
+    if not there:
         raise ExportError(
-            f"{name}: it has no node {which}, which the structure has "
-            f"({counted(lacking.size, 'node')} in all): it is the mesh of another"
+            f"{name}: it has none of the {counted(lacking.size, 'node')} of the structure, "
+            f"which begin with {which}: it is the mesh of another"
         )
     said = []
-    without = len(mesh.nodes) - rows.nodes.size
+    if lacking.size:
+        said.append(
+            f"{name}: it has {there} of the {rows.nodes.size} nodes of the structure. "
+            f"Without a place, and not on the mesh: {counted(lacking.size, 'node')} "
+            f"({which}{', ...' if lacking.size > 3 else ''})"
+        )
+    without = len(mesh.nodes) - there
     if without:
         have = f"{counted(without, 'node')} of {len(mesh.nodes)} {'have' if without > 1 else 'has'} no row"
         said.append(

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from fcm.export.motions import labels_of
-from fcm.export.rows import Rows
+from fcm.export.rows import IntArray, Rows
 from fcm.mesh import Mesh
-from fcm.model.scene import Scene
+from fcm.model.scene import FloatArray, Scene
+from fcm.results.contact_states import contact_states
 from fcm.results.motions import Motion
 
 
@@ -22,6 +23,12 @@ def write_vtu(motions: Sequence[Motion], scene: Scene, mesh: Mesh, path: Path) -
     with rotations, those of NAME_rotation_... as well. x = mean + Im((real + i imag) exp(i h omega t)).
     node_number (node,) has the numbers of the nodes, has_rows (node,) is 1 where the matrices have rows.
     Without elements, each node is a cell of its own.
+
+    Of the contacts there are NAME_energy and NAME_slip_path in a cycle and NAME_greatest_normal_force, each
+    (node,) with 0 at nodes of no contact, and NAME_state: a place among
+    `fcm.results.contact_states.STATES`, -1 there. A node of several contacts has the sum of energies and
+    forces, the longest slip, the highest state. A contact between many nodes gives each the part with which
+    it moves with it.
     """
     import meshio
 
@@ -31,6 +38,7 @@ def write_vtu(motions: Sequence[Motion], scene: Scene, mesh: Mesh, path: Path) -
         "node_number": nodes.astype(np.int64),
         "has_rows": np.isin(nodes, rows.nodes).astype(np.int64),
     }
+    share = _shares(scene, rows, nodes)
     for motion, name in zip(motions, labels_of(motions, scene.frequency_unit), strict=True):
         found = rows.by_node(rows.displacements(motion, scene), nodes)
         for kind, columns in (("", slice(0, 3)), ("_rotation", slice(3, 6)))[: 2 if rows.turn else 1]:
@@ -39,7 +47,31 @@ def write_vtu(motions: Sequence[Motion], scene: Scene, mesh: Mesh, path: Path) -
             for j, harmonic in enumerate(motion.harmonics, 1):
                 data[f"{name}{kind}_h{harmonic}_real"] = part[j].real
                 data[f"{name}{kind}_h{harmonic}_imag"] = part[j].imag
+        if motion.contact_loads is not None:
+            data |= {f"{name}_{what}": values for what, values in _at_nodes(motion, share).items()}
     cells: list[Any] = [(kind, places) for kind, places in mesh.cells]
     if not cells:
         cells = [("vertex", np.arange(len(nodes))[:, None])]
     meshio.write(path, meshio.Mesh(mesh.xyz, cells, point_data=data), file_format="vtu")
+
+
+def _shares(scene: Scene, rows: Rows, nodes: IntArray) -> FloatArray:
+    """With which part of its motion each node takes part in that across each contact, (contact, node)."""
+    found = np.zeros((len(scene.contacts), nodes.size))
+    for of_contact, contact in zip(found, scene.contacts, strict=True):
+        along = contact.normal if contact.normal.any() else contact.tangential
+        of_contact[:] = np.linalg.norm(rows.by_node(along[rows.places].astype(np.complex128), nodes), axis=-1)
+    return found
+
+
+def _at_nodes(motion: Motion, share: FloatArray) -> dict[str, FloatArray]:
+    """What contacts bear, and their states, at the nodes that they join."""
+    assert motion.contact_loads is not None
+    normal, _, slip, energy = motion.contact_loads.T
+    state, joined = contact_states(motion.states), share > 0.0
+    return {
+        "energy": energy @ share,
+        "slip_path": np.where(joined, slip[:, None], 0.0).max(axis=0),
+        "greatest_normal_force": normal @ share,
+        "state": np.where(joined, state[:, None], -1).max(axis=0),
+    }

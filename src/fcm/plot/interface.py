@@ -18,6 +18,7 @@ from fcm.plot.pairs import direction_name, plane_view
 from fcm.plot.read import LEVEL, FloatArray, floats, on_curve, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
 from fcm.plot.style import COLUMN, LAYOUT, TWO_COLUMNS, house_style, new_figure
+from fcm.results.contact_states import STATES, contact_states
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,10 +30,10 @@ _OPTIONAL = ("stable", "contact_position", "level", "modal_amplitude")
 CONTACT_LOADS = (("dissipated_energy", "energy in a cycle"), ("slip_path", "slip path in a cycle"),
           ("greatest_normal_force", "greatest normal force"))  # fmt: skip
 STATES_OF_CONTACTS = (  # word, colour and mark: told apart without colours, too
-    ("sticks", "#0072B2", "o"),
-    ("slips", "#E69F00", "^"),
-    ("slips and opens", "#D55E00", "s"),
-    ("open", "#FFFFFF", "o"),
+    (STATES[0], "#0072B2", "o"),
+    (STATES[1], "#E69F00", "^"),
+    (STATES[2], "#D55E00", "s"),
+    (STATES[3], "#FFFFFF", "o"),
 )
 _SIZE = (4.0, 60.0)  # [point^2] of a mark, for many contacts and for few
 _SHARE = 0.7  # of the distance of two marks is filled by them
@@ -187,17 +188,12 @@ def _nearest(file: InterfaceFile, curve: int, along: FloatArray, one: float, opt
 
 def _point(file: InterfaceFile, curve: int, k: int) -> InterfacePoint:
     words = file.states[curve, k]
-    opens = np.array(["S" in word for word in words])
-    slips = np.array([bool(set(word) - set("ES")) for word in words])
-    always = words == "S"
-    state = np.where(always, 3, np.where(opens, 2, np.where(slips, 1, 0)))
+    state = contact_states(words)
     omega, stable = float(file.frequency[curve, k]), float(file.stable[curve, k])
     several = len(file.names) > 1
     named = (file.names[curve], file.swept[curve]) if several else ("", {})
     modal = None if file.modal_amplitude is None else float(file.modal_amplitude[curve, k])
-    return InterfacePoint(
-        omega, stable, state.astype(np.intp), file.contact_loads[:, curve, k], *named, modal
-    )
+    return InterfacePoint(omega, stable, state, file.contact_loads[:, curve, k], *named, modal)
 
 
 def place_of(file: InterfaceFile, point: InterfacePoint) -> str:

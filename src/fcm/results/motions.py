@@ -35,6 +35,8 @@ class Motion:
     force: ComplexArray  # (contact, direction, 1 + harmonic)
     modal: ComplexArray | None  # (mode, 1 + harmonic), of modes of mass 1; None of a ring's sector
     amplitude: float = np.nan  # modal, of a nonlinear mode
+    states: tuple[str, ...] = ()  # of each contact the sequence of its states over a cycle
+    contact_loads: FloatArray | None = None  # (contact, 4): greatest normal and friction force, slip, energy
 
     def at(self, harmonic: int) -> int:
         """The place of a harmonic in the arrays; -1 if the motion has it not."""
