@@ -79,7 +79,8 @@ def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -
 
 OPTIONS: list[Callable[[Any], Any]] = [  # in the order of the help
     output_option("-o", "--output", endings=(".nc",), help="Write the curves, and the motion, as netCDF."),
-    output_option("--csv", endings=(".csv",), help="Write the curves as CSV; without any, the motion."),
+    output_option("--csv", endings=(".csv",),
+        help="Write the curves as CSV, of response.output where there is one; without any, the motion."),
     output_option("--history-csv", endings=(".csv",), help="Write the motion of the schedule as CSV."),
     export_options,
     click.option("--json", "to_json", is_flag=True, help="Print the summary as JSON instead of a table."),

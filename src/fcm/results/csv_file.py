@@ -22,16 +22,26 @@ ORBIT_COLUMNS = ("closure_error", "sweep", "repeats")
 
 
 def write_csv(response: Response, path: str | Path) -> None:
-    """Write the response as CSV, a row for each point; frequencies in the scene's unit."""
+    """Write the response as CSV, a row for each point; frequencies in the scene's unit.
+
+    Of the degrees of freedom those that the scene asks for, or all where it does not say.
+    """
+    shown = _shown(response)
     with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        writer.writerow(_columns(response))
+        writer.writerow(_columns(response, [response.dofs[i] for i in shown]))
         for number, curve in enumerate(response.curves):
             planar = [i for i, name in enumerate(response.contacts) if name in response.directions]
-            writer.writerows([number, *row] for row in _rows(curve, response.frequency_unit, planar))
+            writer.writerows([number, *row] for row in _rows(curve, response.frequency_unit, planar, shown))
 
 
-def _columns(response: Response) -> list[str]:
+def _shown(response: Response) -> list[int]:
+    """Places of the degrees of freedom that the scene asks for."""
+    asked = [i for i, dof in enumerate(response.dofs) if dof in response.output]
+    return asked or list(range(len(response.dofs)))
+
+
+def _columns(response: Response, dofs: Sequence[str]) -> list[str]:
     """Names of what `_rows` gives of each point."""
     exact, unit = response.method == "exact", response.frequency_unit
     kinds = ("amplitude", "phase", "mean", "fundamental", "error", *(ORBIT_KINDS if exact else ()))
@@ -41,7 +51,7 @@ def _columns(response: Response) -> list[str]:
     columns += ["level"] if any(curve.level is not None for curve in response.curves) else []
     if any(curve.mode is not None for curve in response.curves):
         columns += ["modal_amplitude", "damping_ratio"]
-    for dof in response.dofs:
+    for dof in dofs:
         own = unit_of(dof, response.units[0])
         units = {kind: f" [{own}]" if own and kind not in ("phase", "error") else "" for kind in kinds}
         columns += [f"{kind} {dof}{units[kind]}" for kind in kinds]
@@ -55,12 +65,12 @@ def _columns(response: Response) -> list[str]:
     return [*columns, *LAST_COLUMNS, *(ORBIT_COLUMNS if exact else ())]
 
 
-def _rows(c: Curve, unit: str, planar: Sequence[int]) -> Iterator[list[Any]]:
+def _rows(c: Curve, unit: str, planar: Sequence[int], shown: Sequence[int]) -> Iterator[list[Any]]:
     """The points of a curve, without its number."""
     orbits, frequency = c.orbits, in_unit(c.frequency, unit)
     own = () if orbits is None else tuple(getattr(orbits, kind) for kind in ORBIT_KINDS)
     parts = (c.amplitude, c.phase, c.mean, c.fundamental, c.error, *own)
-    stacked = np.stack(parts, axis=2)
+    stacked = np.stack(parts, axis=2)[:, shown]
     values = stacked.reshape(c.frequency.size, stacked.shape[1] * stacked.shape[2])  # of no points, too
     contact_loads = np.stack((c.cycle, c.cycle_error), axis=-1).reshape(
         c.frequency.size, 8 * c.cycle.shape[1]
@@ -86,7 +96,8 @@ def write_tracked_csv(response: Response, path: str | Path) -> None:
     assert tracking is not None
     swept = list(tracking.curves[0].parameters) if tracking.curves else []
     keys = [headed(key, *response.units, response.frequency_unit) for key in (*swept, tracking.key)]
-    units = {dof: unit_of(dof, response.units[0]) for dof in response.dofs}
+    shown = _shown(response)
+    units = {dof: unit_of(dof, response.units[0]) for dof in (response.dofs[i] for i in shown)}
     amplitudes = [f"amplitude {dof} [{units[dof]}]" if units[dof] else f"amplitude {dof}" for dof in units]
     header = ["track", "what", *keys, f"frequency [{response.frequency_unit}]", *amplitudes]
     with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
@@ -95,7 +106,7 @@ def write_tracked_csv(response: Response, path: str | Path) -> None:
         for number, one in enumerate(tracking.curves):
             frequency = in_unit(one.frequency, response.frequency_unit)
             for k in range(one.number.size):
-                values = [repr(float(x)) for x in (one.number[k], frequency[k], *one.amplitude[k])]
+                values = [repr(float(x)) for x in (one.number[k], frequency[k], *one.amplitude[k, shown])]
                 marks = [str(one.corner[k]), int(one.turn[k]), int(one.trough[k])]
                 writer.writerow([number, one.what, *one.parameters.values(), *values, *marks])
 

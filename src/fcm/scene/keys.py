@@ -168,7 +168,7 @@ TABLES: dict[str, dict[str, Key]] = {
         "harmonics": Key("harmonics of the balance: up to a number, or some of them",
                          "1 to 50, or a list such as [1, 2, 3, 9]", "as many as accuracy takes"),
         "accuracy": Key("relative error of peaks and folds; it chooses the harmonics", FRACTION, "0.01"),
-        "output": Key("degrees of freedom to show, and to be accurate; files also have those of contacts",
+        "output": Key("degrees of freedom to show, and to be accurate; netCDF has those of contacts, too",
                       "list of names, or of patterns such as \"40*\"", "all if they are 50 at most"),
     },
     "optimum": {
