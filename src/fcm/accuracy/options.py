@@ -114,7 +114,7 @@ class PairOptions:
     feedback_factor : float
         Times what harmonics do without feedback, what they do: where that of those that the reference lacks
         is more than the error that it tells, what it is off by itself is looked for,
-    max_spectra, max_doubts : int
+    max_spectra, max_uncertain : int
         at so many points of a curve at most, of so many at which the harmonics that it lacks are known.
     peak_offsets : tuple of int
         Points to either side of a top where it is looked for, too, if it is not at the top.
