@@ -40,10 +40,12 @@ def points(system, number):
     """(estimate, truth) of amplitudes at points of the system's curves, and how many could not be told."""
     found, truth = with_estimated_errors(system, 0.0), Truth(system)
     pairs, silent, alone, checked = [], 0, 0, 0
-    for path, shown, errors in zip(found.traced.branches.paths, found.shown, found.errors, strict=True):
+    for path, quantities, errors in zip(
+        found.traced.branches.paths, found.quantities, found.errors, strict=True
+    ):
         at = np.linspace(1, len(path.z) - 2, number).astype(int)
         for i in np.setdiff1d(at, path.where(Mark.FOLD | Mark.PEAK)):
-            known, now = errors.amplitude[i], shown.amplitude[i]
+            known, now = errors.amplitude[i], quantities.amplitude[i]
             if np.isnan(known).any():
                 silent += 1
                 continue
@@ -68,14 +70,14 @@ def peaks(case, harmonics):
     """
     system = System(case)
     true = with_estimated_errors(system.with_harmonics(MANY), 0.0)
-    height = np.max([one.amplitude.max(axis=0) for one in true.shown], axis=0)
+    height = np.max([one.amplitude.max(axis=0) for one in true.quantities], axis=0)
     few = [with_estimated_errors(system.with_harmonics(one), 0.0) for one in harmonics]
     for found in few:
-        for path, shown in zip(found.traced.branches.paths, found.shown, strict=True):
-            if (shown.amplitude.max(axis=0) > PAIR.rival_fraction * height).any():
-                height = np.maximum(height, beyond(found.system, path, shown.amplitude))
+        for path, quantities in zip(found.traced.branches.paths, found.quantities, strict=True):
+            if (quantities.amplitude.max(axis=0) > PAIR.rival_fraction * height).any():
+                height = np.maximum(height, beyond(found.system, path, quantities.amplitude))
     for found in few:
-        now = np.max([shown.amplitude.max(axis=0) for shown in found.shown], axis=0)
+        now = np.max([quantities.amplitude.max(axis=0) for quantities in found.quantities], axis=0)
         yield np.column_stack((found.peak, np.abs(height / now - 1.0)))
 
 

@@ -67,10 +67,10 @@ def test_points_at_which_harmonics_left_out_meet_a_mode_beside_the_exact_motion(
 def test_peaks_beside_those_of_many_harmonics(preload):
     system = System(scene("yang1998", preload))
     many = with_estimated_errors(system.with_harmonics(tuple(range(1, 22))), 0.0)
-    height = many.shown[0].amplitude.max(axis=0)
+    height = many.quantities[0].amplitude.max(axis=0)
     for harmonics in ((1,), (1, 2), (1, 2, 3)):
         found = with_estimated_errors(system.with_harmonics(harmonics), 0.0)
-        true = np.abs(height / found.shown[0].amplitude.max(axis=0) - 1.0)
+        true = np.abs(height / found.quantities[0].amplitude.max(axis=0) - 1.0)
         for known, is_really in zip(found.peak, true, strict=True):
             if is_really > 1e-3:
                 assert is_really / 2.0 < known < is_really * 2.0
@@ -95,7 +95,7 @@ def test_the_error_of_a_closed_branch_of_twice_the_true_height():
         with_estimated_errors(system.with_harmonics(up_to(15)), 0.0),
     )
     height, true = (
-        np.max([one.amplitude.max(axis=0) for one in each.shown], axis=0) for each in (found, many)
+        np.max([one.amplitude.max(axis=0) for one in each.quantities], axis=0) for each in (found, many)
     )
     off = np.abs(true / height - 1.0)
     assert off.max() > 0.4
@@ -108,7 +108,7 @@ def test_errors_and_multipliers_do_not_depend_on_the_curve_before():
     def errors_of(preload):
         found = with_estimated_errors(System(scene("yang1998", preload)), 0.0)
         (path,) = found.traced.branches.paths
-        top = found.shown[0].amplitude[:, 0].argmax()
+        top = found.quantities[0].amplitude[:, 0].argmax()
         return found.errors[0].amplitude, found.peak, multipliers(found.system, path.z[top])
 
     with ThreadPoolExecutor(1) as alone:
@@ -143,8 +143,8 @@ def test_an_unstable_closed_branch_has_the_error_of_the_exact_motion():
     found, truth = with_estimated_errors(system, 0.0), Truth(system)
     path, amplitude = max(
         (
-            (path, shown.amplitude)
-            for path, shown in zip(found.traced.branches.paths, found.shown, strict=True)
+            (path, quantities.amplitude)
+            for path, quantities in zip(found.traced.branches.paths, found.quantities, strict=True)
         ),
         key=lambda one: one[1].max(),
     )
@@ -167,7 +167,7 @@ def test_the_errors_of_peaks_of_irregular_curves_are_those_of_the_exact_motion(s
     found = with_estimated_errors(System(one, harmonics), 0.0)
     problem, known = OrbitProblem(one), []
     for d in dofs:
-        now = found.shown[0].amplitude[:, d].max()
+        now = found.quantities[0].amplitude[:, d].max()
         true = abs(now / height(found, problem, known, 0, d) - 1.0)
         assert true > 4e-4 and found.peak[d] == pytest.approx(true, rel=0.25)
 
@@ -180,7 +180,7 @@ def test_what_hardly_moves_says_nothing_of_what_moves():
         with_estimated_errors(system.with_harmonics((1, 3, 5, 7, 9)), 0.0),
     )
     u = list(system.scene.modal.dofs).index("u")
-    top, true = (max(one.amplitude[:, u].max() for one in each.shown) for each in (found, many))
+    top, true = (max(one.amplitude[:, u].max() for one in each.quantities) for each in (found, many))
     assert abs(top / true - 1.0) <= 3.0 * found.peak[u] <= 3e-4
     truncation = np.concatenate([one.truncation for one in found.errors])
     assert np.nanmax(truncation) < 0.1
@@ -195,7 +195,8 @@ def test_a_peak_that_more_harmonics_have_elsewhere_is_as_wrong_as_their_greatest
     )
     assert not any(errors.is_same_curve.any() for errors in found.errors)
     top, true = (
-        np.max([shown.amplitude.max(axis=0) for shown in each.shown], axis=0) for each in (found, many)
+        np.max([quantities.amplitude.max(axis=0) for quantities in each.quantities], axis=0)
+        for each in (found, many)
     )
     error = np.abs(true / top - 1.0)
     extends = top.argmax()
@@ -229,13 +230,13 @@ def test_a_branch_that_more_harmonics_do_not_have_is_as_far_as_the_motion_there(
     """The closed branch of one harmonic has up to ten times the amplitude of the motion from rest."""
     one = random_scene(8)
     found = with_estimated_errors(System(one), 0.0)
-    path, shown, errors = found.traced.branches.paths[1], found.shown[1], found.errors[1]
+    path, quantities, errors = found.traced.branches.paths[1], found.quantities[1], found.errors[1]
     assert path.status is Status.CLOSED and not errors.is_same_curve.any()
     assert np.isfinite(errors.amplitude).all()
     for i in range(5, len(path.z), 40):
         motion = periodic(one, float(path.parameter[i])).measure.amplitude
-        off = np.abs(motion / shown.amplitude[i] - 1.0)
-        whole = np.abs(motion - shown.amplitude[i]).max() / shown.amplitude[i].max()
+        off = np.abs(motion / quantities.amplitude[i] - 1.0)
+        whole = np.abs(motion - quantities.amplitude[i]).max() / quantities.amplitude[i].max()
         assert errors.amplitude[i] == pytest.approx(np.maximum(off, whole), rel=0.1)
 
 
@@ -247,12 +248,12 @@ def test_where_curve_and_reference_cross_the_error_is_that_of_the_reference(name
     """Their amplitudes are the same to 6e-4 where the exact motion is 8e-2 off."""
     one = load_scene(f"extreme/{name}")
     found = with_estimated_errors(System(one), 0.0)
-    (path,), (shown,), (errors,) = found.traced.branches.paths, found.shown, found.errors
+    (path,), (quantities,), (errors,) = found.traced.branches.paths, found.quantities, found.errors
     for omega in omegas:
         i = int(np.abs(path.parameter - omega).argmin())
         start = state_of(one, (1,), path.z[i])
         motion = periodic(one, float(path.parameter[i]), start).measure.amplitude
-        true = np.abs(motion / shown.amplitude[i] - 1.0)
+        true = np.abs(motion / quantities.amplitude[i] - 1.0)
         assert (errors.amplitude[i] > true / 3.0).all()
 
 
@@ -303,7 +304,10 @@ def test_a_row_of_contacts_in_partial_slip_is_told_of_everywhere():
     (errors,) = few.errors
     assert np.isfinite(errors.truncation).mean() > 0.9
     heights = np.array(
-        [np.max([shown.amplitude.max(axis=0) for shown in x.shown], axis=0) for x in (few, many)]
+        [
+            np.max([quantities.amplitude.max(axis=0) for quantities in x.quantities], axis=0)
+            for x in (few, many)
+        ]
     )
     true = np.abs(heights[1] / heights[0] - 1.0)
     assert np.median(true) > 0.1

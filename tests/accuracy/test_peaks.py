@@ -118,7 +118,7 @@ def test_errors_of_peaks_are_those_of_the_exact_motion_at_ends_and_between_point
         with_estimated_errors(System(one, harmonics), 0.0),
         trace_exact(replace(one, harmonics=None)).curves,
     )
-    now = np.max([shown.amplitude.max(axis=0) for shown in found.shown], axis=0)
+    now = np.max([quantities.amplitude.max(axis=0) for quantities in found.quantities], axis=0)
     for dof in dofs:
         d = "abc".index(dof)
         true = abs(exact.peaks[dof].amplitude / now[d] - 1.0)
@@ -130,7 +130,7 @@ def test_no_error_of_a_peak_is_low_where_modes_are_met_by_harmonics_beyond_all_t
     """By more than three; what those do without feedback is more than they do."""
     one, harmonics = lowest(), (1, 2, 3, 4, 5, 6, 7, 8, 9, 11, 13, 14)
     found, (exact,) = with_estimated_errors(System(one, harmonics), 0.0), trace_exact(one).curves
-    now = np.max([shown.amplitude.max(axis=0) for shown in found.shown], axis=0)
+    now = np.max([quantities.amplitude.max(axis=0) for quantities in found.quantities], axis=0)
     true = np.array([abs(exact.peaks[dof].amplitude / now["abc".index(dof)] - 1.0) for dof in "abc"])
     assert (true > 4e-4).all()
     assert (found.peak > true / 3.0).all() and (found.peak < 10.0 * true).all()
@@ -148,9 +148,9 @@ def test_where_two_peaks_are_one_point_the_corrected_curve_may_be_higher_beyond(
     response, force = {"frequency": [0.615, 0.894]}, [{"dof": "v", "amplitude": 1.0}]
     one = scene_from_dict({"modal": modal, "contact": contact, "force": force, "response": response})
     found = with_estimated_errors(System(one, (*up_to(13), 17, 19, 20)), 0.0)
-    (shown,) = found.shown
+    (quantities,) = found.quantities
     exact = height(found, OrbitProblem(one), [], 0, 1)
-    true = abs(shown.amplitude[:, 1].max() / exact - 1.0)
+    true = abs(quantities.amplitude[:, 1].max() / exact - 1.0)
     assert true > 1e-3 and true / 2.0 < found.peak[1] < 2.0 * true
 
 
@@ -159,17 +159,17 @@ def test_what_is_settled_at_one_of_several_peaks_that_lie_together_is_not_the_er
     error is 0.5 % at one and a tenth of that at the other. Of four contacts one peak is settled for both."""
     one = replace(random_scene(60012), frequency_range=(1.088, 1.1025), harmonics=None)
     found = with_estimated_errors(System(one, (*up_to(6), 10, 14)), 0.0)
-    (shown,), problem = found.shown, OrbitProblem(one)
+    (quantities,), problem = found.quantities, OrbitProblem(one)
     for d in (0, 2):
-        true = abs(shown.amplitude[:, d].max() / height(found, problem, [], 0, d) - 1.0)
+        true = abs(quantities.amplitude[:, d].max() / height(found, problem, [], 0, d) - 1.0)
         assert true > 1e-3 and true / 2.0 < found.peak[d] < 2.0 * true
 
 
 def test_a_peak_in_a_stretch_beside_which_nothing_is_found_is_not_told_from_far_away():
     """The second harmonic meets a mode of little damping there, and the exact peak is 2 % higher."""
     found = with_estimated_errors(System(replace(random_scene(60061), harmonics=None), (1,)), 0.0)
-    (shown,), problem = found.shown, OrbitProblem(found.system.scene)
-    true = abs(shown.amplitude[:, 1].max() / height(found, problem, [], 0, 1) - 1.0)
+    (quantities,), problem = found.quantities, OrbitProblem(found.system.scene)
+    true = abs(quantities.amplitude[:, 1].max() / height(found, problem, [], 0, 1) - 1.0)
     assert true > 1e-2 and true / 2.0 < found.peak[1] < 2.0 * true
 
 
@@ -183,5 +183,5 @@ def test_a_peak_of_the_reference_that_its_points_miss_is_not_told_too_low(seed, 
     of four contacts that rattle three more harmonics than 21 do a fifth of what all others do."""
     one = replace(random_scene(seed), harmonics=None)
     found = with_estimated_errors(System(one, harmonics), 0.0)
-    true = abs(found.shown[0].amplitude[:, 2].max() / height(found, OrbitProblem(one), [], 0, 2) - 1.0)
+    true = abs(found.quantities[0].amplitude[:, 2].max() / height(found, OrbitProblem(one), [], 0, 2) - 1.0)
     assert true > 1e-3 and true / 3.0 < found.peak[2] < 2.0 * true

@@ -58,8 +58,8 @@ def test_a_blade_to_one_percent(preload):
     at = list(one.modal.dofs).index("40z")
     # closed branches with light preloads are higher at 5500 rad/s and more, and unstable all along
     heights = [
-        shown.amplitude[:, at].max()
-        for path, shown in zip(found.traced.branches.paths, found.shown, strict=True)
+        quantities.amplitude[:, at].max()
+        for path, quantities in zip(found.traced.branches.paths, found.quantities, strict=True)
         if path.parameter.min() == one.frequency_range[0]
     ]
     assert max(heights) == pytest.approx(EXACT[preload], rel=2e-2)
@@ -71,7 +71,7 @@ def test_a_blade_to_a_tenth_of_a_percent(preload):
     found = refined_response(System(one), 1e-3)
     assert found.reached
     at = list(one.modal.dofs).index("40z")
-    height = max(shown.amplitude[:, at].max() for shown in found.shown)
+    height = max(quantities.amplitude[:, at].max() for quantities in found.quantities)
     assert height == pytest.approx(EXACT[preload], rel=2e-3)
 
 
@@ -82,8 +82,8 @@ def test_peaks_are_as_accurate_as_was_asked_for(case, accuracy):
     found = refined_response(System(scene(*case)), accuracy)
     assert found.reached
     many = with_estimated_errors(System(scene(*case), tuple(range(1, 32))), 0.0)
-    true = many.shown[0].amplitude.max(axis=0)
-    assert np.abs(found.shown[0].amplitude.max(axis=0) / true - 1.0).max() < 1.5 * accuracy
+    true = many.quantities[0].amplitude.max(axis=0)
+    assert np.abs(found.quantities[0].amplitude.max(axis=0) / true - 1.0).max() < 1.5 * accuracy
 
 
 def test_a_degree_of_freedom_that_never_moves_changes_no_harmonics():
@@ -140,9 +140,9 @@ def test_a_branch_that_fewer_harmonics_do_not_lead_to_is_found_by_the_level_at_l
     known = unchecked_response(first.system.with_harmonics(more))
     led = first.prolongated(more, prolongated_solutions(first, more), None)
     found = led.with_levels()
-    assert len(led.shown) == 1 and len(found.shown) == len(known.shown) == 2
-    assert sorted(one.amplitude.max() for one in found.shown) == pytest.approx(
-        sorted(one.amplitude.max() for one in known.shown), rel=1e-6
+    assert len(led.quantities) == 1 and len(found.quantities) == len(known.quantities) == 2
+    assert sorted(one.amplitude.max() for one in found.quantities) == pytest.approx(
+        sorted(one.amplitude.max() for one in known.quantities), rel=1e-6
     )
 
 
@@ -275,6 +275,6 @@ def test_the_highest_of_more_harmonics_are_left_out_where_they_take_too_long():
 def test_what_is_shown_of_few_points_is_that_of_all():
     whole = unchecked_response(System(planar_strip(frequency=(1.0, 1.1)), (1,)))
     few = whole.thinned(12)
-    (path,), (kept,) = few.traced.branches.paths, few.shown
+    (path,), (kept,) = few.traced.branches.paths, few.quantities
     assert len(path.z) < len(whole.traced.branches.paths[0].z)
     np.testing.assert_array_equal(kept.amplitude, reported_quantities(few.system, path).amplitude)

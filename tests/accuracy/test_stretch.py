@@ -46,12 +46,12 @@ def test_errors_where_a_corner_has_moved_are_those_at_the_same_frequency():
         }
     )  # fmt: skip
     found = with_given_harmonics(System(one, (1, 2, 3)))
-    (path,), (shown,), (errors,) = found.traced.branches.paths, found.shown, found.errors
+    (path,), (quantities,), (errors,) = found.traced.branches.paths, found.quantities, found.errors
     some = np.flatnonzero((path.parameter > 0.996) & (path.parameter < 1.0005))
     assert some.size > 8
     for i in some[:: some.size // 4]:
         exact = periodic(one, float(path.parameter[i]), state_of(one, (1, 2, 3), path.z[i]))
-        off = np.abs(exact.measure.amplitude - shown.amplitude[i]).max() / shown.amplitude[i].max()
+        off = np.abs(exact.measure.amplitude - quantities.amplitude[i]).max() / quantities.amplitude[i].max()
         assert 0.05 < off < 0.1
         np.testing.assert_allclose(errors.truncation[i], off, rtol=0.1)
 

@@ -33,17 +33,17 @@ def beyond():
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-4])
 def test_a_window_that_one_harmonic_has_outside_the_range_is_found(accuracy):
     found = refined_response(beyond(), accuracy)
-    path, shown = max(
-        zip(found.traced.branches.paths, found.shown, strict=True),
+    path, quantities = max(
+        zip(found.traced.branches.paths, found.quantities, strict=True),
         key=lambda one: one[1].amplitude[:, 1].max(),
     )
-    top = int(shown.amplitude[:, 1].argmax())
-    peak = shown.amplitude[top, 1]
+    top = int(quantities.amplitude[:, 1].argmax())
+    peak = quantities.amplitude[top, 1]
     assert peak == pytest.approx(exact(found.system, path.z[top])[1], rel=accuracy)
     assert found.reached
     starts = sorted(
         float(one.amplitude[i, 1])
-        for path, one in zip(found.traced.branches.paths, found.shown, strict=True)
+        for path, one in zip(found.traced.branches.paths, found.quantities, strict=True)
         for i in (path.parameter == 1.653).nonzero()[0]
     )
     assert starts[0] == pytest.approx(MARCHED[1], rel=0.03) and starts[-1] == pytest.approx(

@@ -26,7 +26,7 @@ KNOWN = Path(__file__).parents[1] / "harmonic_balance/scenes"
 def amplitudes_at(found, omega):
     """Amplitudes of a response where its branches pass a frequency, between two points."""
     there = []
-    for path, one in zip(found.traced.branches.paths, found.shown, strict=True):
+    for path, one in zip(found.traced.branches.paths, found.quantities, strict=True):
         off = path.parameter - omega
         for i in np.flatnonzero(off[:-1] * off[1:] < 0.0):
             part = off[i] / (off[i] - off[i + 1])
@@ -45,8 +45,8 @@ def test_a_closed_branch_is_not_lost_with_more_harmonics():
     found = with_given_harmonics(system)
     closed = [i for i, path in enumerate(found.traced.branches.paths) if path.status.name == "CLOSED"]
     (path,) = (found.traced.branches.paths[i] for i in closed)
-    (amplitude,) = (found.shown[i].amplitude for i in closed)
-    others = [one.amplitude[:, 0].max() for i, one in enumerate(found.shown) if i not in closed]
+    (amplitude,) = (found.quantities[i].amplitude for i in closed)
+    others = [one.amplitude[:, 0].max() for i, one in enumerate(found.quantities) if i not in closed]
     top = int(amplitude[:, 0].argmax())
     assert len(others) == len(alone) and amplitude[top, 0] > 1.2 * max(others)
     assert exact(system, path.z[top]) == pytest.approx(amplitude[top], rel=2e-2)

@@ -92,4 +92,4 @@ def displacements(system, z):
     balance.evaluate(z)
     balance.report(z, np.zeros(z.size))
     j = system.harmonics.index(1)
-    return np.hypot(balance.shown.re[j], balance.shown.im[j]), np.array(balance.output)
+    return np.hypot(balance.displacements.re[j], balance.displacements.im[j]), np.array(balance.output)

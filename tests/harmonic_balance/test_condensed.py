@@ -202,7 +202,7 @@ def test_modes_that_yield_too_much_to_be_left_out_are_taken_after_all():
 def test_many_contacts_make_no_arrays_of_ports_by_ports():
     problem = System(strip(contacts=80), (1, 2, 3)).new_balance()
     assert problem.rank == 3 * 7
-    assert np.asarray(problem.seen.G_re).size == 0
+    assert np.asarray(problem.receptance.G_re).size == 0
     assert np.asarray(problem.jacobian).shape == (problem.unknowns, 1)
 
 

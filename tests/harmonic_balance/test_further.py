@@ -35,9 +35,9 @@ def test_padding_keeps_the_motion(response):
 def test_a_share_is_what_a_harmonic_then_has(response):
     """The ninth meets the mode at 10 rad/s; its share before it is balanced is about its amplitude after."""
     (path,) = response.traced.branches.paths
-    top = response.shown[0].amplitude[:, 1].argmax()
+    top = response.quantities[0].amplitude[:, 1].argmax()
     further = FurtherHarmonics(response.system)
-    amplitude = response.shown[0].amplitude[top : top + 1]
+    amplitude = response.quantities[0].amplitude[top : top + 1]
     z = path.z[top : top + 1]
     share = further.shares(z, amplitude)[0]
     assert not further.linear(z)[0]
@@ -46,11 +46,11 @@ def test_a_share_is_what_a_harmonic_then_has(response):
     assert others.argmax() + 4 == 9
     with_ninth = with_estimated_errors(response.system.with_harmonics((1, 2, 3, 9)), 0.0)
     problem = with_ninth.system.new_balance()
-    highest = with_ninth.shown[0].amplitude[:, 1].argmax()
+    highest = with_ninth.quantities[0].amplitude[:, 1].argmax()
     z = with_ninth.traced.branches.paths[0].z[highest]
     problem.evaluate(z)
     problem.report(z, np.zeros_like(z))
-    ninth = np.hypot(problem.shown.re, problem.shown.im)[3] / amplitude[0]
+    ninth = np.hypot(problem.displacements.re, problem.displacements.im)[3] / amplitude[0]
     assert share[8] == pytest.approx(ninth.max(), rel=0.3)
 
 
@@ -59,33 +59,33 @@ def test_a_contact_that_never_slips_or_opens_is_linear():
     (path,) = found.traced.branches.paths
     further = FurtherHarmonics(found.system)
     assert further.linear(path.z).all()
-    assert (further.shares(path.z, found.shown[0].amplitude) == 0.0).all()
+    assert (further.shares(path.z, found.quantities[0].amplitude) == 0.0).all()
 
 
 def test_a_harmonic_meets_a_mode_where_its_frequency_is_that_of_the_mode(response):
     """The eleventh and the tenth meet that at 10 rad/s and lead there, each at the point next to that and at
     those beside it; the ninth meets it where the contact is stuck, and does nothing."""
-    (path,), (shown,) = response.traced.branches.paths, response.shown
+    (path,), (quantities,) = response.traced.branches.paths, response.quantities
     further, wanted = FurtherHarmonics(response.system), set()
     for harmonic in (11, 10, 9):
         off = path.parameter - 10.0 / harmonic
         for k in np.flatnonzero(off[:-1] * off[1:] < 0.0):
             at = k if abs(off[k]) * path.parameter[k + 1] < abs(off[k + 1]) * path.parameter[k] else k + 1
-            (share,) = further.shares(path.z[[at]], shown.amplitude[[at]])
+            (share,) = further.shares(path.z[[at]], quantities.amplitude[[at]])
             if harmonic > 9:
                 assert share[harmonic - 1] > 0.5 * share.max()
                 wanted |= {at - 1, at, at + 1}
             else:
                 assert share.max() == 0.0
-    assert further.resonances(path.z, shown.amplitude).tolist() == sorted(wanted)
+    assert further.resonances(path.z, quantities.amplitude).tolist() == sorted(wanted)
 
 
 def test_meetings_of_many_contacts_are_those_of_every_point_alone():
     """A harmonic that leads there meets a mode at the same points, be forces worked out at all or at some."""
     found = with_estimated_errors(System(strip(stiff=(4.02, 8.3, 11.4)), (1,)), 0.0)
-    (path,), (shown,) = found.traced.branches.paths, found.shown
+    (path,), (quantities,) = found.traced.branches.paths, found.quantities
     further = FurtherHarmonics(found.system)
-    alone = further.resonances(path.z, shown.amplitude)
-    many = further.resonances_of_many(path.z, shown.amplitude)
+    alone = further.resonances(path.z, quantities.amplitude)
+    many = further.resonances_of_many(path.z, quantities.amplitude)
     assert 3 <= len(alone) < 0.5 * len(path.z)
     assert many.tolist() == alone.tolist()

@@ -28,7 +28,7 @@ def places(balance, count):
 
 def motions(balance):
     """Of all degrees of freedom as just reported, (angle, dof)."""
-    return (WAVES @ (np.asarray(balance.shown.re) + 1j * np.asarray(balance.shown.im))).real
+    return (WAVES @ (np.asarray(balance.displacements.re) + 1j * np.asarray(balance.displacements.im))).real
 
 
 def test_no_extreme_is_greater_than_the_one_reported(balance):

@@ -211,8 +211,8 @@ def test_turned_axes_turn_the_response():
         modal = replace(scene.modal, shapes=np.ascontiguousarray(along))
         system = System(replace(scene, modal=modal), (1, 2, 3))
         z = solutions(system, 1.0).solutions[0]
-        shown = reported_at(system, z[None], np.zeros((1, z.size)))
-        found.append(shown.X[0])
+        quantities = reported_at(system, z[None], np.zeros((1, z.size)))
+        found.append(quantities.X[0])
     assert np.abs(found[0] @ turn - found[1]).max() < 1e-9 * np.abs(found[0]).max()
 
 

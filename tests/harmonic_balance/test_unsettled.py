@@ -34,9 +34,9 @@ def test_a_peak_that_further_harmonics_lead_to_and_more_do_not_has_no_error_that
         }
     )  # fmt: skip
     found = with_given_harmonics(System(one, tuple(range(1, 11))))
-    (shown,) = found.shown
+    (quantities,) = found.quantities
     exact = height(found, OrbitProblem(one), [], 0, 1)
     assert exact is not None
-    off = abs(shown.amplitude[:, 1].max() / exact - 1.0)
+    off = abs(quantities.amplitude[:, 1].max() / exact - 1.0)
     assert 0.03 < off < 0.04
     assert np.isnan(found.peak[1]) or found.peak[1] > off / 3.0

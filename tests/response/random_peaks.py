@@ -51,7 +51,7 @@ def peaks(seed: int) -> list[Peak]:
     found = refined_response(System(scene), ACCURACY)
     if not found.traced.branches.paths:
         return []
-    heights = np.array([one.amplitude.max(axis=0) for one in found.shown])
+    heights = np.array([one.amplitude.max(axis=0) for one in found.quantities])
     problem, known, out = OrbitProblem(scene), list[OrbitRecord](), []
     for d, k in enumerate(heights.argmax(axis=0)):
         if heights[k, d] < MOVING * heights.max():
@@ -67,7 +67,7 @@ def height(
     found: RefinedResponse, problem: OrbitProblem, known: list[OrbitRecord], number: int, d: int
 ) -> float | None:
     """Of the exact peak beside the greatest amplitude of a degree of freedom on a path."""
-    path, amplitude = found.traced.branches.paths[number], found.shown[number].amplitude[:, d]
+    path, amplitude = found.traced.branches.paths[number], found.quantities[number].amplitude[:, d]
     top = int(amplitude.argmax())
     beside = top - 1 if top else 1
     scene, harmonics = found.system.scene, found.system.harmonics

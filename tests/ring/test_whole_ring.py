@@ -70,7 +70,10 @@ def test_loads_and_forces_of_any_harmonic_act_on_every_sector(harmonic):
     for problem, at in ((balance, around), (of_one, z)):
         problem.report(at, np.eye(at.size)[-1])
     for name in ("amplitude", "mean", "growth"):
-        found, expected = (np.asarray(getattr(shown, name))[:3] for shown in (of_one.shown, balance.shown))
+        found, expected = (
+            np.asarray(getattr(displacements, name))[:3]
+            for displacements in (of_one.displacements, balance.displacements)
+        )
         assert found == pytest.approx(expected, rel=1e-8)
     by_frequency = np.asarray(of_one.jacobian)[:, -1]
     assert by_frequency == pytest.approx(

@@ -35,16 +35,16 @@ def blade(n_0=40.0, **more):
     return scene_from_dict(scene | more)
 
 
-def greatest(shown):
-    return max(one.amplitude[:, 0].max() for one in shown)
+def greatest(quantities):
+    return max(one.amplitude[:, 0].max() for one in quantities)
 
 
 def test_a_search_sees_the_branches_that_the_response_has():
     """With three harmonics the level led to none of them, and the greatest was a ninth of what it is."""
     system = System(blade(10.0), (1, 2, 3))
-    of_response = greatest(with_given_harmonics(System(blade(10.0), (1, 2, 3))).shown)
+    of_response = greatest(with_given_harmonics(System(blade(10.0), (1, 2, 3))).quantities)
     assert of_response > 5e-4
-    assert greatest(every_branch(system).shown) == pytest.approx(of_response, rel=1e-6)
+    assert greatest(every_branch(system).quantities) == pytest.approx(of_response, rel=1e-6)
 
 
 AIM = {"optimum": {"vary": [KEY], "bounds": [[50.0, 160.0]], "minimise": "peak.tip"}}

@@ -88,25 +88,26 @@ class Errors:
 def errors_along(
     system: System,
     path: Path,
-    shown: ReportedQuantities | None = None,
+    quantities: ReportedQuantities | None = None,
     options: PairOptions = PAIR,
     budget: Budget | None = None,
 ) -> Errors:
-    """Errors of the points of a path of a system's balance; shown is what is reported along it, if known.
+    """Errors of the points of a path of a system's balance; quantities is what is reported along it, if
+    known.
 
     Where the reference's own branch does not come to a frequency nothing is told, see `with_nearest`.
     """
-    shown = shown or reported_quantities(system, path)
+    quantities = quantities or reported_quantities(system, path)
     contacts = ContactRecord.at(system, path.z)
-    reported = ReportedPath(path, shown, _flat(contacts.contact_loads))
-    tops, d = shown.amplitude.argmax(axis=0), np.arange(shown.amplitude.shape[1])
-    folds, size = path.where(Mark.FOLD), shown.amplitude.max(axis=0)
+    reported = ReportedPath(path, quantities, _flat(contacts.contact_loads))
+    tops, d = quantities.amplitude.argmax(axis=0), np.arange(quantities.amplitude.shape[1])
+    folds, size = path.where(Mark.FOLD), quantities.amplitude.max(axis=0)
     special = np.unique(np.concatenate((folds, path.where(Mark.PEAK), tops)))
-    share, met = _spectrum(system, path, shown, special, size, options)
+    share, met = _spectrum(system, path, quantities, special, size, options)
     more = reference_harmonics(system.harmonics, share, system.layout.ports, options)
     nothing = not share.any() and max(system.harmonics) < LIMITS.harmonics  # beyond that it is not looked at
-    if shown.linear.all() or nothing or more == system.harmonics:
-        none = np.full_like(shown.amplitude, 0.0 if shown.linear.all() or nothing else np.nan)
+    if quantities.linear.all() or nothing or more == system.harmonics:
+        none = np.full_like(quantities.amplitude, 0.0 if quantities.linear.all() or nothing else np.nan)
         of_folds = np.full(len(folds), none[0, 0])
         contact_loads = np.full((len(path.z), len(system.scene.contacts), 4), none[0, 0])
         known: Mask = np.isfinite(none[:, 0])  # then the reference's curve is this one
@@ -135,7 +136,7 @@ def errors_along(
         reference.stretches.budget = Budget(0.0)
     change = reference.displacements(np.concatenate((reference.distinct_points(special), folds, met)))
     followed = reference.follow_stretches(change)
-    compared, dofs = reference.compared_quantities(change), shown.amplitude.shape[1]
+    compared, dofs = reference.compared_quantities(change), quantities.amplitude.shape[1]
     shift = reference.shifts(compared, followed)
     contact_loads, greatest = contact_load_errors(reference, compared, shift, followed, folds)
     shift = shift[:, :dofs]
@@ -143,7 +144,7 @@ def errors_along(
     error[folds] = np.nan  # the reference has two amplitudes at that frequency, or none
     unit = reference.unit
     inside = (tops > 0) & (tops < len(path.z) - 1)
-    at_ends = shown.amplitude[tops, d] + unit[tops, d] * shift[tops, d]
+    at_ends = quantities.amplitude[tops, d] + unit[tops, d] * shift[tops, d]
     for end in {0, len(path.z) - 1}.intersection(
         tops.tolist()
     ):  # which the reference is known beyond, or not
@@ -151,7 +152,7 @@ def errors_along(
         at_ends = at_ends if there is None else np.where(tops == end, there, at_ends)
     height = np.where(inside, heights(reference, change[:, 1:], followed, tops, met), at_ends)
     rise = rise_between_points(reference, np.zeros_like(unit), tops)  # no error
-    now = shown.amplitude[tops, d] + np.where(inside, rise, 0.0)
+    now = quantities.amplitude[tops, d] + np.where(inside, rise, 0.0)
     settles = inside | ~reference.linear[tops]
     determined = settles & np.isfinite(height)
     every = np.unique(tops[determined])
@@ -163,15 +164,15 @@ def errors_along(
     at_tops = (np.abs(height - now) / unit[tops, d])[determined]
     left = np.abs(beyond[which, d[determined]]) / unit[tops[determined], d[determined]]
     error[tops[determined], d[determined]] = np.maximum(at_tops, left)
-    at_rest = shown.amplitude <= np.finfo(float).eps * unit  # but for rounding
-    error *= unit / np.where(at_rest, unit, shown.amplitude)
+    at_rest = quantities.amplitude <= np.finfo(float).eps * unit  # but for rounding
+    error *= unit / np.where(at_rest, unit, quantities.amplitude)
     comes: Mask = ~np.any(np.isnan(error), axis=1)
     system.work.add(reference.seconds())
     of_folds = _of_folds(reference, folds, change, followed)
     reference.release()
     return Errors(
         amplitude=error,
-        truncation=_truncation(error, shown.amplitude),
+        truncation=_truncation(error, quantities.amplitude),
         is_same_curve=comes,
         ends_before=reference.ends_before,
         peak=np.where(determined | ~settles, error[tops, d], np.nan),
@@ -187,10 +188,10 @@ def errors_along(
     )
 
 
-def unknown_errors(system: System, path: Path, shown: ReportedQuantities) -> Errors:
-    """Errors of a path of which none is told; shown is what is reported along it."""
+def unknown_errors(system: System, path: Path, quantities: ReportedQuantities) -> Errors:
+    """Errors of a path of which none is told; quantities is what is reported along it."""
     contacts, nan = ContactRecord.at(system, path.z), np.nan
-    none, unseen = np.full_like(shown.amplitude, nan), np.zeros(len(path.z), dtype=np.bool_)
+    none, unseen = np.full_like(quantities.amplitude, nan), np.zeros(len(path.z), dtype=np.bool_)
     contact_loads = np.full_like(contacts.contact_loads, nan)
     dofs, folds = np.full(none.shape[1], nan), np.full(len(path.where(Mark.FOLD)), nan)
     share = np.zeros(max(system.harmonics))
@@ -203,7 +204,7 @@ def unknown_errors(system: System, path: Path, shown: ReportedQuantities) -> Err
 def with_nearest(
     system: System,
     paths: Sequence[Path],
-    shown: Sequence[ReportedQuantities],
+    quantities: Sequence[ReportedQuantities],
     errors: Sequence[Errors],
     first: int = 0,
     options: PairOptions = PAIR,
@@ -220,11 +221,11 @@ def with_nearest(
     if all(one.is_same_curve.all() and not np.isnan(one.fold).any() for one in errors[first:]):
         return tuple(errors)
     every = list(errors)
-    for k, further in enumerate(further_reference_pieces(system, paths, shown, errors, first, options)):
+    for k, further in enumerate(further_reference_pieces(system, paths, quantities, errors, first, options)):
         every[k] = replace(every[k], pieces=(*every[k].pieces, *further)) if further else every[k]
     pieces = [piece for one in every for piece in one.pieces]
     for k in range(first, len(every)):
-        path, amplitude, dofs = paths[k], shown[k].amplitude, shown[k].amplitude.shape[1]
+        path, amplitude, dofs = paths[k], quantities[k].amplitude, quantities[k].amplitude.shape[1]
         if np.isnan(every[k].fold).any():
             every[k] = replace(every[k], fold=_with_nearest_folds(path, amplitude, every[k], pieces, options))
         rows = np.flatnonzero(~every[k].is_same_curve)
@@ -283,7 +284,7 @@ def _truncation_of(off: FloatArray, amplitude: FloatArray) -> FloatArray:
 def _spectrum(
     system: System,
     path: Path,
-    shown: ReportedQuantities,
+    quantities: ReportedQuantities,
     special: Indices,
     size: FloatArray,
     options: PairOptions,
@@ -292,10 +293,10 @@ def _spectrum(
     special points and where one that is left out meets a mode and leads there; and these."""
     further, place = FurtherHarmonics(system), lengths(path)
     special = special[distinct(place[special], options.peak_spacing * (place[-1] - place[0]))]
-    met: Indices = further.resonances(path.z, shown.amplitude)
+    met: Indices = further.resonances(path.z, quantities.amplitude)
     share = further.shares(path.z[special], np.tile(size, (len(special), 1))).max(axis=0)
     if met.size:  # there it leads, however small the motion is
-        local = further.shares(path.z[met], shown.amplitude[met])
+        local = further.shares(path.z[met], quantities.amplitude[met])
         extends = local > options.leading_share * local.max(axis=1, keepdims=True)
         share = np.maximum(
             share, np.where(extends & (local > options.min_resonant_share), local, 0.0).max(axis=0)

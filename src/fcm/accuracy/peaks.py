@@ -38,7 +38,7 @@ def heights(
     between = [FollowedStretch(*run, reference.stretches.between(run[0] - 1, run[1])) for run in high]
     for one in (*followed, *between):
         for piece in one.pieces:
-            greatest = np.fmax(greatest, piece.shown.amplitude.max(axis=0))
+            greatest = np.fmax(greatest, piece.quantities.amplitude.max(axis=0))
     for one in followed:
         if not any(piece.whole for piece in one.pieces):
             greatest[amplitude[one.first : one.end].max(axis=0) > options.rival_fraction * now] = np.nan
@@ -56,7 +56,7 @@ def rise_between_points(reference: ReferenceCurve, moved: FloatArray, places: In
     return rises(
         reference.place,
         reference.amplitude,
-        reference.shown.growth,
+        reference.quantities.growth,
         moved,
         corner,
         places,

@@ -38,7 +38,7 @@ OF_FAR_MOTIONS = ProlongationOptions(damped=DampedOptions(min_contacts=0))
 def further_reference_pieces(
     system: System,
     paths: Sequence[Path],
-    shown: Sequence[ReportedQuantities],
+    quantities: Sequence[ReportedQuantities],
     errors: Sequence[Errors],
     first: int,
     options: PairOptions,
@@ -50,7 +50,7 @@ def further_reference_pieces(
     smallest motions before the others: there the reference has fewest. Where no motion of such a path leads
     to one of its reference, the level of the forces may; then points between those that were tried.
     """
-    search = _Search(system, paths, shown, errors, first, options)
+    search = _Search(system, paths, quantities, errors, first, options)
     interval = options.point_interval
     while interval and search.is_open and search.extends(interval):
         interval //= options.interval_factor
@@ -97,7 +97,7 @@ class _Search:
         self,
         system: System,
         paths: Sequence[Path],
-        shown: Sequence[ReportedQuantities],
+        quantities: Sequence[ReportedQuantities],
         errors: Sequence[Errors],
         first: int,
         options: PairOptions,
@@ -109,7 +109,7 @@ class _Search:
         self.found: list[list[CurvePiece]] = [[] for _ in paths]
         self.known = [piece for one in errors for piece in one.pieces]
         self.unknown = [
-            _UnknownError(*one, system.harmonics) for one in zip(paths, shown, errors, strict=True)
+            _UnknownError(*one, system.harmonics) for one in zip(paths, quantities, errors, strict=True)
         ]
         self.followers = dict[int, StretchFollower]()
         for piece in self.known:
@@ -225,9 +225,9 @@ class _UnknownError:
     motions."""
 
     def __init__(
-        self, path: Path, shown: ReportedQuantities, errors: Errors, harmonics: tuple[int, ...]
+        self, path: Path, quantities: ReportedQuantities, errors: Errors, harmonics: tuple[int, ...]
     ) -> None:
-        self.path, self.size = path, shown.amplitude.max(axis=1)
+        self.path, self.size = path, quantities.amplitude.max(axis=1)
         self.size[errors.is_same_curve] = np.inf
         if errors.reference == harmonics:  # it has none
             self.size[:] = np.inf

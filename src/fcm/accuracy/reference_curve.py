@@ -113,10 +113,10 @@ class ReferenceCurve:
         options: PairOptions,
         budget: Budget,
     ) -> None:
-        path, shown = reported.path, reported.shown
-        self.path, self.shown, self.options, self.fewer = path, shown, options, system.harmonics
+        path, quantities = reported.path, reported.quantities
+        self.path, self.quantities, self.options, self.fewer = path, quantities, options, system.harmonics
         self.contact_loads = reported.contact_loads
-        self.amplitude, self.linear = shown.amplitude, _with_ends(path, shown.linear)
+        self.amplitude, self.linear = quantities.amplitude, _with_ends(path, quantities.linear)
         least = system.options.spectrum.least_amplitude * self.amplitude.max(axis=1, keepdims=True)
         self.unit = np.maximum(self.amplitude, least)
         self.unit[self.unit == 0.0] = 1.0
@@ -403,7 +403,7 @@ class ReferenceCurve:
         )
         return ComparedQuantities(
             np.hstack((self.amplitude, self.contact_loads)),
-            np.hstack((self.shown.growth, rates(self.contact_loads, self.place))),
+            np.hstack((self.quantities.growth, rates(self.contact_loads, self.place))),
             np.hstack((self.unit, unit)),
             np.hstack((change, every[:, 1:])),
         )
@@ -533,7 +533,7 @@ class ReferenceCurve:
 def curve_piece(finer: System, piece: ReferencePiece) -> CurvePiece:
     """A piece of the reference that was followed, with what the contacts bear."""
     contact_loads = contact_loads_along(finer, piece.path.z).reshape(len(piece.path.z), -1)
-    return piece_of(ReportedPath(piece.path, piece.shown, contact_loads))
+    return piece_of(ReportedPath(piece.path, piece.quantities, contact_loads))
 
 
 def passings(parameter: FloatArray, omega: FloatArray) -> Indices:

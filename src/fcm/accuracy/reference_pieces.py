@@ -63,21 +63,21 @@ class ReportedPath:
     """A path that was followed, what is reported of it, and what its contacts bear (point, 4 contact)."""
 
     path: Path
-    shown: ReportedQuantities
+    quantities: ReportedQuantities
     contact_loads: FloatArray
 
 
 def piece_of(reported: ReportedPath) -> CurvePiece:
     """A path that has been followed, as a piece of a curve."""
-    path, shown, contact_loads = reported.path, reported.shown, reported.contact_loads
+    path, quantities, contact_loads = reported.path, reported.quantities, reported.contact_loads
     parameter, rate = (np.ascontiguousarray(one[:, -1]) for one in (path.z, path.direction))
     place = lengths(path)
     return CurvePiece(
         ReferenceCurveData(place, parameter, rate),
         parameter,
         np.ascontiguousarray(path.orientation),
-        np.hstack((shown.amplitude, contact_loads)),
-        np.hstack((shown.growth, rates(contact_loads, place))),
+        np.hstack((quantities.amplitude, contact_loads)),
+        np.hstack((quantities.growth, rates(contact_loads, place))),
     )
 
 

@@ -34,7 +34,7 @@ class ReferencePiece:
     """A piece of the reference, from one end of a stretch; reached_end: up to the other."""
 
     path: Path
-    shown: ReportedQuantities
+    quantities: ReportedQuantities
     reached_end: bool
 
     @property

@@ -59,13 +59,13 @@ class RefinedResponse(UncheckedResponse):
         if few is self:
             return self
         errors = [one.part(rows) for one, rows in zip(self.errors, self._rows(most), strict=True)]
-        own = few.system, few.traced, few.shown, few.seconds, tuple(errors)
+        own = few.system, few.traced, few.quantities, few.seconds, tuple(errors)
         return RefinedResponse(*own, self.peak, self.max_error, self.max_known_error, self.accuracy)
 
     @property
     def dofs_of_interest(self) -> Mask:
         """Degrees of freedom (dof,) of whose peaks the accuracy is asked."""
-        heights = [one.amplitude.max(axis=0) for one in self.shown]
+        heights = [one.amplitude.max(axis=0) for one in self.quantities]
         return dofs_of_interest(self.system.scene, np.max(heights, axis=0))
 
     @property
@@ -93,12 +93,12 @@ def refined_response(
     been traced goes to on_traced, before more is.
     """
     found: UncheckedResponse = unchecked_response(system, progress)
-    if on_traced is not None and found.shown:
+    if on_traced is not None and found.quantities:
         on_traced(found, np.nan, ())
     checked: RefinedResponse | None = None
     further, begun = tuple[int, ...](), False
     for _ in range(options.max_rounds):
-        if not found.shown:
+        if not found.quantities:
             break
         checked, required = None, required_harmonics(found, options)
         if required.is_known and required.change <= accuracy:
@@ -135,7 +135,7 @@ def retrace(found: RefinedResponse, harmonics: tuple[int, ...], accuracy: float)
     nearby, traced = prolongated_solutions(found, harmonics), found.traced
     system = found.system.with_harmonics(harmonics)
     then = unchecked_response(system, None, traced.found, nearby, traced.peaks)
-    return with_errors(then, accuracy) if then.shown else None
+    return with_errors(then, accuracy) if then.quantities else None
 
 
 def with_given_harmonics(
@@ -160,10 +160,10 @@ def unchecked_with_given_harmonics(
         if count < len(system.harmonics):
             before = _after(before, system.with_harmonics(system.harmonics[:count]))
             peaks = (*before.traced.peaks, *peaks)
-            if on_traced is not None and before.shown:
+            if on_traced is not None and before.quantities:
                 on_traced(before, np.nan, system.harmonics)
     found = _after(before, system, progress, peaks)
-    if on_traced is not None and found.shown and system.scene.contacts:
+    if on_traced is not None and found.quantities and system.scene.contacts:
         on_traced(found, np.nan, ())
     return found
 
@@ -198,18 +198,18 @@ def with_errors(
     Without an accuracy, which is infinite then, its harmonics are given.
     """
     options = options or (OF_GIVEN if np.isinf(accuracy) else PAIR)
-    system, response, shown = outline.system, outline.traced, outline.shown
+    system, response, quantities = outline.system, outline.traced, outline.quantities
     paths = response.branches.paths
-    rest = list(zip(paths, shown, strict=True))[len(known) :]
+    rest = list(zip(paths, quantities, strict=True))[len(known) :]
     part = share_of([path.evaluations for path in paths], len(known))
     shares = Budget.of(system.work, options, part).shares(len(rest))
     new = [errors_along(system, *one, options, share) for one, share in zip(rest, shares, strict=True)]
-    errors = with_nearest(system, paths, shown, (*known, *new), len(known), options)
-    own = system, response, shown, outline.seconds, errors
+    errors = with_nearest(system, paths, quantities, (*known, *new), len(known), options)
+    own = system, response, quantities, outline.seconds, errors
     if not paths:
         none = np.full(len(system.scene.modal.dofs), np.nan)
         return RefinedResponse(*own, none, np.nan, np.nan, accuracy)
-    heights = np.array([one.amplitude.max(axis=0) for one in shown])
+    heights = np.array([one.amplitude.max(axis=0) for one in quantities])
     height, peak = heights.max(axis=0), _peaks(heights, errors)
     matter = peak[dofs_of_interest(system.scene, height)]
     each = np.concatenate((matter, *(one.fold for one in errors)))
@@ -219,11 +219,13 @@ def with_errors(
 
 def without_errors(outline: UncheckedResponse) -> RefinedResponse:
     """A response of whose errors none is told."""
-    system, response, shown = outline.system, outline.traced, outline.shown
-    every = zip(response.branches.paths, shown, strict=True)
+    system, response, quantities = outline.system, outline.traced, outline.quantities
+    every = zip(response.branches.paths, quantities, strict=True)
     errors = tuple(unknown_errors(system, *one) for one in every)
     none = np.full(len(system.scene.modal.dofs), np.nan)
-    return RefinedResponse(system, response, shown, outline.seconds, errors, none, np.nan, np.nan, np.inf)
+    return RefinedResponse(
+        system, response, quantities, outline.seconds, errors, none, np.nan, np.nan, np.inf
+    )
 
 
 def with_estimated_errors(

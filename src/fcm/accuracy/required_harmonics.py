@@ -67,7 +67,7 @@ def required_harmonics(
     found: UncheckedResponse, options: RefinementOptions = REFINEMENT, pair: PairOptions = PAIR
 ) -> RequiredHarmonics:
     """What the reference changes of a response, at its peaks and folds alone."""
-    system, amplitudes = found.system, [one.amplitude for one in found.shown]
+    system, amplitudes = found.system, [one.amplitude for one in found.quantities]
     height = np.max([one.max(axis=0) for one in amplitudes], axis=0)
     size = np.where(dofs_of_interest(system.scene, height, options), height, np.inf)
     places = list(_places(found.traced.branches.paths, amplitudes, size, options))

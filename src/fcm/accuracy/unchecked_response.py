@@ -29,7 +29,7 @@ from fcm.model.scene import FloatArray
 
 @dataclass(frozen=True)
 class UncheckedResponse:
-    """A response whose errors are not known yet; shown (path,) belongs to the branches' paths.
+    """A response whose errors are not known yet; quantities (path,) belongs to the branches' paths.
 
     seconds: about what following its levels and branches took. further: the harmonics that would do more but
     take too long, if any, and whether that was seen only when they had been begun. before: the response of
@@ -38,7 +38,7 @@ class UncheckedResponse:
 
     system: System
     traced: Traced
-    shown: tuple[ReportedQuantities, ...]
+    quantities: tuple[ReportedQuantities, ...]
     seconds: float
     further: tuple[int, ...] = field(default=(), kw_only=True)
     begun: bool = field(default=False, kw_only=True)
@@ -46,9 +46,9 @@ class UncheckedResponse:
 
     def with_traced(self, traced: Traced) -> UncheckedResponse:
         """With further branches, which come after its own."""
-        further = traced.branches.paths[len(self.shown) :]
-        shown = (*self.shown, *(reported_quantities(self.system, path) for path in further))
-        return UncheckedResponse(self.system, traced, shown, self.seconds)
+        further = traced.branches.paths[len(self.quantities) :]
+        quantities = (*self.quantities, *(reported_quantities(self.system, path) for path in further))
+        return UncheckedResponse(self.system, traced, quantities, self.seconds)
 
     def with_every_branch(self) -> UncheckedResponse:
         """With isolated branches, and those through branch points."""
@@ -96,18 +96,19 @@ class UncheckedResponse:
         )
 
     def thinned(self, most: int) -> UncheckedResponse:
-        """The response with about so many points, and what is shown of them; itself if it has no more."""
+        """The response with about so many points, and what is quantities of them; itself if it has no
+        more."""
         paths = self.traced.branches.paths
-        if points_of(self) <= most and len(self.shown) == len(paths):
+        if points_of(self) <= most and len(self.quantities) == len(paths):
             return self
         rows = self._rows(most)
         few = [path.part(some) for path, some in zip(paths, rows, strict=True)]
-        if len(self.shown) == len(paths):
-            shown = tuple(one.part(some) for one, some in zip(self.shown, rows, strict=True))
+        if len(self.quantities) == len(paths):
+            quantities = tuple(one.part(some) for one, some in zip(self.quantities, rows, strict=True))
         else:
-            shown = _shown(self.system, few)
+            quantities = _shown(self.system, few)
         response = replace(self.traced, branches=replace(self.traced.branches, paths=tuple(few)))
-        return UncheckedResponse(self.system, response, shown, self.seconds)
+        return UncheckedResponse(self.system, response, quantities, self.seconds)
 
     def of_thinned(self, values: Sequence[FloatArray], most: int) -> list[FloatArray]:
         """Values (path, point) of the points that it has when it is thinned to about so many."""
@@ -129,7 +130,7 @@ class UncheckedResponse:
         """
         if self.before is None:
             return self
-        system, known = self.system, len(self.shown)
+        system, known = self.system, len(self.quantities)
         begin = system.work.seconds
         most = system.options.work.max_seconds if most is None else most
         try:
@@ -137,13 +138,14 @@ class UncheckedResponse:
                 response = with_levels(system, self.traced)
         except WorkLimitError:
             return replace(self.before.with_levels(np.inf), further=system.harmonics, begun=True)
-        shown = (*self.shown, *_shown(system, response.branches.paths[known:]))
+        quantities = (*self.quantities, *_shown(system, response.branches.paths[known:]))
         seconds = self.seconds - self.traced.work + system.work.seconds - begin
-        return UncheckedResponse(system, response, shown, seconds)
+        return UncheckedResponse(system, response, quantities, seconds)
 
 
 class ResponseInterrupted(KeyboardInterrupt):
-    """Tracing a response was interrupted; response: the branches up to there, of which nothing is shown."""
+    """Tracing a response was interrupted; response: the branches up to there, of which nothing is
+    quantities."""
 
     def __init__(self, response: UncheckedResponse) -> None:
         super().__init__()
@@ -174,8 +176,8 @@ def unchecked_response(
         partial = Traced(Branches(paths), ())
         begun = UncheckedResponse(system, partial, (), system.work.seconds - before)
         raise ResponseInterrupted(begun) from None
-    shown = _shown(system, response.branches.paths)
-    return UncheckedResponse(system, response, shown, system.work.seconds - before)
+    quantities = _shown(system, response.branches.paths)
+    return UncheckedResponse(system, response, quantities, system.work.seconds - before)
 
 
 def points_of(response: UncheckedResponse) -> int:
@@ -211,7 +213,7 @@ def with_more(
     except WorkLimitError:
         return None, more, True
     # where no solution was found the one of fewer harmonics, which says its error, stays
-    return (then if then.shown else None), (), False
+    return (then if then.quantities else None), (), False
 
 
 def prolongated_solutions(before: UncheckedResponse, harmonics: tuple[int, ...]) -> list[FloatArray]:

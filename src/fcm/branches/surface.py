@@ -171,13 +171,13 @@ class Surface:
         b: Balance = self.balance
         for i in range(self.n):
             out[i] = 0.0
-        for h in range(b.seen.count):
-            k = b.seen.forced[h]
+        for h in range(b.receptance.count):
+            k = b.receptance.forced[h]
             for p in range(b.ports if k >= 0 else 0):
-                i = b.seen.wave_at[p] + b.seen.stride * h
+                i = b.receptance.wave_at[p] + b.receptance.stride * h
                 unit = self.scale[self.n + 1] / self.scale[i]
-                out[i] = b.seen.X_re[k, p] * unit
-                out[i + 1] = b.seen.X_im[k, p] * unit
+                out[i] = b.receptance.X_re[k, p] * unit
+                out[i + 1] = b.receptance.X_im[k, p] * unit
         return 0
 
     @cython.cfunc

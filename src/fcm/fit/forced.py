@@ -78,18 +78,21 @@ class Observed:
     def along(self, z: FloatArray, direction: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Of the solution that was evaluated last, and its rates along a direction (unknown + 1,)."""
         self.balance.report(z, np.ascontiguousarray(direction))
-        shown, d, j = self.balance.shown, self.dof, self.first
-        X, dX = complex(shown.re[j, d], shown.im[j, d]), complex(shown.d_re[j, d], shown.d_im[j, d])
+        displacements, d, j = self.balance.displacements, self.dof, self.first
+        X, dX = (
+            complex(displacements.re[j, d], displacements.im[j, d]),
+            complex(displacements.d_re[j, d], displacements.d_im[j, d]),
+        )
         value = self._measured(z[-1], X, dX, direction[-1], self.balance.output[d], self.balance.growth[d])
         return value
 
     def by_number(self, z: FloatArray, direction: FloatArray, X: ComplexArray) -> FloatArray:
         """Rates of it where the solution moves in a direction, and displacements besides by X."""
         self.balance.report(z, np.ascontiguousarray(direction))
-        shown, d, j = self.balance.shown, self.dof, self.first
+        displacements, d, j = self.balance.displacements, self.dof, self.first
         growth = self.balance.growth[d] + growth_of(self.balance, X)[d]
-        dX = complex(shown.d_re[j, d], shown.d_im[j, d]) + X[j, d]
-        now = complex(shown.re[j, d], shown.im[j, d])
+        dX = complex(displacements.d_re[j, d], displacements.d_im[j, d]) + X[j, d]
+        now = complex(displacements.re[j, d], displacements.im[j, d])
         return self._measured(z[-1], now, dX, direction[-1], self.balance.output[d], growth)[1]
 
     def _measured(

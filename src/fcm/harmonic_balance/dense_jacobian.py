@@ -29,7 +29,7 @@ def jacobian_of(balance: Balance) -> FloatArray:
 
 def apply_compliance(balance: Balance, force: FloatArray) -> FloatArray:
     """G F: the displacements (unknown, ...) that forces (unknown, ...) of the contacts take away."""
-    seen, (mean, first) = balance.seen, unknown_positions(balance)
+    receptance, (mean, first) = balance.receptance, unknown_positions(balance)
     if balance.condensed is not None:
         columns = np.ascontiguousarray(force.reshape(len(force), -1).T)
         found = np.empty_like(columns)
@@ -37,8 +37,8 @@ def apply_compliance(balance: Balance, force: FloatArray) -> FloatArray:
             balance.condensed.answer.displace(column, moved)
         return found.T.reshape(force.shape)
     out = np.empty_like(force)
-    out[mean] = np.asarray(seen.static) @ force[mean]
-    G = np.asarray(seen.G_re) + 1j * np.asarray(seen.G_im)
+    out[mean] = np.asarray(receptance.static) @ force[mean]
+    G = np.asarray(receptance.G_re) + 1j * np.asarray(receptance.G_im)
     F = force[first] + 1j * force[first + 1]
     x = (G @ F.reshape(*first.shape, -1)).reshape(F.shape)
     out[first], out[first + 1] = x.real, x.imag
@@ -62,7 +62,7 @@ class Amplitude:
     ) -> None:
         self.balance, self.dof, self.options = balance, dof, options
         self.value, self.slopes = 0.0, np.zeros(balance.unknowns + 1)
-        self.weights = np.zeros(balance.seen.count, dtype=np.complex128)
+        self.weights = np.zeros(balance.receptance.count, dtype=np.complex128)
         self.angles = np.zeros(2)  # of the extremes, if there are several harmonics
         self.of_forces = np.zeros(balance.unknowns)  # its slopes by the contacts' forces
 
@@ -77,9 +77,13 @@ class Amplitude:
         direction[-1] = 1.0
         balance.report(z, direction)
         self.value, self.slopes[n] = balance.output[d], balance.growth[d]
-        shown, seen, rows = balance.shown, balance.seen, unknown_positions(balance)[1]
-        X = np.asarray(shown.re)[:, d] + 1j * np.asarray(shown.im)[:, d]
-        h, self.angles = np.asarray(seen.harmonics), np.array(shown.angles)[:, d]
+        displacements, receptance, rows = (
+            balance.displacements,
+            balance.receptance,
+            unknown_positions(balance)[1],
+        )
+        X = np.asarray(displacements.re)[:, d] + 1j * np.asarray(displacements.im)[:, d]
+        h, self.angles = np.asarray(receptance.harmonics), np.array(displacements.angles)[:, d]
         if near is not None and h.size > 1:
             self.angles = _extremes(X, h, near, self.options)
             if np.isnan(self.angles).any():
@@ -87,16 +91,18 @@ class Amplitude:
                 return
         self.weights = W = _weights(X, h, self.angles)
         if near is not None and h.size > 1:
-            by_omega = np.asarray(shown.d_re)[:, d] + 1j * np.asarray(shown.d_im)[:, d]
+            by_omega = np.asarray(displacements.d_re)[:, d] + 1j * np.asarray(displacements.d_im)[:, d]
             self.value, self.slopes[n] = float((W @ X).real), (W @ by_omega).real
         if not balance.contacts:
             return
-        if not shown.without_modes[d]:  # of the contacts' own displacements
-            of_ports = W[:, None] * np.asarray(shown.attached)[:, d]
+        if not displacements.without_modes[d]:  # of the contacts' own displacements
+            of_ports = W[:, None] * np.asarray(displacements.attached)[:, d]
             self.slopes[rows], self.slopes[rows + 1] = of_ports.real, -of_ports.imag
             return
-        c = np.asarray(seen.c_re) + 1j * np.asarray(seen.c_im)
-        of_ports = -W[:, None] * ((c * np.asarray(shown.shapes)[:, d]) @ np.asarray(seen.shapes))
+        c = np.asarray(receptance.c_re) + 1j * np.asarray(receptance.c_im)
+        of_ports = -W[:, None] * (
+            (c * np.asarray(displacements.shapes)[:, d]) @ np.asarray(receptance.shapes)
+        )
         self.of_forces[rows], self.of_forces[rows + 1] = of_ports.real, -of_ports.imag
         blocks = self.of_forces.reshape(balance.contacts, 1, -1) @ np.asarray(balance.tangent)
         self.slopes[:n] = blocks.ravel()

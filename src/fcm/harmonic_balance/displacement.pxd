@@ -33,7 +33,7 @@ cdef class Extremes:
     cdef void waves_at(self, double theta) noexcept
 
 cdef class Displacements(Extremes):
-    cdef public Receptance seen
+    cdef public Receptance receptance
     cdef public double[:, ::1] shapes
     cdef public double[:, ::1] static
     cdef public double[:, ::1] attached
@@ -45,7 +45,7 @@ cdef class Displacements(Extremes):
     cpdef int at(self, double load, double[::1] force, double[::1] d_force, double[::1] z, double[::1] direction) except -1
     cdef int harmonic(self, int j, double load, double[::1] force, double[::1] d_force, double d_omega) except -1
     cdef int sum_modes(self) except -1
-    cdef void move(self, Receptance seen, int j, Py_ssize_t i, double f_re, double f_im, double g_re, double g_im, double d_omega) noexcept
+    cdef void move(self, Receptance receptance, int j, Py_ssize_t i, double f_re, double f_im, double g_re, double g_im, double d_omega) noexcept
     cdef void from_ports(self, Py_ssize_t d, double[::1] z, double[::1] direction) noexcept
 
 cdef class TravellingDisplacements(Displacements):

@@ -195,13 +195,13 @@ class Displacements(Extremes):
     """
 
     def __init__(
-        self, seen: Receptance, linear: Linear, options: ExtremeOptions = HARMONIC_BALANCE.extremes
+        self, receptance: Receptance, linear: Linear, options: ExtremeOptions = HARMONIC_BALANCE.extremes
     ) -> None:
-        count, dofs = seen.count, linear.dofs.shape[1]
-        Extremes.__init__(self, seen.harmonics, dofs, options)
-        self.seen = seen
+        count, dofs = receptance.count, linear.dofs.shape[1]
+        Extremes.__init__(self, receptance.harmonics, dofs, options)
+        self.receptance = receptance
         self.shapes, self.static = linear.dofs, linear.static_of_dofs
-        self.of_modes = np.zeros((4 * count, seen.modes))
+        self.of_modes = np.zeros((4 * count, receptance.modes))
         self.mean, self.rest = np.zeros(dofs), np.zeros(dofs)
         self.attached, self.without_modes = linear.attached
 
@@ -225,10 +225,10 @@ class Displacements(Extremes):
         p: cython.Py_ssize_t
         for d in range(self.dofs):
             total: cython.double = self.rest[d]
-            for p in range(self.seen.ports):
-                total -= self.static[d, p] * force[self.seen.mean_at[p]]
+            for p in range(self.receptance.ports):
+                total -= self.static[d, p] * force[self.receptance.mean_at[p]]
             self.mean[d] = total
-        for j in range(self.seen.count):
+        for j in range(self.receptance.count):
             self.harmonic(j, load, force, d_force, direction[direction.shape[0] - 1])
         self.sum_modes()
         for d in range(self.dofs):
@@ -248,25 +248,25 @@ class Displacements(Extremes):
         d_omega: cython.double,
     ) -> cython.int:
         """Amplitudes of the modes in one harmonic."""
-        n: cython.Py_ssize_t = self.seen.count
+        n: cython.Py_ssize_t = self.receptance.count
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t
         k: cython.Py_ssize_t
-        forced: cython.int = self.seen.forced[j]
+        forced: cython.int = self.receptance.forced[j]
         driven: cython.double = load if forced >= 0 else 0.0
         forced = max(forced, 0)
-        for i in range(self.seen.modes):
-            f_re: cython.double = driven * self.seen.force_re[forced, i]
-            f_im: cython.double = driven * self.seen.force_im[forced, i]
-            g_re: cython.double = driven * d_omega * self.seen.slope_re[forced, i]
-            g_im: cython.double = driven * d_omega * self.seen.slope_im[forced, i]
-            for p in range(self.seen.ports):
-                k = self.seen.wave_at[p] + self.seen.stride * j
-                f_re -= self.seen.shapes[i, p] * force[k]
-                f_im -= self.seen.shapes[i, p] * force[k + 1]
-                g_re -= self.seen.shapes[i, p] * d_force[k]
-                g_im -= self.seen.shapes[i, p] * d_force[k + 1]
-            self.move(self.seen, j, i, f_re, f_im, g_re, g_im, d_omega)
+        for i in range(self.receptance.modes):
+            f_re: cython.double = driven * self.receptance.force_re[forced, i]
+            f_im: cython.double = driven * self.receptance.force_im[forced, i]
+            g_re: cython.double = driven * d_omega * self.receptance.slope_re[forced, i]
+            g_im: cython.double = driven * d_omega * self.receptance.slope_im[forced, i]
+            for p in range(self.receptance.ports):
+                k = self.receptance.wave_at[p] + self.receptance.stride * j
+                f_re -= self.receptance.shapes[i, p] * force[k]
+                f_im -= self.receptance.shapes[i, p] * force[k + 1]
+                g_re -= self.receptance.shapes[i, p] * d_force[k]
+                g_im -= self.receptance.shapes[i, p] * d_force[k + 1]
+            self.move(self.receptance, j, i, f_re, f_im, g_re, g_im, d_omega)
             self.of_modes[j, i], self.of_modes[n + j, i] = self.q_re, self.q_im
             self.of_modes[2 * n + j, i], self.of_modes[3 * n + j, i] = self.r_re, self.r_im
         return 0
@@ -284,7 +284,7 @@ class Displacements(Extremes):
         for k in range(self.parts.shape[0]):
             for d in range(self.dofs):
                 self.parts[k, d] = 0.0
-            for i in range(self.seen.modes):
+            for i in range(self.receptance.modes):
                 for d in range(self.dofs):
                     self.parts[k, d] += self.shapes[i, d] * self.of_modes[k, i]
         return 0
@@ -293,7 +293,7 @@ class Displacements(Extremes):
     @cython.exceptval(check=False)
     def move(
         self,
-        seen: Receptance,
+        receptance: Receptance,
         j: cython.int,
         i: cython.Py_ssize_t,
         f_re: cython.double,
@@ -303,10 +303,10 @@ class Displacements(Extremes):
         d_omega: cython.double,
     ) -> cython.void:
         """q, the amplitude of mode i under its force f in harmonic j, and its rate r; g is that of f."""
-        c_re: cython.double = seen.c_re[j, i]
-        c_im: cython.double = seen.c_im[j, i]
-        s_re: cython.double = seen.s_re[j, i] * d_omega
-        s_im: cython.double = seen.s_im[j, i] * d_omega
+        c_re: cython.double = receptance.c_re[j, i]
+        c_im: cython.double = receptance.c_im[j, i]
+        s_re: cython.double = receptance.s_re[j, i] * d_omega
+        s_im: cython.double = receptance.s_im[j, i] * d_omega
         self.q_re = c_re * f_re - c_im * f_im
         self.q_im = c_re * f_im + c_im * f_re
         self.r_re = c_re * g_re - c_im * g_im + s_re * f_re - s_im * f_im
@@ -322,14 +322,14 @@ class Displacements(Extremes):
         p: cython.Py_ssize_t
         k: cython.Py_ssize_t
         self.mean[d] = 0.0
-        for j in range(self.seen.count):
+        for j in range(self.receptance.count):
             self.re[j, d] = self.im[j, d] = self.d_re[j, d] = self.d_im[j, d] = 0.0
-        for p in range(self.seen.ports):
+        for p in range(self.receptance.ports):
             share: cython.double = self.attached[p, d]
             if share != 0.0:
-                self.mean[d] += share * z[self.seen.mean_at[p]]
-                for j in range(self.seen.count):
-                    k = self.seen.wave_at[p] + self.seen.stride * j
+                self.mean[d] += share * z[self.receptance.mean_at[p]]
+                for j in range(self.receptance.count):
+                    k = self.receptance.wave_at[p] + self.receptance.stride * j
                     self.re[j, d] += share * z[k]
                     self.im[j, d] += share * z[k + 1]
                     self.d_re[j, d] += share * direction[k]
@@ -342,13 +342,13 @@ class TravellingDisplacements(Displacements):
 
     def __init__(
         self,
-        seen: TravellingReceptance,
+        receptance: TravellingReceptance,
         linear: Linear,
         shapes: list[npt.NDArray[np.complex128]],
         options: ExtremeOptions = HARMONIC_BALANCE.extremes,
     ) -> None:
-        Displacements.__init__(self, seen, linear, options)
-        self.waves = seen.waves
+        Displacements.__init__(self, receptance, linear, options)
+        self.waves = receptance.waves
         most = max((len(one) for one in shapes), default=0)
         self.wave_re, self.wave_im = np.zeros((2, len(shapes), most, self.dofs))
         for j, one in enumerate(shapes):
@@ -367,12 +367,12 @@ class TravellingDisplacements(Displacements):
     ) -> cython.int:
         """Amplitudes of one harmonic, mode by mode."""
         wave: Receptance = self.waves[j]
-        n: cython.Py_ssize_t = self.seen.ports
+        n: cython.Py_ssize_t = self.receptance.ports
         i: cython.Py_ssize_t
         d: cython.Py_ssize_t
         p: cython.Py_ssize_t
         k: cython.Py_ssize_t
-        driven: cython.double = load if self.seen.forced[j] >= 0 else 0.0
+        driven: cython.double = load if self.receptance.forced[j] >= 0 else 0.0
         self.clear(j)
         for i in range(wave.modes):
             f_re: cython.double = driven * wave.force_re[0, i]
@@ -380,7 +380,7 @@ class TravellingDisplacements(Displacements):
             g_re: cython.double = driven * d_omega * wave.slope_re[0, i]
             g_im: cython.double = driven * d_omega * wave.slope_im[0, i]
             for p in range(n):
-                k = self.seen.wave_at[p] + self.seen.stride * j
+                k = self.receptance.wave_at[p] + self.receptance.stride * j
                 a: cython.double = wave.shapes[i, p]
                 b: cython.double = wave.shapes[i, n + p]
                 f_re -= a * force[k] + b * force[k + 1]

@@ -71,7 +71,7 @@ class LinearContacts:
         counted: FloatArray,
         options: LinearContactOptions = LINEAR_CONTACTS,
     ) -> None:
-        self.seen: Receptance = answer.seen
+        self.receptance: Receptance = answer.receptance
         self.place, self.options = answer.place, options
         self.flexibility = np.ascontiguousarray(np.asarray(answer.flexibility).T)
         self.contacts, self.parts = counted.size, answer.place.shape[0]
@@ -118,8 +118,8 @@ class LinearContacts:
 
     def _find_modes(self, closed: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> None:
         """Find the modes with the springs of some contacts."""
-        self.closed, seen = closed, self.seen
-        P, natural, rate = (np.asarray(a) for a in (seen.shapes, seen.natural, seen.rate))
+        self.closed, receptance = closed, self.receptance
+        P, natural, rate = (np.asarray(a) for a in (receptance.shapes, receptance.natural, receptance.rate))
         self.K = (self.springs * closed[:, None]).ravel()
         self.K_mean = np.where(closed[:, None], self.stuck[:, 0], self.open[:, 0]).ravel()
         square, V = np.linalg.eigh(np.diag(natural**2) + (P * self.K) @ P.T)
@@ -137,10 +137,10 @@ class LinearContacts:
     def factor(self, row: FloatArray, by: FloatArray) -> float:
         """Of the system closed by a row (unknown + 1,), by (unknown,) the derivative by the parameter; the
         sign of its determinant, or 0."""
-        h = np.asarray(self.seen.harmonics)[:, None] * self.seen.omega
+        h = np.asarray(self.receptance.harmonics)[:, None] * self.receptance.omega
         c = 1.0 / (self.square - h * h + 1j * h * self.rate)
         self.c_re, self.c_im = np.ascontiguousarray(c.real), np.ascontiguousarray(c.imag)
-        count, parts, forces = self.seen.count, self.parts, self.ports.size
+        count, parts, forces = self.receptance.count, self.parts, self.ports.size
         self.on_forces = np.ascontiguousarray(self.shapes[:, self.ports])
         which = self.ports // self.each
         contacts, number = np.unique(which, return_inverse=True)

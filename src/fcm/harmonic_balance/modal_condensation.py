@@ -158,8 +158,8 @@ class CondensedSystem:
         self.answer, self.tangent, self.options = answer, tangent, options
         self.equations = ModalEquations(self.answer, tangent, options.max_corrections)
         self.ranking = np.argsort(-yields, kind="stable")
-        parts = 1 + 2 * answer.seen.count
-        self.choose_modes(retained_modes(yields, answer.seen.ports, parts, options))
+        parts = 1 + 2 * answer.receptance.count
+        self.choose_modes(retained_modes(yields, answer.receptance.ports, parts, options))
         self.linear_contacts = LinearContacts(answer, springs, counted)
         self.row, self.scale = np.zeros((2, tangent.shape[0] * tangent.shape[1] + 1))
         self.omega = 0.0  # of what was factored
@@ -181,7 +181,7 @@ class CondensedSystem:
         by (unknown,) is the derivative by the parameter.
         """
         np.divide(row, scale, out=self.row)
-        self.scale[:], self.omega = scale, self.answer.seen.omega
+        self.scale[:], self.omega = scale, self.answer.receptance.omega
         self.equations.set_closing_row(row, by, scale)
         if self.linear_contacts.choose(self.tangent, self.equations.rank):
             self.equations.held = self.linear_contacts
@@ -196,10 +196,10 @@ class CondensedSystem:
         step: it is one of Newton's method, or a direction if the equations have no right side but the last.
         The structure answers as where the system was factored: a right side may be that of another frequency.
         """
-        seen, now = self.answer.seen, self.answer.seen.omega
-        seen.at(self.omega)
+        receptance, now = self.answer.receptance, self.answer.receptance.omega
+        receptance.at(self.omega)
         self._solve_there(right, step)
-        seen.at(now)
+        receptance.at(now)
 
     def _solve_there(self, right: FloatArray, step: bool) -> None:
         """`solve`, the structure at the frequency of what was factored."""

@@ -80,7 +80,7 @@ cdef void sum_of_rows(double[::1] by, double[:, ::1] matrix, double[::1] out) no
 cdef void sums_of_rows(double[:, ::1] by, double[:, ::1] matrix, double[:, ::1] out) noexcept
 
 cdef class ModalCompliance:
-    cdef public Receptance seen
+    cdef public Receptance receptance
     cdef public object place
     cdef public double[:, ::1] flexibility
     cdef public double[:, ::1] shapes

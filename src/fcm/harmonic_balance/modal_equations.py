@@ -66,17 +66,17 @@ class ModalCompliance:
     and imaginary part of each harmonic of a port are among the unknowns.
     """
 
-    def __init__(self, seen: Receptance, flexibility: npt.NDArray[np.float64]) -> None:
-        self.seen, self.shapes = seen, seen.shapes
-        self.by_port = np.ascontiguousarray(np.asarray(seen.shapes).T)
+    def __init__(self, receptance: Receptance, flexibility: npt.NDArray[np.float64]) -> None:
+        self.receptance, self.shapes = receptance, receptance.shapes
+        self.by_port = np.ascontiguousarray(np.asarray(receptance.shapes).T)
         self.flexibility = np.ascontiguousarray(flexibility.T)  # by the mode that is pushed
         self.diagonal = not np.any(flexibility != np.diag(flexibility.diagonal()))
-        mean, wave = np.asarray(seen.mean_at), np.asarray(seen.wave_at)
-        rows = [wave + seen.stride * j + i for j in range(seen.count) for i in (0, 1)]
+        mean, wave = np.asarray(receptance.mean_at), np.asarray(receptance.wave_at)
+        rows = [wave + receptance.stride * j + i for j in range(receptance.count) for i in (0, 1)]
         self.place = np.array([mean, *rows], dtype=np.intp)
-        self.at, self.parts = self.place, 1 + 2 * seen.count
-        self.on_ports, self.moved = np.zeros((2, self.parts, seen.ports))
-        self.on_modes, self.mean = np.zeros((self.parts, seen.modes)), np.zeros(seen.modes)
+        self.at, self.parts = self.place, 1 + 2 * receptance.count
+        self.on_ports, self.moved = np.zeros((2, self.parts, receptance.ports))
+        self.on_modes, self.mean = np.zeros((self.parts, receptance.modes)), np.zeros(receptance.modes)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -84,7 +84,7 @@ class ModalCompliance:
         """Fill out (unknown,) with the displacements that forces (unknown,) take away."""
         self.collect(force)
         self.means()
-        self.apply_compliance(self.seen.c_re, self.seen.c_im)
+        self.apply_compliance(self.receptance.c_re, self.receptance.c_im)
         self.spread(out)
         return 0
 
@@ -94,7 +94,7 @@ class ModalCompliance:
         """The same with their derivatives by the frequency; the means have none."""
         self.collect(force)
         self.on_modes[0, :] = 0.0
-        self.apply_compliance(self.seen.s_re, self.seen.s_im)
+        self.apply_compliance(self.receptance.s_re, self.receptance.s_im)
         self.spread(out)
         return 0
 
@@ -211,8 +211,8 @@ class ModalEquations:
         m: cython.Py_ssize_t = self.modes
         rank: cython.Py_ssize_t = self.rank
         matrix: cython.double[:, ::1] = self.solver.matrix
-        c_re: cython.double[:, ::1] = self.answer.seen.c_re
-        c_im: cython.double[:, ::1] = self.answer.seen.c_im
+        c_re: cython.double[:, ::1] = self.answer.receptance.c_re
+        c_im: cython.double[:, ::1] = self.answer.receptance.c_im
         self.by_modes()
         for i in range(m):
             for k in range(rank):
@@ -451,8 +451,8 @@ class ModalEquations:
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         m: cython.Py_ssize_t = self.modes
-        c_re: cython.double[:, ::1] = self.answer.seen.c_re
-        c_im: cython.double[:, ::1] = self.answer.seen.c_im
+        c_re: cython.double[:, ::1] = self.answer.receptance.c_re
+        c_im: cython.double[:, ::1] = self.answer.receptance.c_im
         sum_of_rows(self.pushed[0], self.mean, self.answered[0])
         for j in range(c_re.shape[0]):
             for i in range(m):

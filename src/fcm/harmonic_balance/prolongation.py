@@ -60,12 +60,12 @@ class ForceLevelProblem(Problem):
         b.evaluate(self.z)
         for i in range(n):
             self.jacobian[i, last] = 0.0
-        for j in range(b.seen.count):
-            k = b.seen.forced[j]
+        for j in range(b.receptance.count):
+            k = b.receptance.forced[j]
             for p in range(b.ports if k >= 0 else 0):
-                row = b.seen.wave_at[p] + b.seen.stride * j
-                self.jacobian[row, last] = -b.seen.X_re[k, p]
-                self.jacobian[row + 1, last] = -b.seen.X_im[k, p]
+                row = b.receptance.wave_at[p] + b.receptance.stride * j
+                self.jacobian[row, last] = -b.receptance.X_re[k, p]
+                self.jacobian[row + 1, last] = -b.receptance.X_im[k, p]
         return 0
 
     @cython.ccall

@@ -4,15 +4,15 @@ from fcm.harmonic_balance.displacement cimport Displacements
 from fcm.harmonic_balance.modal_equations cimport ModalCompliance
 from fcm.structure.receptance cimport Receptance
 
-cdef void apply_to_forces(Receptance seen, double[::1] force, double[::1] out) noexcept
-cdef void apply_to_tangents(Receptance seen, double[:, :, ::1] tangent, double[:, ::1] out) noexcept
-cdef void slope(Receptance seen, double[::1] force, double load, double[::1] out) noexcept
-cdef void subtract_external(Receptance seen, double load, double[::1] out) noexcept
-cdef void subtract_external_slopes(Receptance seen, double load, double[::1] out) noexcept
+cdef void apply_to_forces(Receptance receptance, double[::1] force, double[::1] out) noexcept
+cdef void apply_to_tangents(Receptance receptance, double[:, :, ::1] tangent, double[:, ::1] out) noexcept
+cdef void slope(Receptance receptance, double[::1] force, double load, double[::1] out) noexcept
+cdef void subtract_external(Receptance receptance, double load, double[::1] out) noexcept
+cdef void subtract_external_slopes(Receptance receptance, double load, double[::1] out) noexcept
 
 cdef class Balance(Problem):
-    cdef public Receptance seen
-    cdef public Displacements shown
+    cdef public Receptance receptance
+    cdef public Displacements displacements
     cdef public list laws
     cdef public object condensed
     cdef ModalCompliance answer

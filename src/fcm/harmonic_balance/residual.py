@@ -41,38 +41,40 @@ else:
 
 @cython.cfunc
 @cython.exceptval(check=False)
-def apply_to_forces(seen: Receptance, force: cython.double[::1], out: cython.double[::1]) -> cython.void:
+def apply_to_forces(
+    receptance: Receptance, force: cython.double[::1], out: cython.double[::1]
+) -> cython.void:
     """Fill out (unknown,) with the answer to forces (unknown,)."""
     row: cython.Py_ssize_t
     f: cython.Py_ssize_t
     p: cython.Py_ssize_t
     q: cython.Py_ssize_t
     j: cython.Py_ssize_t
-    for p in range(seen.ports):
+    for p in range(receptance.ports):
         total: cython.double = 0.0
-        for q in range(seen.ports):
-            total += seen.static[p, q] * force[seen.mean_at[q]]
-        out[seen.mean_at[p]] = total
-        for j in range(seen.count):
+        for q in range(receptance.ports):
+            total += receptance.static[p, q] * force[receptance.mean_at[q]]
+        out[receptance.mean_at[p]] = total
+        for j in range(receptance.count):
             re: cython.double = 0.0
             im: cython.double = 0.0
-            for q in range(seen.ports):
-                f = seen.wave_at[q] + seen.stride * j
-                re += seen.G_re[j, p, q] * force[f] - seen.G_im[j, p, q] * force[f + 1]
-                im += seen.G_im[j, p, q] * force[f] + seen.G_re[j, p, q] * force[f + 1]
-            row = seen.wave_at[p] + seen.stride * j
+            for q in range(receptance.ports):
+                f = receptance.wave_at[q] + receptance.stride * j
+                re += receptance.G_re[j, p, q] * force[f] - receptance.G_im[j, p, q] * force[f + 1]
+                im += receptance.G_im[j, p, q] * force[f] + receptance.G_re[j, p, q] * force[f + 1]
+            row = receptance.wave_at[p] + receptance.stride * j
             out[row], out[row + 1] = re, im
 
 
 @cython.cfunc
 @cython.exceptval(check=False)
 def apply_to_tangents(
-    seen: Receptance, tangent: cython.double[:, :, ::1], out: cython.double[:, ::1]
+    receptance: Receptance, tangent: cython.double[:, :, ::1], out: cython.double[:, ::1]
 ) -> cython.void:
     """Fill out (unknown, unknown) with the answers to the changes of forces by tangents (contact, w, w)."""
     contacts: cython.Py_ssize_t = tangent.shape[0]
     w: cython.Py_ssize_t = tangent.shape[1]
-    each: cython.Py_ssize_t = seen.ports // contacts if contacts > 0 else 0
+    each: cython.Py_ssize_t = receptance.ports // contacts if contacts > 0 else 0
     row: cython.Py_ssize_t
     f: cython.Py_ssize_t
     p: cython.Py_ssize_t
@@ -82,21 +84,21 @@ def apply_to_tangents(
     j: cython.Py_ssize_t
     re: cython.double
     im: cython.double
-    for p in range(seen.ports):
+    for p in range(receptance.ports):
         for c in range(contacts):
-            row = seen.mean_at[p]
+            row = receptance.mean_at[p]
             for d in range(each):
-                re = seen.static[p, c * each + d]
+                re = receptance.static[p, c * each + d]
                 for k in range(w):
                     if d == 0:
                         out[row, c * w + k] = re * tangent[c, d, k]
                     else:
                         out[row, c * w + k] += re * tangent[c, d, k]
-            for j in range(seen.count):
-                row = seen.wave_at[p] + seen.stride * j
+            for j in range(receptance.count):
+                row = receptance.wave_at[p] + receptance.stride * j
                 for d in range(each):
-                    re, im = seen.G_re[j, p, c * each + d], seen.G_im[j, p, c * each + d]
-                    f = each + seen.stride * j + 2 * d
+                    re, im = receptance.G_re[j, p, c * each + d], receptance.G_im[j, p, c * each + d]
+                    f = each + receptance.stride * j + 2 * d
                     if d == 0:
                         for k in range(w):
                             out[row, c * w + k] = re * tangent[c, f, k] - im * tangent[c, f + 1, k]
@@ -110,7 +112,7 @@ def apply_to_tangents(
 @cython.cfunc
 @cython.exceptval(check=False)
 def slope(
-    seen: Receptance, force: cython.double[::1], load: cython.double, out: cython.double[::1]
+    receptance: Receptance, force: cython.double[::1], load: cython.double, out: cython.double[::1]
 ) -> cython.void:
     """Fill out (unknown,) with the derivative by the frequency of the answer to forces, less that to a level
     of the external ones; the means have none."""
@@ -119,48 +121,50 @@ def slope(
     p: cython.Py_ssize_t
     q: cython.Py_ssize_t
     j: cython.Py_ssize_t
-    for p in range(seen.ports):
-        out[seen.mean_at[p]] = 0.0
-        for j in range(seen.count):
-            row = seen.wave_at[p] + seen.stride * j
+    for p in range(receptance.ports):
+        out[receptance.mean_at[p]] = 0.0
+        for j in range(receptance.count):
+            row = receptance.wave_at[p] + receptance.stride * j
             re: cython.double = 0.0
             im: cython.double = 0.0
-            for q in range(seen.ports):
-                f = seen.wave_at[q] + seen.stride * j
-                re += seen.dG_re[j, p, q] * force[f] - seen.dG_im[j, p, q] * force[f + 1]
-                im += seen.dG_im[j, p, q] * force[f] + seen.dG_re[j, p, q] * force[f + 1]
+            for q in range(receptance.ports):
+                f = receptance.wave_at[q] + receptance.stride * j
+                re += receptance.dG_re[j, p, q] * force[f] - receptance.dG_im[j, p, q] * force[f + 1]
+                im += receptance.dG_im[j, p, q] * force[f] + receptance.dG_re[j, p, q] * force[f + 1]
             out[row], out[row + 1] = re, im
-    subtract_external_slopes(seen, load, out)
+    subtract_external_slopes(receptance, load, out)
 
 
 @cython.cfunc
 @cython.exceptval(check=False)
-def subtract_external(seen: Receptance, load: cython.double, out: cython.double[::1]) -> cython.void:
+def subtract_external(receptance: Receptance, load: cython.double, out: cython.double[::1]) -> cython.void:
     """Take from out (unknown,) the answer to a level of the external forces."""
     j: cython.int
     p: cython.Py_ssize_t
-    for j in range(seen.count):
-        k: cython.int = seen.forced[j]
+    for j in range(receptance.count):
+        k: cython.int = receptance.forced[j]
         if k >= 0:
-            for p in range(seen.ports):
-                row: cython.Py_ssize_t = seen.wave_at[p] + seen.stride * j
-                out[row] -= load * seen.X_re[k, p]
-                out[row + 1] -= load * seen.X_im[k, p]
+            for p in range(receptance.ports):
+                row: cython.Py_ssize_t = receptance.wave_at[p] + receptance.stride * j
+                out[row] -= load * receptance.X_re[k, p]
+                out[row + 1] -= load * receptance.X_im[k, p]
 
 
 @cython.cfunc
 @cython.exceptval(check=False)
-def subtract_external_slopes(seen: Receptance, load: cython.double, out: cython.double[::1]) -> cython.void:
+def subtract_external_slopes(
+    receptance: Receptance, load: cython.double, out: cython.double[::1]
+) -> cython.void:
     """Take from out (unknown,) the derivative of that by the frequency."""
     j: cython.int
     p: cython.Py_ssize_t
-    for j in range(seen.count):
-        k: cython.int = seen.forced[j]
+    for j in range(receptance.count):
+        k: cython.int = receptance.forced[j]
         if k >= 0:
-            for p in range(seen.ports):
-                row: cython.Py_ssize_t = seen.wave_at[p] + seen.stride * j
-                out[row] -= load * seen.dX_re[k, p]
-                out[row + 1] -= load * seen.dX_im[k, p]
+            for p in range(receptance.ports):
+                row: cython.Py_ssize_t = receptance.wave_at[p] + receptance.stride * j
+                out[row] -= load * receptance.dX_re[k, p]
+                out[row + 1] -= load * receptance.dX_im[k, p]
 
 
 @cython.cclass
@@ -169,23 +173,29 @@ class Balance(Problem):
 
     def __init__(
         self,
-        seen: Receptance,
+        receptance: Receptance,
         layout: Layout,
         laws: list[Law],
-        shown: Displacements,
+        displacements: Displacements,
         counted: npt.NDArray[np.float64],
         span: cython.double,
         rank: cython.int = 0,
         units: UnitOptions = HARMONIC_BALANCE.units,
     ) -> None:
         width: cython.int = layout.width
-        Problem.__init__(self, layout.unknowns, sum(law.margins for law in laws), shown.dofs, rank)
-        self.seen, self.shown, self.laws, self.contacts, self.width = seen, shown, laws, len(laws), width
+        Problem.__init__(self, layout.unknowns, sum(law.margins for law in laws), displacements.dofs, rank)
+        self.receptance, self.displacements, self.laws, self.contacts, self.width = (
+            receptance,
+            displacements,
+            laws,
+            len(laws),
+            width,
+        )
         self.layout, self.directions, self.ports = layout, layout.directions, layout.ports
         self.group = laws[0].margins if laws else 0  # all contacts have as many
         self.rooted = layout.directions > 2  # in a plane a circle begins to slip all around at once
         self.counted, self.span, self.load, self.share = np.array(counted), span, 1.0, 1.0
-        self.rest, self.reported = np.zeros(layout.ports), np.ones(shown.dofs)
+        self.rest, self.reported = np.zeros(layout.ports), np.ones(displacements.dofs)
         self.force, self.now, self.rate, self.by_frequency = np.zeros((4, self.unknowns))
         self.evaluated = np.zeros(self.unknowns + 1)
         self.tangent = np.zeros((len(laws), width, width))
@@ -212,7 +222,7 @@ class Balance(Problem):
         for i in range(self.unknowns):
             self.jacobian[i, 0 if self.rank else self.unknowns] = self.by_frequency[i]
         if not self.rank:
-            apply_to_tangents(self.seen, self.tangent, self.jacobian)
+            apply_to_tangents(self.receptance, self.tangent, self.jacobian)
             for i in range(self.unknowns):
                 self.jacobian[i, i] += 1.0
         return 0
@@ -228,16 +238,16 @@ class Balance(Problem):
         """The residual and the contacts' forces at z, and their tangents; which else stay as they were."""
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t
-        self.seen.at(z[self.unknowns])
+        self.receptance.at(z[self.unknowns])
         self.contact_forces(z, tangents)
         if self.condensed is None:
-            apply_to_forces(self.seen, self.force, self.residual)
+            apply_to_forces(self.receptance, self.force, self.residual)
         else:
             assert self.answer is not None
             self.answer.displace(self.force, self.residual)
         for p in range(self.ports):
-            self.residual[self.seen.mean_at[p]] -= self.share * self.rest[p]
-        subtract_external(self.seen, self.load, self.residual)
+            self.residual[self.receptance.mean_at[p]] -= self.share * self.rest[p]
+        subtract_external(self.receptance, self.load, self.residual)
         for i in range(self.unknowns):
             self.residual[i] += z[i]
         for i in range(self.unknowns + 1):
@@ -249,11 +259,11 @@ class Balance(Problem):
     def slopes(self) -> cython.int:
         """Derivatives by the frequency."""
         if self.condensed is None:
-            slope(self.seen, self.force, self.load, self.by_frequency)
+            slope(self.receptance, self.force, self.load, self.by_frequency)
             return 0
         assert self.answer is not None
         self.answer.rate(self.force, self.by_frequency)
-        subtract_external_slopes(self.seen, self.load, self.by_frequency)
+        subtract_external_slopes(self.receptance, self.load, self.by_frequency)
         return 0
 
     @cython.cfunc
@@ -292,10 +302,10 @@ class Balance(Problem):
         k: cython.Py_ssize_t
         overall: cython.double = 0.0
         for p in range(self.ports):
-            k = self.seen.mean_at[p]
+            k = self.receptance.mean_at[p]
             total: cython.double = z[k] * z[k]
-            for i in range(self.seen.count):
-                k = self.seen.wave_at[p] + self.seen.stride * i
+            for i in range(self.receptance.count):
+                k = self.receptance.wave_at[p] + self.receptance.stride * i
                 total += z[k] * z[k] + z[k + 1] * z[k + 1]
             self.size[p] = sqrt(total)
         self.together()
@@ -310,9 +320,9 @@ class Balance(Problem):
                 if law.k_v > 0.0:
                     unit = max(unit, self.of_preload * law.n_0 / law.k_v)
             unit = unit * many if unit > 0.0 else many
-            self.scale[self.seen.mean_at[p]] = unit
-            for i in range(self.seen.count):
-                k = self.seen.wave_at[p] + self.seen.stride * i
+            self.scale[self.receptance.mean_at[p]] = unit
+            for i in range(self.receptance.count):
+                k = self.receptance.wave_at[p] + self.receptance.stride * i
                 self.scale[k] = self.scale[k + 1] = unit
         self.scale[self.unknowns] = self.span
         return 0
@@ -359,18 +369,18 @@ class Balance(Problem):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def report(self, z: cython.double[::1], direction: cython.double[::1]) -> cython.int:
-        """Amplitudes of the degrees of freedom shown, and their growth.
+        """Amplitudes of the reported degrees of freedom, and their growth.
 
         None of what no result has: where loads act the sum of many displacements may cancel, and its growth
         is that of rounding. Steps would become as short as it varies.
         """
-        self.seen.at(z[self.unknowns])
+        self.receptance.at(z[self.unknowns])
         self.forces_at(z, direction)
-        self.shown.at(self.load, self.now, self.rate, z, direction)
+        self.displacements.at(self.load, self.now, self.rate, z, direction)
         i: cython.Py_ssize_t
         for i in range(self.outputs):
-            self.output[i] = self.shown.amplitude[i]
-            self.growth[i] = self.shown.growth[i] * self.reported[i]
+            self.output[i] = self.displacements.amplitude[i]
+            self.growth[i] = self.displacements.growth[i] * self.reported[i]
         return 0
 
     @cython.cfunc
@@ -419,8 +429,8 @@ class PointQuantities:
     """
 
     def __init__(self, balance: Balance, count: cython.int) -> None:
-        shown = balance.shown
-        dofs, harmonics = shown.dofs, balance.seen.count
+        displacements = balance.displacements
+        dofs, harmonics = displacements.dofs, balance.receptance.count
         self.balance = balance
         self.re, self.im = np.zeros((2, count, harmonics, dofs))
         self.mean, self.amplitude, self.growth = np.zeros((3, count, dofs))
@@ -442,11 +452,11 @@ class PointQuantities:
             b.load = level[i]
             b.evaluate_contacts(z[i], True)
             b.report(z[i], direction[i])
-            for d in range(b.shown.dofs):
-                self.mean[i, d], self.amplitude[i, d] = b.shown.mean[d], b.shown.amplitude[d]
-                self.growth[i, d] = b.shown.growth[d]
-                for j in range(b.seen.count):
-                    self.re[i, j, d], self.im[i, j, d] = b.shown.re[j, d], b.shown.im[j, d]
+            for d in range(b.displacements.dofs):
+                self.mean[i, d], self.amplitude[i, d] = b.displacements.mean[d], b.displacements.amplitude[d]
+                self.growth[i, d] = b.displacements.growth[d]
+                for j in range(b.receptance.count):
+                    self.re[i, j, d], self.im[i, j, d] = b.displacements.re[j, d], b.displacements.im[j, d]
             for j in range(b.unknowns):
                 self.force[i, j] = b.force[j]
             for j in range(b.contacts):

@@ -16,7 +16,7 @@ cdef class FurtherHarmonics:
     cdef bint is_leading(self, double[::1] z, double[::1] amplitude, Py_ssize_t h) except -1
 
 cdef class EnrichedMotion:
-    cdef public Receptance seen
+    cdef public Receptance receptance
     cdef public list laws
     cdef readonly int contacts, width, wide, directions
     cdef bint few

@@ -244,15 +244,15 @@ class EnrichedMotion:
 
     def __init__(
         self,
-        seen: Receptance,
+        receptance: Receptance,
         laws: list[Law],
         harmonics: list[int],
         options: SpectrumOptions = HARMONIC_BALANCE.spectrum,
     ) -> None:
-        self.few = seen.ports <= options.compiled_ports
-        finer = [int(h) for h in seen.harmonics]
-        self.seen, self.laws, self.contacts = seen, laws, len(laws)
-        self.directions = seen.ports // self.contacts if laws else 0
+        self.few = receptance.ports <= options.compiled_ports
+        finer = [int(h) for h in receptance.harmonics]
+        self.receptance, self.laws, self.contacts = receptance, laws, len(laws)
+        self.directions = receptance.ports // self.contacts if laws else 0
         self.width = self.directions * (1 + 2 * len(harmonics))
         self.wide = self.directions * (1 + 2 * len(finer))
         self.force, self.x = np.zeros((self.contacts, self.wide)), np.zeros(self.contacts * self.wide)
@@ -260,7 +260,7 @@ class EnrichedMotion:
         self.place, self.shift = np.array(where, dtype=np.intc), 0.0
         self.resistance = np.zeros((self.contacts, self.directions, self.directions))
         self.stiffness: npt.NDArray[np.float64] | None = None  # the same by modes, for all harmonics
-        size = 2 * seen.ports if self.few else 0
+        size = 2 * receptance.ports if self.few else 0
         self.matrix, self.right = np.zeros((size, size)), np.zeros(size)
         self.swapped = np.zeros(size, dtype=np.intc)
 
@@ -272,7 +272,7 @@ class EnrichedMotion:
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         h: cython.Py_ssize_t
-        self.seen.at(z[self.contacts * self.width])
+        self.receptance.at(z[self.contacts * self.width])
         for c in range(self.contacts):
             law: Law = self.laws[c]
             law.probe(z, c * self.width)
@@ -315,7 +315,9 @@ class EnrichedMotion:
         for h in range(self.place.shape[0]):
             for p in range(first, first + ports):
                 for i in range(2):
-                    size: cython.double = abs(self.x[self.seen.wave_at[p] + self.seen.stride * h + i])
+                    size: cython.double = abs(
+                        self.x[self.receptance.wave_at[p] + self.receptance.stride * h + i]
+                    )
                     if self.place[h] < 0:
                         new = max(new, size)
                     else:
@@ -359,23 +361,23 @@ class EnrichedMotion:
         for c in range(self.contacts):
             for d in range(each):
                 p = c * each + d
-                G_re, G_im = self.seen.G_re[h, p, p], self.seen.G_im[h, p, p]
+                G_re, G_im = self.receptance.G_re[h, p, p], self.receptance.G_im[h, p, p]
                 re = self.resistance[c, d, d]
                 resisted = resisted or (G_re * G_re + G_im * G_im) * re * re > 1.0
-        for p in range(self.seen.ports):
+        for p in range(self.receptance.ports):
             self.right[2 * p] = self.right[2 * p + 1] = 0.0
             for c in range(self.contacts):
                 for d in range(each):
                     q, at = c * each + d, each * (1 + 2 * h) + 2 * d
-                    G_re, G_im = self.seen.G_re[h, p, q], self.seen.G_im[h, p, q]
+                    G_re, G_im = self.receptance.G_re[h, p, q], self.receptance.G_im[h, p, q]
                     self.right[2 * p] -= G_re * self.force[c, at] - G_im * self.force[c, at + 1]
                     self.right[2 * p + 1] -= G_re * self.force[c, at + 1] + G_im * self.force[c, at]
                     if not resisted:
                         continue
                     re = im = 0.0  # a displacement may change the forces in other directions, too
                     for e in range(each):
-                        re += self.seen.G_re[h, p, c * each + e] * self.resistance[c, e, d]
-                        im += self.seen.G_im[h, p, c * each + e] * self.resistance[c, e, d]
+                        re += self.receptance.G_re[h, p, c * each + e] * self.resistance[c, e, d]
+                        im += self.receptance.G_im[h, p, c * each + e] * self.resistance[c, e, d]
                     self.matrix[2 * p, 2 * q] = self.matrix[2 * p + 1, 2 * q + 1] = re
                     self.matrix[2 * p + 1, 2 * q] = im
                     self.matrix[2 * p, 2 * q + 1] = -im
@@ -384,27 +386,27 @@ class EnrichedMotion:
                 self.matrix[2 * p + 1, 2 * p + 1] += 1.0
         if resisted and eliminate(self.matrix, self.swapped) != 0.0:
             substitute(self.matrix, self.swapped, self.right)
-        for p in range(self.seen.ports):
-            at = self.seen.wave_at[p] + self.seen.stride * h
+        for p in range(self.receptance.ports):
+            at = self.receptance.wave_at[p] + self.receptance.stride * h
             self.x[at], self.x[at + 1] = self.right[2 * p], self.right[2 * p + 1]
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def displace_many(self, h: cython.int) -> cython.int:
         """The same at many ports, by modes where these are fewer."""
-        seen, each = self.seen, self.directions
-        at = np.asarray(seen.wave_at) + seen.stride * h
+        receptance, each = self.receptance, self.directions
+        at = np.asarray(receptance.wave_at) + receptance.stride * h
         force, K = np.asarray(self.force).ravel(), np.asarray(self.resistance)
         F, spring = force[at] + 1j * force[at + 1], np.diagonal(K, axis1=1, axis2=2).ravel()
-        if seen.summed:
-            G = seen.of_harmonic(h)
+        if receptance.summed:
+            G = receptance.of_harmonic(h)
             X = -(G @ F)
             if (np.abs(G.diagonal()) * spring > 1.0).any():
                 GK = (G.reshape(-1, self.contacts, 1, each) @ K).reshape(G.shape)
                 X = np.asarray(np.linalg.solve(np.eye(len(G)) + GK, X), dtype=np.complex128)
         else:
-            P = np.asarray(seen.shapes)
-            c = np.asarray(seen.c_re)[h] + 1j * np.asarray(seen.c_im)[h]
+            P = np.asarray(receptance.shapes)
+            c = np.asarray(receptance.c_re)[h] + 1j * np.asarray(receptance.c_im)[h]
             q = -c * (P @ F)
             if (np.abs(c @ np.square(P)) * spring > 1.0).any():
                 if self.stiffness is None:

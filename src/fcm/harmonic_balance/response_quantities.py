@@ -79,14 +79,14 @@ class ContactRecord:
 
 
 def recorded(
-    system: System, paths: Sequence[Path], shown: Sequence[ReportedQuantities] | None = None
+    system: System, paths: Sequence[Path], quantities: Sequence[ReportedQuantities] | None = None
 ) -> PointRecord:
-    """The points of paths; shown is what is reported along each, if it is known."""
+    """The points of paths; quantities is what is reported along each, if it is known."""
     z = np.concatenate([path.z for path in paths])
-    if shown is None:
-        shown = [reported_quantities(system, path) for path in paths]
+    if quantities is None:
+        quantities = [reported_quantities(system, path) for path in paths]
     X, mean, amplitude, force, linear = (
-        _joined([getattr(one, name) for one in shown])
+        _joined([getattr(one, name) for one in quantities])
         for name in ("X", "mean", "amplitude", "force", "linear")
     )
     number = np.repeat(np.arange(len(paths)), [path.z.shape[0] for path in paths])

@@ -63,8 +63,8 @@ def with_precise_fundamental(
         points, X=points.X.copy(), mean=points.mean.copy(), force=points.force.copy(), z=points.z.copy(),
         amplitude=points.amplitude.copy(),
     )  # fmt: skip
-    shown, forces = balance.shown, _Forces(system)
-    apart = np.asarray(shown.without_modes) != 0
+    displacements, forces = balance.displacements, _Forces(system)
+    apart = np.asarray(displacements.without_modes) != 0
     looked = stiff
     if (quick or balance.rank) and stiff.size > options.max_points:
         looked = stiff[np.linspace(0, stiff.size - 1, options.max_points).round().astype(np.intp)]
@@ -77,13 +77,13 @@ def with_precise_fundamental(
         made.z[i] = found.z
         balance.evaluate(found.z)
         balance.report(found.z, np.zeros(found.z.size))
-        made.X[i].real, made.X[i].imag, made.mean[i] = shown.re, shown.im, shown.mean
-        made.amplitude[i], made.force[i] = shown.amplitude, balance.force
+        made.X[i].real, made.X[i].imag, made.mean[i] = displacements.re, displacements.im, displacements.mean
+        made.amplitude[i], made.force[i] = displacements.amplitude, balance.force
         if found.X is not None:
-            made.X[i, balance.seen.first, apart] = found.X[apart]
+            made.X[i, balance.receptance.first, apart] = found.X[apart]
             made.amplitude[i, apart] = np.abs(found.X[apart])
         size = np.where(made.amplitude[i] > 0.0, made.amplitude[i], np.inf)
-        rounding[i] = np.where(apart, found.dofs, found.ports @ np.abs(shown.attached)) / size
+        rounding[i] = np.where(apart, found.dofs, found.ports @ np.abs(displacements.attached)) / size
     behind = np.searchsorted(looked, stiff)
     before = np.where(looked[behind] == stiff, behind, behind - 1)
     rounding[stiff] = np.maximum(rounding[looked[before]], rounding[looked[behind]])
@@ -113,12 +113,12 @@ def _stiffness(system: System, omega: FloatArray, springs: FloatArray) -> FloatA
 
 def _stiffest(balance: Balance, omega: float, springs: FloatArray) -> float:
     """The greatest k |G| at a frequency."""
-    balance.seen.at(omega)
+    balance.receptance.at(omega)
     return float((np.abs(_receptance(balance).diagonal()) * springs).max())
 
 
 def _receptance(balance: Balance) -> ComplexArray:
-    return balance.seen.of_harmonic(balance.seen.first)
+    return balance.receptance.of_harmonic(balance.receptance.first)
 
 
 class _Forces:
@@ -166,7 +166,12 @@ def _precise(
 ) -> PreciseFundamental | None:
     """The point evaluated last with the digits that can be kept; None where that is as it is."""
     G, held = _receptance(balance), _port_stiffness(balance, springs)
-    seen, linear, at, omega = balance.seen, forces.linear, _fundamental_positions(balance), float(z[-1])
+    receptance, linear, at, omega = (
+        balance.receptance,
+        forces.linear,
+        _fundamental_positions(balance),
+        float(z[-1]),
+    )
     other = len(linear.driven) > 1  # whose answer is no fundamental
     if (
         held is None
@@ -175,7 +180,9 @@ def _precise(
         or not np.linalg.cond(G) < options.max_condition
     ):
         return None
-    compliance = np.asarray(seen.c_re)[seen.first] + 1j * np.asarray(seen.c_im)[seen.first]
+    compliance = (
+        np.asarray(receptance.c_re)[receptance.first] + 1j * np.asarray(receptance.c_im)[receptance.first]
+    )
     H, others = np.linalg.inv(G), forces.on_modes(omega)
     computed = H @ (linear.ports.T @ (compliance * others))
     x = np.linalg.solve(H + np.diag(held), forces.on_ports(omega) + computed)
@@ -198,20 +205,22 @@ def _as_balanced(
     balance: Balance, linear: Linear, springs: FloatArray, tangent: FloatArray, options: DigitOptions
 ) -> PreciseFundamental:
     """The point evaluated last as it is; its rounding from what its equations are summed of."""
-    seen, n, at = balance.seen, balance.unknowns, _fundamental_positions(balance)
+    receptance, n, at = balance.receptance, balance.unknowns, _fundamental_positions(balance)
     force, x = np.asarray(balance.force), np.asarray(balance.evaluated)
     size, on_ports = np.hypot(x[at], x[at + 1]), np.hypot(force[at], force[at + 1])
     terms = np.zeros(n)
-    terms[at] = np.abs(_receptance(balance)) @ on_ports + np.hypot(seen.X_re[0], seen.X_im[0]) + size
+    terms[at] = (
+        np.abs(_receptance(balance)) @ on_ports + np.hypot(receptance.X_re[0], receptance.X_im[0]) + size
+    )
     terms[at + 1] = terms[at]
     rounding = options.summed_roundings * options.last_digit
     off = moved_across_curve(balance, x, tangent, rounding * terms, options)
     ports = np.hypot(off[at], off[at + 1])
-    modes: Receptance = seen
+    modes: Receptance = receptance
     met: Linear | Wave = linear
-    j = seen.first
-    if isinstance(seen, TravellingReceptance) and isinstance(linear, RingLinear):
-        modes, j, met = seen.waves[j], 0, linear.wave(1)
+    j = receptance.first
+    if isinstance(receptance, TravellingReceptance) and isinstance(linear, RingLinear):
+        modes, j, met = receptance.waves[j], 0, linear.wave(1)
     compliance = np.hypot(np.asarray(modes.c_re)[j], np.asarray(modes.c_im)[j])
     shapes, external = np.abs(met.ports), np.hypot(modes.force_re[0], modes.force_im[0])
     on_modes = rounding * (external + shapes @ on_ports) + shapes @ (springs * ports)
@@ -264,14 +273,14 @@ def _ways(
 
 def _fundamental_positions(balance: Balance) -> npt.NDArray[np.intp]:
     """Of the real part of each port's fundamental among the unknowns."""
-    places: npt.NDArray[np.intp] = balance.layout.waves_at[balance.seen.first]
+    places: npt.NDArray[np.intp] = balance.layout.waves_at[balance.receptance.first]
     return places
 
 
 def _port_stiffness(balance: Balance, springs: FloatArray) -> FloatArray | None:
     """The stiffness of each port (port,), where no contact does anything but stick or stay open."""
-    d, stride = balance.directions, balance.seen.stride
-    j = d + stride * balance.seen.first
+    d, stride = balance.directions, balance.receptance.stride
+    j = d + stride * balance.receptance.first
     held = np.empty(springs.size)
     for c, tangent in enumerate(np.asarray(balance.tangent)):
         own, here = tangent[j : j + stride, d:].copy(), slice(c * d, (c + 1) * d)

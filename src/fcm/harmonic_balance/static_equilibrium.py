@@ -202,7 +202,7 @@ def _linear(system: System, share: float) -> Iterator[FloatArray]:
     contacts, balance, layout = system.scene.contacts, system.new_balance(), system.layout
     d = layout.directions
     n_0 = np.array([c.n_0 for c in contacts])
-    static, rest = np.asarray(balance.seen.static), share * np.asarray(balance.rest)
+    static, rest = np.asarray(balance.receptance.static), share * np.asarray(balance.rest)
     for closed in (n_0 > 0.0, np.ones(n_0.size, dtype=bool), np.zeros(n_0.size, dtype=bool)):
         if not _held(system.linear, closed):
             continue
@@ -235,6 +235,6 @@ def rest_of(scene: Scene) -> tuple[FloatArray, FloatArray]:
     q = linear.flexibility @ (linear.load - linear.ports @ force)  # of mass 1, rigid ones turned
     moved, rigid = q / np.sqrt(modal.mass), linear.natural == 0.0
     if rigid.any():
-        shown = linear.dofs[rigid].T @ q[rigid]
-        moved[rigid] = np.linalg.lstsq(modal.shapes[rigid].T, shown, rcond=None)[0]
+        displacements = linear.dofs[rigid].T @ q[rigid]
+        moved[rigid] = np.linalg.lstsq(modal.shapes[rigid].T, displacements, rcond=None)[0]
     return moved, force[:: balance.directions].copy()

@@ -47,9 +47,9 @@ def too_stiff(system: System, moves: bool = False) -> str:
 
 def _least_receptance(system: System) -> FloatArray:
     """|G| of each port in its own direction, the least at the ends of the range."""
-    seen, found = system.shared_balance.seen, []
+    receptance, found = system.shared_balance.receptance, []
     for omega in system.scene.frequency_range:
-        seen.at(omega)
-        found.append(np.abs(seen.of_harmonic(seen.first).diagonal()))
+        receptance.at(omega)
+        found.append(np.abs(receptance.of_harmonic(receptance.first).diagonal()))
     least: FloatArray = np.min(found, axis=0)
     return least

@@ -209,20 +209,27 @@ class System:
         low, high = self.scene.frequency_range
         linear = self.linear
         rank = condensed_size(self, linear.ports.shape[1], len(self.harmonics))
-        seen = linear.receptance(np.array(self.harmonics, dtype=np.float64), not rank)
-        shown = _displacements(linear, seen, self.options.extremes)
+        receptance = linear.receptance(np.array(self.harmonics, dtype=np.float64), not rank)
+        displacements = _displacements(linear, receptance, self.options.extremes)
         balance = Balance(
-            seen, self.layout, self.laws(), shown, linear.counted, high - low, rank, self.options.units
+            receptance,
+            self.layout,
+            self.laws(),
+            displacements,
+            linear.counted,
+            high - low,
+            rank,
+            self.options.units,
         )
         balance.reported = np.array([float(self.scene.reports(dof)) for dof in self.scene.modal.dofs])
         if rank:
             tangent, options = np.asarray(balance.tangent), self.condensation
-            answer = ModalCompliance(seen, linear.flexibility)
+            answer = ModalCompliance(receptance, linear.flexibility)
             stuck, yields, counted = self.springs(stuck=True), self.modal_compliance, linear.counted
             balance.condense(CondensedSystem(answer, tangent, yields, stuck, counted, options))
         if self.scene.loads:
             balance.rest[:] = linear.ports.T @ linear.flexibility @ linear.load
-            shown.rest[:] = linear.dofs.T @ linear.flexibility @ linear.load
+            displacements.rest[:] = linear.dofs.T @ linear.flexibility @ linear.load
         return balance
 
     @cached_property
@@ -343,9 +350,9 @@ def _workspace_of(system: System) -> _Workspace:
     return _Workspace(system) if found.exclusive else found
 
 
-def _displacements(linear: Linear, seen: Receptance, options: ExtremeOptions) -> Displacements:
+def _displacements(linear: Linear, receptance: Receptance, options: ExtremeOptions) -> Displacements:
     """What is reported of the structure that a receptance is of."""
-    if not (isinstance(linear, RingLinear) and isinstance(seen, TravellingReceptance)):
-        return Displacements(seen, linear, options)
-    shapes = [linear.wave(int(h)).dofs for h in seen.harmonics]
-    return TravellingDisplacements(seen, linear, shapes, options)
+    if not (isinstance(linear, RingLinear) and isinstance(receptance, TravellingReceptance)):
+        return Displacements(receptance, linear, options)
+    shapes = [linear.wave(int(h)).dofs for h in receptance.harmonics]
+    return TravellingDisplacements(receptance, linear, shapes, options)

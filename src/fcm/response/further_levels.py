@@ -62,7 +62,7 @@ def with_levels_where_unstable(
     guesses = (system.extended(z, more.harmonics) for z in passed)
     starts = [z for z in (at_its_frequency(system, guess) for guess in guesses) if z is not None]
     found = _with_branches(found, looked, starts, accuracy)
-    greatest = np.max([one.amplitude.max(axis=0) for one in found.shown], axis=0) * (1.0 + found.peak)
+    greatest = np.max([one.amplitude.max(axis=0) for one in found.quantities], axis=0) * (1.0 + found.peak)
     heights = (reported_at(more, z[None], np.eye(1, z.size, z.size - 1)).amplitude[0] for z in passed)
     return found, any((height > greatest).any() for height in heights)
 
@@ -74,7 +74,7 @@ def _with_branches(
     if not looked:
         return found
     traced = with_further(found.system, found.traced, looked, starts)
-    if len(traced.branches.paths) == len(found.shown):
+    if len(traced.branches.paths) == len(found.quantities):
         return replace(found, traced=traced)
     return with_traced(found, traced, accuracy)
 
@@ -126,7 +126,7 @@ def _excited_frequencies(found: RefinedResponse, options: LevelOptions) -> Itera
 
 def _highest_peaks(found: RefinedResponse) -> Iterator[float]:
     """The frequencies of the highest peaks of the degrees of freedom."""
-    paths, shown = found.traced.branches.paths, found.shown
-    heights = np.array([one.amplitude.max(axis=0) for one in shown])
+    paths, quantities = found.traced.branches.paths, found.quantities
+    heights = np.array([one.amplitude.max(axis=0) for one in quantities])
     for d, k in enumerate(heights.argmax(axis=0).tolist()):
-        yield float(paths[k].parameter[shown[k].amplitude[:, d].argmax()])
+        yield float(paths[k].parameter[quantities[k].amplitude[:, d].argmax()])

@@ -167,7 +167,7 @@ def _harmonics_for_peaks(
     dofs = [target.dof for target in task.targets]
     while True:
         there = with_errors(every_branch(task.system(scene, harmonics)), task.accuracy)
-        height = np.max([one.amplitude.max(axis=0) for one in there.shown], axis=0, initial=0.0)[dofs]
+        height = np.max([one.amplitude.max(axis=0) for one in there.quantities], axis=0, initial=0.0)[dofs]
         worst = float(
             there.peak[dofs][height > task.options.optimum.min_height * height.max()].max(initial=0.0)
         )

@@ -53,15 +53,15 @@ def with_all_dofs(found: RefinedResponse, scene: Scene, accuracy: float) -> Refi
 def of_all_dofs(found: UncheckedResponse, scene: Scene) -> UncheckedResponse:
     """The same without errors."""
     system = found.system.of(scene)
-    shown = tuple(reported_quantities(system, path) for path in found.traced.branches.paths)
-    return UncheckedResponse(system, found.traced, shown, found.seconds)
+    quantities = tuple(reported_quantities(system, path) for path in found.traced.branches.paths)
+    return UncheckedResponse(system, found.traced, quantities, found.seconds)
 
 
 def with_tops(peaks: Mapping[str, Peak], found: RefinedResponse) -> dict[str, Peak]:
     """Peaks (by dof) with what is higher between the points."""
     raised = dict(peaks)
-    for path, shown in zip(found.traced.branches.paths, found.shown, strict=True):
-        height, omega = tops_between(found.system, path, shown)
+    for path, quantities in zip(found.traced.branches.paths, found.quantities, strict=True):
+        height, omega = tops_between(found.system, path, quantities)
         for dof, value, at in zip(peaks, height.tolist(), omega.tolist(), strict=True):
             if value > raised[dof].amplitude:
                 raised[dof] = raised[dof]._replace(amplitude=value, frequency=at)

@@ -87,7 +87,7 @@ def refined(
                 again = retrace(now.found, more, accuracy)
                 if again is not None:
                     break
-            if len(now.stable) == len(now.found.shown):
+            if len(now.stable) == len(now.found.quantities):
                 on_classified(now.found, now.stable)
         if again is None:
             break
@@ -155,8 +155,12 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
     every = found.traced.branches.paths
     if known == len(every):
         return now
-    paths, shown, errors = list(every[:known]), list(found.shown[:known]), list(found.errors[:known])
-    for path, seen, error in zip(every[known:], found.shown[known:], found.errors[known:], strict=True):
+    paths, quantities, errors = (
+        list(every[:known]),
+        list(found.quantities[:known]),
+        list(found.errors[:known]),
+    )
+    for path, seen, error in zip(every[known:], found.quantities[known:], found.errors[known:], strict=True):
         beyond = on_other_branch(error.on_same_branch, options) if short else None
         unmatched = without_neighbour(error.truncation, error.is_same_curve, options)
         to_confirm = error.on_same_branch > options.max_error
@@ -167,14 +171,14 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
             lost += stability_limits(found.system, path, judged.crossings, accuracy)
         if not inserted:
             paths.append(path)
-            shown.append(seen)
+            quantities.append(seen)
             errors.append(error)
             stable.append(judged.stable)
             continue
         after = np.array([one.after for one in inserted], dtype=np.intp)
         paths.append(with_points(path, inserted))
         z, direction = (np.array([getattr(one, name) for one in inserted]) for name in ("z", "direction"))
-        shown.append(seen.with_rows(after, reported_at(found.system, z, direction)))
+        quantities.append(seen.with_rows(after, reported_at(found.system, z, direction)))
         errors.append(
             replace(
                 error,
@@ -189,7 +193,7 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
         stable.append(np.insert(judged.stable, after + 1, [one.stable for one in inserted]))
     branches = replace(found.traced.branches, paths=tuple(paths))
     traced = replace(found.traced, branches=branches)
-    found = replace(found, traced=traced, shown=tuple(shown), errors=tuple(errors))
+    found = replace(found, traced=traced, quantities=tuple(quantities), errors=tuple(errors))
     return replace(now, found=found, stable=stable, lost=lost, bifurcations=bifurcations)
 
 

@@ -157,7 +157,7 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
     quick: without what takes further motions to tell."""
     found, parts = _reported(response), response.stable
     system, paths = found.system, found.traced.branches.paths
-    points, rounding = with_precise_fundamental(system, recorded(system, paths, found.shown), quick)
+    points, rounding = with_precise_fundamental(system, recorded(system, paths, found.quantities), quick)
     scene, first = system.scene, system.harmonics.index(1)
     ends, rows = np.flatnonzero(np.diff(points.path)) + 1, np.arange(points.path.size)
     rows = np.insert(rows, ends, -1) if ends.size else rows

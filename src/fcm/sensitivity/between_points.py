@@ -46,17 +46,17 @@ INTERPOLATION = InterpolationOptions()
 
 
 def tops_between(
-    system: System, path: Path, shown: ReportedQuantities, options: InterpolationOptions = INTERPOLATION
+    system: System, path: Path, quantities: ReportedQuantities, options: InterpolationOptions = INTERPOLATION
 ) -> tuple[FloatArray, FloatArray]:
     """Greatest amplitudes (dof,) of a path, and their frequencies, at its points or beside the highest of
     these: where the amplitude grows at one of two neighbours and shrinks at the other."""
-    top, d = shown.amplitude.argmax(axis=0), np.arange(shown.amplitude.shape[1])
-    height, omega = shown.amplitude[top, d], path.parameter[top]
+    top, d = quantities.amplitude.argmax(axis=0), np.arange(quantities.amplitude.shape[1])
+    height, omega = quantities.amplitude[top, d], path.parameter[top]
     last = len(path.z) - 1
-    first = np.where(shown.growth[top, d] > 0.0, top, top - 1)
+    first = np.where(quantities.growth[top, d] > 0.0, top, top - 1)
     inside = (first >= 0) & (first < last)
     first = np.clip(first, 0, max(last - 1, 0))
-    inside &= (shown.growth[first, d] > 0.0) & (shown.growth[np.minimum(first + 1, last), d] < 0.0)
+    inside &= (quantities.growth[first, d] > 0.0) & (quantities.growth[np.minimum(first + 1, last), d] < 0.0)
     for i in np.unique(first[inside]).tolist():
         way = _Way(system, path, i, np.flatnonzero(inside & (first == i)), options)
         way.raise_to(height, omega)

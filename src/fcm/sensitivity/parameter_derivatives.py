@@ -62,26 +62,29 @@ class Rates:
         d_force = layout.complex_ports(self._forces(balance, z))
         if not balance.contacts:
             force = d_force = np.zeros((0, 1 + len(self.system.harmonics)), dtype=np.complex128)
-        structure, rate, seen = self.system.linear, self.linear, balance.seen
-        rows, shown = np.empty_like(force), np.empty((force.shape[1] - 1, structure.dofs.shape[1]), complex)
+        structure, rate, receptance = self.system.linear, self.linear, balance.receptance
+        rows, displacements = (
+            np.empty_like(force),
+            np.empty((force.shape[1] - 1, structure.dofs.shape[1]), complex),
+        )
         q = structure.load - structure.ports @ force[:, 0]
         dq = rate.load - (rate.ports @ force[:, 0] + structure.ports @ d_force[:, 0])
         da = rate.flexibility @ q + structure.flexibility @ dq
         rows[:, 0] = -(rate.ports.T @ (structure.flexibility @ q) + structure.ports.T @ da)
         for j, h in enumerate(self.system.harmonics):
-            k = max(seen.forced[j], 0)
-            driven = float(seen.forced[j] >= 0) * balance.load
+            k = max(receptance.forced[j], 0)
+            driven = float(receptance.forced[j] >= 0) * balance.load
             grown, d_grown = (one.force[k] + z[-1] ** 2 * one.square[k] for one in (structure, rate))
             q = driven * grown - structure.ports @ force[:, 1 + j]
             dq = driven * d_grown - rate.ports @ force[:, 1 + j] - structure.ports @ d_force[:, 1 + j]
-            c = np.asarray(seen.c_re)[j] + 1j * np.asarray(seen.c_im)[j]
+            c = np.asarray(receptance.c_re)[j] + 1j * np.asarray(receptance.c_im)[j]
             a, da = c * q, self._compliance(c, h * z[-1]) * q + c * dq
             rows[:, 1 + j] = -(rate.ports.T @ a + structure.ports.T @ da)
             # of combinations of ports, what these no longer are when the ports themselves change
-            of_ports = np.asarray(balance.shown.attached).T @ (rate.ports.T @ a)
-            apart = np.asarray(balance.shown.without_modes) > 0
-            shown[j] = rate.dofs.T @ a + np.where(apart, structure.dofs.T @ da, -of_ports)
-        return layout.flat(rows), shown
+            of_ports = np.asarray(balance.displacements.attached).T @ (rate.ports.T @ a)
+            apart = np.asarray(balance.displacements.without_modes) > 0
+            displacements[j] = rate.dofs.T @ a + np.where(apart, structure.dofs.T @ da, -of_ports)
+        return layout.flat(rows), displacements
 
     @cached_property
     def _of_forces(self) -> bool:
@@ -91,19 +94,21 @@ class Rates:
 
     def _at_forces(self, balance: Balance, omega: float) -> tuple[FloatArray, ComplexArray]:
         """As `at` of such a number: what the structure answers to the rates of its forces."""
-        structure, seen = self.system.linear, balance.seen
+        structure, receptance = self.system.linear, balance.receptance
         residual = np.zeros(balance.unknowns)
-        shown = np.zeros((len(self.system.harmonics), structure.dofs.shape[1]), complex)
-        for j, k in enumerate(np.asarray(seen.forced).tolist()):
+        displacements = np.zeros((len(self.system.harmonics), structure.dofs.shape[1]), complex)
+        for j, k in enumerate(np.asarray(receptance.forced).tolist()):
             if k < 0:
                 continue
-            c = np.asarray(seen.c_re)[j] + 1j * np.asarray(seen.c_im)[j]
+            c = np.asarray(receptance.c_re)[j] + 1j * np.asarray(receptance.c_im)[j]
             a = c * balance.load * (self.linear.force[k] + omega**2 * self.linear.square[k])
-            shown[j] = np.where(np.asarray(balance.shown.without_modes) > 0, structure.dofs.T @ a, 0.0)
+            displacements[j] = np.where(
+                np.asarray(balance.displacements.without_modes) > 0, structure.dofs.T @ a, 0.0
+            )
             if balance.contacts:
                 of_ports, rows = structure.ports.T @ a, unknown_positions(balance)[1][j]
                 residual[rows], residual[rows + 1] = -of_ports.real, -of_ports.imag
-        return residual, shown
+        return residual, displacements
 
     def _compliance(self, c: ComplexArray, w: float) -> ComplexArray:
         """The rate of c = 1 / (w_i^2 - w^2 + 2 i zeta_i w_i w)."""
@@ -149,12 +154,12 @@ def law_rates(law: Law, x: FloatArray, options: SensitivityOptions = SENSITIVITY
 
 def growth_of(balance: Balance, X: ComplexArray) -> FloatArray:
     """Rate of each amplitude (dof,) when the displacements just reported have the rates X (harmonic, dof)."""
-    shown, harmonics = balance.shown, np.asarray(balance.seen.harmonics)
-    now = np.asarray(shown.re) + 1j * np.asarray(shown.im)
+    displacements, harmonics = balance.displacements, np.asarray(balance.receptance.harmonics)
+    now = np.asarray(displacements.re) + 1j * np.asarray(displacements.im)
     if harmonics.size == 1:
         size = np.abs(now[0])
         return np.where(size > 0.0, (np.conj(now[0]) * X[0]).real / np.where(size > 0.0, size, 1.0), 0.0)
-    turned = np.exp(1j * harmonics[:, None, None] * np.asarray(shown.angles)) * X[:, None]
+    turned = np.exp(1j * harmonics[:, None, None] * np.asarray(displacements.angles)) * X[:, None]
     rates = turned.sum(axis=0).real  # of the greatest and of the least displacement
     growth: FloatArray = 0.5 * (rates[0] - rates[1])
     return growth

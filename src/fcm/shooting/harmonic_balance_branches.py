@@ -63,14 +63,14 @@ def states_of_branches(
 ) -> Iterator[tuple[float, FloatArray, Iterator[Place]]]:
     """The height of each end and top of a balance's branches, itself, and guesses beside it, the nearest
     first."""
-    for path, shown in zip(found.traced.branches.paths, found.shown, strict=True):
+    for path, quantities in zip(found.traced.branches.paths, found.quantities, strict=True):
         around_tops = [
-            (top, _around(even, top, options)) for top, even in _tops(path, shown.amplitude, options)
+            (top, _around(even, top, options)) for top, even in _tops(path, quantities.amplitude, options)
         ]
         for top, points in [(0, iter([0])), (-1, iter([-1])), *around_tops]:
             guesses = (path.z[i] for i in points)
             yield (
-                float(shown.amplitude[top].max()),
+                float(quantities.amplitude[top].max()),
                 path.z[top],
                 _guesses_at(scene, found.system.harmonics, guesses, options),
             )

@@ -55,13 +55,13 @@ class ParameterRates(NamedTuple):
 
     residual: FloatArray
     force: FloatArray
-    shown: ComplexArray | None
+    displacements: ComplexArray | None
 
     def of(self, one: Amplitude) -> float:
         """Rate of an amplitude."""
-        if self.shown is None:
+        if self.displacements is None:
             return float(one.of_forces @ self.force)
-        return float((one.weights @ self.shown[:, one.dof]).real)
+        return float((one.weights @ self.displacements[:, one.dof]).real)
 
 
 def _excitation(system: System, line: ParameterLine) -> list[tuple[ComplexArray, ComplexArray]]:
@@ -110,7 +110,7 @@ class VariedBalance:
         self.s, self._system = s, None
         if self._excitation is not None:
             constant, square = (origin + s * rate for origin, rate in self._excitation)
-            self.balance.seen.set_external_forces(constant, square)
+            self.balance.receptance.set_external_forces(constant, square)
             self.balance.largest[:] = 0.0  # units are of the motion there, as of a balance of its own
             return
         if self.structure:
@@ -128,12 +128,15 @@ class VariedBalance:
         if not self.structure:
             return ParameterRates(apply_compliance(self.balance, force), force, None)
         residual = np.zeros(self.balance.unknowns)
-        shown = np.zeros((len(self.harmonics), self.balance.outputs), dtype=np.complex128)
+        displacements = np.zeros((len(self.harmonics), self.balance.outputs), dtype=np.complex128)
         for rate, weight in zip(self.rates, self.line.direction, strict=True):
             if weight:
-                of_residual, of_shown = rate.here(self.balance, z)
-                residual, shown = residual + weight * of_residual, shown + weight * of_shown
-        return ParameterRates(residual, force, shown)
+                of_residual, of_displacements = rate.here(self.balance, z)
+                residual, displacements = (
+                    residual + weight * of_residual,
+                    displacements + weight * of_displacements,
+                )
+        return ParameterRates(residual, force, displacements)
 
     def _forces_by_s(self, z: FloatArray) -> FloatArray:
         """Rates of the contacts' forces, (unknown,); of a preload alone they are those of a mean load."""

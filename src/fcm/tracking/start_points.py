@@ -50,7 +50,7 @@ def special_points(
     curves, branches = response.traced, response.traced.branches
     levels = tuple(one.omega for one in curves.found if not one.complete)
     unsure, found = (*levels, *curves.folds_lost), []
-    for path, amplitude in zip(branches.paths, _amplitudes(response.shown), strict=True):
+    for path, amplitude in zip(branches.paths, _amplitudes(response.quantities), strict=True):
         for condition in conditions:
             found += [(condition, z) for z in _points(system, path, amplitude, condition, options)]
     if not branches.paths:
@@ -59,9 +59,9 @@ def special_points(
     return SpecialPoints(found, wrong, unsure)
 
 
-def _amplitudes(shown: Sequence[ReportedQuantities]) -> list[FloatArray]:
+def _amplitudes(quantities: Sequence[ReportedQuantities]) -> list[FloatArray]:
     """Along each path, (point, dof), 0 of what moves by rounding alone."""
-    every = [one.amplitude for one in shown]
+    every = [one.amplitude for one in quantities]
     moves = ~at_rest(np.max([one.max(axis=0) for one in every], axis=0)) if every else 0.0
     return [one * moves for one in every]
 
