@@ -32,7 +32,7 @@ OFF = {
     "folds followed": [(search, "with_isolas", lambda system, found: found)],
     "branch points": [
         (search, "with_branching", lambda system, found: found),
-        (refined, "symmetry_lost", lambda system, found: ()),
+        (refined, "symmetry_loss", lambda system, found: search.SymmetryLoss()),
     ],
     "prolongation": [
         (unchecked_response, "prolongated_solutions", lambda before, harmonics: []),

@@ -8,12 +8,15 @@ import pytest
 from fcm.accuracy.refinement import every_branch
 from fcm.branches.branch_points import branch_points
 from fcm.branches.mirror import mirrors
+from fcm.branches.search import SymmetryLoss, symmetry_loss
 from fcm.branches.trace import traced
 from fcm.continuation.all_branches import contains
 from fcm.harmonic_balance.system import System
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.scene import load_scene
+
+from .relatives import KINDS
 
 SCENE = load_scene(Path(__file__).parent / "scenes/equal_stops.toml").each_curve()[0]
 
@@ -72,3 +75,19 @@ def test_where_odd_harmonics_alone_are_given_it_is_said_where_symmetry_is_lost(f
     assert whole.symmetry_lost == [] and whole.mirrored and not odd.mirrored
     done = fcm("respond", Path(__file__).parent / "scenes/equal_stops.toml", "--harmonics", "1,3,5", "--json")
     assert "loses its symmetry" in done.err and f"{odd.symmetry_lost[0]:.5g} rad/s" in done.err
+
+
+def test_symmetry_is_lost_by_even_harmonics_whatever_odd_ones_are_balanced():
+    """A curve with 1, 2, 3 and 7 has motions that 5 would change; 4 breaks their symmetry all the same."""
+    scene = KINDS["stops"](54)
+    odd = System(scene, (1, 2, 3, 7))
+    lost = symmetry_loss(odd, traced(odd))
+    assert 4 in lost.harmonics and set(lost.harmonics) <= {4, 6}
+    with_them = System(scene, (1, 2, 3, 4, 6, 7))
+    assert symmetry_loss(with_them, traced(with_them)) == SymmetryLoss()
+    unsymmetric = [
+        path.parameter
+        for path in every_branch(with_them).traced.branches.paths
+        if with_them.layout.complex_ports(path.z[0])[:, 4].any()
+    ]
+    assert any(min(abs(one - omega)) < 1e-3 for one in unsymmetric for omega in lost.frequencies)

@@ -12,7 +12,7 @@ for by Newton's method in a bordered system. A corner of the response may change
 sign by a jump, and is treated alike.
 
 A symmetric motion has odd harmonics alone, and breaks its symmetry by even ones: so the sign is that of the
-balance of all harmonics up to the highest, which the motion solves with none of the even ones.
+balance with all even harmonics up to the highest as well, which the motion solves with none of these.
 """
 
 from __future__ import annotations
@@ -34,16 +34,27 @@ from fcm.model.scene import FloatArray
 
 @dataclass(frozen=True)
 class BranchPoint:
-    """z (unknown + 1,), with all harmonics up to the highest; starts: solutions on either side of the branch
-    there, which lie on branches that leave it."""
+    """z (unknown + 1,); starts: solutions on either side of the branch there, which lie on branches that
+    leave it."""
 
     z: FloatArray
     starts: tuple[FloatArray, ...]
 
 
-def all_up_to(system: System) -> System:
-    """The system with all harmonics up to its highest."""
-    return system.with_harmonics(tuple(range(1, system.harmonics[-1] + 1)))
+def with_even_harmonics(system: System) -> System:
+    """The system with all even harmonics up to its highest, too."""
+    return system.with_harmonics(tuple(sorted({*system.harmonics, *range(2, system.harmonics[-1] + 1, 2)})))
+
+
+def leading_harmonics(
+    system: System, point: BranchPoint, options: BranchingOptions = BRANCHING
+) -> tuple[int, ...]:
+    """By which harmonics of a system branches leave a branch point: those of which the displacements change
+    by a part of the greatest change at least."""
+    layout = system.layout
+    change = np.max([np.abs(layout.complex_ports(one - point.z)).max(axis=0) for one in point.starts], axis=0)
+    leads = change > options.min_leading_fraction * change.max()
+    return tuple(np.array(system.harmonics)[leads[1:]].tolist())
 
 
 def branch_points(
@@ -52,7 +63,7 @@ def branch_points(
     paths: Sequence[Path],
     options: BranchingOptions = BRANCHING,
 ) -> Iterator[BranchPoint]:
-    """Those of paths of some harmonics, in a system of all harmonics up to the highest."""
+    """Those of paths of some harmonics, in a system that has these and others, or the same."""
     balance: Balance | None = None
     newton: Newton | None = None
     for path in paths:
@@ -72,8 +83,8 @@ def branch_points(
 def _with_all(
     system: System, newton: Newton, path: Path, fewer: tuple[int, ...], options: BranchingOptions
 ) -> Path:
-    """A path of fewer harmonics with the orientations that all give it; NaN where it is no solution with
-    nothing of the others, as where these are driven."""
+    """A path of fewer harmonics with the orientations that all of a system give it; NaN where it is no
+    solution with nothing of the others, as where these are driven."""
     z, direction = system.extended(path.z, fewer), system.extended(path.direction, fewer)
     orientation = np.full(len(z), np.nan)
     for i, (one, way) in enumerate(zip(z, direction, strict=True)):

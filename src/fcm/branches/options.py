@@ -108,6 +108,7 @@ class BranchingOptions:
     max_rounds: int = 4  # branches that leave branches that leave ...
     max_starts: int = 64  # starts
     min_residual: float = 1e-6  # of a displacement: harmonics that a motion would have more of belong to it
+    min_leading_fraction: float = 0.1  # of the greatest change, of harmonics by which a branch leaves another
 
 
 BRANCHING = BranchingOptions()

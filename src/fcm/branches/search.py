@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fcm.branches.branch_points import BranchPoint, all_up_to, branch_points
+from fcm.branches.branch_points import (
+    BranchPoint,
+    branch_points,
+    leading_harmonics,
+    with_even_harmonics,
+)
 from fcm.branches.isolas import level_one_crossings
 from fcm.branches.mirror import mirrors
 from fcm.branches.options import BRANCHING, BranchingOptions
@@ -29,14 +34,25 @@ def with_isolas(system: System, found: Traced) -> Traced:
     return with_further(system, found, (), met.solutions) if met.solutions else found
 
 
-def symmetry_lost(system: System, found: Traced) -> tuple[float, ...]:
-    """Frequencies [rad/s] of branch points that take harmonics which the system lacks: where a symmetric
-    motion loses its symmetry."""
-    whole = all_up_to(system)
+@dataclass(frozen=True)
+class SymmetryLoss:
+    """Frequencies [rad/s] at which symmetric motions lose their symmetry by harmonics that are not balanced,
+    and which these are."""
+
+    frequencies: tuple[float, ...] = ()
+    harmonics: tuple[int, ...] = ()
+
+
+def symmetry_loss(system: System, found: Traced) -> SymmetryLoss:
+    """Where branches of a system leave symmetric ones by even harmonics that it lacks."""
+    whole = with_even_harmonics(system)
     if whole.harmonics == system.harmonics or not system.scene.contacts:
-        return ()
+        return SymmetryLoss()
     points = branch_points(whole, system.harmonics, found.branches.paths)
-    return tuple(float(point.z[-1]) for point in points)
+    lacking = [(one, set(leading_harmonics(whole, one)) - set(system.harmonics)) for one in points]
+    lost = [(float(one.z[-1]), harmonics) for one, harmonics in lacking if harmonics]
+    every = {h for _, harmonics in lost for h in harmonics}
+    return SymmetryLoss(tuple(omega for omega, _ in lost), tuple(sorted(every)))
 
 
 def with_branching(system: System, found: Traced, options: BranchingOptions = BRANCHING) -> Traced:

@@ -16,8 +16,7 @@ from fcm.accuracy.options import VALIDITY
 from fcm.accuracy.refinement import OnTraced, RefinedResponse, enlarged, retrace
 from fcm.accuracy.stability_limits import StabilityLimit, distances_from, stability_limits
 from fcm.accuracy.stability_validity import on_other_branch, without_neighbour
-from fcm.branches.branch_points import all_up_to
-from fcm.branches.search import symmetry_lost, with_further_branches
+from fcm.branches.search import symmetry_loss, with_further_branches
 from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.response_quantities import ContactRecord
 from fcm.model.scene import FloatArray, Scene
@@ -104,10 +103,10 @@ def _with_branches(
     found = with_levels_below_peaks(now.found, most)
     traced = with_further_branches(found.system, found.traced)
     found = found if traced is found.traced else with_traced(found, traced, most)
-    lost = symmetry_lost(found.system, found.traced)
-    if lost:
-        found = replace(found, traced=replace(found.traced, symmetry_lost=lost))
-        return replace(now, found=found), all_up_to(found.system).harmonics
+    lost = symmetry_loss(found.system, found.traced)
+    if lost.harmonics:
+        found = replace(found, traced=replace(found.traced, symmetry_lost=lost.frequencies))
+        return replace(now, found=found), tuple(sorted({*found.system.harmonics, *lost.harmonics}))
     more = enlarged(found, most) if traced is not known and not found.agrees else found.system.harmonics
     return replace(now, found=found), more
 
