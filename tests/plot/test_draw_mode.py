@@ -1,9 +1,13 @@
 """Pictures of nonlinear modes: how many lines are named, and where the greatest damping is marked."""
 
+import re
+
 import numpy as np
 import pytest
+from matplotlib.text import Text
+from tests.program import called
 
-from fcm.plot.mode import DrawnMode, DrawnModes, draw_modes
+from fcm.plot.mode import DrawnMode, DrawnModes, draw_modes, read_modes
 from fcm.plot.unfinished import Unfinished
 
 AMPLITUDE = np.geomspace(0.1, 10.0, 41)
@@ -73,6 +77,73 @@ def test_resonances_of_the_forces_are_marked_and_errors_drawn():
     assert diamond.get_xdata()[0] == pytest.approx(2.0, rel=1e-2)
     assert diamond.get_ydata()[0] == pytest.approx(30.0)
     assert np.nansum(below.lines[0].get_ydata()) == 0.04
+
+
+def test_a_resonance_is_named_beside_the_line_and_within_the_axes():
+    """Written over it, and over the frame above a line that is highest there."""
+    for frequency in (np.full(41, 10.0), 10.0 - AMPLITUDE**2 / 20.0, 10.0 + AMPLITUDE**2 / 20.0):
+        one = DrawnMode({}, frequency, AMPLITUDE, np.full(41, 0.3), resonances=((1.0, 1.0, 10.0),))
+        figure = draw_modes(DrawnModes("", "Hz", (one,)))
+        figure.draw_without_rendering()
+        axes = figure.axes[0]
+        (named,) = axes.texts
+        box, frame = (
+            Text.get_window_extent(named),
+            axes.get_window_extent(),
+        )  # without a thin line to the point
+        assert frame.y0 < box.y0 and box.y1 < frame.y1 and frame.x0 < box.x0 and box.x1 < frame.x1
+        fine = np.geomspace(AMPLITUDE[0], AMPLITUDE[-1], 2001)
+        x, y = axes.transData.transform(np.column_stack([fine, np.interp(fine, AMPLITUDE, frequency)])).T
+        assert not ((x > box.x0) & (x < box.x1) & (y > box.y0) & (y < box.y1)).any()
+
+
+FREE = """
+[modal]
+dofs = ["x", "y"]
+mass = [1.0, 1.0]
+frequency = [0.0, 3.0]
+damping = [0.0, 0.02]
+shapes = [[1.0, 0.0], [0.5, 1.0]]
+[[contact]]
+name = "c"
+tangential = "x"
+normal = "y"
+mu = 0.4
+k_u = 1.0
+k_v = 1.0
+n_0 = 5.0
+[[force]]
+dof = "x"
+amplitude = 1.0
+[response]
+frequency = [0.3, 4.0]
+harmonics = 1
+"""
+
+
+@pytest.mark.parametrize("number", [1, 2])
+def test_where_there_is_no_steady_state_a_mode_is_dotted(number, tmp_path):
+    """Nothing holds x but friction, which pushes one way as soon as the contact slips all the time.
+
+    The first mode has two resonances, and is damped too much for one of them to have a frequency.
+    """
+    (tmp_path / "free.toml").write_text(FREE)
+    options = ("--mode", number, "--level", "0.01:50", "-o", tmp_path / "m.nc", "--csv", tmp_path / "m.csv")
+    done = called("respond", tmp_path / "free.toml", *options)
+    assert done.code == 3 and "friction pushes the structure one way" in done.out
+    (mode,) = read_modes(tmp_path / "m.nc").modes
+    said = float(re.search(r"from modal amplitude (\S+) to 50", done.out)[1])
+    assert mode.amplitude[~mode.steady].min() == pytest.approx(said, rel=1e-4)
+    figure = draw_modes(read_modes(tmp_path / "m.nc"))
+    for axes in figure.axes[:2]:
+        solid, dotted = axes.lines[:2]
+        assert np.nanmax(solid.get_xdata()[np.isfinite(solid.get_ydata())]) < said
+        assert np.nanmax(dotted.get_xdata()[np.isfinite(dotted.get_ydata())]) == pytest.approx(50.0)
+        assert dotted.get_linestyle() == "--" and solid.get_linestyle() == "-"  # of any dashes
+    assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()] == ["no steady state"]
+    held = mode.amplitude[mode.steady].max()
+    assert called("plot", "contacts", tmp_path / "m.nc").err.count(f"modal amplitude {held:.4g}") == 1
+    assert f"modal amplitude {held:.4g}" in called("plot", "loop", tmp_path / "m.nc").err
 
 
 def test_few_errors_have_a_line_and_no_panel():

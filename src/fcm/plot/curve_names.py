@@ -35,6 +35,10 @@ _OFFSETS = (  # [point] from the peak, with the alignment of the text, best firs
     (-14, 12, "right", "bottom"),
     (26, 4, "left", "center"),
     (-26, 4, "right", "center"),
+    (4, -4, "left", "top"),
+    (-4, -4, "right", "top"),
+    (14, -12, "left", "top"),
+    (-14, -12, "right", "top"),
 )
 _LEADER = {"arrowstyle": "-", "linewidth": 0.4, "shrinkA": 0.5, "shrinkB": 0.5}
 
@@ -58,6 +62,22 @@ def label_at_peaks(
             return False
         texts.append(text)
     return True
+
+
+def write_beside(
+    figure: Figure,
+    axes: Axes,
+    lines: Sequence[tuple[FloatArray, FloatArray]],
+    names: Sequence[tuple[str, tuple[float, float]]],
+) -> None:
+    """Write names beside points, where they touch neither each other, a line nor the legend; a name without
+    room is left out."""
+    figure.draw_without_rendering()
+    pixels = np.concatenate([axes.transData.transform(_dense(x, y)) for x, y in lines])
+    legend = axes.get_legend()
+    taken: list[Bbox] = [] if legend is None else [legend.get_window_extent()]
+    for name, point in names:
+        _find_room(axes, name, point, taken, pixels)
 
 
 def _find_room(

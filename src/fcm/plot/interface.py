@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _NEEDED = ("frequency", "amplitude", "contact", "regime", "dissipated_energy")
-_OPTIONAL = ("stable", "contact_position", "level", "modal_amplitude")
+_OPTIONAL = ("stable", "contact_position", "level", "modal_amplitude", "steady_state")
 CONTACT_LOADS = (("dissipated_energy", "energy in a cycle"), ("slip_path", "slip path in a cycle"),
           ("greatest_normal_force", "greatest normal force"))  # fmt: skip
 STATES_OF_CONTACTS = (  # word, colour and mark: told apart without colours, too
@@ -63,6 +63,7 @@ class InterfaceFile:
     swept: tuple[Mapping[str, float], ...] = ()  # these values, by their short names
     modal_amplitude: FloatArray | None = None  # (curve, point) of nonlinear modes
     asked: tuple[str, ...] = ()  # degrees of freedom that the scene asks for, if it says so
+    steady: FloatArray | None = None  # (curve, point) 0 where a nonlinear mode has no steady state
 
 
 @dataclass(frozen=True)
@@ -96,6 +97,7 @@ def read_interface(path: Path) -> InterfaceFile:
         if "level" in variables:
             frequency, unit = floats(variables["level"]), LEVEL
         modal = floats(variables["modal_amplitude"]) if "modal_amplitude" in variables else None
+        steady = floats(variables["steady_state"]) if "steady_state" in variables else None
         places, axes = _places(variables)
         energy, slip, normal = (str(getattr(variables[name], "units", "")) for name in names)
         swept = swept_values(variables)
@@ -121,7 +123,7 @@ def read_interface(path: Path) -> InterfaceFile:
     )
     short = short_names(swept)
     named = tuple({short[key]: value for key, value in one.items()} for one in values) if swept else ()
-    return InterfaceFile(path, unit, *of_contacts, named, modal, asked)
+    return InterfaceFile(path, unit, *of_contacts, named, modal, asked, steady)
 
 
 def _places(variables: Any) -> tuple[FloatArray | None, tuple[str, str]]:
@@ -158,7 +160,10 @@ def points_of(
         raise PlotError(f"{file.path}: --amplitude is of nonlinear modes (fcm respond --mode); take --at")
     if not at and not amplitude:
         column = greatest_column(file.dofs, file.amplitude.reshape(-1, len(file.dofs)), file.asked)
-        return [_point(file, curve, int(np.nanargmax(file.amplitude[curve, :, column])))]
+        height = file.amplitude[curve, :, column]
+        if file.steady is not None and (held := (file.steady[curve] != 0.0) & np.isfinite(height)).any():
+            height = np.where(held, height, np.nan)
+        return [_point(file, curve, int(np.nanargmax(height)))]
     if file.modal_amplitude is not None and amplitude:
         along = file.modal_amplitude[curve]
         return [_point(file, curve, _nearest(file, curve, along, one, "--amplitude")) for one in amplitude]

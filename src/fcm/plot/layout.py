@@ -14,7 +14,7 @@ _LAYOUT = {
     "harmonic": ("harmonic",),
     "number": ("number",),
     **dict.fromkeys(("frequency", "level", "stable", "table_error", "truncation_error", "sweep"), _POINT),
-    **dict.fromkeys(("modal_amplitude", "damping_ratio", "resonant_level"), _POINT),
+    **dict.fromkeys(("modal_amplitude", "damping_ratio", "resonant_level", "steady_state"), _POINT),
     "force_level": ("force_level",),
     "amplitude": _DOF,
     **dict.fromkeys(("regime", "n0_bar", "b_bar", "phi", "tangential_amplitude", "spring_force"), _CONTACT),

@@ -18,7 +18,17 @@ from fcm.plot.read import FloatArray, floats, on_curve, opened, read_response
 from fcm.plot.reader_process import apart
 
 _ENERGY = "dissipated_energy"
-_ALSO = ("contact", "frequency", "level", "modal_amplitude", "stable", _ENERGY, "harmonic", "regime")
+_ALSO = (
+    "contact",
+    "frequency",
+    "level",
+    "modal_amplitude",
+    "steady_state",
+    "stable",
+    _ENERGY,
+    "harmonic",
+    "regime",
+)
 _MOTION = (
     "contact_harmonic", "contact_mean", "contact_amplitude", "contact_phase",
     "contact_mu", "contact_k_u", "contact_k_v", "contact_n_0",
@@ -125,6 +135,7 @@ class LoopFile:
     column: int  # of the greatest amplitude, of the degrees of freedom that the scene asks for if it does
     motions: MotionFile | None = None
     modal_amplitude: FloatArray | None = None  # (curve, point) of nonlinear modes
+    steady: FloatArray | None = None  # (curve, point) 0 where these have no steady state
 
 
 @apart
@@ -138,6 +149,9 @@ def read_loops(path: Path) -> LoopFile:
         contacts = tuple(str(name) for name in np.atleast_1d(data["contact"][:]))
         frequency = floats(data["level" if response.frequency_unit == "level" else "frequency"])
         modal = floats(data["modal_amplitude"]) if "modal_amplitude" in data.variables else None
+        steady = (
+            None if modal is None or "steady_state" not in data.variables else floats(data["steady_state"])
+        )
         stable = floats(data["stable"]) if "stable" in data.variables else np.full(frequency.shape, np.nan)
         parts = [floats(data[name]) for name in _PARTS]
         length, force = (str(getattr(data[name], "units", "")) for name in _PARTS[3:])
@@ -156,7 +170,7 @@ def read_loops(path: Path) -> LoopFile:
         path, response.frequency_unit, contacts, swept, frequency, stable, np.stack(parts),
         _greatest(energy, len(contacts)),
         tuple(int(h) for h in orders), states, response.units, (length, force) if length and force else None,
-        response.dofs, amplitude, column, motions, modal,
+        response.dofs, amplitude, column, motions, modal, steady,
     )  # fmt: skip
 
 
@@ -203,9 +217,10 @@ def points_at(
             f"{file.path}: curve {row} holds no loops: no points at all, or exact motions, not harmonic ones"
         )
     if at is None:
-        found = [
-            int(np.nanargmax(np.where(np.isfinite(amplitude), file.amplitude[row, :, file.column], np.nan)))
-        ]
+        there = np.isfinite(amplitude)
+        if file.steady is not None and (held := there & (file.steady[row] != 0.0)).any():
+            there = held
+        found = [int(np.nanargmax(np.where(there, file.amplitude[row, :, file.column], np.nan)))]
     else:
         found = _solutions(along, on_curve(along, at))
         found.sort(key=lambda k: -amplitude[k])

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from fcm.plot.curve_names import name_at_side
+from fcm.plot.curve_names import name_at_side, write_beside
 from fcm.plot.error_panel import RANGE
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label
@@ -24,17 +24,19 @@ from fcm.plot.measured import (
     name_measured,
 )
 from fcm.plot.options import READ
-from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
+from fcm.plot.read import BoolArray, FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
-from fcm.plot.style import LAYOUT, house_style, new_figure, sequence_colours
+from fcm.plot.style import DOTS, LAYOUT, house_style, new_figure, sequence_colours, split
 from fcm.plot.unfinished import Unfinished, mark_unfinished, say_unfinished, unfinished_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 _NEEDED = ("frequency", "modal_amplitude", "damping_ratio")
-_ERROR = "truncation_error"
+_ERROR, _STEADY = "truncation_error", "steady_state"
+_LOST = "no steady state"  # what is dotted
 _PERCENT = 100.0
 _NOTHING: FloatArray = np.zeros(0)
 
@@ -51,6 +53,7 @@ class DrawnMode:
         default_factory=lambda: _NOTHING
     )  # (point,) relative, NaN where unknown; or (0,)
     resonances: tuple[tuple[float, float, float], ...] = ()  # level of the forces, amplitude, frequency
+    steady: BoolArray | None = None  # (point,) where there is a steady state; None: everywhere
 
     def smooth(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Amplitudes and a line through values of the points, which does not exceed them between two points.
@@ -59,14 +62,31 @@ class DrawnMode:
         """
         known = np.isfinite(values)
         amplitude, values = self.amplitude[known], values[known]
-        if amplitude.size < 3 or not (np.diff(amplitude) > 0.0).all():
+        if not self._is_smooth(known):
             return amplitude, values
         from scipy.interpolate import PchipInterpolator
 
         way = np.log(amplitude)
-        places = np.arange((way.size - 1) * LAYOUT.line_places + 1) / LAYOUT.line_places
-        fine = np.interp(places, np.arange(way.size), way)
+        fine = np.interp(_places(way.size), np.arange(way.size), way)
         return np.exp(fine), PchipInterpolator(way, values)(fine)
+
+    def lost(self, values: FloatArray) -> BoolArray:
+        """At the places of `smooth`, whether there is no steady state there, or at a point beside them."""
+        known = np.isfinite(values)
+        lost = np.zeros(known.sum(), np.bool_) if self.steady is None else ~self.steady[known]
+        if not self._is_smooth(known):
+            return lost
+        at = _places(lost.size)
+        return lost[np.floor(at).astype(np.intp)] | lost[np.ceil(at).astype(np.intp)]
+
+    def _is_smooth(self, known: BoolArray) -> bool:
+        amplitude = self.amplitude[known]
+        return amplitude.size > 2 and bool((np.diff(amplitude) > 0.0).all())
+
+
+def _places(count: int) -> FloatArray:
+    """Of a line through some points, in points from the first."""
+    return np.arange((count - 1) * LAYOUT.line_places + 1) / LAYOUT.line_places
 
 
 @dataclass(frozen=True)
@@ -86,10 +106,11 @@ class DrawnModes:
 def read_modes(path: Path) -> DrawnModes:
     """Read what ``fcm respond --mode -o`` has written; PlotError if the file is something else."""
     what = "a file of nonlinear modes (fcm respond --mode)"
-    with opened(path, what, _NEEDED, (_ERROR, "complete", *BACKBONE)) as data:
+    with opened(path, what, _NEEDED, (_ERROR, _STEADY, "complete", *BACKBONE)) as data:
         frequency, amplitude, damping = (floats(data.variables[name]) for name in _NEEDED)
         told = _ERROR in data.variables
         error = floats(data.variables[_ERROR]) if told else np.full(frequency.shape, np.nan)
+        held = floats(data.variables[_STEADY]) if _STEADY in data.variables else np.ones(frequency.shape)
         swept, resonances = swept_values(data.variables), resonances_of(data)
         found = [
             DrawnMode(
@@ -99,6 +120,7 @@ def read_modes(path: Path) -> DrawnModes:
                 damping[i][known],
                 error[i][known],
                 tuple(one[:3] for one in resonances[i]) if i < len(resonances) else (),
+                held[i][known] != 0.0,
             )
             for i, one in enumerate(frequency)
             if (known := np.isfinite(one)).any()
@@ -134,11 +156,11 @@ def resonances_of(data: Any) -> list[tuple[Resonance, ...]]:
         return [
             tuple(
                 Resonance(
-                    float(one["level"]),
-                    float(one["modal_amplitude"]),
-                    float(one["frequency"]),
-                    float(one.get("damping", np.nan)),
-                    {str(dof): float(value) for dof, value in one.get("amplitude", {}).items()},
+                    _number(one["level"]),
+                    _number(one["modal_amplitude"]),
+                    _number(one["frequency"]),
+                    _number(one.get("damping")),
+                    {str(dof): _number(value) for dof, value in one.get("amplitude", {}).items()},
                 )
                 for one in curve.get("mode", {}).get("resonances", ())
             )
@@ -146,6 +168,11 @@ def resonances_of(data: Any) -> list[tuple[Resonance, ...]]:
         ]
     except (AttributeError, LookupError, TypeError) as error:
         raise ValueError("its attribute summary is not of nonlinear modes") from error
+
+
+def _number(value: object) -> float:
+    """NaN of what a summary does not know: a mode damped too much has no frequency of a resonance."""
+    return np.nan if value is None else float(value)  # type: ignore[arg-type]
 
 
 def draw_modes(drawn: DrawnModes) -> Figure:
@@ -156,12 +183,13 @@ def draw_modes(drawn: DrawnModes) -> Figure:
     modes = drawn.modes
     told = any(_is_line(mode.error) for mode in modes)
     with house_style():
+        lines: list[Line2D] = []
         figure = new_figure(LAYOUT.width, (1.6 if told else 1.3) * LAYOUT.height)
         panels = figure.subplots(2 + told, 1, sharex=True, height_ratios=[1.0, 1.0, 0.5][: 2 + told])
         upper, lower = panels[:2]
         for mode, colour in zip(modes, sequence_colours(len(modes)), strict=True):
-            upper.plot(*mode.smooth(mode.frequency), color=colour, linewidth=1.1)
-            lower.plot(*mode.smooth(_PERCENT * mode.damping), color=colour, linewidth=1.1)
+            lines.append(_draw_line(upper, mode, mode.frequency, colour))
+            _draw_line(lower, mode, _PERCENT * mode.damping, colour)
             if told:
                 _draw_error(panels[2], mode, colour)
             _mark_greatest(lower, mode, colour, drawn.frequency_unit if len(modes) == 1 else "")
@@ -178,13 +206,35 @@ def draw_modes(drawn: DrawnModes) -> Figure:
         if not told:
             _say_errors(lower, modes)
         if len(modes) == 1:
-            _mark_resonances(upper, lower, modes[0])
             for axes, values in ((upper, modes[0].frequency), (lower, _PERCENT * modes[0].damping)):
                 mark_unfinished(axes, [(modes[0].amplitude, values)], drawn.unfinished)
         if drawn.measured:
             name_measured(figure, drawn.fitted)
-        name_at_side(figure, upper.get_lines(), [one.parameters for one in modes], drawn.units)
+        _name_lost(upper, modes)
+        name_at_side(figure, lines, [one.parameters for one in modes], drawn.units)
+        if len(modes) == 1:
+            _mark_resonances(figure, upper, lower, modes[0])
     return figure
+
+
+def _draw_line(axes: Axes, mode: DrawnMode, values: FloatArray, colour: str) -> Line2D:
+    """A line against the amplitude, dotted where there is no steady state; the solid part."""
+    amplitude, line = mode.smooth(values)
+    lost = mode.lost(values)
+    held, creeping = split(line, lost)
+    (solid,) = axes.plot(amplitude, held, color=colour, linewidth=1.1)
+    if lost.any():
+        axes.plot(amplitude, creeping, color=colour, linewidth=1.1, linestyle=DOTS)
+    return solid
+
+
+def _name_lost(axes: Axes, modes: Sequence[DrawnMode]) -> None:
+    """Say what is dotted, if anything is."""
+    if any(mode.steady is not None and not mode.steady.all() for mode in modes):
+        from matplotlib.lines import Line2D
+
+        dots = Line2D([], [], color="black", linewidth=1.1, linestyle=DOTS)
+        axes.legend([dots], [_LOST], loc="best")
 
 
 def _is_line(error: FloatArray) -> bool:
@@ -212,23 +262,19 @@ def _draw_error(axes: Axes, mode: DrawnMode, colour: str) -> None:
     axes.set_ylabel("Relative error")
 
 
-def _mark_resonances(upper: Axes, lower: Axes, mode: DrawnMode) -> None:
+def _mark_resonances(figure: Figure, upper: Axes, lower: Axes, mode: DrawnMode) -> None:
     """A diamond at each resonance of the forces, below the frequency of the mode, and on its damping."""
     along, frequency = mode.smooth(mode.frequency)
     _, damping = mode.smooth(_PERCENT * mode.damping)
+    names = []
     for level, amplitude, resonance in mode.resonances:
+        if not np.isfinite(resonance):
+            continue
         upper.plot([amplitude], [resonance], "D", color="black", markersize=4.0)
-        inwards = _inwards(mode, amplitude)
-        upper.annotate(
-            f"resonance, forces × {level:g}",
-            (amplitude, resonance),
-            xytext=(6 * inwards, 4),
-            textcoords="offset points",
-            fontsize=LAYOUT.small_text,
-            ha="right" if inwards < 0 else "left",
-        )
+        names.append((f"resonance, forces × {level:g}", (amplitude, resonance)))
         k = int(np.argmin(np.abs(np.log(along / amplitude)) + np.abs(frequency / resonance - 1.0)))
         lower.plot([along[k]], [damping[k]], "D", color="black", markersize=4.0)
+    write_beside(figure, upper, [(along, frequency)], names)
 
 
 def _inwards(mode: DrawnMode, amplitude: float) -> int:

@@ -15,8 +15,9 @@ from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, symbols, with_unit
 from fcm.plot.measured import draw_measured, name_measured
 from fcm.plot.points import DrawnPoints, draw_points, name_points
-from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, FloatArray, wide
+from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, wide
 from fcm.plot.style import (
+    DOTS,
     LAYOUT,
     colour_bar,
     has_decades,
@@ -24,6 +25,7 @@ from fcm.plot.style import (
     logarithmic_axis,
     new_figure,
     sequence_colours,
+    split,
 )
 from fcm.plot.unfinished import mark_unfinished, say_unfinished
 from fcm.plot.window import Window, within
@@ -38,7 +40,6 @@ _WIDTH, _THIN = 1.1, 0.4  # [point] of a line; of one among very many
 LineStyle = Literal["-"] | tuple[float, tuple[float, float]]
 _LINE: LineStyle = "-"
 _DASHES: LineStyle = (0, (3.0, 1.6))
-_DOTS: LineStyle = (0, (1.0, 1.0))
 # what is said of both kinds of faded stretches
 _FADED = f"may err by more than {100 * LAYOUT.doubtful_error:g} %, or by an unknown amount"
 _NOT_STABLE = "unstable"  # what is dashed
@@ -134,13 +135,13 @@ def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, width: float) -> Lin
     """
     amplitude = curve.amplitude[:, column]
     unstable = np.zeros(len(amplitude), np.bool_) if curve.stable is None else ~curve.stable
-    told, dashed = _split(amplitude, unstable)
-    solid, dotted = _split(told, np.zeros_like(unstable) if curve.untold is None else curve.untold)
-    trusted, faded = _split(solid, doubtful(curve))
+    told, dashed = split(amplitude, unstable)
+    solid, dotted = split(told, np.zeros_like(unstable) if curve.untold is None else curve.untold)
+    trusted, faded = split(solid, doubtful(curve))
     (line,) = axes.plot(curve.frequency, trusted, linewidth=width)
     others = [(faded, _LINE, LAYOUT.doubtful_opacity)]
-    for values, style in ((dashed, _DASHES), (dotted, _DOTS)):
-        sure, unsure = _split(values, doubtful(curve))
+    for values, style in ((dashed, _DASHES), (dotted, DOTS)):
+        sure, unsure = split(values, doubtful(curve))
         others += [(sure, style, 1.0), (unsure, style, LAYOUT.doubtful_opacity)]
     for values, style, alpha in others:
         if np.isfinite(values).any():
@@ -179,7 +180,7 @@ def _notes(axes: Axes, curves: list[DrawnCurve], column: int, colour: str, width
     if any(curve.stable is not None and _seen(axes, curve, column, ~curve.stable) for curve in curves):
         notes[_NOT_STABLE] = Line2D([], [], color=colour, linewidth=width, linestyle=_DASHES)
     if any(curve.untold is not None and _seen(axes, curve, column, curve.untold) for curve in curves):
-        notes[_UNTOLD] = Line2D([], [], color=colour, linewidth=width, linestyle=_DOTS)
+        notes[_UNTOLD] = Line2D([], [], color=colour, linewidth=width, linestyle=DOTS)
     if any((_alone(curve, column) & _not_stable(curve)).any() for curve in curves):
         notes[_HOLLOW] = Line2D([], [], color=colour, linestyle="none", marker=".", markerfacecolor="none")
     return notes
@@ -189,7 +190,7 @@ def _seen(axes: Axes, curve: DrawnCurve, column: int, which: BoolArray) -> bool:
     """Whether a stretch of a curve is long enough that its line is seen as what it is."""
     if not which.any():
         return False
-    drawn = _split(curve.amplitude[:, column], which)[1]  # with its neighbours
+    drawn = split(curve.amplitude[:, column], which)[1]  # with its neighbours
     place = axes.transData.transform(np.column_stack((curve.frequency, drawn)))
     steps = np.hypot(*np.diff(place, axis=0).T) * 72.0 / axes.get_figure(root=True).dpi  # type: ignore[union-attr]
     length = np.concatenate(([0.0], np.nancumsum(steps)))
@@ -220,14 +221,6 @@ def doubtful(curve: DrawnCurve) -> BoolArray:
         own = curve.frequency[first:end]
         found[first:end] |= bool(np.ptp(own) > LAYOUT.fold_width * own.max())
     return found
-
-
-def _split(amplitude: FloatArray, unstable: BoolArray) -> tuple[FloatArray, FloatArray]:
-    """The stable and the unstable parts, NaN elsewhere; the unstable reach to their stable neighbours."""
-    drawn = unstable.copy()
-    drawn[1:] |= unstable[:-1]
-    drawn[:-1] |= unstable[1:]
-    return np.where(unstable, np.nan, amplitude), np.where(drawn, amplitude, np.nan)
 
 
 def _named(curve: DrawnCurve, units: Mapping[str, str], names: bool = True) -> str:

@@ -12,11 +12,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
+
+
+DOTS = (0.0, (1.0, 1.0))  # of the lines of what is not known, or does not stay
 
 
 @dataclass(frozen=True)
@@ -179,6 +183,22 @@ def sequence_colours(count: int) -> list[str]:
     if count == 1:
         return ["#000000"]
     return [to_hex(colour) for colour in matplotlib.colormaps["viridis"](np.linspace(0.0, 0.8, count))]
+
+
+def split(
+    values: npt.NDArray[np.float64], apart: npt.NDArray[np.bool_]
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """The values of a line and those of its parts that are drawn apart, NaN elsewhere; these reach to their
+    neighbours.
+
+    >>> here, there = split(np.arange(4.0), np.array([False, False, True, True]))
+    >>> here.tolist(), there.tolist()
+    ([0.0, 1.0, nan, nan], [nan, 1.0, 2.0, 3.0])
+    """
+    drawn = apart.copy()
+    drawn[1:] |= apart[:-1]
+    drawn[:-1] |= apart[1:]
+    return np.where(apart, np.nan, values), np.where(drawn, values, np.nan)
 
 
 def logarithmic_axis(axes: Axes) -> None:

@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
+import numpy.typing as npt
 
 from fcm.accuracy.contact_load_errors import relative
 from fcm.accuracy.options import PAIR
@@ -204,14 +205,16 @@ def _recorded(
         evaluations=path.evaluations,
         harmonics=system.harmonics,
         harmonic=X if len(system.harmonics) > 1 else None,
-        mode=_along(mode, number, levels),
+        mode=_along(mode, number, levels, ~np.logical_or.reduce([np.zeros(rows.size, bool), *lost.values()])),
         across=contact_motions(system, mode.contacts),
     )
     curve.greatest = greatest_of(curve)
     return curve
 
 
-def _along(mode: Mode, number: int, levels: tuple[float, ...]) -> NonlinearMode:
+def _along(
+    mode: Mode, number: int, levels: tuple[float, ...], steady: npt.NDArray[np.bool_]
+) -> NonlinearMode:
     """What is a mode's own, and the response that it foretells at levels of the forces."""
     return NonlinearMode(
         number=number,
@@ -223,6 +226,7 @@ def _along(mode: Mode, number: int, levels: tuple[float, ...]) -> NonlinearMode:
         flanks=np.stack([flanks(mode, level) for level in levels], axis=1),
         folds=mode.amplitude[(mode.path.mark & Mark.FOLD) > 0].tolist(),
         resonances=[one for level in levels for one in _resonances(mode, level)],
+        steady=steady,
     )
 
 
@@ -266,7 +270,8 @@ def _resonances(mode: Mode, level: float) -> list[Resonance]:
     if found is None:
         return []
     amplitude = half_peak_to_peak(found.displacements()[0], found.system.harmonics)
-    frequency = found.omega * np.sqrt(1.0 - 2.0 * found.damping**2)
+    square = 1.0 - 2.0 * found.damping**2  # damped more, it has no greatest amplitude
+    frequency = found.omega * np.sqrt(np.where(square > 0.0, square, np.nan))
     dofs = found.system.scene.modal.dofs
     return [
         Resonance(level, float(w), float(a), dict(zip(dofs, x.tolist(), strict=True)), float(D))

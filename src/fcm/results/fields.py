@@ -52,6 +52,11 @@ MODE: dict[str, tuple[Callable[[Curve], Any], tuple[str, ...], dict[str, str]]] 
             "units": "1",
         },
     ),
+    "steady_state": (
+        lambda c: c.frequency if c.mode is None else c.mode.steady.astype(float),
+        (),
+        {"long_name": "0 where nothing holds a rigid-body mode, so that there is no steady state"},
+    ),
 }
 
 

@@ -46,6 +46,7 @@ class NonlinearMode:
     flanks: FloatArray  # (point, level, 2) [rad/s] where they give the amplitude, below and above resonance
     folds: list[float]  # modal amplitudes at which the curve turns back
     resonances: list[Resonance]  # at these levels
+    steady: npt.NDArray[np.bool_]  # (point,) False where nothing holds a rigid-body mode
     motions: tuple[MotionOfMode, ...] = ()  # that are to be exported
 
     def summary(
