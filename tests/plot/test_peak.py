@@ -122,6 +122,18 @@ def test_peaks_at_which_no_motion_stays_are_crossed():
         assert not any(line.get_marker() == "x" for axes in settled.axes for line in axes.lines)
 
 
+def test_peaks_of_unknown_stability_have_squares():
+    some = replace(peaks(n_0=[0, 10, 20]), stable=np.array([[0.0, 1], [np.nan, 1], [1, 1]]))
+    upper, lower = draw_peak(some).axes
+    for axes, values in ((upper, some.amplitude), (lower, some.frequency)):
+        (square,) = (line for line in axes.lines if line.get_marker() == "s")
+        assert square.get_xdata().tolist() == [10] and square.get_ydata().tolist() == [values[1, 0]]
+    crosses, squares = lower.get_title(loc="left").split("\n")
+    assert "not stable" in crosses and squares == "\u25a1 whether the motion is stable there is unknown"
+    settled = draw_peak(some, dof="v")
+    assert not any(line.get_marker() == "s" for axes in settled.axes for line in axes.lines)
+
+
 def test_what_rises_to_an_end_of_the_range_is_no_least_peak():
     """It was ringed: where the contact sticks its resonance may lie beyond the range."""
     some = replace(peaks(n_0=[0, 10, 20]), at_end=np.array([[False, False], [True, False], [False, False]]))

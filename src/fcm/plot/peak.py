@@ -17,6 +17,7 @@ from fcm.plot.mode import Resonance, resonances_of
 from fcm.plot.read import BoolArray, FloatArray, drawn_keys, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
 from fcm.plot.style import LAYOUT, house_style, logarithmic_axis, new_figure, sequence_colours, swept_axis
+from fcm.results.least_peak import least_peak
 from fcm.rotational_dofs import unit_of
 from fcm.units import EXCITED
 
@@ -126,6 +127,7 @@ def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) 
         else:
             _mark_least(panels, peaks, key, column, known)
         _mark_unstable((upper, lower), peaks, key, column, known)
+        _mark_unknown((upper, lower), peaks, key, column, known)
         _mark_at_end((upper, lower), peaks, key, column, known)
         _say_left_out(lower, peaks)
     return figure
@@ -234,20 +236,20 @@ def _mark_least(panels: Sequence[Axes], peaks: Peaks, key: str, column: int, kno
     What is greatest at an end of the range of frequencies is no peak. At an end of what was swept it is no
     minimum: a lower one may lie beyond.
     """
-    curves = np.flatnonzero(known if peaks.at_end is None else known & ~peaks.at_end[:, column])
-    if not curves.size:
+    at_end = np.zeros_like(known) if peaks.at_end is None else peaks.at_end[:, column]
+    found = least_peak(peaks.amplitude[:, column], peaks.parameters[key], known, at_end)
+    if found is None:
         return
-    least = curves[np.argmin(peaks.amplitude[curves, column])]
+    least = found.curve
     x, y = float(peaks.parameters[key][least]), float(peaks.amplitude[least, column])
     ring_over(panels, x, y, _MARK)
     values = {name: float(values[least]) for name, values in peaks.parameters.items()}
     where = curve_label(values, units=peaks.units)
     stays = "" if peaks.stable is None or y == 0.0 else staying(float(peaks.stable[least, column]))
     what = "peak" if peaks.damping is None else "resonance"
-    least_peak = f"{y:.4g} {unit_of(peaks.dofs[column], peaks.length)}".rstrip()
-    said = f"least {what} {least_peak}{stays} at {where}"
-    swept = peaks.parameters[key][known]
-    if key not in (*_WHOLE, EXCITED) and np.ptp(swept) > 0.0 and x in (swept.min(), swept.max()):
+    height = f"{y:.4g} {unit_of(peaks.dofs[column], peaks.length)}".rstrip()
+    said = f"least {what} {height}{stays} at {where}"
+    if key not in (*_WHOLE, EXCITED) and found.at_end_of_sweep:
         (symbol,) = symbols([key])
         said += f"\nan end of the sweep of {symbol}: beyond it may be less; sweep further"
     panels[0].set_title(said, loc="right", fontsize=8, color=_MARK)
@@ -255,7 +257,10 @@ def _mark_least(panels: Sequence[Axes], peaks: Peaks, key: str, column: int, kno
 
 def _say_scatter(axes: Axes, peaks: Peaks, column: int, known: BoolArray) -> None:
     """Of random draws, which nobody chooses, the middle and how far they scatter."""
-    low, middle, high = np.percentile(peaks.amplitude[known, column], (5.0, 50.0, 95.0))
+    from fcm.results.scatter import PERCENTS, percentiles  # and all that makes results
+
+    each = dict(zip(PERCENTS, percentiles(peaks.amplitude[known, column : column + 1])[:, 0], strict=True))
+    low, middle, high = (each[percent] for percent in (5.0, 50.0, 95.0))
     own = unit_of(peaks.dofs[column], peaks.length)
     names = ", ".join(symbols(key for key in peaks.parameters if key in peaks.drawn))
     said = (
@@ -282,7 +287,26 @@ def _mark_unstable(both: tuple[Axes, Axes], peaks: Peaks, key: str, column: int,
         return
     for axes, values in zip(both, (peaks.amplitude, peaks.frequency), strict=True):
         axes.plot(peaks.parameters[key][at], values[at, column], "x", color=_MARK, markersize=4)
-    both[1].set_title("\u00d7 the motion is not stable there", loc="left", fontsize=8, color=_MARK)
+    _say_mark(both[1], "\u00d7 the motion is not stable there")
+
+
+def _mark_unknown(both: tuple[Axes, Axes], peaks: Peaks, key: str, column: int, known: BoolArray) -> None:
+    """A square on each peak of which it is not known whether its motion stays."""
+    if peaks.stable is None:
+        return
+    at = known & np.isnan(peaks.stable[:, column]) & (peaks.amplitude[:, column] > 0.0)
+    if not at.any():
+        return
+    for axes, values in zip(both, (peaks.amplitude, peaks.frequency), strict=True):
+        x, y = peaks.parameters[key][at], values[at, column]
+        axes.plot(x, y, "s", markerfacecolor="none", markeredgewidth=0.7, color=_MARK, markersize=5)
+    _say_mark(both[1], "\u25a1 whether the motion is stable there is unknown")
+
+
+def _say_mark(axes: Axes, said: str) -> None:
+    """What a mark means, below what others do."""
+    lines = "\n".join(filter(None, (axes.get_title(loc="left"), said)))
+    axes.set_title(lines, loc="left", fontsize=8, color=_MARK)
 
 
 def _mark_at_end(both: tuple[Axes, Axes], peaks: Peaks, key: str, column: int, known: BoolArray) -> None:
@@ -292,6 +316,4 @@ def _mark_at_end(both: tuple[Axes, Axes], peaks: Peaks, key: str, column: int, k
     x = peaks.parameters[key][at]
     for axes, values in zip(both, (peaks.amplitude, peaks.frequency), strict=True):
         axes.plot(x, values[at, column], "^", markerfacecolor="white", color=_MARK, markersize=6)
-    said = "\u25b3 no peak: it rises to an end of the range of frequencies; widen that"
-    above = both[1].get_title(loc="left")
-    both[1].set_title("\n".join(filter(None, (above, said))), loc="left", fontsize=8, color=_MARK)
+    _say_mark(both[1], "\u25b3 no peak: it rises to an end of the range of frequencies; widen that")
