@@ -7,8 +7,8 @@ import pytest
 
 from fcm.accuracy.refinement import every_branch
 from fcm.branches.branch_points import branch_points
-from fcm.branches.mirror import mirrors
 from fcm.branches.search import SymmetryLoss, symmetry_loss
+from fcm.branches.symmetry import broken_symmetries
 from fcm.branches.trace import traced
 from fcm.continuation.all_branches import contains
 from fcm.harmonic_balance.system import System
@@ -50,10 +50,10 @@ def test_both_sides_of_a_branch_point_are_mirror_images_of_which_one_is_traced()
     balance = system.new_balance()
     for point in points:
         one, other = point.starts
-        (mirror,) = mirrors(system, point.z, one)
+        (symmetry,) = broken_symmetries(system, point.z, one)
         balance.measure(one)
-        off = (mirror.image(one) - other) / np.asarray(balance.scale)
-        assert np.abs(off).max() < 1e-3 and np.allclose(mirror.image(mirror.image(one)), one)
+        off = (symmetry.image(one) - other) / np.asarray(balance.scale)
+        assert np.abs(off).max() < 1e-3 and np.allclose(symmetry.image(symmetry.image(one)), one)
         on = [
             sum(contains(path, z, system.reset_balance()) for path in found.branches.paths)
             for z in (one, other)

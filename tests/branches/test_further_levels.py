@@ -97,11 +97,11 @@ def test_a_closed_branch_is_found_where_a_harmonic_comes_to_a_resonance(parts, o
 def test_a_level_that_is_not_followed_to_its_end_leaves_branches_unsure():
     """Without a preload nothing is stable around 0.75 rad/s, where the motion repeats after two periods."""
     (scene,) = (one for one in load_scene("yang1998").each_curve() if one.contacts[0].n_0 == 0.0)
-    assert traced_curve(scene).complete and traced_curve(scene).unsure == []
+    assert traced_curve(scene).complete and traced_curve(scene).uncertain_at == []
     short = ResponseOptions(others=(LevelCurveOptions(step=StepOptions(max_steps=10)),))
     curve = traced_curve(scene, Request(options=short))
     ((low, high),) = curve.summary()["no_stable_motion"]
-    assert any(low < at < high for at in curve.unsure)
+    assert any(low < at < high for at in curve.uncertain_at)
 
 
 @pytest.mark.slow

@@ -209,10 +209,10 @@ def test_where_folds_are_lost_a_response_says_from_where_on():
     """And with what is left of them the closed branch is not found."""
     none = ResponseOptions(others=(FoldOptions(work_fraction=0.0, min_seconds=0.0),))
     curve = traced_curve(scene("closed_impact"), Request((1, 2, 3, 4), ACCURACY, options=none))
-    assert curve.complete and curve.folds_unsure and not curve.unsure
-    assert curve.summary()["folds_unsure_at"] == curve.folds_unsure
+    assert curve.complete and curve.folds_uncertain_at and not curve.uncertain_at
+    assert curve.summary()["folds_unsure_at"] == curve.folds_uncertain_at
     curve = traced_curve(scene("closed_impact"), Request((1, 2, 3, 4), ACCURACY))
-    assert curve.folds_unsure == [] and "folds_unsure_at" not in curve.summary()
+    assert curve.folds_uncertain_at == [] and "folds_unsure_at" not in curve.summary()
 
 
 KNOWN = Path(__file__).parents[1] / "harmonic_balance/scenes"

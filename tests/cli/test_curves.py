@@ -9,9 +9,9 @@ import netCDF4
 import pytest
 
 from fcm.cli.balance import harmonics
+from fcm.cli.caveats import maybe_not_unique, residual_friction
 from fcm.cli.columns import ranges
 from fcm.cli.curves import as_table, cost_and_error
-from fcm.cli.doubts import maybe_not_unique, residual_friction
 from fcm.model.scene import InTime
 from fcm.plot.peak import draw_peak, read_peaks
 from fcm.plot.read import read_response

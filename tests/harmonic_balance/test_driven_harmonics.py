@@ -262,7 +262,7 @@ def test_the_linear_response_is_told_at_the_resonances_of_each_driven_harmonic()
 
 
 def test_what_is_driven_is_said_and_an_exact_motion_is_offered():
-    from fcm.cli.doubts import maybe_not_unique
+    from fcm.cli.caveats import maybe_not_unique
     from fcm.results.output import summary
     from fcm.results.result import Response
 

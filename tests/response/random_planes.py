@@ -277,8 +277,8 @@ def marched(seeds: list[int], found: list[Traced]) -> tuple[FloatArray, FloatArr
     end = (np.abs(told - SPAN[0]) < 1e-9) | (np.abs(told - SPAN[1]) < 1e-9)
     wide, narrow = (middle + np.where(end, 0.0, over(middle, *height[:, i : i + 2].T)) for i in (2, 4))
     error = np.abs(amplitude / narrow - 1.0)
-    unsure = (change[:, 0] + np.abs(wide - narrow)) / middle
-    return np.where(error < SAME, error, np.nan), unsure, stable.astype(np.float64)
+    uncertain_at = (change[:, 0] + np.abs(wide - narrow)) / middle
+    return np.where(error < SAME, error, np.nan), uncertain_at, stable.astype(np.float64)
 
 
 def over(middle: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:

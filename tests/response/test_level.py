@@ -81,9 +81,9 @@ def test_where_the_level_is_not_followed_to_its_end_branches_are_not_said_to_be_
         )
         paths = exactly, over_slight_corners
         reached = any(path.parameter[-1] == pytest.approx(end) for path in paths)
-        assert (frequency in curve.unsure) != reached
-    assert curve.unsure and curve.summary()["branches_unsure_at"] == curve.unsure
-    assert not trace(load_scene("yang1998-n5")).curves[0].unsure
+        assert (frequency in curve.uncertain_at) != reached
+    assert curve.uncertain_at and curve.summary()["branches_unsure_at"] == curve.uncertain_at
+    assert not trace(load_scene("yang1998-n5")).curves[0].uncertain_at
 
 
 def test_a_curve_of_levels_is_followed_where_next_to_no_force_is_left():

@@ -46,7 +46,7 @@ def test_a_contact_that_sticks_once_in_a_cycle_has_few_corners():
 def test_a_peak_where_a_contact_never_slips_is_compared_with_that_contact_where_it_rests():
     """What a march pushes its slider at first moves the amplitude by ten times the error."""
     found = traced(50)
-    error, unsure, stable = marched([50], [found])
+    error, uncertain_at, stable = marched([50], [found])
     assert found.rests.tolist() == [0.0, 0.0, 1.0]
     assert error[0] < MARCHED + found.estimate and stable[0]
-    assert unsure[0] < MARCHED
+    assert uncertain_at[0] < MARCHED

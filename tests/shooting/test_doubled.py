@@ -11,7 +11,7 @@ import pytest
 
 import fcm
 from fcm.response.exact import trace_exact
-from fcm.response.resumable_branches import Legs
+from fcm.response.resumable_branches import ResumablePaths
 from fcm.run import Report
 from fcm.shooting import OrbitProblem
 from fcm.shooting.orbit_record import samples
@@ -29,13 +29,13 @@ SCENES = Path(__file__).parent / "scenes"
 def cascade():
     """The branches of one, two and four periods of a scene, and the problems that they solve."""
     scene = replace(fcm.load_scene(SCENES / "irregular.toml"), frequency_range=(1.2, 1.25))
-    legs, problem = Legs(scene.frequency_range, Report(lambda *_: None)), OrbitProblem(scene)
-    paths, _ = explore(problem, legs)
+    resumable, problem = ResumablePaths(scene.frequency_range, Report(lambda *_: None)), OrbitProblem(scene)
+    paths, _ = explore(problem, resumable)
     found = [(problem, [samples(problem, path) for path in paths])]
     for _ in range(2):
         once, branches = found[-1]
         problem = DoubledPeriodProblem(once)
-        paths, lost = doubled_paths(problem, branches, legs)
+        paths, lost = doubled_paths(problem, branches, resumable)
         assert len(paths) == 1 and not lost
         found.append((problem, [to_flips(problem, samples(problem, path), branches) for path in paths]))
     return found

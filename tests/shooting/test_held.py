@@ -13,7 +13,7 @@ from fcm.reduction import constant_state_contacts
 from fcm.response.exact import trace_exact
 from fcm.response.exact_curve import ExactWork
 from fcm.response.options import leaving_out
-from fcm.response.resumable_branches import BranchLeg, Legs, TimeOver
+from fcm.response.resumable_branches import ResumablePaths, SavedPath, TimeOver
 from fcm.run import Report
 from fcm.scene import Contact, Force, Modal, Scene
 from fcm.shooting.harmonic_balance_state import balanced_states
@@ -194,12 +194,12 @@ def test_what_is_saved_of_other_unknowns_is_not_gone_on_with(scene):
     saved: list[object] = []
     first = OrbitProblem(scene)
     z = first_point(first, next(near_balance(scene, 0.9)))
-    Legs(scene.frequency_range, Report(lambda *_: None, save=saved.append))(
+    ResumablePaths(scene.frequency_range, Report(lambda *_: None, save=saved.append))(
         first, z, scene.frequency_range, Events(), FollowOptions(0.1), forward=True
     )
-    assert isinstance(saved[-1], BranchLeg)
+    assert isinstance(saved[-1], SavedPath)
     problem = OrbitProblem(light)
     z = first_point(problem, next(near_balance(light, 0.9)))
-    legs = Legs(scene.frequency_range, Report(lambda *_: None, saved))
-    path = legs(problem, z, scene.frequency_range, Events(), FollowOptions(0.1), forward=True)
+    resumable = ResumablePaths(scene.frequency_range, Report(lambda *_: None, saved))
+    path = resumable(problem, z, scene.frequency_range, Events(), FollowOptions(0.1), forward=True)
     assert path.z.shape[1] == z.size

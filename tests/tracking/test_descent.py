@@ -78,7 +78,7 @@ def test_trials_about_the_second_lowest_value_may_find_the_lowest():
 class Straight:
     """A piece of a curve of peaks, 2 + slope s, from one value to another."""
 
-    condition, spots = None, ()
+    condition, tracked_points = None, ()
 
     def __init__(self, low, high, slope):
         self.s, self.slope = np.array([low, high]), slope
@@ -96,8 +96,8 @@ class Straight:
 
 def test_the_least_beside_a_gap_between_pieces():
     """In the gap nothing is known: its heights were infinite, and numpy warned of their differences."""
-    way = SimpleNamespace(span=(0.0, 1.0), options=TRACKING)
-    found = envelope_minimum(way, [Straight(0.0, 0.25, -1.0), Straight(0.5, 1.0, 1.0)])
+    setup = SimpleNamespace(span=(0.0, 1.0), options=TRACKING)
+    found = envelope_minimum(setup, [Straight(0.0, 0.25, -1.0), Straight(0.5, 1.0, 1.0)])
     assert found.s == pytest.approx(0.25, abs=1e-9) and found.value == pytest.approx(1.75, abs=1e-9)
 
 

@@ -17,7 +17,7 @@ from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.options import TRACKING
 from fcm.tracking.parameter_line import along
 from fcm.tracking.start_points import for_scene
-from fcm.tracking.tracked_point import Ending, TrackingRun
+from fcm.tracking.tracked_point import Ending, TrackingSetup
 
 SPAN, RANGE = (0.5, 0.7), (1.45, 1.65)  # in which the peak of x0 turns back where steps are short
 
@@ -37,7 +37,7 @@ def followed(scene, what, span):
 def levels(scene, span, starts):
     """All curves over the level, from so many values of it."""
     options = replace(TRACKING, curves=replace(TRACKING.curves, start_values=starts))
-    return TrackingRun(System(scene, (1, 2, 3)), along(number_of(scene, "level")), span, options=options)
+    return TrackingSetup(System(scene, (1, 2, 3)), along(number_of(scene, "level")), span, options=options)
 
 
 @pytest.fixture(scope="module")
@@ -86,10 +86,10 @@ def test_a_curve_goes_on_where_the_response_is_an_isolated_point(scene):
     narrow = replace(scene, frequency_range=(1.45, 1.56))
     pieces = TRACKING.pieces
     few = replace(TRACKING, pieces=replace(pieces, step=replace(pieces.step, max_steps=25)))
-    way = TrackingRun(System(narrow, (1, 2, 3)), along(number_of(scene, "level")), span, options=few)
+    setup = TrackingSetup(System(narrow, (1, 2, 3)), along(number_of(scene, "level")), span, options=few)
     made = followed(narrow, Condition(Kind.PEAK, 2), span)
     for one, (i, _) in [(curve, turn) for curve in made for turn in curve.turns()]:
-        problem = way.tracked(one.condition)
+        problem = setup.tracked(one.condition)
         problem.measure(one.points[i].z)
         problem.evaluate(one.points[i].z)
         scale = np.array(problem.scale)[:-1]
@@ -98,11 +98,13 @@ def test_a_curve_goes_on_where_the_response_is_an_isolated_point(scene):
             continue
         isolated += 1
         for k in (i - 2, i - 3, i - 4):  # from wherever it is come to
-            spots, _ = nonsmooth_continuation.follow_special_point(
-                way, one.condition, one.points[k], one.s[k] < one.s[i]
+            tracked_points, _ = nonsmooth_continuation.follow_special_point(
+                setup, one.condition, one.points[k], one.s[k] < one.s[i]
             )
-            assert next(spot.z[-1] for spot in spots if spot.turn) == pytest.approx(one.s[i], abs=1e-9)
-            assert not spots[-1].turn
+            assert next(point.z[-1] for point in tracked_points if point.turn) == pytest.approx(
+                one.s[i], abs=1e-9
+            )
+            assert not tracked_points[-1].turn
     assert isolated > 1 and all(one.whole for one in made)
 
 

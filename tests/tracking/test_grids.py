@@ -24,7 +24,7 @@ from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.options import SearchOptions
 from fcm.tracking.parameter_line import along
 from fcm.tracking.start_points import for_scene
-from fcm.tracking.tracked_point import TrackingRun
+from fcm.tracking.tracked_point import TrackingSetup
 
 from ..harmonic_balance.scenes import gap5
 
@@ -52,7 +52,7 @@ def frequencies(scene, key, value, mark):
 def grid(scene, what, key, span):
     """Values of the number at which curves were followed through, and their frequencies there."""
     system, line = System(scene, (1,)), along(number_of(scene, key))
-    found = tracked_curves(TrackingRun(system, line, span), conditions_of(scene, what))
+    found = tracked_curves(TrackingSetup(system, line, span), conditions_of(scene, what))
     assert not found.problems and all(curve.whole for curve in found.curves)
     for value in np.linspace(*span, 13)[::3]:
         there = [curve.frequency[np.abs(curve.s - value) < 1e-9] for curve in found.curves]
@@ -163,20 +163,20 @@ def test_an_isolated_branch_is_between_the_turns_that_are_told():
     """It is followed from a fold of the track, and is one of the branches of an ordinary run."""
     scene = gap5()
     gap, value = number_of(scene, "contact.c.gap"), 3.5
-    way = TrackingRun(System(scene, (1, 3)), along(gap), (3.0, 4.0), (value,), 0.05)
-    curves = tracked_curves(way, [Condition(Kind.FOLD)], (value,)).curves
+    setup = TrackingSetup(System(scene, (1, 3)), along(gap), (3.0, 4.0), (value,), 0.05)
+    curves = tracked_curves(setup, [Condition(Kind.FOLD)], (value,)).curves
     turns = [(kind, curve.s[i]) for curve in curves for i, kind in curve.turns()]
     assert [kind for kind, _ in turns] == ["isola", "isola"]
     assert min(s for _, s in turns) < value < max(s for _, s in turns)
-    spots = [spot for curve in curves for spot in curve.points if abs(spot.z[-1] - value) < 1e-9]
-    folds = np.unique([spot.z[-2] for spot in spots])
-    ordinary = every_branch(for_scene(way.system, gap.put(scene, value))).traced.branches.paths
+    tracked_points = [point for curve in curves for point in curve.points if abs(point.z[-1] - value) < 1e-9]
+    folds = np.unique([point.z[-2] for point in tracked_points])
+    ordinary = every_branch(for_scene(setup.system, gap.put(scene, value))).traced.branches.paths
     isolated = [path for path in ordinary if path.status is Status.CLOSED]
     others = [path for path in ordinary if path.status is not Status.CLOSED]
     at_ordinary = np.concatenate([path.parameter[path.where(Mark.FOLD)] for path in others])
     closed = follow(
-        for_scene(way.system, gap.put(scene, value)).new_balance(),
-        beside_fold(way, max(spots, key=lambda spot: spot.z[-2]).z),
+        for_scene(setup.system, gap.put(scene, value)).new_balance(),
+        beside_fold(setup, max(tracked_points, key=lambda point: point.z[-2]).z),
         (0.7, 1.5),
         options=FollowOptions(0.05),
     )
@@ -187,9 +187,9 @@ def test_an_isolated_branch_is_between_the_turns_that_are_told():
     assert folds == pytest.approx(np.sort(np.concatenate((at_ordinary, at_closed))), rel=EXACT)
 
 
-def beside_fold(way, z):
+def beside_fold(setup, z):
     """A point of the response next to a tracked fold."""
-    problem = way.tracked(Condition(Kind.FOLD))
+    problem = setup.tracked(Condition(Kind.FOLD))
     problem.measure(z)
     direction = problem.along(z)[0] * np.asarray(problem.scale)[:-1]
     newton = Newton(problem.varied.balance)

@@ -17,24 +17,24 @@ from fcm.tracking.options import TRACKING
 from fcm.tracking.parameter_line import along
 from fcm.tracking.peak_check import is_top
 from fcm.tracking.start_points import for_scene, special_points
-from fcm.tracking.tracked_point import TrackedPoint, TrackingRun
+from fcm.tracking.tracked_point import TrackedPoint, TrackingSetup
 
 RADIUS = 1e-4
 PEAK = Condition(Kind.PEAK, 0)
 
 
 @pytest.fixture(scope="module")
-def way():
+def setup():
     scene = load_scene("yang1998-n5")
-    return TrackingRun(System(scene, (1,)), along(number_of(scene, "contact.shroud.n_0")), (4.0, 10.0))
+    return TrackingSetup(System(scene, (1,)), along(number_of(scene, "contact.shroud.n_0")), (4.0, 10.0))
 
 
 @pytest.fixture(scope="module")
-def spot(way):
+def point(setup):
     """A peak, on which a curve of peaks runs through."""
-    here = for_scene(way.system, way.line.scene(way.system.scene, 5.0))
+    here = for_scene(setup.system, setup.line.scene(setup.system.scene, 5.0))
     (_, z), *_ = special_points(here, [PEAK])[0]
-    return land(way, PEAK, np.append(z, 5.0))
+    return land(setup, PEAK, np.append(z, 5.0))
 
 
 class Plane(SimpleNamespace):
@@ -58,12 +58,12 @@ def test_a_circle_on_which_there_is_no_motion_leads_nowhere(blind, ways):
 
 
 @pytest.mark.parametrize(("cosine", "taken"), [(0.95, True), (0.5, False)], ids=["away", "passing by"])
-def test_from_a_kink_a_curve_goes_on_only_along_a_line_that_leads_away(way, spot, cosine, taken):
+def test_from_a_kink_a_curve_goes_on_only_along_a_line_that_leads_away(setup, point, cosine, taken):
     """A curve crosses the circle in both cases; its angle with the radius tells whether it is the way on."""
-    follower = Pieces(way, PEAK)
+    follower = Pieces(setup, PEAK)
     follower._switch_equations(None)
-    follower._measure(spot.z)
-    assert follower._solve(spot.z, follower.held)
+    follower._measure(point.z)
+    assert follower._solve(point.z, follower.held)
     follower._accept()
     follower.points = [follower._point(follower.z, follower.t)]
     there, scale = follower.z, np.array(follower.newton.scale)
@@ -73,10 +73,10 @@ def test_from_a_kink_a_curve_goes_on_only_along_a_line_that_leads_away(way, spot
     assert (follower._turn_to(there, RADIUS) is not None) == taken
 
 
-def test_where_the_response_crosses_itself_there_is_a_direction_and_no_peak(way, spot, monkeypatch):
+def test_where_the_response_crosses_itself_there_is_a_direction_and_no_peak(setup, point, monkeypatch):
     """Exactly: of its Jacobian one row is nothing, and no matrix closed by another can be solved."""
-    problem = way.tracked(PEAK)
-    problem.measure(spot.z)
+    problem = setup.tracked(PEAK)
+    problem.measure(point.z)
 
     def crossed(balance):
         found = jacobian_of(balance)
@@ -84,11 +84,11 @@ def test_where_the_response_crosses_itself_there_is_a_direction_and_no_peak(way,
         return found
 
     monkeypatch.setattr(extended_system, "jacobian_of", crossed)
-    t = problem.along(spot.z)[0]
-    y = np.array(spot.z[:-1])
+    t = problem.along(point.z)[0]
+    y = np.array(point.z[:-1])
     problem.varied.balance.evaluate(y)
     assert np.linalg.norm(t) == pytest.approx(1.0)
     assert crossed(problem.varied.balance) @ (np.asarray(problem.scale)[:-1] * t) == pytest.approx(
         0.0, abs=1e-12
     )
-    assert not is_top(problem, TrackedPoint(spot.z, spot.direction))
+    assert not is_top(problem, TrackedPoint(point.z, point.direction))

@@ -10,7 +10,7 @@ from scipy.optimize import minimize_scalar
 
 from fcm.branches.options import FoldOptions, LevelCurveOptions
 from fcm.branches.trace import traced
-from fcm.cli.doubts import tracked_unsure
+from fcm.cli.caveats import tracked_uncertain
 from fcm.continuation import Mark
 from fcm.continuation.options import StepOptions
 from fcm.harmonic_balance.response_quantities import recorded
@@ -31,7 +31,7 @@ from fcm.tracking.lowest_peak import LowestPeak, LowestPeakSearch
 from fcm.tracking.options import TRACKING
 from fcm.tracking.parameter_line import along
 from fcm.tracking.peak_envelope import EnvelopeMinimum, PieceHeight
-from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingRun
+from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
 
 from ..interrupted import interrupted_beyond
 
@@ -89,17 +89,17 @@ def test_the_window_closes_where_two_folds_of_ordinary_runs_meet(scene, folds):
 @pytest.mark.parametrize(("kind", "closes"), [("cusp", True), ("isola", False)])
 def test_a_turn_of_folds_is_told_by_what_the_frequency_does(kind, closes, skew, unit):
     """Folds by x of x^3 + s x + w = 0: s = -3 x^2, w = 2 x^3; and of x^2 + w^2 - s = 0: x = 0, s = w^2."""
-    spots = []
+    tracked_points = []
     for x in (-0.3, -0.1, 0.0, 0.2, 0.4):
         rate = np.array([1.0, 6.0 * x * x, -6.0 * x]) if closes else np.array([0.0, 1.0, 2.0 * x])
         place = np.array([x, 2.0 * x**3, -3.0 * x * x]) if closes else np.array([0.0, x, x * x])
         for one in (place, rate):
             one[1] = unit * (one[1] + skew * one[2])
-        spots.append(TrackedPoint(place, rate, turn=x == 0.0))
-    z, none = np.array([spot.z for spot in spots]), np.zeros((len(spots), 0))
+        tracked_points.append(TrackedPoint(place, rate, turn=x == 0.0))
+    z, none = np.array([point.z for point in tracked_points]), np.zeros((len(tracked_points), 0))
     ends = (Ending.SPAN, Ending.SPAN)
     curve = SpecialPointCurve(
-        Condition(Kind.FOLD), tuple(spots), z[:, 2], z[:, 1], none, z[:, 0] == z[:, 0], ends
+        Condition(Kind.FOLD), tuple(tracked_points), z[:, 2], z[:, 1], none, z[:, 0] == z[:, 0], ends
     )
     assert curve.turns() == [(2, kind)]
 
@@ -173,7 +173,7 @@ def test_an_interrupted_run_goes_on_to_the_same_curves(scene, folds, tmp_path):
 def test_the_window_in_the_level_is_the_one_in_the_preload(scene, folds):
     """Twice the forces with twice the preload is twice the motion: levels are 5 / n_0."""
     system, line = System(scene, (1,)), along(number_of(scene, "level"))
-    levels = tracked_curves(TrackingRun(system, line, (0.55, 2.5)), [Condition(Kind.FOLD)]).curves
+    levels = tracked_curves(TrackingSetup(system, line, (0.55, 2.5)), [Condition(Kind.FOLD)]).curves
     assert all(curve.whole for curve in levels)
     turns = np.sort([5.0 / curve.s[i] for curve in levels for i, _ in curve.turns()])
     expected = [one["number"] for curve in folds.curves for one in curve.summary("rad/s")["turns"]]
@@ -324,7 +324,7 @@ class FallsAndEnds(LowestPeakSearch):
 
     def __init__(self):
         self.system, self.span, self.curves = SimpleNamespace(harmonics=(1,)), (1.0, 9.0), []
-        self.visited_values, self.way = {}, SimpleNamespace(span=self.span, options=TRACKING)
+        self.visited_values, self.setup = {}, SimpleNamespace(span=self.span, options=TRACKING)
 
     def best(self):
         return (
@@ -369,7 +369,7 @@ class Parted(LowestPeakSearch):
 
     def __init__(self, between):
         self.system, self.span, self.between = SimpleNamespace(harmonics=(1,)), (1.0, 9.0), between
-        self.way, self.curves = SimpleNamespace(span=self.span, options=TRACKING), []
+        self.setup, self.curves = SimpleNamespace(span=self.span, options=TRACKING), []
         self.visited_values, self.visited = {}, set()
 
     def refine_curves(self, known):
@@ -439,22 +439,22 @@ def test_no_plateau_of_a_stuck_contact_is_taken_for_the_least_of_two_numbers():
 
 def test_where_ordinary_curves_may_lack_branches_tracked_ones_are_not_said_to_be_all(scene):
     """As an ordinary run says, where the level of the forces is not followed to its end."""
-    assert track(scene, "folds", PRELOAD, (4.0, 6.0), harmonics=1).tracking.unsure == []
+    assert track(scene, "folds", PRELOAD, (4.0, 6.0), harmonics=1).tracking.uncertain_at == []
 
     stalled = ResponseOptions(others=(LevelCurveOptions(step=StepOptions(max_steps=10)),))
     response = track(scene, "folds", PRELOAD, (4.0, 6.0), harmonics=1, options=stalled)
     lowest = scene.frequency_range[0]
-    assert response.tracking.complete and lowest in {omega for _, omega in response.tracking.unsure}
-    assert {(4.0, lowest), (6.0, lowest)} <= set(response.tracking.unsure)
+    assert response.tracking.complete and lowest in {omega for _, omega in response.tracking.uncertain_at}
+    assert {(4.0, lowest), (6.0, lowest)} <= set(response.tracking.uncertain_at)
     summary = {"tracked": response.tracking.summary("rad/s"), "frequency_unit": "rad/s"}
-    assert tracked_unsure(summary).startswith(
+    assert tracked_uncertain(summary).startswith(
         f"other tracked curves may be missing: with {PRELOAD} = 4 at {lowest:.5g} rad/s"
     )
 
 
 def test_where_a_fold_of_the_level_is_lost_tracked_curves_are_not_said_to_be_all(scene):
     lost = ResponseOptions(others=(FoldOptions(work_fraction=0.0, min_seconds=0.0),))
-    unsure = track(scene, "folds", PRELOAD, (4.0, 6.0), harmonics=1, options=lost).tracking.unsure
-    (middle,) = {omega for _, omega in unsure}
+    uncertain_at = track(scene, "folds", PRELOAD, (4.0, 6.0), harmonics=1, options=lost).tracking.uncertain_at
+    (middle,) = {omega for _, omega in uncertain_at}
     assert middle == pytest.approx(1.20695, abs=1e-5)
-    assert all(4.0 <= value <= 6.0 for value, _ in unsure)
+    assert all(4.0 <= value <= 6.0 for value, _ in uncertain_at)

@@ -178,7 +178,7 @@ def _corrected_in_plane(system: System, z: FloatArray, way: FloatArray) -> Float
 
 def _prolongated(few: System, system: System, z: FloatArray, way: FloatArray) -> FloatArray | None:
     """The solution with more harmonics near one with few."""
-    lifted = Prolongation(system.new_balance(), list(few.harmonics), list(system.harmonics), 1e-6)
-    if not lifted.find_normal(z, way):
+    prolongation = Prolongation(system.new_balance(), list(few.harmonics), list(system.harmonics), 1e-6)
+    if not prolongation.find_normal(z, way):
         return None
-    return _corrected_in_plane(system, np.array(lifted.newton.z), system.extended(way, few.harmonics))
+    return _corrected_in_plane(system, np.array(prolongation.newton.z), system.extended(way, few.harmonics))

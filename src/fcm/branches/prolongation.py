@@ -35,7 +35,7 @@ def prolongated(
     """
     low, high = system.scene.frequency_range
     ways = _harmonic_stages(system, tuple(fewer), options)
-    every = [_ProlongedPath(path, ways, prolongation_points(path, options)) for path in paths]
+    every = [_ProlongatedPath(path, ways, prolongation_points(path, options)) for path in paths]
     for k in range(max((len(one.places) for one in every), default=0)):
         for one in every:
             z = one.at(one.places[k]) if k < len(one.places) else None
@@ -45,7 +45,7 @@ def prolongated(
         yield from (z for z in one.ends() if low <= z[-1] <= high)
 
 
-class _ProlongedPath:
+class _ProlongatedPath:
     """A path, and what its points lead to."""
 
     def __init__(self, path: Path, ways: Sequence[Sequence[Prolongation]], places: Sequence[int]) -> None:
@@ -97,11 +97,11 @@ def _harmonic_stages(
     ways = []
     for sets in dict.fromkeys(((more,), tuple(dict.fromkeys((*between, more))))):
         steps = zip((fewer, *sets), sets, strict=False)
-        ways.append([_lifted(system, few, many, options) for few, many in steps])
+        ways.append([_prolongation(system, few, many, options) for few, many in steps])
     return ways
 
 
-def _lifted(
+def _prolongation(
     system: System, fewer: tuple[int, ...], more: tuple[int, ...], options: ProlongationOptions
 ) -> Prolongation:
     return Prolongation(system.with_harmonics(more).new_balance(), list(fewer), list(more), options.tolerance)
@@ -111,10 +111,13 @@ def _prolongated_by_stages(
     way: Sequence[Prolongation], z: FloatArray, direction: FloatArray
 ) -> FloatArray | None:
     """The solution near a point of a curve by one step after the other; None where one leads nowhere."""
-    for lifted in way:
-        if not (lifted.find_normal(z, direction) and lifted.newton.correct(1.0)):
+    for prolongation in way:
+        if not (prolongation.find_normal(z, direction) and prolongation.newton.correct(1.0)):
             return None
-        z, direction = np.array(lifted.newton.z), np.asarray(lifted.newton.tangent) * lifted.newton.scale
+        z, direction = (
+            np.array(prolongation.newton.z),
+            np.asarray(prolongation.newton.tangent) * prolongation.newton.scale,
+        )
     return z
 
 

@@ -13,8 +13,8 @@ from fcm.branches.branch_points import (
     with_even_harmonics,
 )
 from fcm.branches.isolas import level_one_crossings
-from fcm.branches.mirror import mirrors
 from fcm.branches.options import BRANCHING, BranchingOptions
+from fcm.branches.symmetry import broken_symmetries
 from fcm.branches.trace import Traced, with_further
 from fcm.continuation import Path, Status
 from fcm.continuation.all_branches import contains
@@ -75,7 +75,7 @@ def with_branching(system: System, found: Traced, options: BranchingOptions = BR
 def _with_branches_of(system: System, found: Traced, point: BranchPoint) -> Traced:
     """With the branches through the starts at a branch point that are not known, nor images of such."""
     for z in point.starts:
-        images = [mirror.image(z) for mirror in mirrors(system, point.z, z)]
+        images = [symmetry.image(z) for symmetry in broken_symmetries(system, point.z, z)]
         paths, balance = found.branches.paths, system.reset_balance()
         if any(contains(path, one, balance) for path in paths for one in (z, *images)):
             continue

@@ -106,7 +106,7 @@ def remarks(response: Response) -> list[str]:
         *_doubles(found, response.frequency_unit),
         *_irregular(found),
         *_not_unique(found),
-        *_unsure(found),
+        *_uncertain(found),
         *_unreached(response),
         *_stuck(response),
     ]
@@ -176,7 +176,7 @@ def _spread(orbits: Orbits) -> float:
     return float(np.max((most - orbits.family_least[moves]) / most, initial=0.0))
 
 
-def _unsure(found: Sequence[Orbits]) -> Iterator[str]:
+def _uncertain(found: Sequence[Orbits]) -> Iterator[str]:
     count = sum(map(_untold, found))
     if count:
         yield (

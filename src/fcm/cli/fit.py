@@ -79,7 +79,7 @@ def as_table(result: Mapping[str, Any]) -> str:
     return f"{aligned(rows, left=1)}\n\n{aligned(data, left=1)}\n{note}"
 
 
-def doubts(result: Mapping[str, Any]) -> list[str]:
+def caveats(result: Mapping[str, Any]) -> list[str]:
     """What of the numbers is not told, and what would tell it."""
     found = result.get("fitted")
     return [] if found is None else [*found["problems"], *(f"to tell {one}" for one in found["advice"])]

@@ -69,7 +69,7 @@ def _watched(run: Callable[[click.Context], Any], ctx: click.Context) -> Any:
         _discard_output()
         ctx.exit(0)
     except (Exception, KeyboardInterrupt, click.Abort) as error:
-        code, line = _verdict(error)
+        code, line = _exit_code_and_line(error)
         messages.error(line)
         if code == DEFECT and (messages.verbosity >= 1 or os.environ.get("FCM_DEBUG")):
             traceback.print_exception(error)
@@ -88,7 +88,7 @@ def _check_memory() -> None:
         raise MemoryError
 
 
-def _verdict(error: BaseException) -> tuple[int, str]:
+def _exit_code_and_line(error: BaseException) -> tuple[int, str]:
     """The exit code of an exception, and the line that says what happened."""
     for module, name, code in _EXIT_CODES:
         kind = getattr(sys.modules.get(module), name, None)

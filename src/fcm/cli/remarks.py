@@ -7,21 +7,21 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fcm.cli import fit, nonlinear_mode, schedule, track
-from fcm.cli.curves import all_lost_to_defects, cost_and_error, incomplete
-from fcm.cli.doubts import (
-    branches_unsure,
-    folds_unsure,
+from fcm.cli.caveats import (
+    branches_uncertain,
+    folds_uncertain,
     linear,
-    looked_at,
     maybe_not_unique,
     mirrored,
     nothing_stable,
     peaks_not_followed,
     residual_friction,
+    search_grid,
     short_of_accuracy,
     symmetry_lost,
-    tracked_unsure,
+    tracked_uncertain,
 )
+from fcm.cli.curves import all_lost_to_defects, cost_and_error, incomplete
 from fcm.cli.guard import DEFECT, NOT_COMPLETED
 from fcm.cli.limits import SENTENCES
 from fcm.cli.messages import Messages
@@ -44,9 +44,9 @@ def announce(messages: Messages, scene: Scene, asked: Asked) -> bool:
     from fcm.scene.rules import least_points
 
     in_steps = asked.at is None and asked.mode is None and scene.has_range
-    doubt = resonance_doubt(scene) if in_steps else ""
-    if doubt:
-        messages.warning(doubt)
+    caveat = resonance_doubt(scene) if in_steps else ""
+    if caveat:
+        messages.warning(caveat)
     first, count = scene.each_curve()[0], len(scene.each_curve())
     if first.loads and first.contacts:
         _say_rest(messages, first, " of the first curve" if count > 1 else "")
@@ -55,7 +55,7 @@ def announce(messages: Messages, scene: Scene, asked: Asked) -> bool:
     if in_steps and (points := least_points(scene)) > SENTENCES.many_points:
         curves = f"{count} curve{'s' * (count > 1)}"
         messages.info(f"at least {points} points: {curves} in steps of {scene.max_step:g} at most")
-    return not doubt
+    return not caveat
 
 
 def _say_rest(messages: Messages, scene: Scene, of: str) -> None:
@@ -101,7 +101,7 @@ def close(
         messages.info(cost_and_error(result))
     elif "tracked" in result:
         messages.info(track.cost(result))
-    if levels := looked_at(result):
+    if levels := search_grid(result):
         messages.detail(levels)
     if resonant and (stuck := linear(result)):
         messages.info(stuck)
@@ -119,11 +119,11 @@ def close(
         messages.warning(away)
     if short := short_of_accuracy(result):
         messages.warning(short)
-    unsure = (branches_unsure, folds_unsure, symmetry_lost, tracked_unsure)
-    for doubt in filter(None, (one(result) for one in unsure)):
-        messages.warning(doubt)
-    for doubt in fit.doubts(result):
-        messages.warning(doubt)
+    uncertain_at = (branches_uncertain, folds_uncertain, symmetry_lost, tracked_uncertain)
+    for caveat in filter(None, (one(result) for one in uncertain_at)):
+        messages.warning(caveat)
+    for caveat in fit.caveats(result):
+        messages.warning(caveat)
     histories = result.get("histories", [])
     if histories:
         messages.info(schedule.cost_and_error(histories))

@@ -44,7 +44,7 @@ cdef class Point:
     cdef bint has_margin_slopes
     cdef int set_margins(self, Problem problem) except -1
     cdef int copy_from(self, Point other, double unit) except -1
-    cpdef Py_ssize_t partner(self, Py_ssize_t k, int[::1] kind, double[::1] angle) except -2
+    cpdef Py_ssize_t matching_margin(self, Py_ssize_t k, int[::1] kind, double[::1] angle) except -2
     cdef Py_ssize_t nearest(self, int wanted, double at, int[::1] kind, double[::1] angle, Py_ssize_t first) noexcept
     cpdef double margin_at(self, Py_ssize_t k, Point other) except -1e300
     cdef double margin_of_problem(self, Py_ssize_t k, Problem problem) except -1e300

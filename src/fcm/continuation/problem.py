@@ -162,7 +162,7 @@ class Point:
 
     @cython.ccall
     @cython.exceptval(-2, check=False)
-    def partner(
+    def matching_margin(
         self, k: cython.Py_ssize_t, kind: cython.int[::1], angle: cython.double[::1]
     ) -> cython.Py_ssize_t:
         """Which of other margins is the one with number k here; -1 if none is.
@@ -207,14 +207,14 @@ class Point:
     @cython.exceptval(-1e300, check=False)
     def margin_at(self, k: cython.Py_ssize_t, other: Point) -> cython.double:
         """The margin at another point that is the one with number k here; 0 if none is."""
-        i: cython.Py_ssize_t = self.partner(k, other.kind, other.angle)
+        i: cython.Py_ssize_t = self.matching_margin(k, other.kind, other.angle)
         return other.margin[i] if i >= 0 else 0.0
 
     @cython.cfunc
     @cython.exceptval(-1e300, check=False)
     def margin_of_problem(self, k: cython.Py_ssize_t, problem: Problem) -> cython.double:
         """The margin that a problem was last asked for and is the one with number k here; 0 if none is."""
-        i: cython.Py_ssize_t = self.partner(k, problem.kind, problem.angle)
+        i: cython.Py_ssize_t = self.matching_margin(k, problem.kind, problem.angle)
         return problem.margin[i] if i >= 0 else 0.0
 
     @cython.cfunc
@@ -234,7 +234,7 @@ class Point:
         problem.bound(probe)
         for k in range(problem.margins):
             self.slope[k] = 0.0
-            i = self.partner(k, problem.kind, problem.angle)
+            i = self.matching_margin(k, problem.kind, problem.angle)
             if i >= 0:
                 self.slope[k] = (problem.margin[i] - self.margin[k]) / length
         return 0

@@ -306,7 +306,7 @@ def hidden_sign_change(stepper: Stepper) -> cython.double:
     at: cython.double
     first: cython.double = stepper.step
     for k in range(stepper.problem.margins):
-        i = stepper.here.partner(k, stepper.there.kind, stepper.there.angle)
+        i = stepper.here.matching_margin(k, stepper.there.kind, stepper.there.angle)
         if i >= 0 and stepper.here.margin[k] * stepper.there.margin[i] > 0.0:
             at = cubic_beyond_zero(
                 stepper.here.margin[k],

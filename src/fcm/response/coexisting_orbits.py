@@ -46,12 +46,12 @@ def coexisting_orbits(
     frequencies: Sequence[float],
     visited: Sequence[OrbitRecord],
     limit: CurveTimeLimit,
-    doubts: UncertainFrequencies,
+    uncertain: UncertainFrequencies,
     options: ShootingOptions = SHOOTING,
 ) -> Iterator[OrbitRecord]:
     """The stable motions at each of some frequencies [rad/s] that are none of those visited; each saved.
 
-    doubts take the frequencies at which there may be more. The limit of time is asked now and then.
+    uncertain take the frequencies at which there may be more. The limit of time is asked now and then.
     """
     report, poll = limit.report, limit.poll
     saved = {one.frequency: one for one in report.saved if isinstance(one, CoexistingOrbits)}
@@ -68,7 +68,7 @@ def coexisting_orbits(
             guesses = [*known, *across.get(omega, ()), *started_states(scene, omega)]
             found = CoexistingOrbits(omega, tuple(_coexisting_at(problem, omega, guesses, here, poll)), whole)
             report.save(found)
-        doubts.levels += [] if found.whole else [omega]
+        uncertain.levels += [] if found.whole else [omega]
         yield from found.samples
 
 

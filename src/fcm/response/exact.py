@@ -19,7 +19,7 @@ from fcm.response.curve_sweep import CurveSweep
 from fcm.response.exact_curve import ExactWork
 from fcm.response.options import INPUT_LIMITS, RESPONSE, ResponseOptions
 from fcm.response.request import ResponseError
-from fcm.response.resumable_branches import LEGS
+from fcm.response.resumable_branches import SAVED_KINDS
 from fcm.response.ring_limits import refuse_in_time
 from fcm.response.stepped_sweep import STATES
 from fcm.results.at_rest import without_rounding
@@ -124,7 +124,7 @@ class _SweepRun:
         mark = fingerprint(METHOD, replace(self.work, options=replace(self.work.options, max_seconds=None)))
         batches = [(one,) for one in scenes]
         curves = self.sweep.curves(
-            self.work, batches, mark, progress, (*STATES, CoexistingOrbits, *LEGS, *FOUND)
+            self.work, batches, mark, progress, (*STATES, CoexistingOrbits, *SAVED_KINDS, *FOUND)
         )
         return Response.of(scene, curves, METHOD)
 

@@ -19,7 +19,7 @@ from fcm.response.options import EXACT_CURVES, ExactOptions
 from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.orbit_curve import orbit_curve, visited_curve
 from fcm.response.reinstated_contacts import ReinstatedContacts
-from fcm.response.resumable_branches import CurveTimeLimit, Legs, TimeOver
+from fcm.response.resumable_branches import CurveTimeLimit, ResumablePaths, TimeOver
 from fcm.response.stepped_sweep import SteppedSweep
 from fcm.results.cause import Cause
 from fcm.results.result import INTERRUPTED, Curve
@@ -92,8 +92,10 @@ class _CurveFollower:
     clock: CurveTimeLimit
     stiff: str  # what is said of a contact that is too stiff, where a curve is not complete
     periods: int
-    before: list[tuple[OrbitProblem, Legs]] = field(default_factory=list)  # the last that were followed
-    doubts: UncertainFrequencies = field(
+    before: list[tuple[OrbitProblem, ResumablePaths]] = field(
+        default_factory=list
+    )  # the last that were followed
+    uncertain: UncertainFrequencies = field(
         default_factory=UncertainFrequencies
     )  # of the balance that these began near
     options: ShootingOptions = SHOOTING
@@ -129,7 +131,7 @@ class _CurveFollower:
         groups, reason, cause = self.branches(scene)
         search = Search(self.clock.poll, self.report, self.options)
         return _with_uncertain_frequencies(
-            _finished(partial(orbit_curve, groups), reason, search, cause), self.doubts
+            _finished(partial(orbit_curve, groups), reason, search, cause), self.uncertain
         )
 
     def peaks(self, scene: Scene) -> Curve:
@@ -144,11 +146,11 @@ class _CurveFollower:
             return _finished(partial(peaks_curve, scene, found), reason, search, _cause(stop))
         if alone is not None:
             return _with_uncertain_frequencies(
-                _finished(partial(peaks_curve, scene, alone), "", search), alone.doubts
+                _finished(partial(peaks_curve, scene, alone), "", search), alone.uncertain
             )
         groups, reason, cause = self.branches(scene)
         return _with_uncertain_frequencies(
-            _finished(partial(peaks_of, groups), reason, search, cause), self.doubts
+            _finished(partial(peaks_of, groups), reason, search, cause), self.uncertain
         )
 
     def branches(self, scene: Scene) -> tuple[list[OrbitBranches], str, Cause]:
@@ -159,7 +161,7 @@ class _CurveFollower:
         NotKeptError
             If a contact that is held would not have kept its state.
         """
-        legs = Legs(
+        resumable = ResumablePaths(
             scene.frequency_range, self.report, self.clock.poll, _check_held_contacts if scene.held else None
         )
         problems, groups, cause = (
@@ -169,25 +171,27 @@ class _CurveFollower:
         )
         try:
             for problem, found in self.before:
-                legs.take(ReinstatedContacts(problem, problems[0]).legs(found.found(problem)))
-            self.before[:] = [(problems[0], legs)]
-            paths, without = explore(problems[0], legs, legs.poll, self.clock.share(self.search), self.doubts)
+                resumable.take(ReinstatedContacts(problem, problems[0]).saved_paths(found.found(problem)))
+            self.before[:] = [(problems[0], resumable)]
+            paths, without = explore(
+                problems[0], resumable, resumable.poll, self.clock.share(self.search), self.uncertain
+            )
             reason = incomplete(scene, paths, without)
             groups.append(OrbitBranches(problems[0], paths))
             while 2 * problems[-1].repeats <= self.periods and not reason:
                 problem = DoubledPeriodProblem(problems[-1])
                 problems.append(problem)
-                paths, lost = doubled_paths(problem, groups[-1].points, legs, legs.poll)
+                paths, lost = doubled_paths(problem, groups[-1].points, resumable, resumable.poll)
                 reason = incomplete(scene, paths, "") if paths else ""
                 reason = reason or (_missing_periods(problem, lost) if lost else "")
                 groups.append(OrbitBranches(problem, paths, groups[-1]))
         except (KeyboardInterrupt, TimeOver) as stop:
-            legs.keep()
-            while legs.paths(
+            resumable.keep()
+            while resumable.paths(
                 further := DoubledPeriodProblem(problems[-1])
             ):  # an earlier run had come to them
                 problems.append(further)
-            groups = [OrbitBranches(one, legs.paths(one), cut_off=True) for one in problems]
+            groups = [OrbitBranches(one, resumable.paths(one), cut_off=True) for one in problems]
             paths = [path for group in groups for path in group.paths]
             reason, cause = _stop_prefix(stop, self.clock.limit) + stop_reason(scene, paths), _cause(stop)
         return groups, reason + self.stiff if reason else "", cause
@@ -207,9 +211,9 @@ def _finished(
         return replace(curve, cause=Cause.INTERRUPTED)
 
 
-def _with_uncertain_frequencies(curve: Curve, doubts: UncertainFrequencies) -> Curve:
+def _with_uncertain_frequencies(curve: Curve, uncertain: UncertainFrequencies) -> Curve:
     """With where the balance that it began near may lack branches."""
-    curve.unsure, curve.folds_unsure = list(doubts.levels), list(doubts.folds)
+    curve.uncertain_at, curve.folds_uncertain_at = list(uncertain.levels), list(uncertain.folds)
     return curve
 
 
@@ -258,7 +262,7 @@ def _visited(
     stiff, limit = _too_stiff(replace(scene, frequency_range=(at[0], at[-1])), options)
     looks = CurveTimeLimit(limit, report)
     poll = looks.poll
-    visitor, others, reason, doubts = (
+    visitor, others, reason, uncertain = (
         SteppedSweep(around, poll),
         list[OrbitRecord](),
         "",
@@ -267,7 +271,7 @@ def _visited(
     cause = Cause.CALCULATION
     try:
         visitor.run(at, report)
-        others.extend(coexisting_orbits(scene, at, visitor.points, looks, doubts, shooting))
+        others.extend(coexisting_orbits(scene, at, visitor.points, looks, uncertain, shooting))
     except (KeyboardInterrupt, TimeOver) as stop:
         where = with_unit(scene, visitor.points[-1].frequency) if visitor.points else "the start"
         reason, cause = _stop_prefix(stop, limit) + where, _cause(stop)
@@ -278,4 +282,4 @@ def _visited(
     found = _finished(
         partial(visited_curve, scene, visitor, others), reason, Search(poll, report, shooting), cause
     )
-    return _with_uncertain_frequencies(found, doubts)
+    return _with_uncertain_frequencies(found, uncertain)

@@ -190,15 +190,15 @@ def _on_line(task: PeakTask, found: LowestPeak, harmonics: tuple[int, ...]) -> F
     """Of one number, by the curves of the peaks."""
     if found.best is None:
         raise ResponseError(_no_peak(task))
-    way = _search(task, harmonics).way
-    curves = [as_curve(task.scene, way, *stability_along(way, one)) for one in found.curves]
+    setup = _search(task, harmonics).setup
+    curves = [as_curve(task.scene, setup, *stability_along(setup, one)) for one in found.curves]
     optimal = _optimal(task, np.array([found.best.s]), found.best, harmonics)
     if found.best.kind != "end":
         return optimal, curves
     end = task.steps(
         f"{harmonics} end at {found.best.s!r}",
         EndingPeak,
-        partial(ending_peak, way, found.curves, found.best),
+        partial(ending_peak, setup, found.curves, found.best),
     )
     (number,) = task.numbers
     return replace(optimal, end_error=end.error, beside={number.key: end.beside}), curves

@@ -41,7 +41,7 @@ class PeaksOnly:
     points: list[OrbitRecord]
     jumps: list[Jump] = field(default_factory=list)
     periods: int = 0  # that were computed
-    doubts: UncertainFrequencies = field(
+    uncertain: UncertainFrequencies = field(
         default_factory=UncertainFrequencies
     )  # of the balance that they are near
 
@@ -82,7 +82,10 @@ def peaks_only(
     if len(there) < len(jumps):
         return None
     return PeaksOnly(
-        points, there, problem.periods, UncertainFrequencies(balanced.unsure, balanced.folds_unsure)
+        points,
+        there,
+        problem.periods,
+        UncertainFrequencies(balanced.uncertain_at, balanced.folds_uncertain_at),
     )
 
 

@@ -18,7 +18,7 @@ from fcm.continuation.problem import Points, Stored
 from fcm.continuation.step_control import Stepper
 from fcm.model.scene import FloatArray
 from fcm.response.options import CONTACT_CHANGES
-from fcm.response.resumable_branches import BranchLeg, kind_of
+from fcm.response.resumable_branches import SavedPath, kind_of
 from fcm.shooting.problem import OrbitProblem
 from fcm.time_domain.equations import has_friction
 
@@ -44,15 +44,17 @@ class ReinstatedContacts:
                 )
                 self._rest[row] = -one.contact.k_u * one.rest
 
-    def legs(self, legs: Iterable[BranchLeg]) -> Iterator[BranchLeg]:
-        """Those of a number of legs that are also of the other problem."""
-        for leg in legs:
-            path = None if leg.path is None else self._path(leg.path)
+    def saved_paths(self, saved_paths: Iterable[SavedPath]) -> Iterator[SavedPath]:
+        """Those of a number of paths that are also of the other problem."""
+        for saved in saved_paths:
+            path = None if saved.path is None else self._path(saved.path)
             checkpoint = (
-                None if leg.checkpoint is None or leg.path is not None else self._checkpoint(leg.checkpoint)
+                None
+                if saved.checkpoint is None or saved.path is not None
+                else self._checkpoint(saved.checkpoint)
             )
             if path is not None or checkpoint is not None:
-                yield BranchLeg(leg.number, *kind_of(self.now), path, checkpoint)
+                yield SavedPath(saved.number, *kind_of(self.now), path, checkpoint)
 
     def states_kept(self, points: Iterable[FloatArray]) -> bool:
         """Whether the contacts that are released have kept their state in motions z."""

@@ -22,7 +22,7 @@ from fcm.shooting.problem import OrbitProblem
 
 
 @dataclass(frozen=True)
-class BranchLeg:
+class SavedPath:
     """A curve from one start in one direction: whole, or as far as it has come."""
 
     number: int  # in the order in which they are followed
@@ -39,7 +39,7 @@ class BranchLeg:
         return self.checkpoint.path(Status.INTERRUPTED)
 
 
-LEGS = (BranchLeg, Path, Checkpoint, Status, Stored, Points)  # what is saved consists of these
+SAVED_KINDS = (SavedPath, Path, Checkpoint, Status, Stored, Points)  # what is saved consists of these
 
 
 class _Ended(Exception):  # noqa: N818
@@ -78,7 +78,7 @@ class CurveTimeLimit:
             self._ask = time.monotonic() + RESUMABLE.poll_interval
 
 
-class Legs:
+class ResumablePaths:
     """Follows curves as `fcm.continuation.follow` does, one after the other.
 
     The same curves in the same order after an interruption: those that were finished are not followed again,
@@ -100,11 +100,11 @@ class Legs:
         self.number = 0  # of the next one
         self._recorded = 0  # points of the one that is followed
         self._begun: tuple[OrbitProblem, Checkpoint] | None = None
-        self._passed: BranchLeg | None = None  # the last one of which nothing was wrong
-        self._given = dict[int, BranchLeg]()  # of another scene, with the same motions
+        self._passed: SavedPath | None = None  # the last one of which nothing was wrong
+        self._given = dict[int, SavedPath]()  # of another scene, with the same motions
         self._seen, self._took = time.monotonic(), 0.0
-        saved = (leg for leg in report.saved if isinstance(leg, BranchLeg))
-        self._known = {_key(leg): leg for leg in saved}  # the latest of each
+        every = (saved for saved in report.saved if isinstance(saved, SavedPath))
+        self._known = {_key(saved): saved for saved in every}  # the latest of each
 
     def __call__(
         self,
@@ -118,12 +118,12 @@ class Legs:
         progress: object = None,
     ) -> Path:
         """See `follow`; of motions of twice the periods of others up to where the curve comes to those."""
-        saved = self._known.get(_key(self._leg(problem))) or self._taken(problem, start, forward)
+        saved = self._known.get(_key(self._saved_path(problem))) or self._taken(problem, start, forward)
         if saved is None or saved.path is None:
             checkpoint = None if saved is None else saved.checkpoint
             whole = partial(follow, problem, start, span, wanted, options, forward=forward)
             path = self._followed(problem, start, partial(whole, checkpoint=checkpoint))
-            saved = self._leg(problem, path)
+            saved = self._saved_path(problem, path)
             self._save(saved)
         self._begun = None
         self.number += 1
@@ -153,7 +153,7 @@ class Legs:
         self.report(covered, f"{checkpoint.kept.number} points")
         if self.passing is not None:
             self.passing(problem, checkpoint.z)
-            self._passed = self._leg(problem, checkpoint=checkpoint)
+            self._passed = self._saved_path(problem, checkpoint=checkpoint)
         self.poll()
 
     def _record(self, problem: OrbitProblem, checkpoint: Checkpoint) -> None:
@@ -165,65 +165,67 @@ class Legs:
             self._recorded = checkpoint.kept.number - 1
             problem.forget()
 
-    def found(self, problem: OrbitProblem) -> list[BranchLeg]:
-        """The legs of a problem as far as all their points were passed."""
-        legs = {_key(leg): leg for leg in self._known.values() if leg.path is not None}
-        if self._passed is not None and _key(self._passed) not in legs:
-            legs[_key(self._passed)] = self._passed
+    def found(self, problem: OrbitProblem) -> list[SavedPath]:
+        """The paths of a problem as far as all their points were passed."""
+        saved_paths = {_key(saved): saved for saved in self._known.values() if saved.path is not None}
+        if self._passed is not None and _key(self._passed) not in saved_paths:
+            saved_paths[_key(self._passed)] = self._passed
         held, repeats = kind_of(problem)
-        return [leg for leg in legs.values() if (leg.held, leg.repeats) == (held, repeats)]
+        return [saved for saved in saved_paths.values() if (saved.held, saved.repeats) == (held, repeats)]
 
-    def take(self, legs: Iterable[BranchLeg]) -> None:
-        """Go on with legs that begin where one is to be followed."""
-        self._given = {leg.number: leg for leg in legs}
+    def take(self, saved_paths: Iterable[SavedPath]) -> None:
+        """Go on with paths that begin where one is to be followed."""
+        self._given = {saved.number: saved for saved in saved_paths}
 
-    def _taken(self, problem: OrbitProblem, start: FloatArray, forward: bool) -> BranchLeg | None:
+    def _taken(self, problem: OrbitProblem, start: FloatArray, forward: bool) -> SavedPath | None:
         """The one with the next number, if it begins there."""
-        leg = self._given.get(self.number)
-        known = leg is not None and _key(leg) == _key(self._leg(problem))
-        return leg if leg is not None and known and _begins_at(leg, problem, start, forward) else None
+        saved = self._given.get(self.number)
+        known = saved is not None and _key(saved) == _key(self._saved_path(problem))
+        return saved if saved is not None and known and _begins_at(saved, problem, start, forward) else None
 
     def keep(self) -> None:
         """Save the curve that is being followed as far as it is there."""
         if self._begun is None:
             return
         begin = time.monotonic()
-        self._save(self._leg(self._begun[0], checkpoint=self._begun[1]))
+        self._save(self._saved_path(self._begun[0], checkpoint=self._begun[1]))
         self._seen = time.monotonic()
         self._took = self._seen - begin
 
     def paths(self, problem: OrbitProblem) -> list[Path]:
         """What is saved of the curves of a problem, those that an earlier run came to among them."""
         held, repeats = kind_of(problem)
-        legs = [leg for leg in self._known.values() if (leg.held, leg.repeats) == (held, repeats)]
-        found = [leg.partial_path() for leg in sorted(legs, key=lambda leg: leg.number)]
+        saved_paths = [
+            saved for saved in self._known.values() if (saved.held, saved.repeats) == (held, repeats)
+        ]
+        found = [saved.partial_path() for saved in sorted(saved_paths, key=lambda saved: saved.number)]
         return [path for path in found if path.z.shape[0]]
 
-    def _leg(
+    def _saved_path(
         self, problem: OrbitProblem, path: Path | None = None, checkpoint: Checkpoint | None = None
-    ) -> BranchLeg:
+    ) -> SavedPath:
         """The one that is followed now."""
-        return BranchLeg(self.number, *kind_of(problem), path, checkpoint)
+        return SavedPath(self.number, *kind_of(problem), path, checkpoint)
 
-    def _save(self, leg: BranchLeg) -> None:
-        self._known[_key(leg)] = leg
-        self.report.save(leg)
+    def _save(self, saved: SavedPath) -> None:
+        self._known[_key(saved)] = saved
+        self.report.save(saved)
 
 
-def _begins_at(leg: BranchLeg, problem: OrbitProblem, start: FloatArray, forward: bool) -> bool:
-    """Whether a leg is that from a start in a direction."""
-    if leg.path is not None:
-        first, rise = leg.path.z[0], float(leg.path.direction[0, -1])
+def _begins_at(saved: SavedPath, problem: OrbitProblem, start: FloatArray, forward: bool) -> bool:
+    """Whether a path is that from a start in a direction."""
+    if saved.path is not None:
+        first, rise = saved.path.z[0], float(saved.path.direction[0, -1])
     else:
-        assert leg.checkpoint is not None
-        first, rise = leg.checkpoint.start, float(leg.checkpoint.heading[-1])
+        assert saved.checkpoint is not None
+        first, rise = saved.checkpoint.start, float(saved.checkpoint.heading[-1])
     problem.measure(first)
     off = np.linalg.norm((first - start) / np.asarray(problem.scale))
     return bool(off < PATH.solution_tolerance) and (rise > 0.0) == forward
 
 
-def _key(leg: BranchLeg) -> tuple[int, tuple[int, ...], int]:
-    return leg.number, leg.held, leg.repeats
+def _key(saved: SavedPath) -> tuple[int, tuple[int, ...], int]:
+    return saved.number, saved.held, saved.repeats
 
 
 def kind_of(problem: OrbitProblem) -> tuple[tuple[int, ...], int]:

@@ -165,7 +165,7 @@ def _add(response: Response, scene: Scene, found: TrackedScene | Lost | None) ->
         reason = NOT_BEGUN
     else:
         response.tracking.curves += found.curves
-        response.tracking.unsure += found.unsure
+        response.tracking.uncertain_at += found.uncertain_at
     problems = found.problems if isinstance(found, TrackedScene) else [reason]
     cut_off = found is None or (isinstance(found, TrackedScene) and found.interrupted)
     response.tracking.interrupted |= cut_off

@@ -37,7 +37,7 @@ from fcm.tracking.onset_functions import KINDS as ONSETS
 from fcm.tracking.parameter_line import along
 from fcm.tracking.stability import stability_along
 from fcm.tracking.start_points import SpecialPoints, for_scene
-from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingRun
+from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
 from fcm.units import in_unit
 
 STOPPED = f"{INTERRUPTED}, so that curves and errors may be missing"
@@ -50,7 +50,7 @@ class TrackedScene:
 
     curves: list[TrackedCurve]
     problems: list[str]
-    unsure: list[tuple[float, float]] = field(default_factory=list)  # see `Tracking`
+    uncertain_at: list[tuple[float, float]] = field(default_factory=list)  # see `Tracking`
     interrupted: bool = False
 
 
@@ -83,21 +83,21 @@ class TrackedWork:
         system = Request(self.harmonics, options=self.options).system(scene)
         line, once = along(self.number), _SavedSteps(report)
         shown = partial(report, text=self.number.key)
-        way = TrackingRun(system, line, self.span, (), scene.max_step)
-        found = tracked_curves(way, conditions_of(scene, self.what), (), shown, once)
+        setup = TrackingSetup(system, line, self.span, (), scene.max_step)
+        found = tracked_curves(setup, conditions_of(scene, self.what), (), shown, once)
         followed = TrackedScene([], list(found.problems), list(found.uncertain))
         followed.problems.extend(_lost(scene, condition, z) for condition, z in found.lost)
         stopped = found.interrupted
         for one in found.curves:  # after an interruption nothing is estimated any more
-            told: tuple[TrackedError, ...] = ()
+            estimates: tuple[TrackedError, ...] = ()
             stable: FloatArray | None = None
             try:
                 if not stopped:
-                    one, stable = once(partial(stability_along, way, one))
-                told = () if stopped else once(partial(errors, way, one))
+                    one, stable = once(partial(stability_along, setup, one))
+                estimates = () if stopped else once(partial(errors, setup, one))
             except KeyboardInterrupt:
                 stopped = True
-            followed.curves.append(as_curve(scene, way, one, stable, told))
+            followed.curves.append(as_curve(scene, setup, one, stable, estimates))
         if not stopped:
             return followed
         followed = replace(followed, problems=[*followed.problems, STOPPED], interrupted=True)
@@ -137,29 +137,31 @@ def conditions_of(scene: Scene, what: str) -> list[Condition]:
     return [Condition(Kind.ONSET, i, what) for i in range(len(scene.contacts))]
 
 
-def errors(way: TrackingRun, one: SpecialPointCurve) -> tuple[TrackedError, ...]:
+def errors(setup: TrackingSetup, one: SpecialPointCurve) -> tuple[TrackedError, ...]:
     """What the harmonics left out change at a track's ends, turns, least and greatest peak."""
-    told = []
+    estimates = []
     for point, place in error_points(one).items():
-        by = truncation_error(way, one, point)
-        told.append(TrackedError(point, place, by.relative, by.number if one.points[point].turn else np.nan))
-    return tuple(told)
+        by = truncation_error(setup, one, point)
+        estimates.append(
+            TrackedError(point, place, by.relative, by.number if one.points[point].turn else np.nan)
+        )
+    return tuple(estimates)
 
 
 def as_curve(
     scene: Scene,
-    way: TrackingRun,
+    setup: TrackingSetup,
     one: SpecialPointCurve,
     stable: FloatArray | None,
-    told: tuple[TrackedError, ...] = (),
+    estimates: tuple[TrackedError, ...] = (),
 ) -> TrackedCurve:
     """A track in the words of its scene, with its stability and its errors as far as they were looked at."""
-    corners = ["" if spot.corner is None else named(scene, spot.corner) for spot in one.points]
+    corners = ["" if point.corner is None else named(scene, point.corner) for point in one.points]
     stopped = [ending for ending in one.endings if not ending.whole]
-    nowhere, count = _along_spots(way, one)
+    nowhere, count = _along_points(setup, one)
     stable = np.full(one.s.size, np.nan) if stable is None else np.array(stable)
-    stable[_disbelieved(told, one.s.size, way.system.option(VALIDITY)) & (stable == 1.0)] = np.nan
-    reason = _unsteady_ranges(way.system, one.s, nowhere)
+    stable[_is_unreliable(estimates, one.s.size, setup.system.option(VALIDITY)) & (stable == 1.0)] = np.nan
+    reason = _unsteady_ranges(setup.system, one.s, nowhere)
     for which in nowhere.values():
         stable[which] = 0.0  # what creeps away, or floats, is no steady state
     end = one.s[0] if not one.endings[0].whole else one.s[-1]
@@ -170,22 +172,24 @@ def as_curve(
         frequency=one.frequency,
         amplitude=one.amplitude,
         corner=np.array(corners, dtype=str),
-        turn=np.array([bool(spot.turn) for spot in one.points]),
+        turn=np.array([bool(point.turn) for point in one.points]),
         trough=~one.greatest,
         stable=stable,
         closings=tuple(one.turns()),
         complete=one.whole and not reason,
         reason=f"stopped at {end:.6g}: {stopped[0].value}" if stopped else reason,
-        errors=told,
+        errors=estimates,
         undetermined=count,
     )
 
 
-def _disbelieved(told: Sequence[TrackedError], count: int, options: ValidityOptions) -> npt.NDArray[np.bool_]:
+def _is_unreliable(
+    estimates: Sequence[TrackedError], count: int, options: ValidityOptions
+) -> npt.NDArray[np.bool_]:
     """The points (point,) next to a place, or between two, whose error is too great for the motion there to
     be called stable, as of a response curve."""
     far = np.zeros(count, dtype=np.bool_)
-    places = sorted((one.point, one.relative) for one in told)
+    places = sorted((one.point, one.relative) for one in estimates)
     for k, (_, error) in enumerate(places):
         if error > options.max_error:
             first = places[k - 1][0] if k else 0
@@ -194,13 +198,15 @@ def _disbelieved(told: Sequence[TrackedError], count: int, options: ValidityOpti
     return far
 
 
-def _along_spots(way: TrackingRun, one: SpecialPointCurve) -> tuple[dict[str, npt.NDArray[np.bool_]], int]:
+def _along_points(
+    setup: TrackingSetup, one: SpecialPointCurve
+) -> tuple[dict[str, npt.NDArray[np.bool_]], int]:
     """For each reason why points of a track are no steady states which they are (point,); and at how many a
     contact never slips beside one that may feel it."""
     count, lost = 0, dict[str, npt.NDArray[np.bool_]]()
-    for k, spot in enumerate(one.points):
-        system = for_scene(way.system, way.line.scene(way.system.scene, float(spot.z[-1])))
-        z = np.array(spot.z[None, :-1])
+    for k, point in enumerate(one.points):
+        system = for_scene(setup.system, setup.line.scene(setup.system.scene, float(point.z[-1])))
+        z = np.array(point.z[None, :-1])
         count += int(undetermined(system.scene, cycles(system, z, loops(system, z))[0]).sum())
         for why, which in no_steady_states(system, z, np.ones(1)).items():
             lost.setdefault(why, np.zeros(len(one.points), dtype=np.bool_))[k] = which[0]

@@ -35,14 +35,14 @@ def condensed_fields(response: Response) -> dict[str, Field]:
         name: Field(("curve",), np.array(values, dtype=np.float64), {"long_name": meaning, "units": "1"})
         for name, (meaning, values) in of_all.items()
     }
-    out |= _doubts(response, condensed_curves)
+    out |= _caveats(response, condensed_curves)
     if not response.complete:
         reasons = np.array([curve.reason for curve in response.curves])
         out["reason"] = Field(("curve",), reasons, {"long_name": "why the curve is not complete"})
     return out
 
 
-def _doubts(response: Response, condensed_curves: Sequence[CondensedCurve]) -> dict[str, Field]:
+def _caveats(response: Response, condensed_curves: Sequence[CondensedCurve]) -> dict[str, Field]:
     """What may be missing in curves, or lacking, which the summary of a file with all points says."""
     curves, unit, out = response.curves, response.frequency_unit, dict[str, Field]()
     in_file = {"units": CF_UNIT[unit]}
@@ -50,14 +50,14 @@ def _doubts(response: Response, condensed_curves: Sequence[CondensedCurve]) -> d
         meaning = "points at which the motion is one of many, by the residual friction of stuck contacts"
         undetermined = np.array([curve.undetermined for curve in curves], dtype=np.float64)
         out["points_maybe_not_unique"] = Field(("curve",), undetermined, {"long_name": meaning, "units": "1"})
-    if any(curve.unsure for curve in curves):
+    if any(curve.uncertain_at for curve in curves):
         meaning = "frequencies at which solutions were not looked for to the end: branches may be missing"
-        unsure = by_fold(curves, lambda curve: in_unit(np.array(curve.unsure), unit))
-        out["branches_unsure_at"] = Field(("curve", "unsure"), unsure, {"long_name": meaning} | in_file)
-    if any(curve.folds_unsure for curve in curves):
+        uncertain_at = by_fold(curves, lambda curve: in_unit(np.array(curve.uncertain_at), unit))
+        out["branches_unsure_at"] = Field(("curve", "unsure"), uncertain_at, {"long_name": meaning} | in_file)
+    if any(curve.folds_uncertain_at for curve in curves):
         meaning = "frequencies from where folds of the force level were lost: branches may be missing"
-        unsure = by_fold(curves, lambda curve: in_unit(np.array(curve.folds_unsure), unit))
-        out["folds_unsure_at"] = Field(("curve", "lost_fold"), unsure, {"long_name": meaning} | in_file)
+        uncertain_at = by_fold(curves, lambda curve: in_unit(np.array(curve.folds_uncertain_at), unit))
+        out["folds_unsure_at"] = Field(("curve", "lost_fold"), uncertain_at, {"long_name": meaning} | in_file)
     if any(curve.symmetry_lost for curve in curves):
         meaning = "frequencies at which symmetry is lost by harmonics that are not balanced"
         lost = by_fold(curves, lambda curve: in_unit(np.array(curve.symmetry_lost), unit))

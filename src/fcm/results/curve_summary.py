@@ -37,10 +37,10 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
         out["harmonics"] = list(curve.harmonics)
     if curve.short_of:
         out["short_of_accuracy"] = curve.short_of
-    if curve.unsure:
-        out["branches_unsure_at"] = in_unit(curve.unsure, unit).tolist()
-    if curve.folds_unsure:
-        out["folds_unsure_at"] = in_unit(curve.folds_unsure, unit).tolist()
+    if curve.uncertain_at:
+        out["branches_unsure_at"] = in_unit(curve.uncertain_at, unit).tolist()
+    if curve.folds_uncertain_at:
+        out["folds_unsure_at"] = in_unit(curve.folds_uncertain_at, unit).tolist()
     if curve.symmetry_lost:
         out["symmetry_lost_at"] = in_unit(curve.symmetry_lost, unit).tolist()
     if condensed.unstable:

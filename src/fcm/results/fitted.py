@@ -1,4 +1,4 @@
-"""What a fit to measured data yields: numbers with their errors, residuals of the data, and its doubts."""
+"""What a fit to measured data yields: numbers with their errors, residuals of the data, and its caveats."""
 
 from __future__ import annotations
 

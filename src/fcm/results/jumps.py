@@ -122,13 +122,13 @@ def _sweep(
     begin = int(lowest.argmin())
     at = begin if rises[begin] > 0.0 else begin + 1
     unknown = unknown_stability(stable)
-    unsure = bool(unknown.any())
+    uncertain_at = bool(unknown.any())
     visited: set[int] = set()
     start, told = (float(frequency[at]), amplitude[at]), not unknown[at]
     while at not in visited:
         walked = _walked(at, onwards)
         visited.update(walked)
-        if unsure:
+        if uncertain_at:
             _note_untold(sweep, (frequency, amplitude, unknown), walked, start, told, found)
         at = walked[-1]
         here, before = float(frequency[at]), amplitude[at]

@@ -66,8 +66,8 @@ class Curve:
     seconds: float
     bifurcations: list[tuple[str, float]] = field(default_factory=list)  # others: which, and where [rad/s]
     short_of: str = ""  # what keeps it from the accuracy that was asked for, if anything
-    unsure: list[float] = field(default_factory=list)  # [rad/s] where branches may have been missed
-    folds_unsure: list[float] = field(default_factory=list)  # [rad/s] from where no folds were followed
+    uncertain_at: list[float] = field(default_factory=list)  # [rad/s] where branches may have been missed
+    folds_uncertain_at: list[float] = field(default_factory=list)  # [rad/s] from where no folds were followed
     symmetry_lost: list[float] = field(default_factory=list)  # [rad/s] by harmonics that are not balanced
     levels: list[float] | None = None  # [rad/s] at which the level of the forces was followed, if known
     folds_between: tuple[float, float] | None = None  # levels of the forces, see `fcm.branches.isolas`

@@ -80,9 +80,9 @@ class TrackedCurve:
 
     def _stability(self, unit: str) -> dict[str, Any]:
         """Stretches of the curve on which the motion is not stable, or not known to be; troughs apart."""
-        verdicts = {"not_stable": self.stable == 0.0, "stability_untold": np.isnan(self.stable)}
+        fields = {"not_stable": self.stable == 0.0, "stability_untold": np.isnan(self.stable)}
         out = {}
-        for name, where in verdicts.items():
+        for name, where in fields.items():
             edges = np.flatnonzero(np.diff(where & ~self.trough, prepend=False, append=False))
             stretches = [slice(*ends) for ends in edges.reshape(-1, 2).tolist()]
             out[name] = [
@@ -163,7 +163,7 @@ class Tracking:
     problems: list[str] = field(default_factory=list)
     interrupted: bool = False
     # values of the number and frequencies [rad/s] where the ordinary curves begun from may lack branches
-    unsure: list[tuple[float, float]] = field(default_factory=list)
+    uncertain_at: list[tuple[float, float]] = field(default_factory=list)
     short_of: str = ""  # what keeps it from the accuracy that was asked for, if anything
 
     @property
@@ -183,5 +183,5 @@ class Tracking:
             "problems": self.problems,
             "curves": [curve.summary(unit) for curve in self.curves],
             **({"short_of_accuracy": self.short_of} if self.short_of else {}),
-            "branches_unsure_at": [[number, float(in_unit(at, unit))] for number, at in self.unsure],
+            "branches_unsure_at": [[number, float(in_unit(at, unit))] for number, at in self.uncertain_at],
         }

@@ -104,10 +104,10 @@ def explore(
     along: Follow = follow,
     poll: Poll = never_interrupt,
     most: float = np.inf,
-    doubts: UncertainFrequencies | None = None,
+    uncertain: UncertainFrequencies | None = None,
 ) -> tuple[list[Path], str]:
-    """All branches of a scene as paths, and what is missing, else ''; doubts take those of the balance that
-    leads to them.
+    """All branches of a scene as paths, and what is missing, else ''; uncertain takes those of the balance
+    that leads to them.
 
     That is why there is no solution at an end of the range, and why the search for further branches was given
     up: what leads to them may take so many seconds of processor time.
@@ -122,7 +122,7 @@ def explore(
     )
     paths, lost = branches(found).paths, list[float]()
     bounded = BranchBudget(poll, most, problem.options)
-    search = _BranchSearch(problem, branches, bounded, doubts or UncertainFrequencies())
+    search = _BranchSearch(problem, branches, bounded, uncertain or UncertainFrequencies())
     if not sought:
         paths = search.with_others(paths, apart)
     if search.too_many_broken(paths):
@@ -158,7 +158,7 @@ class _BranchSearch:
     problem: OrbitProblem
     branches: Callable[..., Branches]
     bounded: BranchBudget
-    doubts: UncertainFrequencies
+    uncertain: UncertainFrequencies
     unreached: list[tuple[float, float]] = field(default_factory=list)
 
     def with_others(self, paths: tuple[Path, ...], apart: bool) -> tuple[Path, ...]:
@@ -170,7 +170,7 @@ class _BranchSearch:
         problem, bounded, scene = self.problem, self.bounded, self.problem.scene
         high = True
         for balance in bounded.each(converged_balance(scene, apart, bounded.poll, problem.options)):
-            self.doubts.replace_with(balance.traced)
+            self.uncertain.replace_with(balance.traced)
             along = orbits_along_balance(problem, balance, bounded.outside)
             paths, high = self.with_motions(paths, along.points), along.near_balance
             self.unreached += along.unreached

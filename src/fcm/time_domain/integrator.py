@@ -154,14 +154,14 @@ def _search(
     """
     depth: cython.int = 0
     low: cython.double = 0.0
-    verdict: cython.int
+    kind: cython.int
     while True:
-        verdict = _judge(work, degree, depth, floor)
-        if verdict == 2 or (verdict == 3 and depth >= work.shape[0] - 2):
+        kind = _interval_kind(work, degree, depth, floor)
+        if kind == 2 or (kind == 3 and depth >= work.shape[0] - 2):
             return low  # it descends from rounding at the very start
-        if verdict == 1:
+        if kind == 1:
             return _root(powers, k, degree, low, low + ldexp(1.0, -depth), work[depth])
-        if verdict == 3:
+        if kind == 3:
             _halve(work, degree, depth)
             depth += 1
             continue
@@ -187,7 +187,7 @@ def _odd(low: cython.double, depth: cython.int) -> cython.bint:
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
-def _judge(
+def _interval_kind(
     work: cython.double[:, ::1], degree: cython.int, depth: cython.int, floor: cython.double
 ) -> cython.int:
     """0: no descent; 1: exactly one root; 2: it descends at its start; 3: to be halved."""

@@ -13,7 +13,7 @@ from fcm.tracking.corner import Corner, nearest_onsets
 from fcm.tracking.extended_system import Condition, Kind
 from fcm.tracking.kinks import Circle
 from fcm.tracking.onset_functions import values
-from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingRun, kinks
+from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup, kinks
 
 
 class CornerCrossing:
@@ -24,13 +24,13 @@ class CornerCrossing:
     t: FloatArray
     points: list[TrackedPoint]
 
-    def __init__(self, way: TrackingRun, condition: Condition) -> None:
-        self.way, self.condition, self.options = way, condition, way.options.pieces
-        self.smooth = way.tracked(condition)
-        self.low, self.high = way.system.scene.frequency_range
+    def __init__(self, setup: TrackingSetup, condition: Condition) -> None:
+        self.setup, self.condition, self.options = setup, condition, setup.options.pieces
+        self.smooth = setup.tracked(condition)
+        self.low, self.high = setup.system.scene.frequency_range
         self.turns = condition.kind in (Kind.FOLD, Kind.PEAK)
-        self.values = sorted({*way.span, *way.user_values})
-        self.kinks, self.first = kinks(way), self.options.step.initial_step
+        self.values = sorted({*setup.span, *setup.user_values})
+        self.kinks, self.first = kinks(setup), self.options.step.initial_step
         self.held = np.eye(self.smooth.n + 2)[-1]
         self._switch_equations(None)
 
@@ -75,10 +75,10 @@ class CornerCrossing:
         """Signs of the functions of all onsets."""
         varied = self.smooth.varied
         varied.set_parameter(float(z[-1]))
-        return np.sign(values(varied.balance.laws, z, varied.harmonics, self.way.options))
+        return np.sign(values(varied.balance.laws, z, varied.harmonics, self.setup.options))
 
     def _outside(self, s: float) -> bool:
-        low, high = self.way.span
+        low, high = self.setup.span
         return (
             not low - self.options.kink_length * self.smooth.span
             < s
@@ -87,7 +87,7 @@ class CornerCrossing:
 
     def _leaves(self) -> bool:
         """Whether the way leads out of the span from an end of it, however little the number changes."""
-        low, high = self.way.span
+        low, high = self.setup.span
         near = self.options.kink_length * self.smooth.span
         return bool(
             (self.t[-1] < 0.0 and self.z[-1] <= low + near)
@@ -98,7 +98,7 @@ class CornerCrossing:
         """The corners of the response that a point is near to, the nearest first."""
         if self.turns:
             for off, at in nearest_onsets(
-                self.smooth.varied, z, np.array(self.newton.scale), self.way.options
+                self.smooth.varied, z, np.array(self.newton.scale), self.setup.options
             ):
                 if off > self.options.corner_distance:
                     break
@@ -256,12 +256,12 @@ class CornerCrossing:
     def _back(self, radius: float) -> FloatArray | None:
         """The point on the way back at a distance, by the chord; None if that is further than it was come."""
         scale, near = np.asarray(self.newton.scale), self.z
-        for spot in reversed(self.points):
-            far = float(np.linalg.norm((spot.z - self.z) / scale))
+        for point in reversed(self.points):
+            far = float(np.linalg.norm((point.z - self.z) / scale))
             if far > radius:
                 short = float(np.linalg.norm((near - self.z) / scale))
-                return near + (spot.z - near) * ((radius - short) / (far - short))
-            near = spot.z
+                return near + (point.z - near) * ((radius - short) / (far - short))
+            near = point.z
         return None
 
     def _turn_to(self, there: FloatArray, radius: float) -> bool | Ending | None:
@@ -294,9 +294,9 @@ class CornerCrossing:
             if not self._solve(guess, row) or self.newton.moved > step:
                 del self.points[known:]
                 return False
-            spot = self._point(np.array(self.newton.z), np.array(self.newton.tangent))
-            spot.z[i] = value
-            self.points.append(replace(spot, user_point=i == -1))
+            point = self._point(np.array(self.newton.z), np.array(self.newton.tangent))
+            point.z[i] = value
+            self.points.append(replace(point, user_point=i == -1))
             if ending is not None:
                 return ending
         return True
@@ -310,7 +310,7 @@ class CornerCrossing:
 
     def _ends(self, i: int, value: float, rise: float) -> Ending | None:
         """How the curve ends where s (-1) or the frequency (-2) passes a value, rising or falling."""
-        low, high = self.way.span if i == -1 else (self.low, self.high)
+        low, high = self.setup.span if i == -1 else (self.low, self.high)
         if value != (high if rise > 0.0 else low):
             return None
         return Ending.SPAN if i == -1 else Ending.RANGE

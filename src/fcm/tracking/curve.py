@@ -12,7 +12,7 @@ from fcm.tracking.extended_system import Condition, ExtendedSystem, Kind
 from fcm.tracking.nonsmooth_continuation import follow_special_point
 from fcm.tracking.options import TRACKING
 from fcm.tracking.peak_check import is_top
-from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingRun
+from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
 
 BoolArray = npt.NDArray[np.bool_]
 
@@ -37,7 +37,10 @@ class SpecialPointCurve:
     def turns(self, cusp: float = TRACKING.curves.cusp_tolerance) -> list[tuple[int, str]]:
         """Points at which the number turns back, and what they are; cusp as of `CurveOptions`."""
         other = "peak and trough" if self.condition.kind is Kind.PEAK else "extreme"
-        fold, turns = self.condition.kind is Kind.FOLD, [i for i, spot in enumerate(self.points) if spot.turn]
+        fold, turns = (
+            self.condition.kind is Kind.FOLD,
+            [i for i, point in enumerate(self.points) if point.turn],
+        )
         return [(i, self._turn_of_fold(i, cusp) if fold else other) for i in turns]
 
     def _turn_of_fold(self, i: int, cusp: float) -> str:
@@ -54,48 +57,55 @@ class SpecialPointCurve:
         return "cusp" if still else "isola"
 
 
-def both_ways(way: TrackingRun, condition: Condition, spot: TrackedPoint) -> SpecialPointCurve:
-    """The curve through a spot, both ways."""
-    spots, ending = follow_special_point(way, condition, spot, True)
+def both_ways(setup: TrackingSetup, condition: Condition, point: TrackedPoint) -> SpecialPointCurve:
+    """The curve through a point, both ways."""
+    tracked_points, ending = follow_special_point(setup, condition, point, True)
     endings = (ending, ending)
     if ending is not Ending.CLOSED:
-        back, other = follow_special_point(way, condition, spot, False)
+        back, other = follow_special_point(setup, condition, point, False)
         turned = [replace(one, direction=-one.direction) for one in back[:0:-1]]
-        spots, endings = [*turned, *spots], (other, ending)
-    return recorded(way, condition, spots or [spot], endings)
+        tracked_points, endings = [*turned, *tracked_points], (other, ending)
+    return recorded(setup, condition, tracked_points or [point], endings)
 
 
 def recorded(
-    way: TrackingRun, condition: Condition, spots: list[TrackedPoint], endings: tuple[Ending, Ending]
+    setup: TrackingSetup,
+    condition: Condition,
+    tracked_points: list[TrackedPoint],
+    endings: tuple[Ending, Ending],
 ) -> SpecialPointCurve:
     """A curve with what is reported of its points."""
-    problem = way.tracked(condition)
-    return _joined(condition, spots, [_reported(problem, spot) for spot in spots], endings)
+    problem = setup.tracked(condition)
+    return _joined(
+        condition, tracked_points, [_reported(problem, point) for point in tracked_points], endings
+    )
 
 
-def with_points(way: TrackingRun, track: SpecialPointCurve, spots: list[TrackedPoint]) -> SpecialPointCurve:
+def with_points(
+    setup: TrackingSetup, track: SpecialPointCurve, tracked_points: list[TrackedPoint]
+) -> SpecialPointCurve:
     """A curve with more points, its own among them."""
-    problem = way.tracked(track.condition)
+    problem = setup.tracked(track.condition)
     own = zip(track.amplitude, track.greatest.tolist(), strict=True)
-    known = {id(spot): told for spot, told in zip(track.points, own, strict=True)}
-    told = [known.get(id(spot)) or _reported(problem, spot) for spot in spots]
-    return _joined(track.condition, spots, told, track.endings)
+    known = {id(point): told for point, told in zip(track.points, own, strict=True)}
+    told = [known.get(id(point)) or _reported(problem, point) for point in tracked_points]
+    return _joined(track.condition, tracked_points, told, track.endings)
 
 
-def _reported(problem: ExtendedSystem, spot: TrackedPoint) -> tuple[FloatArray, bool]:
+def _reported(problem: ExtendedSystem, point: TrackedPoint) -> tuple[FloatArray, bool]:
     """Of a point its amplitudes, and whether it is no trough."""
-    problem.measure(spot.z)
-    amplitude = problem.along(spot.z)[1]
-    return amplitude, problem.condition.kind is not Kind.PEAK or is_top(problem, spot)
+    problem.measure(point.z)
+    amplitude = problem.along(point.z)[1]
+    return amplitude, problem.condition.kind is not Kind.PEAK or is_top(problem, point)
 
 
 def _joined(
     condition: Condition,
-    spots: list[TrackedPoint],
+    tracked_points: list[TrackedPoint],
     told: list[tuple[FloatArray, bool]],
     endings: tuple[Ending, Ending],
 ) -> SpecialPointCurve:
-    z, (amplitude, greatest) = np.array([spot.z for spot in spots]), zip(*told, strict=True)
+    z, (amplitude, greatest) = np.array([point.z for point in tracked_points]), zip(*told, strict=True)
     return SpecialPointCurve(
-        condition, tuple(spots), z[:, -1], z[:, -2], np.array(amplitude), np.array(greatest), endings
+        condition, tuple(tracked_points), z[:, -1], z[:, -2], np.array(amplitude), np.array(greatest), endings
     )

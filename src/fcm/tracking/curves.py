@@ -17,7 +17,7 @@ from fcm.tracking.known_curves import passes
 from fcm.tracking.nonsmooth_continuation import land
 from fcm.tracking.peak_check import is_top
 from fcm.tracking.start_points import for_scene, special_points
-from fcm.tracking.tracked_point import TrackedPoint, TrackingRun
+from fcm.tracking.tracked_point import TrackedPoint, TrackingSetup
 
 T = TypeVar("T")
 
@@ -47,7 +47,7 @@ class TrackedCurves:
 
 
 def tracked_curves(
-    way: TrackingRun,
+    setup: TrackingSetup,
     conditions: list[Condition],
     starts: tuple[float, ...] = (),
     progress: Progress | None = None,
@@ -59,56 +59,63 @@ def tracked_curves(
     returns the curves that are finished. once takes each costly step. Of the way the system, the line, the
     span and the options count: the step is the scene's, and all values of s but the ends are user values.
     """
-    values = sorted({*np.linspace(*way.span, way.options.curves.start_values).tolist(), *starts})
-    way = TrackingRun(
-        way.system, way.line, way.span, tuple(values[1:-1]), way.system.scene.max_step, options=way.options
+    values = sorted({*np.linspace(*setup.span, setup.options.curves.start_values).tolist(), *starts})
+    setup = TrackingSetup(
+        setup.system,
+        setup.line,
+        setup.span,
+        tuple(values[1:-1]),
+        setup.system.scene.max_step,
+        options=setup.options,
     )
-    made, stopped = _CurveCollection(way, once), False
+    made, stopped = _CurveCollection(setup, once), False
     try:
         _follow_all(made, values, conditions, progress)
     except KeyboardInterrupt:
         stopped = True
     lost = () if stopped else tuple(made.lost())
-    return TrackedCurves(tuple(made.curves), tuple(made.problems), lost, stopped, tuple(made.unsure))
+    return TrackedCurves(tuple(made.curves), tuple(made.problems), lost, stopped, tuple(made.uncertain_at))
 
 
 def _follow_all(
     made: _CurveCollection, values: list[float], conditions: list[Condition], progress: Progress | None
 ) -> None:
     """From ordinary curves at some values."""
-    system, line = made.way.system, made.way.line
+    system, line = made.setup.system, made.setup.line
     for number, value in enumerate(values):
         if progress is not None:
             progress(number / len(values))
         there = for_scene(system, line.scene(system.scene, value))
-        special = made.once(partial(special_points, there, conditions, made.way.options))
+        special = made.once(partial(special_points, there, conditions, made.setup.options))
         if special.faults:
             made.problems.append(f"at {value:.6g}: {special.faults}")
-        made.unsure += [(value, omega) for omega in special.uncertain]
+        made.uncertain_at += [(value, omega) for omega in special.uncertain]
         made.from_points([(condition, np.append(z, value)) for condition, z in special.points])
     onsets = [condition for condition in conditions if condition.kind is Kind.ONSET]
     if onsets:
-        made.from_points(made.once(partial(_met_by_peaks, made.way, onsets)))
+        made.from_points(made.once(partial(_met_by_peaks, made.setup, onsets)))
 
 
 class _CurveCollection:
     """The curves so far."""
 
-    def __init__(self, way: TrackingRun, once: CachedSteps = uncached) -> None:
-        self.way, self.once = way, once
+    def __init__(self, setup: TrackingSetup, once: CachedSteps = uncached) -> None:
+        self.setup, self.once = setup, once
         self.curves: list[SpecialPointCurve] = []
         self.problems: list[str] = []
-        self.unsure: list[tuple[float, float]] = []
+        self.uncertain_at: list[tuple[float, float]] = []
         self.missed: list[tuple[Condition, FloatArray]] = []  # points that were not landed on
 
     def from_points(self, points: list[tuple[Condition, FloatArray]]) -> None:
         """Follow those that no curve has passed; z = (x, omega, s)."""
         for condition, z in points:
-            spot = land(self.way, condition, z)
-            if spot is None or not self._is_top(condition, spot):
+            point = land(self.setup, condition, z)
+            if point is None or not self._is_top(condition, point):
                 self.missed.append((condition, z))
-            if spot is not None and not any(passes(one, condition, spot, self.way) for one in self.curves):
-                self.curves.append(self.once(partial(both_ways, self.way, condition, spot)))
+            if point is not None and not any(
+                passes(one, condition, point, self.setup) for one in self.curves
+            ):
+                self.curves.append(self.once(partial(both_ways, self.setup, condition, point)))
 
     def lost(self) -> list[tuple[Condition, FloatArray]]:
         """Points at which no curve could begin, and that none has come to either."""
@@ -120,33 +127,33 @@ class _CurveCollection:
 
     def _passes(self, curve: SpecialPointCurve, condition: Condition, z: FloatArray) -> bool:
         """Whether a curve has a point at the same value of the number, and nearly the same frequency."""
-        low, high = self.way.span
-        there = np.abs(curve.s - z[-1]) < self.way.options.curves.value_tolerance * (high - low)
-        near = np.abs(curve.frequency[there] / z[-2] - 1.0) < self.way.options.curves.frequency_tolerance
+        low, high = self.setup.span
+        there = np.abs(curve.s - z[-1]) < self.setup.options.curves.value_tolerance * (high - low)
+        near = np.abs(curve.frequency[there] / z[-2] - 1.0) < self.setup.options.curves.frequency_tolerance
         return curve.condition == condition and bool(near.any())
 
-    def _is_top(self, condition: Condition, spot: TrackedPoint) -> bool:
+    def _is_top(self, condition: Condition, point: TrackedPoint) -> bool:
         """Whether a peak that was landed on is one: beside a peak at a corner there may be a trough."""
         if condition.kind is not Kind.PEAK:
             return True
-        problem = self.way.tracked(condition)
-        problem.measure(spot.z)
-        return is_top(problem, spot)
+        problem = self.setup.tracked(condition)
+        problem.measure(point.z)
+        return is_top(problem, point)
 
 
-def _met_by_peaks(way: TrackingRun, onsets: list[Condition]) -> list[tuple[Condition, FloatArray]]:
+def _met_by_peaks(setup: TrackingSetup, onsets: list[Condition]) -> list[tuple[Condition, FloatArray]]:
     """Points of onsets next to which the peak of the degree of freedom that moves most comes."""
-    middle = for_scene(way.system, way.line.scene(way.system.scene, 0.5 * sum(way.span)))
+    middle = for_scene(setup.system, setup.line.scene(setup.system.scene, 0.5 * sum(setup.span)))
     peaks = [Condition(Kind.PEAK, d) for d in range(len(middle.scene.modal.dofs))]
-    points = special_points(middle, peaks, way.options).points
-    problem = way.tracked(onsets[0])
-    made = _CurveCollection(way)
-    for condition, z in points[: way.options.curves.max_peaks]:
-        made.from_points([(condition, np.append(z, 0.5 * sum(way.span)))])
+    points = special_points(middle, peaks, setup.options).points
+    problem = setup.tracked(onsets[0])
+    made = _CurveCollection(setup)
+    for condition, z in points[: setup.options.curves.max_peaks]:
+        made.from_points([(condition, np.append(z, 0.5 * sum(setup.span)))])
     found = []
-    for spots in (curve.points for curve in made.curves):
+    for tracked_points in (curve.points for curve in made.curves):
         for onset in onsets:
-            value = np.array([problem.onset_at(spot.z, onset) for spot in spots])
+            value = np.array([problem.onset_at(point.z, onset) for point in tracked_points])
             for i in np.flatnonzero(value[:-1] * value[1:] <= 0.0):
-                found.append((onset, np.array(spots[i + int(abs(value[i + 1]) < abs(value[i]))].z)))
+                found.append((onset, np.array(tracked_points[i + int(abs(value[i + 1]) < abs(value[i]))].z)))
     return found

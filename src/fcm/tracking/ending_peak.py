@@ -11,7 +11,7 @@ import numpy as np
 from fcm.tracking.curve import SpecialPointCurve
 from fcm.tracking.error import truncation_error
 from fcm.tracking.peak_envelope import EnvelopeMinimum
-from fcm.tracking.tracked_point import TrackingRun
+from fcm.tracking.tracked_point import TrackingSetup
 
 
 class EndingPeak(NamedTuple):
@@ -22,7 +22,9 @@ class EndingPeak(NamedTuple):
     beside: float
 
 
-def ending_peak(way: TrackingRun, curves: Sequence[SpecialPointCurve], least: EnvelopeMinimum) -> EndingPeak:
+def ending_peak(
+    setup: TrackingSetup, curves: Sequence[SpecialPointCurve], least: EnvelopeMinimum
+) -> EndingPeak:
     """Of the higher peak that ends nearest to a least one.
 
     Where its curve turns there, the error is that of the turn: the curve with more harmonics is followed to
@@ -39,12 +41,12 @@ def ending_peak(way: TrackingRun, curves: Sequence[SpecialPointCurve], least: En
     _, curve, i = min(ends, key=lambda one: one[0])
     if i == 0:
         curve, i = _turned(curve), len(curve.points) - 1
-    before = np.flatnonzero(abs(curve.s[:i] - least.s) >= way.options.error.before_end * abs(least.s))
+    before = np.flatnonzero(abs(curve.s[:i] - least.s) >= setup.options.error.before_end * abs(least.s))
     begin = int(before[-1]) if before.size else 0
     beside = float(curve.s[begin])
     if not curve.points[i].turn or least.s == 0.0:
         return EndingPeak(np.nan, beside)
-    return EndingPeak(truncation_error(way, curve, i, begin).number / abs(least.s), beside)
+    return EndingPeak(truncation_error(setup, curve, i, begin).number / abs(least.s), beside)
 
 
 def _ends(curve: SpecialPointCurve) -> list[int]:

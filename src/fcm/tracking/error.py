@@ -21,7 +21,7 @@ from fcm.tracking.nonsmooth_continuation import follow_special_point, land
 from fcm.tracking.options import TRACKING, TrackingOptions
 from fcm.tracking.peak_check import is_top
 from fcm.tracking.start_points import for_scene
-from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingRun
+from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
 
 
 class TruncationError(NamedTuple):
@@ -38,16 +38,16 @@ UNKNOWN = TruncationError(np.nan, np.nan)
 class _RefinedPoint:
     """A point of the same curve with some harmonics."""
 
-    way: TrackingRun
-    spot: TrackedPoint
+    setup: TrackingSetup
+    point: TrackedPoint
 
     def value(self, condition: Condition) -> float:
         """What the error is of."""
         if condition.kind is not Kind.PEAK:
-            return float(self.spot.z[-2])
-        problem = self.way.tracked(condition)
-        problem.measure(self.spot.z)
-        return float(problem.along(self.spot.z)[1][condition.which])
+            return float(self.point.z[-2])
+        problem = self.setup.tracked(condition)
+        problem.measure(self.point.z)
+        return float(problem.along(self.point.z)[1][condition.which])
 
 
 def error_points(track: SpecialPointCurve) -> dict[int, str]:
@@ -64,23 +64,23 @@ def error_points(track: SpecialPointCurve) -> dict[int, str]:
 
 
 def truncation_error(
-    way: TrackingRun, track: SpecialPointCurve, i: int, begin: int | None = None
+    setup: TrackingSetup, track: SpecialPointCurve, i: int, begin: int | None = None
 ) -> TruncationError:
     """At one point: to that of the reference. Of a turn this is sought from a point before, by default one
     that is near."""
-    condition, here = track.condition, _RefinedPoint(way, track.points[i])
-    value, number = here.value(condition), float(here.spot.z[-1])
-    begin = beginning(track, i, way.options) if begin is None else begin
-    start = here if begin is None else _RefinedPoint(way, track.points[begin])
+    condition, here = track.condition, _RefinedPoint(setup, track.points[i])
+    value, number = here.value(condition), float(here.point.z[-1])
+    begin = beginning(track, i, setup.options) if begin is None else begin
+    start = here if begin is None else _RefinedPoint(setup, track.points[begin])
     more = _more(here)
-    if more == here.way.system.harmonics:
+    if more == here.setup.system.harmonics:
         return TruncationError(0.0, 0.0)
-    wider = replace(way, system=way.system.with_harmonics(more), user_values=())
+    wider = replace(setup, system=setup.system.with_harmonics(more), user_values=())
     there = _landed(wider, condition, start, track.points[i], begin is not None)
     if there is None:
         return UNKNOWN
     off = abs(there.value(condition) - value) / abs(value)
-    return TruncationError(off, abs(float(there.spot.z[-1]) - number))
+    return TruncationError(off, abs(float(there.point.z[-1]) - number))
 
 
 def beginning(track: SpecialPointCurve, i: int, options: TrackingOptions = TRACKING) -> int | None:
@@ -95,12 +95,12 @@ def beginning(track: SpecialPointCurve, i: int, options: TrackingOptions = TRACK
 
 def _more(found: _RefinedPoint) -> tuple[int, ...]:
     """The harmonics of the reference; none more where nothing slips or opens."""
-    z, s = found.spot.z, float(found.spot.z[-1])
-    system = for_scene(found.way.system, found.way.line.scene(found.way.system.scene, s))
+    z, s = found.point.z, float(found.point.z[-1])
+    system = for_scene(found.setup.system, found.setup.line.scene(found.setup.system.scene, s))
     further, y = FurtherHarmonics(system), z[None, :-1]
     if further.linear(y).all():
         return system.harmonics
-    problem = found.way.tracked(Condition(Kind.FOLD))
+    problem = found.setup.tracked(Condition(Kind.FOLD))
     problem.measure(z)
     amplitude = problem.along(z)[1]
     share = further.shares(y, amplitude[None])[0]
@@ -108,15 +108,15 @@ def _more(found: _RefinedPoint) -> tuple[int, ...]:
 
 
 def _landed(
-    wider: TrackingRun, condition: Condition, start: _RefinedPoint, turn: TrackedPoint, turns: bool
+    wider: TrackingSetup, condition: Condition, start: _RefinedPoint, turn: TrackedPoint, turns: bool
 ) -> _RefinedPoint | None:
     """The point with more harmonics: that beside the start, or the turn that follows it."""
-    landed = land(wider, condition, wider.system.extended(start.spot.z, start.way.system.harmonics))
+    landed = land(wider, condition, wider.system.extended(start.point.z, start.setup.system.harmonics))
     if landed is None or not _same_kind(wider, condition, landed, start):
         return None
     if not turns:
         return _RefinedPoint(wider, landed)
-    s, rise = float(start.spot.z[-1]), float(turn.z[-1] - start.spot.z[-1])
+    s, rise = float(start.point.z[-1]), float(turn.z[-1] - start.point.z[-1])
     if rise == 0.0:
         return None
     near = replace(
@@ -127,19 +127,19 @@ def _landed(
         ),
         peaks_only=True,
     )
-    spots, _ = follow_special_point(near, condition, landed, rise > 0.0)
-    if not spots or not spots[-1].turn:
+    tracked_points, _ = follow_special_point(near, condition, landed, rise > 0.0)
+    if not tracked_points or not tracked_points[-1].turn:
         return None
-    return _RefinedPoint(wider, spots[-1])
+    return _RefinedPoint(wider, tracked_points[-1])
 
 
-def _same_kind(wider: TrackingRun, condition: Condition, spot: TrackedPoint, start: _RefinedPoint) -> bool:
+def _same_kind(wider: TrackingSetup, condition: Condition, point: TrackedPoint, start: _RefinedPoint) -> bool:
     """Whether a peak stays one, and a trough one."""
     if condition.kind is not Kind.PEAK:
         return True
     tops = []
-    for way, one in ((wider, spot), (start.way, start.spot)):
-        problem = way.tracked(condition)
+    for setup, one in ((wider, point), (start.setup, start.point)):
+        problem = setup.tracked(condition)
         problem.measure(one.z)
         tops.append(is_top(problem, one))
     return tops[0] == tops[1]

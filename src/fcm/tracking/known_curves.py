@@ -15,20 +15,20 @@ from fcm.model.scene import FloatArray
 from fcm.tracking.curve import SpecialPointCurve
 from fcm.tracking.extended_system import Condition
 from fcm.tracking.options import TRACKING, TrackingOptions
-from fcm.tracking.tracked_point import TrackedPoint, TrackingRun
+from fcm.tracking.tracked_point import TrackedPoint, TrackingSetup
 
 
-def passes(curve: SpecialPointCurve, condition: Condition, spot: TrackedPoint, way: TrackingRun) -> bool:
-    """Whether a curve has passed a spot."""
+def passes(curve: SpecialPointCurve, condition: Condition, point: TrackedPoint, setup: TrackingSetup) -> bool:
+    """Whether a curve has passed a point."""
     if curve.condition != condition:
         return False
-    problem = way.tracked(condition)
-    problem.measure(spot.z)
+    problem = setup.tracked(condition)
+    problem.measure(point.z)
     scale = np.array(problem.scale)
-    points = (np.array([one.z for one in curve.points]) - spot.z) / scale
-    if np.linalg.norm(points, axis=1).min() < way.options.known.point_tolerance:
+    points = (np.array([one.z for one in curve.points]) - point.z) / scale
+    if np.linalg.norm(points, axis=1).min() < setup.options.known.point_tolerance:
         return True
-    return any(_crosses(curve, i, spot, way, scale) for i in _nearest_chords(points, way.options))
+    return any(_crosses(curve, i, point, setup, scale) for i in _nearest_chords(points, setup.options))
 
 
 def _nearest_chords(points: FloatArray, options: TrackingOptions = TRACKING) -> npt.NDArray[np.intp]:
@@ -46,17 +46,20 @@ def _nearest_chords(points: FloatArray, options: TrackingOptions = TRACKING) -> 
 
 
 def _crosses(
-    curve: SpecialPointCurve, i: int, spot: TrackedPoint, way: TrackingRun, scale: FloatArray
+    curve: SpecialPointCurve, i: int, point: TrackedPoint, setup: TrackingSetup, scale: FloatArray
 ) -> bool:
-    """Whether the curve between a point and the next crosses, at a spot, the plane there across its chord."""
+    """Whether the curve between a point and the next crosses, at a point, the plane there across its
+    chord."""
     one, other = curve.points[i], curve.points[i + 1]
-    problem = way.tracked((other.corner if one.switch else one.corner) or curve.condition)
+    problem = setup.tracked((other.corner if one.switch else one.corner) or curve.condition)
     chord = (other.z - one.z) / scale
     row = chord / max(float(np.linalg.norm(chord)), 1e-300)
-    guess = one.z + scale * row * float(row @ ((spot.z - one.z) / scale))
+    guess = one.z + scale * row * float(row @ ((point.z - one.z) / scale))
     problem.measure(guess)
     newton = Newton(problem)
     newton.scale[:], newton.z[:], newton.row[:] = scale, guess, row
     if not newton.correct(1e-3):
         return False
-    return bool(np.linalg.norm((np.asarray(newton.z) - spot.z) / scale) < way.options.known.point_tolerance)
+    return bool(
+        np.linalg.norm((np.asarray(newton.z) - point.z) / scale) < setup.options.known.point_tolerance
+    )

@@ -39,7 +39,7 @@ from fcm.tracking.peak_envelope import (
     uncovered_values,
 )
 from fcm.tracking.start_points import SpecialPoints, for_scene, special_points
-from fcm.tracking.tracked_point import TrackedPoint, TrackingRun
+from fcm.tracking.tracked_point import TrackedPoint, TrackingSetup
 
 T = TypeVar("T")
 MIN_HEIGHT = PieceHeight(0.0, 0.0, np.zeros(0), -1)
@@ -76,7 +76,7 @@ class LowestPeakSearch:
 
     def __post_init__(self) -> None:
         step = self.system.scene.max_step
-        self.way = TrackingRun(
+        self.setup = TrackingSetup(
             self.system, self.line, self.span, (), step, peaks_only=True, options=self.options.tracking
         )
 
@@ -104,7 +104,7 @@ class LowestPeakSearch:
             if best is None:
                 break
             before = len(self.curves)
-            fine = self.way.options.envelope.value_tolerance * (self.span[1] - self.span[0])
+            fine = self.setup.options.envelope.value_tolerance * (self.span[1] - self.span[0])
             seen = [one.value for value, one in self.visited_values.items() if abs(value - best.s) <= fine]
             top = seen[0] if seen else self.visit(best.s)
             checked = top <= best.value * (1.0 + self.options.height_tolerance)
@@ -120,7 +120,7 @@ class LowestPeakSearch:
     def best(self) -> EnvelopeMinimum | None:
         """Of what was followed, and of what is met where nothing was."""
         while True:
-            best = envelope_minimum(self.way, self.pieces())
+            best = envelope_minimum(self.setup, self.pieces())
             new = [s for s in (*self._unknown(best), *self._lower(best)) if s not in self.visited]
             if not new or len(self.visited_values) >= self.options.max_visits:
                 return best
@@ -130,7 +130,7 @@ class LowestPeakSearch:
     def _unknown(self, best: EnvelopeMinimum | None) -> list[float]:
         """Values about which nothing is followed, but for those where all is far above the least."""
         return [
-            s for s in uncovered_values(self.way, self.pieces()) if best is None or self._is_near(s, best)
+            s for s in uncovered_values(self.setup, self.pieces()) if best is None or self._is_near(s, best)
         ]
 
     def _is_near(self, s: float, best: EnvelopeMinimum) -> bool:
@@ -152,7 +152,7 @@ class LowestPeakSearch:
 
     def pieces(self) -> list[MonotonePiece]:
         """The parts of the curves that count."""
-        return [piece for target in self.targets for piece in pieces_of(self.way, self.curves, target)]
+        return [piece for target in self.targets for piece in pieces_of(self.setup, self.curves, target)]
 
     def least_traced(self) -> tuple[FloatArray, EnvelopeMinimum] | None:
         """The least of the responses traced until now, and its number; None where none has a peak."""
@@ -173,13 +173,13 @@ class LowestPeakSearch:
         found = self.greatest_at(value)
         top = self.visited_values[value].value
         for condition, height in found:
-            spot = (
-                land(self.way, condition, height.z)
+            point = (
+                land(self.setup, condition, height.z)
                 if height.value >= self.options.high_fraction * top
                 else None
             )
-            if spot is not None:
-                self.follow(condition, spot)
+            if point is not None:
+                self.follow(condition, point)
         return top
 
     def greatest_at(self, value: float) -> list[tuple[Condition, PieceHeight]]:
@@ -189,7 +189,7 @@ class LowestPeakSearch:
             points = self._step(
                 f"points at {value!r}",
                 SpecialPoints,
-                partial(special_points, here, self.conditions(), self.way.options),
+                partial(special_points, here, self.conditions(), self.setup.options),
             ).points
             self.known_points[value] = found = [
                 (one, self.height(one, np.append(z, value))) for one, z in points
@@ -199,12 +199,12 @@ class LowestPeakSearch:
             )
         return self.known_points[value]
 
-    def follow(self, condition: Condition, spot: TrackedPoint) -> None:
-        """The curve through a spot, if it is not known."""
-        if not any(passes(curve, condition, spot, self.way) for curve in self.curves):
-            key = f"curve of {condition} through {spot.z.tolist()}"
+    def follow(self, condition: Condition, point: TrackedPoint) -> None:
+        """The curve through a point, if it is not known."""
+        if not any(passes(curve, condition, point, self.setup) for curve in self.curves):
+            key = f"curve of {condition} through {point.z.tolist()}"
             self.curves.append(
-                self._step(key, SpecialPointCurve, partial(both_ways, self.way, condition, spot))
+                self._step(key, SpecialPointCurve, partial(both_ways, self.setup, condition, point))
             )
 
     def _step(self, key: str, kind: type[T], step: Callable[[], T]) -> T:
@@ -212,7 +212,7 @@ class LowestPeakSearch:
 
     def height(self, condition: Condition, z: FloatArray) -> PieceHeight:
         """The greatest of the targets at a place; 0 where it is none of them."""
-        problem = self.way.tracked(condition)
+        problem = self.setup.tracked(condition)
         problem.measure(z)
         amplitude = problem.along(z)[1]
         amplitude = np.where(at_rest(amplitude), 0.0, amplitude)
@@ -228,6 +228,6 @@ class LowestPeakSearch:
         for curve in known.curves:
             for i in sorted({0, len(curve.points) // 2, len(curve.points) - 1}):
                 z = self.system.extended(curve.points[i].z, known.harmonics)
-                spot = land(self.way, curve.condition, z) if curve.greatest[i] else None
-                if spot is not None:
-                    self.follow(curve.condition, spot)
+                point = land(self.setup, curve.condition, z) if curve.greatest[i] else None
+                if point is not None:
+                    self.follow(curve.condition, point)

@@ -35,7 +35,7 @@ from fcm.tracking.options import DESCENT, DescentOptions
 from fcm.tracking.parameter_line import ParameterLine
 from fcm.tracking.peak_envelope import INCOMPLETE, EnvelopeMinimum, PieceHeight, Target
 from fcm.tracking.start_points import SpecialPoints, for_scene, special_points
-from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingRun
+from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
 from fcm.tracking.trials import by_trials
 
 Member = tuple[Condition, int, FloatArray]  # what is tracked, the degree of freedom, z = (x, omega)
@@ -77,9 +77,9 @@ class PeakEnvelope:
         """From q along a direction, both scaled."""
         return ParameterLine(self.numbers, self.low + q * self.width, direction * self.width)
 
-    def way(self, q: FloatArray, direction: FloatArray) -> TrackingRun:
+    def setup(self, q: FloatArray, direction: FloatArray) -> TrackingSetup:
         """The same, to the end of the direction."""
-        return TrackingRun(
+        return TrackingSetup(
             self.system,
             self.line(q, direction),
             (0.0, 1.0),
@@ -92,7 +92,7 @@ class PeakEnvelope:
         """All that counts for the targets of the response at q, by tracing it."""
         ends = [Condition(Kind.END, omega=w) for w in self.system.scene.frequency_range]
         here = for_scene(self.system, self.line(q, np.zeros(q.size)).scene(self.system.scene, 0.0))
-        way, found = self.way(q, np.zeros(q.size)), []
+        setup, found = self.setup(q, np.zeros(q.size)), []
         for target in self.targets:
             conditions = [Condition(Kind.PEAK, target.dof), *(ends if target.ends else [])]
             special = self.steps(
@@ -101,9 +101,9 @@ class PeakEnvelope:
                 partial(special_points, here, conditions, self.options.search.tracking),
             )
             for condition, z in special.points:
-                if (spot := land(way, condition, np.append(z, 0.0))) is not None:
-                    found.append((condition, target.dof, spot))
-        return [(condition, dof, spot.z[:-1]) for condition, dof, spot in found]
+                if (point := land(setup, condition, np.append(z, 0.0))) is not None:
+                    found.append((condition, target.dof, point))
+        return [(condition, dof, point.z[:-1]) for condition, dof, point in found]
 
     def traced(self, q: FloatArray) -> tuple[float, list[Member]]:
         """The greatest of the response at q, infinite where nothing has a peak; and all that counts there."""
@@ -133,12 +133,12 @@ class PeakEnvelope:
         condition, dof, z = member
         if np.array_equal(q, to):
             return member
-        way = self.way(q, to - q)
-        start = land(way, condition, np.append(z, 0.0))
+        setup = self.setup(q, to - q)
+        start = land(setup, condition, np.append(z, 0.0))
         if start is None:
             return None
-        spots, ending = follow_special_point(way, condition, start, True)
-        last = spots[-1] if spots else start
+        tracked_points, ending = follow_special_point(setup, condition, start, True)
+        last = tracked_points[-1] if tracked_points else start
         if ending is Ending.RANGE:
             raise LeftRangeError
         whole = ending is Ending.SPAN and abs(last.z[-1] - 1.0) < self.options.height_tolerance
@@ -149,16 +149,16 @@ class PeakEnvelope:
         condition, dof, z = member
         slopes, value = np.empty(q.size), 0.0
         for k, direction in enumerate(np.eye(q.size)):
-            way = self.way(q, direction)
-            spot = land(way, condition, np.append(z, 0.0)) or TrackedPoint(
+            setup = self.setup(q, direction)
+            point = land(setup, condition, np.append(z, 0.0)) or TrackedPoint(
                 np.append(z, 0.0), np.zeros(z.size + 1)
             )
-            problem = way.tracked(spot.corner or condition)
-            problem.measure(spot.z)
-            problem.evaluate(spot.z)
+            problem = setup.tracked(point.corner or condition)
+            problem.measure(point.z)
+            problem.evaluate(point.z)
             jacobian = np.asarray(problem.jacobian)
             rate = np.linalg.solve(jacobian[:, :-1], -jacobian[:, -1])
-            value, slopes[k] = problem.amplitude_along(spot.z, np.append(rate, 1.0), dof)
+            value, slopes[k] = problem.amplitude_along(point.z, np.append(rate, 1.0), dof)
         return value, slopes
 
 

@@ -17,19 +17,19 @@ from fcm.model.scene import FloatArray
 from fcm.tracking.corner_crossing import CornerCrossing
 from fcm.tracking.extended_system import Condition
 from fcm.tracking.peak_check import is_top, overtaken
-from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingRun
+from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
 
 
 def follow_special_point(
-    way: TrackingRun, condition: Condition, start: TrackedPoint, forward: bool
+    setup: TrackingSetup, condition: Condition, start: TrackedPoint, forward: bool
 ) -> tuple[list[TrackedPoint], Ending]:
-    """The curve from a spot, which is the first of the list, with s rising or falling at first."""
-    return Pieces(way, condition).run(start, forward)
+    """The curve from a point, which is the first of the list, with s rising or falling at first."""
+    return Pieces(setup, condition).run(start, forward)
 
 
-def land(way: TrackingRun, condition: Condition, z: FloatArray) -> TrackedPoint | None:
-    """The spot near z = (x, omega, s) at the same s; at a corner if there is one that holds."""
-    return Pieces(way, condition).land(z)
+def land(setup: TrackingSetup, condition: Condition, z: FloatArray) -> TrackedPoint | None:
+    """The point near z = (x, omega, s) at the same s; at a corner if there is one that holds."""
+    return Pieces(setup, condition).land(z)
 
 
 @dataclass(frozen=True)
@@ -45,12 +45,14 @@ class Pieces(CornerCrossing):
 
     def land(self, z: FloatArray) -> TrackedPoint | None:
         """See `land`."""
-        spot = self._landed(z)
-        if spot is not None and overtaken(self.smooth, spot.z):
-            spot = self._landed(spot.z)  # as a peak of those extremes that are the greatest of a cycle there
-            if spot is not None and overtaken(self.smooth, spot.z):
+        point = self._landed(z)
+        if point is not None and overtaken(self.smooth, point.z):
+            point = self._landed(
+                point.z
+            )  # as a peak of those extremes that are the greatest of a cycle there
+            if point is not None and overtaken(self.smooth, point.z):
                 return None
-        return spot
+        return point
 
     def _landed(self, z: FloatArray) -> TrackedPoint | None:
         self._measure(z)
@@ -94,7 +96,7 @@ class Pieces(CornerCrossing):
         for _ in range(self.options.max_pieces):
             known = len(self.points)
             ending = self._piece()
-            if self.way.peaks_only:
+            if self.setup.peaks_only:
                 turned = [i for i in range(known, len(self.points)) if self.points[i].turn]
                 if turned:
                     return self.points[: turned[0] + 1], Ending.TURNED
@@ -118,13 +120,13 @@ class Pieces(CornerCrossing):
     def _piece(self) -> bool | Ending:
         """Follow the equations in force to where they hold no more; whether a way leads on, or the end."""
         problem, s = self.newton.problem, float(self.z[-1])
-        low = max([k for k in self.kinks if k < s] + [self.way.span[0]])
-        high = min([k for k in self.kinks if k > s] + [self.way.span[1]])
+        low = max([k for k in self.kinks if k < s] + [self.setup.span[0]])
+        high = min([k for k in self.kinks if k > s] + [self.setup.span[1]])
         ends = self._ends_of_piece()
         events = Events(
-            values=self.way.user_values,
+            values=self.setup.user_values,
             ends=[end.holds for end in ends],
-            last=Mark.FOLD if self.way.peaks_only else 0,
+            last=Mark.FOLD if self.setup.peaks_only else 0,
         )
         slow, short = self.first < self.options.short_step, 0.999 * self.options.short_step
         control = (
@@ -132,14 +134,14 @@ class Pieces(CornerCrossing):
             if slow
             else replace(self.options.step, min_step=short)
         )
-        options = FollowOptions(max_step=self.way.step, step=replace(control, initial_step=self.first))
+        options = FollowOptions(max_step=self.setup.step, step=replace(control, initial_step=self.first))
         direction = self.t * np.asarray(self.newton.scale)
         path = follow(problem, self.z, (low, high), events, options, direction=direction)
         if not len(path.z):
             return self._continue_from_here()
         self._keep(path)
         if path.status in (Status.COMPLETE, Status.RETURNED):
-            return Ending.SPAN if self.z[-1] in self.way.span else self._pass_kink()
+            return Ending.SPAN if self.z[-1] in self.setup.span else self._pass_kink()
         if path.status is Status.CLOSED:
             return Ending.CLOSED
         if path.status is Status.EVENT:
@@ -197,9 +199,9 @@ class Pieces(CornerCrossing):
         guess = np.array(self.z)
         guess[-2] = omega
         if self._solve(guess, row) and self.newton.moved < self.options.step.initial_step:
-            spot = self._point(np.array(self.newton.z), np.array(self.newton.tangent))
-            spot.z[-2] = omega
-            self.points[-1] = replace(spot, turn=self.points[-1].turn, user_point=self.points[-1].user_point)
+            point = self._point(np.array(self.newton.z), np.array(self.newton.tangent))
+            point.z[-2] = omega
+            self.points[-1] = replace(point, turn=self.points[-1].turn, user_point=self.points[-1].user_point)
         return Ending.RANGE
 
     def _overtaken(self) -> Ending:
@@ -216,7 +218,7 @@ class Pieces(CornerCrossing):
         heading = heading / scale
         heading = heading / np.linalg.norm(heading)
         for i in range(max(known, 3), len(self.points)):
-            one, other = ((spot.z - first) / scale for spot in self.points[i - 1 : i + 1])
+            one, other = ((point.z - first) / scale for point in self.points[i - 1 : i + 1])
             length = np.linalg.norm(other - one)
             if min(np.linalg.norm(one), np.linalg.norm(other)) > length:
                 continue

@@ -11,16 +11,16 @@ from fcm.tracking.extended_system import ExtendedSystem
 from fcm.tracking.tracked_point import TrackedPoint
 
 
-def is_top(problem: ExtendedSystem, spot: TrackedPoint) -> bool:
+def is_top(problem: ExtendedSystem, point: TrackedPoint) -> bool:
     """Whether a tracked peak that was measured is one, and not a trough: growth falls along the response."""
-    if spot.corner is None or spot.switch:
-        problem.evaluate(spot.z)  # no numbers where the response crosses itself, and a peak meets a trough
+    if point.corner is None or point.switch:
+        problem.evaluate(point.z)  # no numbers where the response crosses itself, and a peak meets a trough
         gradient = np.asarray(problem.jacobian)[problem.n, : problem.n + 1]
         return bool(gradient @ (np.asarray(problem.scale)[:-1] * problem.row) < 0.0)
-    corner = Corner(problem, spot.corner)
+    corner = Corner(problem, point.corner)
     corner.problem.row[:] = problem.row
-    corner.problem.measure(spot.z)
-    before, after = corner.sides(spot.z)
+    corner.problem.measure(point.z)
+    before, after = corner.sides(point.z)
     return bool(before > after)
 
 

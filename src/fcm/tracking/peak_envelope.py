@@ -18,7 +18,7 @@ from fcm.continuation.corrector import Newton
 from fcm.model.scene import FloatArray
 from fcm.tracking.curve import SpecialPointCurve
 from fcm.tracking.extended_system import Condition, ExtendedSystem, Kind
-from fcm.tracking.tracked_point import TrackingRun
+from fcm.tracking.tracked_point import TrackingSetup
 
 INCOMPLETE = "unfinished"  # what the least so far is of, where it was still sought
 
@@ -56,10 +56,12 @@ class EnvelopeMinimum:
 class MonotonePiece:
     """A part of a tracked curve along which s is monotone; its height is that of a degree of freedom."""
 
-    def __init__(self, way: TrackingRun, track: SpecialPointCurve, places: Sequence[int], dof: int) -> None:
+    def __init__(
+        self, setup: TrackingSetup, track: SpecialPointCurve, places: Sequence[int], dof: int
+    ) -> None:
         order = list(places) if track.s[places[0]] <= track.s[places[-1]] else list(places)[::-1]
-        self.way, self.condition, self.dof = way, track.condition, dof
-        self.spots = [track.points[i] for i in order]
+        self.setup, self.condition, self.dof = setup, track.condition, dof
+        self.tracked_points = [track.points[i] for i in order]
         self.s, self.height = track.s[order], track.amplitude[order, dof]
         self._problems: dict[Condition | None, ExtendedSystem] = {}
 
@@ -74,7 +76,7 @@ class MonotonePiece:
     def at(self, s: float) -> PieceHeight:
         """Exactly, or by the chord where Newton's method does not come to it."""
         i = int(np.clip(np.searchsorted(self.s, s) - 1, 0, len(self.s) - 2))
-        one, other = self.spots[i], self.spots[i + 1]
+        one, other = self.tracked_points[i], self.tracked_points[i + 1]
         part = (s - self.s[i]) / max(self.s[i + 1] - self.s[i], 1e-300)
         guess = one.z + part * (other.z - one.z)
         guess[-1] = s
@@ -93,7 +95,7 @@ class MonotonePiece:
 
     def _problem(self, corner: Condition | None) -> ExtendedSystem:
         if corner not in self._problems:
-            self._problems[corner] = self.way.tracked(corner or self.condition)
+            self._problems[corner] = self.setup.tracked(corner or self.condition)
         return self._problems[corner]
 
     def _height(self, problem: ExtendedSystem, newton: Newton) -> PieceHeight:
@@ -103,14 +105,16 @@ class MonotonePiece:
         return PieceHeight(value, slope, z, self.dof)
 
 
-def pieces_of(way: TrackingRun, tracks: Sequence[SpecialPointCurve], target: Target) -> list[MonotonePiece]:
+def pieces_of(
+    setup: TrackingSetup, tracks: Sequence[SpecialPointCurve], target: Target
+) -> list[MonotonePiece]:
     """The monotone pieces of the curves that count for a target, of peaks where they are greatest."""
     found = []
     for track in tracks:
         kind, which = track.condition.kind, track.condition.which
         if not (kind is Kind.PEAK and which == target.dof) and not (kind is Kind.END and target.ends):
             continue
-        found += [MonotonePiece(way, track, places, target.dof) for places in _monotone(track)]
+        found += [MonotonePiece(setup, track, places, target.dof) for places in _monotone(track)]
     return found
 
 
@@ -130,27 +134,27 @@ def _monotone(track: SpecialPointCurve) -> list[list[int]]:
     return [part for part in parts if len(part) > 1]
 
 
-def envelope_minimum(way: TrackingRun, pieces: Sequence[MonotonePiece]) -> EnvelopeMinimum | None:
+def envelope_minimum(setup: TrackingSetup, pieces: Sequence[MonotonePiece]) -> EnvelopeMinimum | None:
     """The optimum; None where there is no piece."""
     if not pieces:
         return None
-    low, high = way.span
+    low, high = setup.span
     grid = np.unique(np.concatenate([piece.s for piece in pieces]))
     grid = grid[(grid >= low) & (grid <= high)]
     rough = np.array([np.max([p.roughly(s) for p in pieces if p.covers(s)]) for s in grid])
     inner = np.pad(rough, 1, constant_values=np.inf)
     lowest = np.flatnonzero((rough <= inner[:-2]) & (rough <= inner[2:]))
-    lowest = lowest[np.argsort(rough[lowest])][: way.options.envelope.brackets]
-    envelope = _Envelope(pieces, way)
-    found = [_refined(envelope, way, *_around(pieces, grid, i)) for i in lowest.tolist()]
-    return _where_flat(envelope, way, grid, min(found, key=lambda one: one.value))
+    lowest = lowest[np.argsort(rough[lowest])][: setup.options.envelope.brackets]
+    envelope = _Envelope(pieces, setup)
+    found = [_refined(envelope, setup, *_around(pieces, grid, i)) for i in lowest.tolist()]
+    return _where_flat(envelope, setup, grid, min(found, key=lambda one: one.value))
 
 
 class _Envelope:
     """The greatest of the pieces as a function of s, exactly."""
 
-    def __init__(self, pieces: Sequence[MonotonePiece], way: TrackingRun) -> None:
-        self.pieces, self.options = pieces, way.options.envelope
+    def __init__(self, pieces: Sequence[MonotonePiece], setup: TrackingSetup) -> None:
+        self.pieces, self.options = pieces, setup.options.envelope
 
     def highest(self, s: float) -> tuple[PieceHeight, MonotonePiece]:
         """The highest piece there; infinite where none is known."""
@@ -172,10 +176,10 @@ class _Envelope:
 
 
 def _where_flat(
-    envelope: _Envelope, way: TrackingRun, grid: FloatArray, best: EnvelopeMinimum
+    envelope: _Envelope, setup: TrackingSetup, grid: FloatArray, best: EnvelopeMinimum
 ) -> EnvelopeMinimum:
     """The middle of the stretch on which the greatest does not depend on the number; else what was found."""
-    span, options = way.span[1] - way.span[0], way.options.envelope
+    span, options = setup.span[1] - setup.span[0], setup.options.envelope
 
     def flat(s: float) -> bool:
         there = envelope.highest(s)[0]
@@ -183,7 +187,7 @@ def _where_flat(
         return near and abs(there.slope) * span <= options.flat_slope * best.value
 
     least = options.min_flat * span
-    around = [s for s in (best.s - least, best.s + least) if way.span[0] <= s <= way.span[1]]
+    around = [s for s in (best.s - least, best.s + least) if setup.span[0] <= s <= setup.span[1]]
     inner = next((s for s in around if flat(s)), None)
     if inner is None:
         return best
@@ -211,10 +215,10 @@ def _end_of_flat(flat: Callable[[float], bool], s: float, further: FloatArray, f
     return s
 
 
-def uncovered_values(way: TrackingRun, pieces: Sequence[MonotonePiece]) -> list[float]:
+def uncovered_values(setup: TrackingSetup, pieces: Sequence[MonotonePiece]) -> list[float]:
     """Values of s about which no piece says anything: the ends of the span, or the middle of a gap."""
-    low, high = way.span
-    least, found, last = way.options.envelope.min_gap * (high - low), [], low
+    low, high = setup.span
+    least, found, last = setup.options.envelope.min_gap * (high - low), [], low
     if not pieces:
         return [low, high]
     for piece in sorted(pieces, key=lambda piece: float(piece.s[0])):
@@ -236,10 +240,10 @@ def _around(pieces: Sequence[MonotonePiece], grid: FloatArray, i: int) -> tuple[
 
 
 def _refined(
-    envelope: _Envelope, way: TrackingRun, low: float, middle: float, high: float
+    envelope: _Envelope, setup: TrackingSetup, low: float, middle: float, high: float
 ) -> EnvelopeMinimum:
     """The least value between two values of s."""
-    span, options = way.span[1] - way.span[0], way.options.envelope
+    span, options = setup.span[1] - setup.span[0], setup.options.envelope
     pieces, highest = envelope.pieces, envelope.highest
     if high > low:
         most = options.unknown_factor * max(float(piece.height.max()) for piece in pieces)
@@ -258,8 +262,8 @@ def _refined(
     (before, one), (after, other) = highest(left), highest(right)
     kind = "bound"
     if before.slope < 0.0 < after.slope:
-        kind, s = _turned(highest, (one, other), (left, right), way)
-    elif low < s < high or way.span[0] < s < way.span[1]:
+        kind, s = _turned(highest, (one, other), (left, right), setup)
+    elif low < s < high or setup.span[0] < s < setup.span[1]:
         kind = "corner"
     else:
         s = left if before.value <= after.value else right
@@ -284,11 +288,11 @@ def _turned(
     highest: Callable[[float], tuple[PieceHeight, MonotonePiece]],
     pieces: tuple[MonotonePiece, MonotonePiece],
     between: tuple[float, float],
-    way: TrackingRun,
+    setup: TrackingSetup,
 ) -> tuple[str, float]:
     """Where the greatest turns between two values of s: where pieces cross, or one has its least value."""
-    (one, other), span = pieces, way.span[1] - way.span[0]
-    fine = way.options.envelope.value_tolerance * span
+    (one, other), span = pieces, setup.span[1] - setup.span[0]
+    fine = setup.options.envelope.value_tolerance * span
     if one is not other:
         crossing = _root(lambda s: one.at(s).value - other.at(s).value, *between, fine)
         if one.covers(crossing) and other.covers(crossing):

@@ -13,36 +13,36 @@ from fcm.stability.floquet import multipliers_of
 from fcm.stability.multipliers import Multipliers
 from fcm.tracking.curve import SpecialPointCurve, with_points
 from fcm.tracking.extended_system import ExtendedSystem, Kind
-from fcm.tracking.tracked_point import TrackedPoint, TrackingRun
+from fcm.tracking.tracked_point import TrackedPoint, TrackingSetup
 
 Seen = tuple[TrackedPoint, float]  # a point, and what is said of it
 
 
-def stability_along(way: TrackingRun, track: SpecialPointCurve) -> tuple[SpecialPointCurve, FloatArray]:
+def stability_along(setup: TrackingSetup, track: SpecialPointCurve) -> tuple[SpecialPointCurve, FloatArray]:
     """(point,): 1 where small disturbances die out, 0 where one grows, NaN where it cannot be told.
 
     As along a response: a fold counts to its stable side, and so does a corner at which it turns back. The
     curve is that with two more points wherever this changes, one on either side.
     """
-    return _StabilityAlongCurve(way, track).run()
+    return _StabilityAlongCurve(setup, track).run()
 
 
 class _StabilityAlongCurve:
     """The points of one curve."""
 
-    def __init__(self, way: TrackingRun, track: SpecialPointCurve) -> None:
-        self.way, self.track, self.problem = way, track, way.tracked(track.condition)
-        self.highest = way.system.scene.frequency_range[1]
+    def __init__(self, setup: TrackingSetup, track: SpecialPointCurve) -> None:
+        self.setup, self.track, self.problem = setup, track, setup.tracked(track.condition)
+        self.highest = setup.system.scene.frequency_range[1]
         self.known: Multipliers | None = None
 
     def run(self) -> tuple[SpecialPointCurve, FloatArray]:
-        seen = [(spot, self._at(spot)) for spot in self.track.points]
+        seen = [(point, self._at(point)) for point in self.track.points]
         found = seen[:1]
         for one, other in pairwise(seen):
             found += [*self._limit(one, other), other]
-        track, spots = self.track, [spot for spot, _ in found]
+        track, tracked_points = self.track, [point for point, _ in found]
         if len(found) > len(seen):
-            track = with_points(self.way, track, spots)
+            track = with_points(self.setup, track, tracked_points)
         return track, np.array([stable for _, stable in found])
 
     def _limit(self, one: Seen, other: Seen) -> list[Seen]:
@@ -50,7 +50,7 @@ class _StabilityAlongCurve:
         before, ends = one[1], [one, other]
         if _same(before, other[1]):
             return []
-        for _ in range(self.way.options.stability.halvings):
+        for _ in range(self.setup.options.stability.halvings):
             middle = self._middle(ends[0][0], ends[1][0])
             if middle is None:
                 break
@@ -61,7 +61,7 @@ class _StabilityAlongCurve:
     def _middle(self, one: TrackedPoint, other: TrackedPoint) -> TrackedPoint | None:
         """The point of the curve between two, on the plane half way across their chord."""
         at = other.corner if one.switch else one.corner
-        problem = self.way.tracked(at or self.track.condition)
+        problem = self.setup.tracked(at or self.track.condition)
         z = 0.5 * (one.z + other.z)
         problem.measure(z)
         newton = Newton(problem)
@@ -78,21 +78,21 @@ class _StabilityAlongCurve:
             return None
         return TrackedPoint(np.array(newton.z), np.array(newton.tangent) * np.asarray(problem.scale), at)
 
-    def _at(self, spot: TrackedPoint) -> float:
+    def _at(self, point: TrackedPoint) -> float:
         problem = self.problem
-        problem.measure(spot.z)
+        problem.measure(point.z)
         fold = self.track.condition.kind is Kind.FOLD
-        signs = {1.0, -1.0} if fold else _signs(problem, spot)
+        signs = {1.0, -1.0} if fold else _signs(problem, point)
         if max(signs) < 0.0:  # of the real multipliers an odd number is above 1
             return 0.0
         at_fold = min(signs) < 0.0
-        return self._multipliers().classify(np.array(spot.z[:-1]), at_fold).stable
+        return self._multipliers().classify(np.array(point.z[:-1]), at_fold).stable
 
     def _multipliers(self) -> Multipliers:
         """With the numbers as the problem has them."""
         varied = self.problem.varied
         if self.known is None or varied.structure:
-            known = multipliers_of(varied.system, self.highest, self.way.options.floquet)
+            known = multipliers_of(varied.system, self.highest, self.setup.options.floquet)
             assert isinstance(known, Multipliers)  # no law of one's own is tracked
             self.known = known
         self.known.take(varied.system)
@@ -104,11 +104,11 @@ def _same(one: float, other: float) -> bool:
     return one == other or bool(np.isnan(one) and np.isnan(other))
 
 
-def _signs(problem: ExtendedSystem, spot: TrackedPoint) -> set[float]:
+def _signs(problem: ExtendedSystem, point: TrackedPoint) -> set[float]:
     """Of the balance's determinant at a point; at a corner of the response those on both sides."""
-    scale, y = np.asarray(problem.scale)[:-1], np.array(spot.z[:-1])
+    scale, y = np.asarray(problem.scale)[:-1], np.array(point.z[:-1])
     ahead = problem.options.stability.corner_side * scale * np.asarray(problem.row)
-    places = [y] if spot.corner is None and not spot.switch else [y - ahead, y + ahead]
+    places = [y] if point.corner is None and not point.switch else [y - ahead, y + ahead]
     return {_sign(problem, place, scale[:-1]) for place in places}
 
 

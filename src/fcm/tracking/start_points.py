@@ -49,14 +49,14 @@ def special_points(
     response = every_branch(system)
     curves, branches = response.traced, response.traced.branches
     levels = tuple(one.omega for one in curves.found if not one.complete)
-    unsure, found = (*levels, *curves.folds_lost), []
+    uncertain_at, found = (*levels, *curves.folds_lost), []
     for path, amplitude in zip(branches.paths, _amplitudes(response.quantities), strict=True):
         for condition in conditions:
             found += [(condition, z) for z in _points(system, path, amplitude, condition, options)]
     if not branches.paths:
-        return SpecialPoints(found, "no solution was found at either end of the range", unsure)
+        return SpecialPoints(found, "no solution was found at either end of the range", uncertain_at)
     wrong = "" if branches.status.name == "COMPLETE" else branches.status.value
-    return SpecialPoints(found, wrong, unsure)
+    return SpecialPoints(found, wrong, uncertain_at)
 
 
 def _amplitudes(quantities: Sequence[ReportedQuantities]) -> list[FloatArray]:

@@ -46,7 +46,7 @@ class TrackedPoint:
 
 
 @dataclass(frozen=True)
-class TrackingRun:
+class TrackingSetup:
     """What all curves of one run share."""
 
     system: System
@@ -64,11 +64,11 @@ class TrackingRun:
         )
 
 
-def kinks(way: TrackingRun) -> list[float]:
+def kinks(setup: TrackingSetup) -> list[float]:
     """Values of s at which a preload changes sign: what the structure at rest bears has a kink there."""
-    loads = np.array([[c.n_0 for c in way.line.scene(way.system.scene, s).contacts] for s in way.span])
+    loads = np.array([[c.n_0 for c in setup.line.scene(setup.system.scene, s).contacts] for s in setup.span])
     found = set()
     for low, high in loads.T:
         if low * high <= 0.0 and low != high:
-            found.add(float(way.span[0] - low * (way.span[1] - way.span[0]) / (high - low)))
+            found.add(float(setup.span[0] - low * (setup.span[1] - setup.span[0]) / (high - low)))
     return sorted(found)

@@ -46,14 +46,14 @@ def linear(summary: Mapping[str, Any]) -> str:
     return f"{what.format(which)}: the response is linear. With {helps} it is not"
 
 
-def branches_unsure(summary: Mapping[str, Any]) -> str:
+def branches_uncertain(summary: Mapping[str, Any]) -> str:
     """Where solutions were not looked for to the end, so that branches may be missing; empty if nowhere."""
     what = "other branches may be missing at {}: there the level of the forces was not followed to its end"
     helps = f"{_BY_LEVEL} {{}} looks there: a branch has amplitudes at the level 1 that the curve has not"
     return _may_be_missing(summary, "branches_unsure_at", what, helps)
 
 
-def folds_unsure(summary: Mapping[str, Any]) -> str:
+def folds_uncertain(summary: Mapping[str, Any]) -> str:
     """Where folds of the level were not followed to their end: branches may be missing; empty if nowhere."""
     what = (
         "isolated branches may be missing beyond {}: there a fold of the level of the forces was lost. "
@@ -79,14 +79,14 @@ def symmetry_lost(summary: Mapping[str, Any]) -> str:
 def _may_be_missing(summary: Mapping[str, Any], key: str, what: str, helps: str) -> str:
     """What may be missing where, and what helps, each with a place for the first frequency."""
     curves, unit = summary["curves"], summary["frequency_unit"]
-    unsure = [curve for curve in curves if curve.get(key)]
-    if not unsure:
+    uncertain_at = [curve for curve in curves if curve.get(key)]
+    if not uncertain_at:
         return ""
-    (first, *more), given = unsure[0][key], _given(unsure[0])
+    (first, *more), given = uncertain_at[0][key], _given(uncertain_at[0])
     at = f"{first:.5g}"
-    count = f"on {len(unsure)} of {len(curves)} curves"
+    count = f"on {len(uncertain_at)} of {len(curves)} curves"
     which = f" ({given}; {count})" if len(curves) > 1 and given else f" ({count})" if len(curves) > 1 else ""
-    every = f". All of them: {key} of --json" if len(unsure) > 1 or more else ""
+    every = f". All of them: {key} of --json" if len(uncertain_at) > 1 or more else ""
     return f"{what.format(f'{at} {unit}{which}')}. {helps.format(at)}{every}"
 
 
@@ -105,7 +105,7 @@ def mirrored(summary: Mapping[str, Any]) -> str:
     return f"{count} {one} of unsymmetric motions: {other}, of the same amplitudes, {verb} not traced"
 
 
-def looked_at(summary: Mapping[str, Any]) -> str:
+def search_grid(summary: Mapping[str, Any]) -> str:
     """Between which levels of the forces isolated branches were looked for; empty if nowhere."""
     found = [curve["levels_looked_at"] for curve in summary["curves"] if "levels_looked_at" in curve]
     if not found:
@@ -114,13 +114,13 @@ def looked_at(summary: Mapping[str, Any]) -> str:
     return f"isolated branches: the folds of the level of the forces were followed from {low:g} to {high:g}"
 
 
-def tracked_unsure(summary: Mapping[str, Any]) -> str:
+def tracked_uncertain(summary: Mapping[str, Any]) -> str:
     """Where branches may be missing from those that tracked curves begin on; empty if nowhere."""
     tracked = summary.get("tracked", {})
-    unsure = tracked.get("branches_unsure_at")
-    if not unsure:
+    uncertain_at = tracked.get("branches_unsure_at")
+    if not uncertain_at:
         return ""
-    number, frequency = unsure[0]
+    number, frequency = uncertain_at[0]
     at = f"with {tracked['over']} = {number:.6g} at {frequency:.5g} {summary['frequency_unit']}"
     why = "the level of the forces, or a fold of it, was not followed to its end"
     helps = f"A scene with that number, by {_BY_LEVEL} {frequency:.5g}, looks there"
@@ -172,7 +172,7 @@ def nothing_stable(summary: Mapping[str, Any]) -> str:
     return (
         f"no stable motion was found {ways} {unit}{more}{which}, so no steady amplitude is known there. The "
         f"motion repeats after several periods or never, or is on a branch that was not found{other}."
-        f"{_not_looked_at(found[0])} {shows}"
+        f"{_not_searched(found[0])} {shows}"
     )
 
 
@@ -190,7 +190,7 @@ def _widest_first(stretches: list[list[float]]) -> list[list[float]]:
     return sorted(stretches, key=lambda ends: ends[0] - ends[1])
 
 
-def _not_looked_at(curve: Mapping[str, Any]) -> str:
+def _not_searched(curve: Mapping[str, Any]) -> str:
     """In how many of the stretches without a stable motion no branch was looked for; empty if in none."""
     missing = _widest_first(curve.get("no_stable_motion_not_looked_at", []))
     if not missing:
@@ -202,9 +202,11 @@ def _not_looked_at(curve: Mapping[str, Any]) -> str:
 
 def maybe_not_unique(summary: Mapping[str, Any]) -> str:
     """Where the motion may be one of many, and how to learn of the others; empty if nowhere."""
-    followed = [*_judged(summary), *summary.get("tracked", {}).get("curves", ())]
+    followed = [*_completed(summary), *summary.get("tracked", {}).get("curves", ())]
     shown = shown_dofs(summary) if summary["curves"] and "peak" in summary["curves"][0] else []
-    untold = [curve for curve in followed if curve.get("may_not_be_unique") and not _range_told(curve, shown)]
+    untold = [
+        curve for curve in followed if curve.get("may_not_be_unique") and not _range_is_known(curve, shown)
+    ]
     count = sum(curve["may_not_be_unique"] for curve in untold)
     if not count:
         return ""
@@ -218,12 +220,12 @@ def maybe_not_unique(summary: Mapping[str, Any]) -> str:
     return f"{_KEEPS}: at {points} the motion may be one of many. {tells}"
 
 
-def _judged(summary: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+def _completed(summary: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     """The curves that were not interrupted before that was looked for."""
     return [curve for curve in summary["curves"] if curve.get("cause") != "interrupted"]
 
 
-def _range_told(curve: Mapping[str, Any], shown: Sequence[str]) -> bool:
+def _range_is_known(curve: Mapping[str, Any], shown: Sequence[str]) -> bool:
     """Whether it is known of every peak that is shown how far it ranges with residual friction; not of every
     level."""
     if "level_folds" in curve:
@@ -234,11 +236,11 @@ def _range_told(curve: Mapping[str, Any], shown: Sequence[str]) -> bool:
 
 def residual_friction(summary: Mapping[str, Any]) -> str:
     """How far the peaks range with the friction that contacts which always stick keep; empty if none do."""
-    open_to_past = [one for one in _judged(summary) if one.get("may_not_be_unique")]
+    open_to_past = [one for one in _completed(summary) if one.get("may_not_be_unique")]
     if not any("peak" in one for one in open_to_past):
         return ""
     shown = shown_dofs(summary)  # one that hardly moves may change by any part of that
-    curves = [one for one in open_to_past if _range_told(one, shown)]
+    curves = [one for one in open_to_past if _range_is_known(one, shown)]
     if not curves:
         return ""
     peaks = [curve["peak"].get(dof) for curve in curves for dof in shown]

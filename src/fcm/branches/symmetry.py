@@ -19,30 +19,30 @@ from fcm.model.scene import FloatArray
 
 
 @dataclass(frozen=True)
-class Mirror:
-    """partner (contact,): whose motion a contact has in the image; factor (contact, unknown of one contact)
-    of that motion's numbers."""
+class Symmetry:
+    """counterpart (contact,): whose motion a contact has in the image; factor (contact, unknown of one
+    contact) of that motion's numbers."""
 
-    partner: npt.NDArray[np.intp]
+    counterpart: npt.NDArray[np.intp]
     factor: FloatArray
 
     def image(self, z: FloatArray) -> FloatArray:
         """Of a motion (unknown + 1,)."""
-        blocks = z[:-1].reshape(len(self.partner), -1)
-        return np.append(self.factor * blocks[self.partner], z[-1])
+        blocks = z[:-1].reshape(len(self.counterpart), -1)
+        return np.append(self.factor * blocks[self.counterpart], z[-1])
 
 
-def mirrors(
+def broken_symmetries(
     system: System, symmetric: FloatArray, other: FloatArray, options: BranchingOptions = BRANCHING
-) -> Iterator[Mirror]:
-    """Those by which a symmetric solution (unknown + 1,) is its own image, and the image of another one is a
-    solution, and not the same."""
+) -> Iterator[Symmetry]:
+    """The symmetries of which a symmetric solution (unknown + 1,) is its own image, and the image of another
+    one is a solution, and not the same."""
     balance = system.new_balance()
     for later in (True, False):
-        mirror = _of(system, symmetric, later, options)
-        if mirror is None:
+        symmetry = _symmetry_of(system, symmetric, later, options)
+        if symmetry is None:
             continue
-        image = mirror.image(other)
+        image = symmetry.image(other)
         balance.measure(image)
         scale = np.asarray(balance.scale)
         balance.probe(image)
@@ -51,10 +51,10 @@ def mirrors(
             off < options.motion_tolerance
             and np.linalg.norm((image - other) / scale) > options.motion_tolerance
         ):
-            yield mirror
+            yield symmetry
 
 
-def _of(system: System, z: FloatArray, later: bool, options: BranchingOptions) -> Mirror | None:
+def _symmetry_of(system: System, z: FloatArray, later: bool, options: BranchingOptions) -> Symmetry | None:
     contacts = system.scene.contacts
     laws = [(c.mu, c.k_u, c.k_v, c.n_0, c.law) for c in contacts]
     blocks = z[:-1].reshape(len(contacts), -1)
@@ -62,16 +62,16 @@ def _of(system: System, z: FloatArray, later: bool, options: BranchingOptions) -
     turned = (-1.0) ** harmonics if later else np.ones(harmonics.size)
     tangential = ~system.layout.of_normal
     size = np.abs(blocks).max(initial=0.0)
-    partner, factor = np.full(len(contacts), -1), np.ones(blocks.shape)
+    counterpart, factor = np.full(len(contacts), -1), np.ones(blocks.shape)
     for i in range(len(contacts)):
-        if partner[i] >= 0:
+        if counterpart[i] >= 0:
             continue
-        others = [j for j in range(i + 1, len(contacts)) if partner[j] < 0 and laws[j] == laws[i]]
+        others = [j for j in range(i + 1, len(contacts)) if counterpart[j] < 0 and laws[j] == laws[i]]
         for j, sign in ((j, sign) for j in (*others, i) for sign in (-1.0, 1.0)):
             by = turned * np.where(tangential, sign, 1.0)
             if np.abs(blocks[i] - by * blocks[j]).max() < options.motion_tolerance * size:
-                partner[i], partner[j], factor[i], factor[j] = j, i, by, by
+                counterpart[i], counterpart[j], factor[i], factor[j] = j, i, by, by
                 break
         else:
             return None
-    return Mirror(partner.astype(np.intp), factor)
+    return Symmetry(counterpart.astype(np.intp), factor)

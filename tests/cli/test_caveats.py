@@ -9,7 +9,7 @@ import pytest
 
 import fcm
 from fcm.branches.options import FoldOptions
-from fcm.cli.doubts import maybe_not_unique, nothing_stable, peaks_not_followed, short_of_accuracy
+from fcm.cli.caveats import maybe_not_unique, nothing_stable, peaks_not_followed, short_of_accuracy
 from fcm.model.scene import InTime
 from fcm.response.exact import trace_exact
 from fcm.response.options import ResponseOptions

@@ -1,4 +1,4 @@
-"""Analyses times doubts: what is in doubt is said by every analysis of the same place, in its own words."""
+"""Analyses times caveats: what is in doubt is said by every analysis of the same place, in its own words."""
 
 import json
 
