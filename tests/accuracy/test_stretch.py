@@ -90,8 +90,8 @@ def test_a_wide_stretch_whose_error_is_not_known_is_not_called_stable():
 def test_the_reference_is_followed_to_the_other_end_of_a_stretch_and_no_further():
     system, more = System(planar_strip(frequency=(1.0, 1.2)), (1,)), (1, 2, 3)
     path, finer = traced(system).branches.paths[0], system.with_harmonics(more)
-    lifted = prolongation_to(system, more)
-    follower = StretchFollower(system, finer, lifted, path, OF_GIVEN, Budget(1e3))
+    prolongation = prolongation_to(system, more)
+    follower = StretchFollower(system, finer, prolongation, path, OF_GIVEN, Budget(1e3))
     first = int(np.flatnonzero(path.parameter > 1.05)[0])
     assert (np.diff(path.parameter[first : first + 3]) > 0.0).all()
     (piece,) = follower.between(first, first + 2)

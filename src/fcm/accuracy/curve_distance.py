@@ -507,10 +507,10 @@ def rises(
 
 @cython.cclass
 class PointwiseDisplacement:
-    """`find` displaces points to the curve of the reference's balance, that of lifted."""
+    """`find` displaces points to the curve of the reference's balance, by the prolongation."""
 
-    def __init__(self, lifted: Prolongation) -> None:
-        self.lifted, self.missed = lifted, 0.0
+    def __init__(self, prolongation: Prolongation) -> None:
+        self.prolongation, self.missed = prolongation, 0.0
 
     def find(
         self,
@@ -540,17 +540,17 @@ class PointwiseDisplacement:
             if known[i]:
                 continue
             known[i] = 1
-            before: cython.double = self.lifted.newton.evaluations
+            before: cython.double = self.prolongation.newton.evaluations
             self.predict_from_nearest(i, z, reference_unknowns, known)
-            if self.missed > most or not self.lifted.find_normal(z[i], direction[i], True):
-                self.missed += self.lifted.newton.evaluations - before
+            if self.missed > most or not self.prolongation.find_normal(z[i], direction[i], True):
+                self.missed += self.prolongation.newton.evaluations - before
                 change[i, :] = NAN
                 reference_unknowns[i, :] = NAN
                 continue
-            reference_unknowns[i, :] = self.lifted.newton.z
-            change[i, 0] = (self.lifted.found[0] - z[i, n]) / z[i, n]
+            reference_unknowns[i, :] = self.prolongation.newton.z
+            change[i, 0] = (self.prolongation.found[0] - z[i, n]) / z[i, n]
             for d in range(amplitude.shape[1]):
-                change[i, 1 + d] = (self.lifted.found[1 + d] - amplitude[i, d]) / unit[i, d]
+                change[i, 1 + d] = (self.prolongation.found[1 + d] - amplitude[i, d]) / unit[i, d]
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -571,5 +571,5 @@ class PointwiseDisplacement:
                     and known[j]
                     and reference_unknowns[j, 0] == reference_unknowns[j, 0]
                 ):
-                    return self.lifted.predict_from(z[j], reference_unknowns[j])
+                    return self.prolongation.predict_from(z[j], reference_unknowns[j])
         return 0

@@ -207,7 +207,7 @@ class _Search:
         if k not in self.followers:
             more = self.errors[k].reference
             finer, options = self.system.with_harmonics(more), self.options
-            lifted = Prolongation(
+            prolongation = Prolongation(
                 finer.new_balance(),
                 list(self.system.harmonics),
                 list(more),
@@ -216,7 +216,9 @@ class _Search:
             )
             coarse = options.coarse_following
             rough = replace(options, following=coarse, following_of_many=coarse)
-            self.followers[k] = StretchFollower(self.system, finer, lifted, self.paths[k], rough, Budget(0.0))
+            self.followers[k] = StretchFollower(
+                self.system, finer, prolongation, self.paths[k], rough, Budget(0.0)
+            )
         return self.followers[k]
 
 

@@ -74,23 +74,23 @@ class SecondReference:
 
     def __init__(self, finer: System, more: tuple[int, ...]) -> None:
         self.finer, self.more = finer, more
-        self.system, self.lifted = finer.with_harmonics(more), prolongation_to(finer, more)
-        self.before = self.lifted.newton.evaluations
+        self.system, self.prolongation = finer.with_harmonics(more), prolongation_to(finer, more)
+        self.before = self.prolongation.newton.evaluations
         self.amplitude = np.empty(0)
 
     def found(self, z: FloatArray, direction: FloatArray | None) -> bool:
         """Whether it is found from a point of the reference: at its frequency, or normal to a direction;
         amplitude (dof,) is then there."""
         if direction is None:
-            there = self.lifted.find_at_frequency(self.system.extended(z, self.finer.harmonics), True)
+            there = self.prolongation.find_at_frequency(self.system.extended(z, self.finer.harmonics), True)
         else:
-            there = self.lifted.find_normal(z, direction, True)
-        self.amplitude = np.array(self.lifted.found[1:])
+            there = self.prolongation.find_normal(z, direction, True)
+        self.amplitude = np.array(self.prolongation.found[1:])
         return bool(there)
 
     def seconds(self) -> float:
         """About what looking for it has taken."""
-        count = self.lifted.newton.evaluations - self.before
+        count = self.prolongation.newton.evaluations - self.before
         return float(count * seconds_of(self.finer, 1, len(self.more)))
 
 
@@ -120,20 +120,20 @@ class ReferenceCurve:
         least = system.options.spectrum.least_amplitude * self.amplitude.max(axis=1, keepdims=True)
         self.unit = np.maximum(self.amplitude, least)
         self.unit[self.unit == 0.0] = 1.0
-        lifted, finer = prolongation_to(system, more), system.with_harmonics(more)
+        prolongation, finer = prolongation_to(system, more), system.with_harmonics(more)
         self.system, self.more = system, more
-        self.finding = PointwiseDisplacement(lifted)
-        self.stretches = StretchFollower(system, finer, lifted, path, options, budget)
+        self.finding = PointwiseDisplacement(prolongation)
+        self.stretches = StretchFollower(system, finer, prolongation, path, options, budget)
         self.each = seconds_of(finer, 1, len(more))  # evaluation
         self.second: SecondReference | None = None  # its own reference, if that is not too dear
         self.is_costly = False
-        self.failed, self.before = budget.seconds / self.each, lifted.newton.evaluations
+        self.failed, self.before = budget.seconds / self.each, prolongation.newton.evaluations
         count, dofs = self.amplitude.shape
         self.place, self.weight = np.zeros((2, count))
         arc_lengths(path.z, path.direction, np.ptp(path.parameter) or 1.0, self.place)
         steepness(np.ascontiguousarray(path.parameter), self.amplitude, options.max_steepness, self.weight)
         self.change = np.zeros((count, 1 + dofs))
-        self.reference_unknowns = np.full((count, len(lifted.newton.z)), np.nan)  # where it was found
+        self.reference_unknowns = np.full((count, len(prolongation.newton.z)), np.nan)  # where it was found
         self.known, self.ends_before = self.linear.copy(), np.zeros_like(self.linear)
         self.filled = PartialInterpolant(self.place, self.change, self.known.view(np.uint8), options.distance)
 
@@ -178,13 +178,13 @@ class ReferenceCurve:
 
     def release(self) -> None:
         """Give back what the next curve can use."""
-        keep_for_next(self.finding.lifted, self.system, self.more)
+        keep_for_next(self.finding.prolongation, self.system, self.more)
         if self.second is not None:
-            keep_for_next(self.second.lifted, self.second.finer, self.second.more)
+            keep_for_next(self.second.prolongation, self.second.finer, self.second.more)
 
     def seconds(self) -> float:
         """About what all that was looked for has taken."""
-        point_by_point = self.finding.lifted.newton.evaluations - self.before
+        point_by_point = self.finding.prolongation.newton.evaluations - self.before
         seconds = self.each * (point_by_point + self.stretches.evaluations)
         return float(seconds + (self.second.seconds() if self.second else 0.0))
 
@@ -194,7 +194,7 @@ class ReferenceCurve:
         most = self.options.max_point_seconds / self.each
         if most < np.inf:
             for k, i in enumerate(points.tolist()):
-                if self.finding.lifted.newton.evaluations - self.before > most:
+                if self.finding.prolongation.newton.evaluations - self.before > most:
                     rest = points[k:][~self.known[points[k:]]]
                     self.change[rest], self.reference_unknowns[rest], self.known[rest] = np.nan, np.nan, True
                     return
@@ -270,24 +270,24 @@ class ReferenceCurve:
         for i in self._points_around_peak(top) if inside else (top,):
             if not self._has_point(i, inside):
                 continue
-            lifted = self.finding.lifted
-            z, amplitude = np.array(lifted.newton.z), np.array(lifted.found[1:])
-            direction = np.array(lifted.newton.tangent) * np.array(lifted.newton.scale)
+            prolongation = self.finding.prolongation
+            z, amplitude = np.array(prolongation.newton.z), np.array(prolongation.found[1:])
+            direction = np.array(prolongation.newton.tangent) * np.array(prolongation.newton.scale)
             known = z if known is None else known
             second = self._second(z, amplitude)
             if second is not None and second.found(z, direction if inside else None):
-                there = np.array(second.lifted.newton.z)
-                left = self._left_out(second.system, second.lifted, there)
+                there = np.array(second.prolongation.newton.z)
+                left = self._left_out(second.system, second.prolongation, there)
                 return np.stack((second.amplitude - amplitude, left))
             if second is None:
                 break
-        finer, lifted = self.stretches.finer, self.finding.lifted
-        left = nothing if known is None else self._left_out(finer, lifted, known)
+        finer, prolongation = self.stretches.finer, self.finding.prolongation
+        left = nothing if known is None else self._left_out(finer, prolongation, known)
         return np.stack((nothing, left))
 
-    def _left_out(self, system: System, lifted: Prolongation, z: FloatArray) -> FloatArray:
+    def _left_out(self, system: System, prolongation: Prolongation, z: FloatArray) -> FloatArray:
         """By how much (dof,) the harmonics that a system lacks would change a motion of it."""
-        return changes_left_out(system, lifted.balance, z, self.options)
+        return changes_left_out(system, prolongation.balance, z, self.options)
 
     def _points_around_peak(self, top: int) -> list[int]:
         """A top and points to either side of it, as long as contacts slip or separate there."""
@@ -297,10 +297,10 @@ class ReferenceCurve:
 
     def _has_point(self, i: int, normal: bool) -> bool:
         """Whether the reference has a point normal to a point of the curve, or at its frequency."""
-        lifted, path = self.finding.lifted, self.path
-        if normal and lifted.find_normal(path.z[i], path.direction[i], True):
+        prolongation, path = self.finding.prolongation, self.path
+        if normal and prolongation.find_normal(path.z[i], path.direction[i], True):
             return True
-        return not normal and bool(lifted.find_at_frequency(self._guesses[i], True))
+        return not normal and bool(prolongation.find_at_frequency(self._guesses[i], True))
 
     def _second(self, z: FloatArray, amplitude: FloatArray) -> SecondReference | None:
         """A reference of its own; None where that has no more harmonics, or too many unknowns. It is that of
@@ -319,13 +319,13 @@ class ReferenceCurve:
     def amplitude_at_frequency(self, i: int) -> FloatArray | None:
         """Amplitudes (dof,) of the reference at the frequency of a point; None where Newton's method finds
         none that is as even."""
-        lifted, path = self.finding.lifted, self.path
-        if self.linear[i] or not lifted.find_at_frequency(self._guesses[i], True):
+        prolongation, path = self.finding.prolongation, self.path
+        if self.linear[i] or not prolongation.find_at_frequency(self._guesses[i], True):
             return None
         even = path.orientation[i] * path.direction[i, -1]
-        if not lifted.newton.orientation * lifted.newton.tangent[-1] * even > 0.0:
+        if not prolongation.newton.orientation * prolongation.newton.tangent[-1] * even > 0.0:
             return None
-        return np.array(lifted.found[1:])
+        return np.array(prolongation.found[1:])
 
     @cached_property
     def _guesses(self) -> FloatArray:

@@ -79,11 +79,11 @@ def prolongation_to(system: System, more: tuple[int, ...]) -> Prolongation:
     return made
 
 
-def keep_for_next(lifted: Prolongation, system: System, more: tuple[int, ...]) -> None:
+def keep_for_next(prolongation: Prolongation, system: System, more: tuple[int, ...]) -> None:
     """Keep what `prolongation_to` the same has made for the next curve."""
-    lifted.newton.poll = None
+    prolongation.newton.poll = None
     if _is_shareable(system):
-        _BALANCES.by_key[_key(system, more)] = lifted
+        _BALANCES.by_key[_key(system, more)] = prolongation
         if len(_BALANCES.by_key) > PAIR.max_kept:
             _BALANCES.by_key.popitem(last=False)
 

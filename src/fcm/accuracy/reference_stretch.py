@@ -61,13 +61,13 @@ class StretchFollower:
         self,
         fewer: System,
         finer: System,
-        lifted: Prolongation,
+        prolongation: Prolongation,
         curve: Path,
         options: PairOptions,
         budget: Budget,
     ) -> None:
         self.fewer = fewer.harmonics
-        self.finer, self.lifted, self.curve, self.options = finer, lifted, curve, options
+        self.finer, self.prolongation, self.curve, self.options = finer, prolongation, curve, options
         many = len(finer.scene.contacts) >= options.many_contacts
         self.following = options.following_of_many if many else options.following
         self.each = seconds_of(finer, 1, len(finer.harmonics))
@@ -111,9 +111,9 @@ class StretchFollower:
     def start(self, i: int, by_level: bool) -> FloatArray | None:
         """A motion of the reference at the frequency of a point, if one is found as the work allows: what the
         motion there leads to, or that the level of the forces passes."""
-        before = self.lifted.newton.evaluations
+        before = self.prolongation.newton.evaluations
         begin = self._nearest_passed(i, False) if by_level else self._same_frequency(i)
-        new = int(self.lifted.newton.evaluations - before)
+        new = int(self.prolongation.newton.evaluations - before)
         self.evaluations += new
         self.budget.seconds -= new * self.each
         return None if begin is None else begin.z
@@ -129,7 +129,7 @@ class StretchFollower:
     def _end(self, places: Iterable[int]) -> StretchEnd | None:
         """At the first of some places where there is one."""
         for i in places:
-            if 0 <= i < len(self.curve.z) and self.lifted.find_normal(
+            if 0 <= i < len(self.curve.z) and self.prolongation.find_normal(
                 self.curve.z[i], self.curve.direction[i], True
             ):
                 return self._found(i)
@@ -138,7 +138,7 @@ class StretchFollower:
     def _same_frequency(self, i: int) -> StretchEnd | None:
         """At the frequency of a point: what its motion leads to."""
         guess = self.finer.extended(self.curve.z[i], self.fewer)
-        return self._found(i) if self.lifted.find_at_frequency(guess, True) else None
+        return self._found(i) if self.prolongation.find_at_frequency(guess, True) else None
 
     def _same_parity(self, i: int) -> StretchEnd | None:
         """At the frequency of a point: what its motion leads to, or one as even that the level passes."""
@@ -147,14 +147,19 @@ class StretchFollower:
     def _nearest_passed(self, i: int, same_parity: bool) -> StretchEnd | None:
         """At the frequency of a point the nearest motion that the level of the forces passes; alike with an
         odd or even number of real multipliers above 1 as it has."""
-        lifted, curve = self.lifted, self.curve
+        prolongation, curve = self.prolongation, self.curve
         guess = self.finer.extended(curve.z[i], self.fewer)
         even = curve.orientation[i] * np.sign(curve.direction[i, -1])
         known = self._passed(float(curve.z[i, -1]))
-        for one in sorted(known, key=lambda one: float(np.linalg.norm((one - guess) / lifted.newton.scale))):
-            if not lifted.find_at_frequency(one, False):
+        for one in sorted(
+            known, key=lambda one: float(np.linalg.norm((one - guess) / prolongation.newton.scale))
+        ):
+            if not prolongation.find_at_frequency(one, False):
                 continue
-            if not same_parity or lifted.newton.orientation * lifted.newton.tangent[-1] * even > 0.0:
+            if (
+                not same_parity
+                or prolongation.newton.orientation * prolongation.newton.tangent[-1] * even > 0.0
+            ):
                 return self._found(i)
         return None
 
@@ -171,9 +176,9 @@ class StretchFollower:
 
     def _found(self, i: int) -> StretchEnd:
         """Where the reference was found last, beside a point."""
-        newton = self.lifted.newton
+        newton = self.prolongation.newton
         rises = bool(newton.tangent[-1] * self.curve.direction[i, -1] > 0.0)
-        return StretchEnd(i, np.array(newton.z), np.array(self.lifted.found[1:]), rises)
+        return StretchEnd(i, np.array(newton.z), np.array(self.prolongation.found[1:]), rises)
 
     def _span(self, before: StretchEnd | None, behind: StretchEnd | None) -> tuple[float, float]:
         """Frequencies of a stretch, and beyond them, as folds may have moved."""
@@ -193,13 +198,13 @@ class StretchFollower:
         if end is None:
             path = self._path(begin.z, None, span, Events(), forward)
             return ReferencePiece(path, reported_quantities(self.finer, path), False)
-        wanted = Events((float(end.z[-1]),), last=int(Mark.USER_POINT))
-        path, reached = self._path(begin.z, None, span, wanted, forward), False
+        events = Events((float(end.z[-1]),), last=int(Mark.USER_POINT))
+        path, reached = self._path(begin.z, None, span, events, forward), False
         while path.status is Status.EVENT:
             reached = self._is_at(path, end)
             if reached or self.budget.seconds <= 0.0:
                 break
-            further = self._path(path.z[-1], path.direction[-1], span, wanted, forward)
+            further = self._path(path.z[-1], path.direction[-1], span, events, forward)
             path = path.then(further) if len(further.z) else replace(path, status=further.status)
         if path.status is Status.EVENT and not reached:
             path = replace(path, status=Status.INTERRUPTED)
@@ -217,7 +222,7 @@ class StretchFollower:
         start: FloatArray,
         direction: FloatArray | None,
         span: tuple[float, float],
-        wanted: Events,
+        events: Events,
         forward: bool,
     ) -> Path:
         """The reference from a point, as far as the work allows."""
@@ -234,7 +239,7 @@ class StretchFollower:
             if self.budget.seconds < 0.0:
                 raise BudgetSpentError
 
-        follower = Follower(balance, span, wanted, self.following, pay_as_far_as_it_lasts, stepper)
+        follower = Follower(balance, span, events, self.following, pay_as_far_as_it_lasts, stepper)
         with self.finer.exclusive_balance():
             stepper.newton.poll = self.finer.work.poll
             try:

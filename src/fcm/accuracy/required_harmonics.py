@@ -77,15 +77,15 @@ def required_harmonics(
     more = reference_harmonics(system.harmonics, share, system.layout.ports, pair)
     if not share.any() or more == system.harmonics:
         return RequiredHarmonics(0.0, True, share, system.harmonics)
-    lifted, motions, change, is_known = prolongation_to(system, more), [], 0.0, True
+    prolongation, motions, change, is_known = prolongation_to(system, more), [], 0.0, True
     for place in places:
-        values = _displaced(lifted, place)
+        values = _displaced(prolongation, place)
         if values is None:
             is_known &= bool(place.counts[0])
             continue
-        motions.append(np.array(lifted.newton.z))
+        motions.append(np.array(prolongation.newton.z))
         change = max(change, float((values / np.append(1.0, size))[place.counts].max(initial=0.0)))
-    keep_for_next(lifted, system, more)
+    keep_for_next(prolongation, system, more)
     if motions:
         finer = FurtherHarmonics(system.with_harmonics(more))
         of_reference = _greatest_shares(finer, np.array(motions), size, ())
@@ -139,12 +139,12 @@ def _places(
     return found
 
 
-def _displaced(lifted: Prolongation, place: _SpecialPoint) -> FloatArray | None:
+def _displaced(prolongation: Prolongation, place: _SpecialPoint) -> FloatArray | None:
     """By how much the frequency, relative, and the amplitudes (1 + dof,) of the reference differ beside
     a place."""
     for i in place.tries:
-        if lifted.find_normal(place.path.z[i], place.path.direction[i], True):
-            found, omega = np.asarray(lifted.found), place.path.parameter[i]
+        if prolongation.find_normal(place.path.z[i], place.path.direction[i], True):
+            found, omega = np.asarray(prolongation.found), place.path.parameter[i]
             off: FloatArray = np.abs(np.append(found[0] / omega - 1.0, found[1:] - place.amplitude[i]))
             return off
     return None

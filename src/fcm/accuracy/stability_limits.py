@@ -45,7 +45,7 @@ def stability_limits(
     known: dict[tuple[int, ...], _ReferenceGrowth] = {}
     found = [_lost(system, path, one, accuracy, known) for one in crossings]
     for more, beside in known.items():
-        keep_for_next(beside.lifted, system, more)
+        keep_for_next(beside.prolongation, system, more)
     return found
 
 
@@ -96,8 +96,8 @@ def _lost(
 class _ReferenceGrowth:
     """The curve of more harmonics beside a path, at places of this: points, by number, and part of a way."""
 
-    def __init__(self, finer: System, path: Path, lifted: Prolongation, system: System) -> None:
-        self.path, self.lifted, self.balance = path, lifted, system.new_balance()
+    def __init__(self, finer: System, path: Path, prolongation: Prolongation, system: System) -> None:
+        self.path, self.prolongation, self.balance = path, prolongation, system.new_balance()
         self.multipliers = multipliers_of(finer, float(path.parameter.max()))
         self.frequency = math.nan  # of the place that was looked at last
 
@@ -114,10 +114,10 @@ class _ReferenceGrowth:
             if not between.find(place - k):
                 return math.nan
             z, direction = between.z, between.direction
-        if not self.lifted.find_normal(np.ascontiguousarray(z), np.ascontiguousarray(direction)):
+        if not self.prolongation.find_normal(np.ascontiguousarray(z), np.ascontiguousarray(direction)):
             return math.nan
-        self.frequency = float(self.lifted.newton.z[-1])
-        z = np.array(self.lifted.newton.z)
+        self.frequency = float(self.prolongation.newton.z[-1])
+        z = np.array(self.prolongation.newton.z)
         alone = self.multipliers.classify(z, sufficient=EITHER).growth
         growth = self.multipliers.classify(z).growth if math.isnan(alone) else alone
         return max(growth, STABILITY_LIMITS.min_growth)

@@ -51,7 +51,7 @@ _BY_POINT = (
 class Work:
     """What all groups are traced with."""
 
-    wanted: Request
+    request: Request
     peaks_only: bool = False
     samples: int = 0  # points that are kept all the same
 
@@ -60,11 +60,11 @@ class Work:
         begin, saved = time.monotonic(), len(curves)
         clear()
         for number, scene in list(enumerate(group))[len(curves) :]:
-            if time.monotonic() - begin > self.wanted.options.sweep.save_interval:
+            if time.monotonic() - begin > self.request.options.sweep.save_interval:
                 saved, begin = _save(curves, saved, report), time.monotonic()
             try:
                 report(number / len(group), "")
-                curve = traced_curve(scene, self.wanted, tell=partial(report, number / len(group)))
+                curve = traced_curve(scene, self.request, tell=partial(report, number / len(group)))
             except KeyboardInterrupt as stopped:
                 _save(curves, saved, report)
                 if isinstance(stopped, Interrupted):

@@ -66,20 +66,20 @@ def fit(
     refuse_own_laws(scene, "a fit")
     if any(one.damping is not None for one in scene.fit.data):
         check_free(scene)
-    begin, wanted = time.perf_counter(), request_of(scene, harmonics, accuracy, options)
+    begin, request = time.perf_counter(), request_of(scene, harmonics, accuracy, options)
     with execution.checkpoint() as checkpoint:
-        response = _fit(scene, method, wanted, replace(execution, keep=checkpoint))
+        response = _fit(scene, method, request, replace(execution, keep=checkpoint))
         if not response.interrupted:
             execution.discard(checkpoint)
     response.seconds = time.perf_counter() - begin
     return response
 
 
-def _fit(scene: Scene, method: str | Table, wanted: Request, execution: Execution) -> Response:
+def _fit(scene: Scene, method: str | Table, request: Request, execution: Execution) -> Response:
     """With the harmonics that are asked for, or as many as the response at the numbers found takes."""
     assert scene.fit is not None
     plain = replace(scene, fit=None)
-    chosen, fitted = wanted.harmonics or (1,), None
+    chosen, fitted = request.harmonics or (1,), None
     response = Response.without_curves(plain)
     for _ in range(FITTED_RESPONSE.max_rounds):
         near = None if fitted is None else fitted[1].values
@@ -96,7 +96,7 @@ def _fit(scene: Scene, method: str | Table, wanted: Request, execution: Executio
             break
         stage = execution.stage(FITTED_RESPONSE.fit_share, 1.0)
         try:
-            response = _model_response(found, scene.fit.data, chosen, method, wanted, stage)
+            response = _model_response(found, scene.fit.data, chosen, method, request, stage)
         except KeyboardInterrupt:
             response = Response.without_curves(plain)
             response.fitted = _fitted(*fitted, advise=False, untraced=True)
@@ -116,23 +116,23 @@ def _model_response(
     data: Sequence[Measured],
     harmonics: tuple[int, ...],
     method: str | Table,
-    wanted: Request,
+    request: Request,
     execution: Execution,
 ) -> Response:
     """What the data were measured of, with the numbers found: the responses at their levels, or the mode of
     which all are backbones."""
-    given, accuracy = (harmonics, None) if wanted.harmonics else (None, wanted.accuracy)
+    given, accuracy = (harmonics, None) if request.harmonics else (None, request.accuracy)
     parameters, numbers = found
     modes = {one.mode if one.damping is not None else None for one in data}
     number = modes.pop()
     if modes or number is None:
         there = _at_levels(parameters, numbers, data)
-        return trace(there, method, execution, harmonics=given, accuracy=accuracy, options=wanted.options)
+        return trace(there, method, execution, harmonics=given, accuracy=accuracy, options=request.options)
     scene = parameters.at(numbers.values)
     spans = [measured_span(System(scene, harmonics), one) for one in data]
     span = min(low for low, _ in spans), max(high for _, high in spans)
     return trace_modes(
-        scene, number, span, execution, harmonics=given, accuracy=accuracy, options=wanted.options
+        scene, number, span, execution, harmonics=given, accuracy=accuracy, options=request.options
     )
 
 

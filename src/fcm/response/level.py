@@ -78,20 +78,20 @@ def trace_levels(
     if not all(np.isfinite(f) and f > 0.0 for f in at):
         raise ResponseError("a frequency must be finite and greater than 0")
     begin = time.perf_counter()
-    wanted = request_of(scene, harmonics, accuracy, options)
+    request = request_of(scene, harmonics, accuracy, options)
     check_own_laws(scene)
-    check_modes(scene, wanted)
+    check_modes(scene, request)
     ways = [
         (curve, frequency * UNIT[scene.frequency_unit]) for curve in scene.each_curve() for frequency in at
     ]
     tasks = [
         (
             _without(curve, omega, NOT_BEGUN, Cause.INTERRUPTED),
-            partial(_level_curve, curve, wanted, omega, span),
+            partial(_level_curve, curve, request, omega, span),
         )
         for curve, omega in ways
     ]
-    of_curves = (wanted, tuple(at), span, anonymous(scene.each_curve()))
+    of_curves = (request, tuple(at), span, anonymous(scene.each_curve()))
     mark = b"" if execution.keep is None else fingerprint("level", *of_curves)
     curves = [without_rounding(one) for one in one_by_one(tasks, execution, mark)]
     response = Response.of(scene, curves, "level of the forces")
@@ -123,12 +123,14 @@ def _without(scene: Scene, omega: float, reason: str, cause: Cause = Cause.CALCU
     return replace(lost_curve(scene, reason, cause), parameters=parameters, level=np.empty(0))
 
 
-def _level_curve(scene: Scene, wanted: Request, omega: float, span: tuple[float, float], tell: Tell) -> Curve:
-    """With the harmonics that are wanted; with ever more until they are enough for the accuracy."""
+def _level_curve(
+    scene: Scene, request: Request, omega: float, span: tuple[float, float], tell: Tell
+) -> Curve:
+    """With the harmonics of the request; with ever more until they are enough for the accuracy."""
     begin, stopped = time.perf_counter(), ""
-    system = wanted.system(scene)
+    system = request.system(scene)
     curve = _followed(system, omega, span)
-    while wanted.harmonics is None and curve.complete and not _worst(curve, scene) <= wanted.accuracy:
+    while request.harmonics is None and curve.complete and not _worst(curve, scene) <= request.accuracy:
         more = with_twice_as_many(system, curve.evaluations)
         if more is None:
             break
@@ -144,7 +146,9 @@ def _level_curve(scene: Scene, wanted: Request, omega: float, span: tuple[float,
     if stopped:
         curve.complete, curve.reason, curve.cause = False, stopped, Cause.INTERRUPTED
     elif (
-        wanted.harmonics is None and curve.complete and not (worst := _worst(curve, scene)) <= wanted.accuracy
+        request.harmonics is None
+        and curve.complete
+        and not (worst := _worst(curve, scene)) <= request.accuracy
     ):
         what = (
             "the errors of some peaks cannot be told"

@@ -84,17 +84,17 @@ def trace_modes(
         raise ResponseError("a level of the forces must be finite and greater than 0")
     check_free(scene)
     begin = time.perf_counter()
-    wanted = request_of(scene, harmonics, accuracy, options)
+    request = request_of(scene, harmonics, accuracy, options)
     levels = tuple(float(level) for level in force_levels)
     at = None if motion_at is None else tuple(float(one) for one in motion_at)
-    of_curves = (number, span, wanted, levels, at, anonymous(scene.each_curve()))
+    of_curves = (number, span, request, levels, at, anonymous(scene.each_curve()))
     mark = b"" if execution.keep is None else fingerprint("mode", *of_curves)
     try:
         curves = one_by_one(
             [
                 (
                     lost_curve(one, NOT_BEGUN, Cause.INTERRUPTED),
-                    partial(_curve, one, number, span, wanted, levels, at),
+                    partial(_curve, one, number, span, request, levels, at),
                 )
                 for one in scene.each_curve()
             ],
@@ -120,20 +120,20 @@ def _curve(
     scene: Scene,
     number: int,
     span: tuple[float, float],
-    wanted: Request,
+    request: Request,
     levels: tuple[float, ...],
     at: tuple[float, ...] | None,
     tell: Tell,
 ) -> Curve:
     begin = time.perf_counter()
-    system = wanted.system(scene)
+    system = request.system(scene)
     try:
         check_contacts_can_close(system)
         mode = nonlinear_mode(system, number, span, scene.max_step)
     except RestError as nowhere:
         return lost_curve(scene, str(nowhere))
     (error, theirs), stopped = truncation(mode), ""
-    while wanted.harmonics is None and not _worst(error) <= wanted.accuracy:
+    while request.harmonics is None and not _worst(error) <= request.accuracy:
         enlarged = with_twice_as_many(mode.system, mode.path.evaluations)
         if enlarged is None:
             break
@@ -149,7 +149,7 @@ def _curve(
             stopped = f"{INTERRUPTED} before it was known with {count} harmonics"
             break
     curve = _recorded(mode, number, error, theirs, levels)
-    if wanted.harmonics is None and curve.complete and not _worst(error) <= wanted.accuracy:
+    if request.harmonics is None and curve.complete and not _worst(error) <= request.accuracy:
         these = counted(len(mode.system.harmonics), "harmonic")
         curve.short_of = f"with {these} an estimated error of {_worst(error):.1e} remains"
     if at is not None and curve.mode is not None:

@@ -64,16 +64,16 @@ def optimise(
     refuse_own_laws(scene, "an optimum")
     begin = time.perf_counter()
     numbers, free = _freed(scene, scene.optimum.vary)
-    wanted = request_of(scene, harmonics, accuracy, options)
-    tasks = [PeakTask(curve, numbers, wanted.accuracy, wanted.options) for curve in free.each_curve()]
+    request = request_of(scene, harmonics, accuracy, options)
+    tasks = [PeakTask(curve, numbers, request.accuracy, request.options) for curve in free.each_curve()]
     with execution.checkpoint() as checkpoint:
         found, stopped = optima(
-            tasks, wanted.harmonics, checkpoint, part(execution.progress, 0.0, OPTIMUM.search_share)
+            tasks, request.harmonics, checkpoint, part(execution.progress, 0.0, OPTIMUM.search_share)
         )
         tracking = _tracking(scene.optimum, found)
         if stopped:
             return _unfinished(free, tracking, len(tasks), begin)
-        there, chosen = _at(free, numbers, tracking.optima), wanted.options
+        there, chosen = _at(free, numbers, tracking.optima), request.options
         all_points = replace(chosen, sweep=replace(chosen.sweep, peaks_only=False))
         rest = replace(execution, keep=checkpoint).stage(OPTIMUM.search_share, 1.0)
         response = trace(there, method, rest, harmonics=tracking.harmonics, options=all_points)
@@ -90,8 +90,8 @@ def optimise(
         for one in tracking.optima
         if one.higher is not None
     ]
-    if wanted.harmonics is None:
-        _say_what_is_short(tracking, response, wanted.accuracy)
+    if request.harmonics is None:
+        _say_what_is_short(tracking, response, request.accuracy)
     response.tracking = tracking
     if chosen.sweep.peaks_only:
         response.curves, response.peaks_only = [without_points(one) for one in response.curves], True

@@ -111,7 +111,7 @@ class ResumablePaths:
         problem: OrbitProblem,
         start: FloatArray,
         span: tuple[float, float],
-        wanted: Events,
+        events: Events,
         options: FollowOptions,
         *,
         forward: bool,
@@ -121,7 +121,7 @@ class ResumablePaths:
         saved = self._known.get(_key(self._saved_path(problem))) or self._taken(problem, start, forward)
         if saved is None or saved.path is None:
             checkpoint = None if saved is None else saved.checkpoint
-            whole = partial(follow, problem, start, span, wanted, options, forward=forward)
+            whole = partial(follow, problem, start, span, events, options, forward=forward)
             path = self._followed(problem, start, partial(whole, checkpoint=checkpoint))
             saved = self._saved_path(problem, path)
             self._save(saved)

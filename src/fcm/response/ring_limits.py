@@ -58,22 +58,22 @@ def refuse_own_laws(scene: Scene, what: str) -> None:
         )
 
 
-def check_modes(scene: Scene, wanted: Request) -> None:
+def check_modes(scene: Scene, request: Request) -> None:
     """Raise ResponseError where harmonics are asked for that meet a nodal diameter without modes."""
     for curve in scene.each_curve():
         if curve.ring is None:
             return
         driven = driven_harmonics(curve)
         harmonics = (
-            range(LIMITS.harmonics + 1) if wanted.harmonics is None else (0, *wanted.harmonics, *driven)
+            range(LIMITS.harmonics + 1) if request.harmonics is None else (0, *request.harmonics, *driven)
         )
         for harmonic, diameter in curve.ring.lacking(harmonics).items():
             what = f"{scene.name}: {lacks(curve.ring, harmonic, diameter)}"
-            hint = "; give its modes, or the harmonics (--harmonics 1)" if wanted.harmonics is None else ""
+            hint = "; give its modes, or the harmonics (--harmonics 1)" if request.harmonics is None else ""
             raise ResponseError(f"{what}{hint}")
 
 
-def unknown(scene: Scene, wanted: Request) -> list[str]:
+def unknown(scene: Scene, request: Request) -> list[str]:
     """Sentences on what is not known of the curves of a scene, for want of modes or of time."""
     found: dict[str, None] = {}
     orders = {one.ring.engine_order: one for one in scene.each_curve() if one.ring is not None}
@@ -94,7 +94,7 @@ def unknown(scene: Scene, wanted: Request) -> list[str]:
                 f"the answer to the harmonics {named}: there are no modes of nodal diameter {diameters} "
                 "(errors are estimated without them)"
             ] = None
-        system = System(curve, wanted.harmonics or (1,))
+        system = System(curve, request.harmonics or (1,))
         if why := stability_unknown(system, curve.frequency_range[1]):
             found[f"stability: {why}"] = None
     return list(found)

@@ -82,13 +82,13 @@ def trace(
     if not scene.has_range:
         raise ResponseError("the scene has no [response] with frequency = [from, to], so no curve to trace")
     begin = time.perf_counter()
-    wanted = request_of(scene, harmonics, accuracy, options)
+    request = request_of(scene, harmonics, accuracy, options)
     check_own_laws(scene)
-    check_modes(scene, wanted)
+    check_modes(scene, request)
     progress = execution.progress
     with execution.checkpoint() as checkpoint:
         curves = CurveSweep(execution.processes, checkpoint, execution.place)
-        response = _traced(_Sweep(scene, name, table, wanted, curves), progress)
+        response = _traced(_Sweep(scene, name, table, request, curves), progress)
         if not response.interrupted:
             execution.discard(checkpoint)
     if scene.tuned is not None and not response.interrupted:
@@ -104,20 +104,20 @@ def trace(
 def _traced(sweep: _Sweep, progress: Progress | None) -> Response:
     """The curves without what they do not need; where that turns out to be needed, once more with it."""
     curves = sweep.scene.each_curve()
-    options, tolerance = sweep.wanted.options.sweep, sweep.wanted.options.reduction.tolerance
-    asked = sweep.wanted.harmonics or (options.expected_harmonic,)
+    options, tolerance = sweep.request.options.sweep, sweep.request.options.reduction.tolerance
+    asked = sweep.request.harmonics or (options.expected_harmonic,)
     highest = max((*asked, *driven_harmonics(sweep.scene)))
     if tolerance is None or sweep.scene.ring is not None or sweep.scene.with_own_laws:
         lighter = unreduced(curves)
     else:
-        lighter = without_negligible_parts(curves, tolerance, highest, sweep.wanted.options.reduction)
+        lighter = without_negligible_parts(curves, tolerance, highest, sweep.request.options.reduction)
     response, said = sweep.run(lighter, part(progress, 0.0, options.traced_share)), list(lighter.sentences)
     if lighter.above is not None and tolerance is not None:
         shift = checked(response, lighter)
         if 2.0 * shift <= tolerance or response.interrupted:
             said.append(sentences.on_modes(lighter, shift))
         else:  # the estimate was too good: with all modes after all
-            lighter = without_negligible_parts(curves, 0.0, highest, sweep.wanted.options.reduction)
+            lighter = without_negligible_parts(curves, 0.0, highest, sweep.request.options.reduction)
             response = sweep.run(lighter, part(progress, options.traced_share, 1.0))
     response = restored(response, lighter)
     response.curves = [without_rounding(one) for one in response.curves]
@@ -127,7 +127,7 @@ def _traced(sweep: _Sweep, progress: Progress | None) -> Response:
         said.append(NO_TABLE_IN_PLANE if sweep.scene.planar else "the table: no contact needs it (no effect)")
     if sweep.scene.with_own_laws:
         said.append(HILL)
-    response.left_out = [*said, *sentences.on_means(lighter), *unknown(sweep.scene, sweep.wanted)]
+    response.left_out = [*said, *sentences.on_means(lighter), *unknown(sweep.scene, sweep.request)]
     return response
 
 
@@ -139,22 +139,22 @@ class _Sweep:
         scene: Scene,
         method: str,
         table: Table | None,
-        wanted: Request,
+        request: Request,
         curves: CurveSweep,
     ) -> None:
         self.scene, self.method, self.table, self.curves = scene, method, table, curves
-        self.wanted, self.peaks_only = wanted, wanted.options.sweep.peaks_only
+        self.request, self.peaks_only = request, request.options.sweep.peaks_only
         self.table_idle = method == "table" and table is None  # until it is opened
         # of the table before it is used, for it counts its look-ups
-        options = (method, table, wanted.harmonics, wanted.accuracy, wanted.options)
+        options = (method, table, request.harmonics, request.accuracy, request.options)
         self.mark = b"" if curves.checkpoint is None else fingerprint(*options)
 
     def run(self, lighter: ReducedScenes, progress: Progress | None) -> Response:
         """Trace all groups that are not finished already."""
         every = tuple(replace(scene, draft=None) for scene in lighter.curves)
-        batches = in_batches(every, self.wanted.options.sweep.batch)
+        batches = in_batches(every, self.request.options.sweep.batch)
         samples = REDUCTION.max_checked_of_curve if lighter.above is not None else 0
-        work = Work(replace(self.wanted, table=self._table(lighter)), self.peaks_only, samples)
+        work = Work(replace(self.request, table=self._table(lighter)), self.peaks_only, samples)
         curves = self.curves.curves(work, batches, self.mark, progress)
         response = Response.of(self.scene, curves, self.method)
         response.peaks_only = self.peaks_only

@@ -100,22 +100,22 @@ def track(
     _check(scene, number, span)
     begin = time.perf_counter()
     free = number.freed(scene)
-    wanted = request_of(scene, harmonics, accuracy, options)
+    request = request_of(scene, harmonics, accuracy, options)
     tracked = with_master_dofs(free)
     curves = tracked.each_curve()
-    chosen = wanted.harmonics or needed(curves, number, span, wanted)
+    chosen = request.harmonics or needed(curves, number, span, request)
     place = execution.place or place_for(execution.processes if len(curves) > 1 else 1)
     response = Response.without_curves(tracked)
     response.tracking, response.method = Tracking(over, what, span, chosen, []), "tracked"
     with execution.checkpoint() as checkpoint:
         if what == "peaks":
             response.left_out = _untracked(len(free.modal.dofs), len(tracked.modal.dofs))
-        work = TrackedWork(number, what, span, chosen, wanted.options)
+        work = TrackedWork(number, what, span, chosen, request.options)
         outcome = _swept(work, curves, checkpoint, place, execution.progress)
         for i, one in enumerate(curves):
             _add(response, one, next(iter(outcome.of(i)), None))
-        if wanted.harmonics is None:
-            response.tracking.short_of = _short_of(response.tracking, wanted.accuracy)
+        if request.harmonics is None:
+            response.tracking.short_of = _short_of(response.tracking, request.accuracy)
         if not response.interrupted:
             execution.discard(checkpoint)
     response.seconds = time.perf_counter() - begin
@@ -217,13 +217,13 @@ def _at_ends(scene: Scene, number: Number, span: tuple[float, float]) -> list[Sc
 
 
 def needed(
-    curves: Sequence[Scene], number: Number, span: tuple[float, float], wanted: Request
+    curves: Sequence[Scene], number: Number, span: tuple[float, float], request: Request
 ) -> tuple[int, ...]:
     """The harmonics that an accuracy takes, at both ends of a span and in its middle."""
     found = {1}
     for curve in (curves[0], curves[-1]) if len(curves) > 1 else curves:
         for value in np.linspace(*span, 3).tolist():
-            system = wanted.system(number.put(curve, value), (1,))
-            there = refined_response(system, wanted.accuracy, options=wanted.options.refinement)
+            system = request.system(number.put(curve, value), (1,))
+            there = refined_response(system, request.accuracy, options=request.options.refinement)
             found |= set(there.system.harmonics)
     return tuple(sorted(found))
