@@ -479,7 +479,7 @@ def test_marks_of_lower_peaks_are_explained():
     text, table = as_table({"curves": [one]}, "Hz").split("\n\n")
     assert "! unstable" in text and "> 100 % the error is more than the peak" in text
     said, header, *rows = table.splitlines()
-    assert said == "every peak, in order of frequency:"
+    assert said == "degrees of freedom with several peaks, in order of frequency:"
     assert header.split() == ["peak", "u", "at", "Hz", "error"]
     assert [row.split() for row in rows] == [
         ["1.00000!", "1.00000", ">", "100", "%"],

@@ -66,7 +66,7 @@ def test_the_slider_is_not_drawn_while_the_contact_is_open(figure):
 
 
 def test_both_hysteresis_loops_and_the_names_of_the_directions(figure):
-    plane, above, below = figure.axes
+    plane, above, below, _ = figure.axes
     path = path_of(LOOP)
     for axes, i in ((above, 0), (below, 1)):
         shown = np.concatenate(
@@ -79,9 +79,25 @@ def test_both_hysteresis_loops_and_the_names_of_the_directions(figure):
     assert above.get_ylabel() == "$f_x$ (N)"
 
 
+def test_the_force_stays_within_its_limits_and_reaches_them_where_it_slips(figure):
+    forces, path = figure.axes[3], path_of(LOOP)
+    radii = sorted(patch.radius for patch in forces.patches if isinstance(patch, Circle))
+    limit = [LOOP.slip_limit(angle) for angle in np.linspace(0.0, 2.0 * np.pi, 2001)]
+    assert radii == pytest.approx([min(limit), max(limit)], rel=1e-4, abs=1e-9)
+    assert forces.get_xlabel() == "$f_x$ (N)" and forces.get_aspect() == 1.0
+    (slip,) = lines(forces, STATES["P"][1]["color"])
+    x, y = (np.array(one) for one in slip.get_data())
+    there = np.isfinite(x) & (path.states == "P")
+    assert there.any() and np.hypot(x, y)[there] == pytest.approx(2.0 * path.radius[there])
+    assert np.abs(np.hypot(*path.f.T)).max() <= radii[1] * (1.0 + 1e-9)
+    constant = fcm.planar_loop([0.1, 1.0], [0.0, -0.4j], [0.0, 0.0], mu=0.5, k_u=2.0, k_v=1.0, n_0=0.7)
+    (circle,) = draw_planar_loop(DrawnPlanarLoop(constant, "pad")).axes[3].patches
+    assert circle.radius == pytest.approx(0.35)
+
+
 def test_without_tangential_stiffness_there_is_no_disc_and_no_force():
     loop = fcm.planar_loop(*MOTION, mu=0.5, k_u=0.0, k_v=1.0, n_0=0.7)
-    plane, above, below = draw_planar_loop(DrawnPlanarLoop(loop, "pad")).axes
+    plane, above, below, _ = draw_planar_loop(DrawnPlanarLoop(loop, "pad")).axes
     assert all(patch.radius == 0.0 for patch in plane.patches if isinstance(patch, Circle))
     for axes in (above, below):
         shown = [np.array(line.get_ydata()) for line in axes.lines if len(line.get_xdata()) > 2]
@@ -89,7 +105,7 @@ def test_without_tangential_stiffness_there_is_no_disc_and_no_force():
 
 
 def test_without_dimensions_the_axes_say_by_what_they_are_divided():
-    plane, above, _ = draw_planar_loop(DrawnPlanarLoop(LOOP, "pad", dimensionless=True)).axes
+    plane, above, *_ = draw_planar_loop(DrawnPlanarLoop(LOOP, "pad", dimensionless=True)).axes
     assert plane.get_xlabel() == "Displacement $u_x$$/a$ = x$/a$"
     assert above.get_ylabel() == "$f_x$$/(k_u a)$"
 
@@ -108,7 +124,7 @@ def test_a_direction_in_which_there_is_rounding_alone_is_drawn_as_at_rest():
         loop = fcm.planar_loop([0.1, 1.0], y, [0.0, 0.2j], mu=0.5, k_u=2.0, k_v=1.0, n_0=0.7)
         path = path_of(loop)
         assert np.ptp(path.f[:, 0]) > 0.5 and not path.f[:, 1].any() and not path.u[:, 1].any()
-        _, x, y = draw_planar_loop(DrawnPlanarLoop(loop, "pad")).axes
+        _, x, y, _ = draw_planar_loop(DrawnPlanarLoop(loop, "pad")).axes
         assert [one.get_text() for one in y.texts] == ["no motion"] and not x.texts
         assert y.get_xlim() == x.get_xlim() and y.get_ylim() == x.get_ylim()
     some = path_of(fcm.planar_loop([0.1, 1.0], [0.0, 3e-6j], [0.0, 0.2j], mu=0.5, k_u=2.0, k_v=1.0, n_0=0.7))

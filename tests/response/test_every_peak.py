@@ -63,14 +63,14 @@ def test_every_resonance_of_a_degree_of_freedom_is_told_by_frequency(summary):
 def test_the_table_has_those_of_the_output(tmp_path, summary):
     (tmp_path / "a.toml").write_text(TWO_MODES)
     out = called("respond", tmp_path / "a.toml").out
-    _, table = out.split("every peak, in order of frequency:\n")
+    _, table = out.split("degrees of freedom with several peaks, in order of frequency:\n")
     header, *rows = table.splitlines()
     assert header.split() == ["peak", "u", "at", "rad/s", "error"]
     told = summary["curves"][0]["peaks"]["u"]
     assert [row.split()[:2] for row in rows[:2]] == [
         [f"{one['amplitude']:#.6g}", f"{one['frequency']:#.6g}"] for one in told
     ]
-    assert "every peak" not in called("respond", "yang1998-n5").out  # it has one
+    assert "several peaks" not in called("respond", "yang1998-n5").out  # it has one
 
 
 def test_peaks_without_their_points_are_the_same(tmp_path, summary):

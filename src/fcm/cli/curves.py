@@ -48,7 +48,7 @@ _BEYOND = (
     f"{BEYOND} the error is more than the peak, which these harmonics do not tell. Give more by --harmonics, "
     "or leave them to --accuracy"
 )
-_EVERY = "every peak, in order of frequency:"
+_EVERY = "degrees of freedom with several peaks, in order of frequency:"
 _RESIDUAL = "residual"  # heads a column of shares
 _OF_RESIDUAL = "residual: up to this share of it the friction that stuck contacts keep may change the peak"
 

@@ -1,4 +1,4 @@
-"""The loop of a contact in its plane: the paths of displacement and slider with the disc, and two loops."""
+"""The loop of a contact in its plane: paths of displacement, slider and force, and two loops of these."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 SLIDER = "#009e73"
 DISC = "0.75"
+LIMIT = "0.45"
 
 
 @dataclass(frozen=True)
@@ -71,15 +72,16 @@ def _without_rounding(values: FloatArray) -> FloatArray:
 
 
 def draw_planar_loop(drawn: DrawnPlanarLoop) -> Figure:
-    """At the left the plane: paths of u and of the slider, discs; at the right force over displacement."""
+    """At the left the plane: paths of u and of the slider, discs, and below it the path of the force between
+    its limits; at the right force over displacement."""
     path = path_of(drawn.loop)
     length, force = (f" ({unit.replace('$', '')})" for unit in drawn.units) if drawn.units else ("", "")
     if drawn.dimensionless:
         length, force = "$/a$", "$/(k_u a)$"
     with house_style():
         figure = new_figure(TWO_COLUMNS, LAYOUT.planar_height)
-        grid = figure.add_gridspec(2, 2, width_ratios=[1.25, 1.0])
-        plane = figure.add_subplot(grid[:, 0])
+        grid = figure.add_gridspec(2, 2)
+        plane = figure.add_subplot(grid[0, 0])
         _draw_plane(plane, drawn, path)
         plane.set_xlabel(_of_direction("$u_x$", drawn.directions[0], length))
         plane.set_ylabel(_of_direction("$u_y$", drawn.directions[1], length))
@@ -93,7 +95,14 @@ def draw_planar_loop(drawn: DrawnPlanarLoop) -> Figure:
         for axes, name in zip(loops, "xy", strict=True):
             axes.set_xlabel(f"$u_{name}${length}")
             axes.set_ylabel(f"$f_{name}${force}")
-        handles, labels = plane.get_legend_handles_labels()
+        limits = figure.add_subplot(grid[1, 0])
+        _draw_forces(limits, drawn.loop, path)
+        limits.set_xlabel(f"$f_x${force}")
+        limits.set_ylabel(f"$f_y${force}")
+        handles, labels = map(list, plane.get_legend_handles_labels())
+        for handle, label in zip(*limits.get_legend_handles_labels(), strict=True):
+            handles.append(handle)
+            labels.append(label)
         figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), fontsize=7)
         figure.suptitle(drawn.title, fontsize=8)
         figure.draw_without_rendering()
@@ -138,6 +147,27 @@ def _draw_plane(axes: Axes, drawn: DrawnPlanarLoop, path: Path) -> None:
     half, (x, y) = LAYOUT.planar_room * float((high - low).max()), 0.5 * (low + high)
     axes.set_xlim(x - half, x + half)
     axes.set_ylim(y - half, y + half)
+
+
+def _draw_forces(axes: Axes, loop: PlanarLoop, path: Path) -> None:
+    """The path of the friction force, and the circles of its least and greatest limit over the cycle."""
+    from matplotlib.patches import Circle
+
+    axes.set_aspect("equal", adjustable="box")
+    limit = loop.slip_limit(path.theta)
+    low, high = float(limit.min()), float(limit.max())
+    radii = (high, low) if low < LAYOUT.same_circle * high else (high,)
+    which = ", least and greatest" if len(radii) > 1 else ""
+    for radius in radii:
+        look = {"facecolor": "none", "edgecolor": LIMIT, "linewidth": 0.8, "linestyle": "--"}
+        circle = Circle((0.0, 0.0), radius, **look)
+        circle.set_label(f"radius $\\mu n${which}" if radius == high else "_")
+        axes.add_patch(circle)
+    for state in "EPS":
+        if (at := path.states == state).any():
+            axes.plot(*_only(path.f, at).T, zorder=3, label="_", **STATES[state][1])
+    half = LAYOUT.planar_room * 2.0 * max(high, float(np.abs(path.f).max())) or 1.0
+    axes.set(xlim=(-half, half), ylim=(-half, half))
 
 
 def _draw_direction(axes: Axes, path: Path, i: int) -> None:

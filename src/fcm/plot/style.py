@@ -36,7 +36,7 @@ class Layout:
     row_height: float = 2.7  # [inch] of a row of panels
     pairs_height: float = 3.4  # [inch] of a row of panels with contacts
     direction_name: int = 30  # characters of a direction that fit beside an axis
-    planar_height: float = 3.35  # [inch] of a row of planar loops
+    planar_height: float = 6.1  # [inch] of a planar loop and its forces
     loop_alone: float = 1.25  # how much higher a loop alone is than one of a row
     plane_alone: float = 1.4  # height of a picture of one panel, relative to that of a row of two
     band_opacity: float = 0.28  # of a band, so that those of several curves are seen through one another
@@ -94,6 +94,7 @@ class Layout:
     loop_room: float = 0.18  # beside a loop, relative to its extent
     loop_named: int = 60  # transitions whose angles still find room beside them
     loop_narrowest: float = 11.0  # [degree] a state shorter than this has no letter
+    same_circle: float = 0.99  # of the radius of another: a circle that is greater is drawn as one with it
     planar_room: float = 0.56  # of the extent of a planar loop, to each side of the middle
     planar_samples: int = 1440  # of a cycle of a planar loop
     # of the motion in a plane: less than that along a direction is none. Displacements across a contact are
