@@ -1,6 +1,6 @@
 """Branches that a response lacks, hunted by marching from random states and by deflation; no part of a run.
 
-usage: python -m tests.branches.hunt meets|stops [FIRST LAST [SECONDS]] [--deflate]   (of a processor, in all)
+usage: python -m tests.branches.hunt meets|stops [FIRST LAST [SECONDS]] [--deflate] [--exact]
 
 A march that settles at a motion of one period, where contacts do more than stick or stay open, is at a stable
 one: it has to be on a branch. Deflation (Farrell, Birkisson, Funke 2015) turns Newton's method away from the
@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+import fcm
 from fcm.harmonic_balance.dense_jacobian import jacobian_of
 from fcm.harmonic_balance.system import System
 from fcm.response.request import Request
@@ -110,9 +111,19 @@ def _newton(balance, x, omega, known):
     return None
 
 
-def hunt(scene, looks=5, tries=6, deflate=False):
-    """What the response of a scene by default lacks at some frequencies."""
-    curve = traced_curve(scene, Request(None, ACCURACY))
+class ExactCurve:
+    """What a response of exact motions has of a curve."""
+
+    def __init__(self, scene):
+        found = fcm.respond(scene, method="exact").isel(curve=0)
+        self.frequency = found.frequency.values
+        self.amplitude = found.amplitude.transpose("point", "dof").values
+        self.error = np.zeros_like(self.amplitude)
+
+
+def hunt(scene, looks=5, tries=6, deflate=False, exact=False):
+    """What the response of a scene by default, or by exact motions, lacks at some frequencies."""
+    curve = ExactCurve(scene) if exact else traced_curve(scene, Request(None, ACCURACY))
     low, high = scene.frequency_range
     frequencies = np.linspace(low, high, looks + 2)[1:-1]
     yield from marched(scene, curve, frequencies, tries)
@@ -129,7 +140,8 @@ def main(arguments):
         if time.process_time() > seconds:
             seed -= 1
             break
-        for miss in hunt(KINDS[kind](seed), deflate="--deflate" in arguments):
+        ways = {way: f"--{way}" in arguments for way in ("deflate", "exact")}
+        for miss in hunt(KINDS[kind](seed), **ways):
             count += 1
             at = f"{miss.amplitude} at {miss.frequency:.6g} by {miss.found_by}"
             print(f"{kind} {seed}: {at}", flush=True)

@@ -130,15 +130,21 @@ def converged_balance(
 
 
 def every_balance(whole: Scene, poll: Poll, options: ShootingOptions = SHOOTING) -> UncheckedResponse:
-    """The response of the balance with as many harmonics as it takes, and every branch; of many contacts
-    with one harmonic."""
-    from fcm.accuracy.refinement import refined_response
+    """The response of the balance with as many harmonics as it takes, those among them by which symmetric
+    motions lose their symmetry, and every branch; of many contacts with one harmonic."""
+    from fcm.accuracy.refinement import refined_response, retrace
     from fcm.accuracy.unchecked_response import unchecked_response
+    from fcm.branches.search import symmetry_loss
 
     single = _single_harmonic(whole, poll, options)
     if len(whole.contacts) >= options.balance.many_contacts:
         return unchecked_response(single)
-    return refined_response(single, options.balance.accuracy).with_every_branch()
+    found = refined_response(single, options.balance.accuracy)
+    lost = symmetry_loss(found.system, found.traced).harmonics
+    if lost:
+        more = tuple(sorted({*found.system.harmonics, *lost}))
+        found = retrace(found, more, options.balance.accuracy) or found
+    return found.with_every_branch()
 
 
 def states_across(
