@@ -443,6 +443,17 @@ def test_there_is_one_bar_and_it_never_goes_back():
     assert len(set(shown)) > 5
 
 
+@pytest.mark.parametrize("harmonics", [1, None])
+def test_the_progress_of_one_curve_moves_with_the_frequency(harmonics):
+    """It was 0 % for half of the time, then 90 %."""
+    shown = []
+    scene = replace(fcm.load_scene("yang1998-n5"), max_step=0.01)
+    trace(scene, harmonics=harmonics, execution=Execution(progress=lambda share, _: shown.append(share)))
+    assert shown == sorted(shown) and shown[-1] == 1.0
+    first = [share for share in dict.fromkeys(shown) if share < 0.45]  # of what is traced at first
+    assert len(first) > 10 and max(np.diff(first)) < 0.1
+
+
 @pytest.mark.slow
 def test_verbose_shows_where_a_curve_was_lost(program):
     lost = "import fcm.response.curve_batches as curve_batches\n" + (

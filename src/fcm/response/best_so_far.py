@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from fcm.accuracy.refinement import RefinedResponse
 from fcm.accuracy.unchecked_response import UncheckedResponse
+from fcm.continuation.follow import Progress
 from fcm.model.scene import FloatArray
 from fcm.results.result import INTERRUPTED
 from fcm.scene.errors import counted
@@ -16,18 +17,29 @@ Tell = Callable[[str], None]  # what there is, and what is at work
 
 class BestSoFar:
     """Receives every response that has been traced, as `fcm.accuracy.refinement.OnTraced`; found is the
-    last, and stable (path,) whether each of its points is, once that is known."""
+    last, and stable (path,) whether each of its points is, once that is known.
 
-    def __init__(self, tell: Tell | None) -> None:
+    How often all is traced again nobody knows. So each response takes half of what is left of the progress.
+    """
+
+    def __init__(self, tell: Tell | None, progress: Progress | None = None) -> None:
         self.tell, self.error, self.next = tell, math.nan, 0
+        self.progress, self.left = progress, 1.0
         self.found: UncheckedResponse | None = None
         self.cut = False  # whether that does not come to its end
         self.stable: list[FloatArray] = []
 
     def __call__(self, found: UncheckedResponse, error: float, more: tuple[int, ...]) -> None:
         self.found, self.error, self.next, self.stable = found, error, len(more), []
+        self.left *= 0.5
+        self.covered(0.0)
         if self.tell is not None:
             self.tell(f"{self._harmonics_reached()}; now {self._missing()}")
+
+    def covered(self, share: float) -> None:
+        """A response that is traced has come to a share of the range of frequencies."""
+        if self.progress is not None:
+            self.progress(1.0 - self.left * (1.0 - 0.5 * min(share, 1.0)))
 
     def take_stability(self, found: UncheckedResponse, stable: list[FloatArray]) -> None:
         """The same response with its stability, which more harmonics may still confirm."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -64,7 +63,8 @@ class Work:
                 saved, begin = _save(curves, saved, report), time.monotonic()
             try:
                 report(number / len(group), "")
-                curve = traced_curve(scene, self.request, tell=partial(report, number / len(group)))
+                shown = _Shown(report, number, len(group))
+                curve = traced_curve(scene, self.request, tell=shown.tell, progress=shown.progress)
             except KeyboardInterrupt as stopped:
                 _save(curves, saved, report)
                 if isinstance(stopped, Interrupted):
@@ -76,6 +76,25 @@ class Work:
     def _kept(self, curve: Curve) -> Curve:
         """What is kept of a curve."""
         return without_points(curve, self.samples) if self.peaks_only else curve
+
+
+class _Shown:
+    """The progress of one curve of a group: its share, and what is said beside it."""
+
+    def __init__(self, report: Report, number: int, count: int) -> None:
+        self.report, self.number, self.count = report, number, count
+        self.share, self.text = 0.0, "being traced"
+
+    def tell(self, text: str) -> None:
+        self.text = text
+        self.show()
+
+    def progress(self, share: float) -> None:
+        self.share = max(self.share, share)
+        self.show()
+
+    def show(self) -> None:
+        self.report((self.number + self.share) / self.count, self.text)
 
 
 def _known(group: Group, saved: Sequence[Any]) -> list[Curve]:

@@ -23,6 +23,7 @@ from fcm.accuracy.unchecked_response import ResponseInterrupted, points_of
 from fcm.branches.options import FOLDS
 from fcm.contact.contact_law import ContactLawError
 from fcm.continuation import Mark
+from fcm.continuation.follow import Progress
 from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.response_quantities import ContactRecord, PointRecord, recorded, table_errors
 from fcm.harmonic_balance.rounding import with_precise_fundamental
@@ -59,8 +60,10 @@ def traced_curve(
     wanted: Request = ONE_HARMONIC,
     poll: Callable[[], None] | None = None,
     tell: Tell | None = None,
+    progress: Progress | None = None,
 ) -> Curve:
-    """The response curve of a scene without a sweep; poll is called now and then, tell with what there is.
+    """The response curve of a scene without a sweep; poll is called now and then, tell with what there is,
+    and progress with the share that is done.
 
     Raises
     ------
@@ -69,7 +72,7 @@ def traced_curve(
     """
     from fcm.response.curve_batches import lost_curve
 
-    begin, so_far = time.perf_counter(), BestSoFar(tell)
+    begin, so_far = time.perf_counter(), BestSoFar(tell, progress)
     try:
         curve = _traced_curve(scene, wanted, poll, so_far)
     except ContactLawError as useless:  # of a motion that was not tried before
@@ -126,9 +129,15 @@ def _traced_curve(scene: Scene, wanted: Request, poll: Callable[[], None] | None
     try:
         check_contacts_can_close(system)
         found = (
-            refined_response(system, wanted.accuracy, options=wanted.options.refinement, on_traced=so_far)
+            refined_response(
+                system,
+                wanted.accuracy,
+                so_far.covered,
+                options=wanted.options.refinement,
+                on_traced=so_far,
+            )
             if by_need
-            else with_given_harmonics(system, on_traced=so_far)
+            else with_given_harmonics(system, so_far.covered, on_traced=so_far)
         )
     except RestError as nowhere:
         return lost_curve(scene, str(nowhere))
