@@ -3,7 +3,6 @@
 import json
 import os
 import re
-import time
 import warnings
 
 import click
@@ -38,6 +37,7 @@ def imported_by(*args):
     "args", [["--help"], ["--version"], ["plot", "--help"], ["respond", "--help"], ["tabulate", "--help"]]
 )
 def test_help_imports_no_numerics(args):
+    """Which take ten times as long as the help."""
     assert not imported_by(*args) & HEAVY
 
 
@@ -68,15 +68,6 @@ def test_drawing_and_xarray_are_not_imported_by_respond(scene):
         "pandas",
         "xarray",
     }
-
-
-def test_help_is_quick():
-    def seconds():
-        begin = time.perf_counter()
-        assert python(*AS_A_MODULE, "--help").code == 0
-        return time.perf_counter() - begin
-
-    assert min(seconds() for _ in range(3)) < 0.5  # a busy machine; alone it needs 0.05
 
 
 @pytest.mark.parametrize("name", COMMANDS)

@@ -165,11 +165,11 @@ def test_what_would_hold_a_body_is_said_by_the_keys_that_the_scene_has():
 
 
 @pytest.mark.parametrize("n_0", [0.0, -5.0, -50.0])
-def test_a_body_that_no_contact_can_press_is_said_at_once(n_0):
+def test_a_body_that_no_contact_can_press_is_said_before_any_point(n_0):
     """Its one contact can only push it away: in the mean it bears nothing."""
     gap = {"tangential": "y", "normal": "x", "n_0": n_0}
     scene, found = curve(JENKINS, gap)
-    assert not found.complete and found.frequency.size == 0 and found.seconds < 5.0
+    assert not found.complete and found.frequency.size == 0
     assert "Rigid-body modes are at rest only while closed contacts hold them" in found.reason
     (by_level,) = trace_levels(scene, [0.5], (0.0, 1.0)).curves
     assert by_level.reason == found.reason

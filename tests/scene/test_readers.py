@@ -59,9 +59,9 @@ def folder(tmp_path, monkeypatch):
     )
     (site / "blade_reader.py").write_text(READERS)
     monkeypatch.syspath_prepend(site)
-    readers._installed.cache_clear()
+    readers.installed_readers.cache_clear()
     yield tmp_path
-    readers._installed.cache_clear()
+    readers.installed_readers.cache_clear()
 
 
 def loaded(folder, scene, held):

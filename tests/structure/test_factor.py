@@ -126,7 +126,7 @@ def test_fronts_keep_one_triangle():
     K = bricks(12, 8, 8)[0]
     tree = tree_of(K)
     factor = Factor(K, tree)
-    kept = sum(front.pivots.size + front.beneath.size for front in factor._fronts)
+    kept = sum(front.pivots.size + front.beneath.size for front in factor.fronts)
     assert kept == tree.entries < 0.8 * filled(K, tree.order)
 
 

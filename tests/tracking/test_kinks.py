@@ -61,16 +61,16 @@ def test_a_circle_on_which_there_is_no_motion_leads_nowhere(blind, ways):
 def test_from_a_kink_a_curve_goes_on_only_along_a_line_that_leads_away(setup, point, cosine, taken):
     """A curve crosses the circle in both cases; its angle with the radius tells whether it is the way on."""
     follower = Pieces(setup, PEAK)
-    follower._switch_equations(None)
-    follower._measure(point.z)
-    assert follower._solve(point.z, follower.held)
-    follower._accept()
-    follower.points = [follower._point(follower.z, follower.t)]
+    follower.switch_equations(None)
+    follower.measure_at(point.z)
+    assert follower.solve(point.z, follower.held)
+    follower.accept()
+    follower.points = [follower.point_at(follower.z, follower.t)]
     there, scale = follower.z, np.array(follower.newton.scale)
     aside = np.eye(there.size)[-1] - follower.t[-1] * follower.t
     radius = cosine * follower.t + np.sqrt(1.0 - cosine**2) * aside / np.linalg.norm(aside)
     follower.z = there - RADIUS * scale * radius
-    assert (follower._turn_to(there, RADIUS) is not None) == taken
+    assert (follower.turn_to(there, RADIUS) is not None) == taken
 
 
 def test_where_the_response_crosses_itself_there_is_a_direction_and_no_peak(setup, point, monkeypatch):

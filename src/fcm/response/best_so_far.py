@@ -63,9 +63,8 @@ class BestSoFar:
 
     def reason(self) -> str:
         """Why the curve is not complete, and what is missing."""
-        missing = (
-            f" before it was traced with {self.next}" if self.next else " before its stability was known"
-        )
+        unknown = " before its stability was confirmed" if self.stable else " before its stability was known"
+        missing = f" before it was traced with {self.next}" if self.next else unknown
         missing = " before it came to its end" if self.cut else missing
         lacks = "not confirmed by more harmonics" if self.stable else "missing"
         part, reached = "the part up to there" if self.cut else "the curve", self._harmonics_reached()

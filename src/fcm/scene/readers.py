@@ -24,16 +24,16 @@ GROUP = "fcm.readers"
 
 def own_reader(ending: str) -> EntryPoint | None:
     """That of files with an ending, such as ".blade"; None if there is none."""
-    return _installed().get(ending.lower().removeprefix(".")) if ending else None
+    return installed_readers().get(ending.lower().removeprefix(".")) if ending else None
 
 
 def own_endings() -> tuple[str, ...]:
     """The endings for which there is one, in order."""
-    return tuple(f".{name}" for name in sorted(_installed()))
+    return tuple(f".{name}" for name in sorted(installed_readers()))
 
 
 @cache
-def _installed() -> dict[str, EntryPoint]:
+def installed_readers() -> dict[str, EntryPoint]:
     return {one.name.lower(): one for one in entry_points(group=GROUP)}
 
 

@@ -57,19 +57,19 @@ class Factor:
         """
         matrix = scipy.sparse.csc_array(matrix)
         self._tree = tree or tree_of(matrix)
-        self._fronts: list[_Front] = []
+        self.fronts: list[_Front] = []
         order = self._tree.order
         lower = scipy.sparse.csc_array(scipy.sparse.tril(matrix[order][:, order]))
         del matrix
         self._eliminate(lower)
-        self.negative = sum(front.negative for front in self._fronts)
+        self.negative = sum(front.negative for front in self.fronts)
 
     def solve(self, loads: Array) -> Array:
         """The solution (row,) or (row, load) of A x = loads."""
         loads = np.asarray(loads)
         order, begin = self._tree.order, self._tree.begin
         table = loads.reshape(order.size, -1)[order].astype(np.result_type(self._kind, loads), copy=False)
-        passed = list(zip(pairwise(begin), self._tree.below, self._fronts, strict=True))
+        passed = list(zip(pairwise(begin), self._tree.below, self.fronts, strict=True))
         for (first, last), below, front in passed:
             table[first:last] = mine = front.forward(table[first:last])
             if below.size:
@@ -102,7 +102,7 @@ class Factor:
             for rows, left in waiting.pop(number, ()):
                 _add(full, place[rows], left)
             front, left = _eliminated(full, count, scale)
-            self._fronts.append(front)
+            self.fronts.append(front)
             if below.size:
                 waiting.setdefault(self._tree.parent[number], []).append((below, left))
 

@@ -32,9 +32,9 @@ class CornerCrossing:
         self.values = sorted({*setup.span, *setup.user_values})
         self.kinks, self.first = kinks(setup), self.options.step.initial_step
         self.held = np.eye(self.smooth.n + 2)[-1]
-        self._switch_equations(None)
+        self.switch_equations(None)
 
-    def _switch_equations(self, at: Condition | None) -> None:
+    def switch_equations(self, at: Condition | None) -> None:
         """Go on with the equation of a corner, or with that of the smooth curve."""
         self.corner = None if at is None else Corner(self.smooth, at)
         self.newton = Newton(self.smooth if self.corner is None else self.corner.problem)
@@ -43,11 +43,11 @@ class CornerCrossing:
         """Whether the point found is a corner that is what is tracked; any is, that is not a corner."""
         return self.corner is None or self.corner.holds(np.array(self.newton.z))
 
-    def _solve(self, guess: FloatArray, row: FloatArray) -> bool:
+    def solve(self, guess: FloatArray, row: FloatArray) -> bool:
         self.newton.z[:], self.newton.row[:] = guess, row
         return bool(self.newton.correct(1e-3)) and bool(np.isfinite(self.newton.z).all())
 
-    def _measure(self, z: FloatArray) -> None:
+    def measure_at(self, z: FloatArray) -> None:
         """Units, and the row of the tangent, at a point."""
         self.smooth.measure(z)
         if self.corner is not None:
@@ -56,18 +56,18 @@ class CornerCrossing:
             self.corner.problem.measure(z)
         self.newton.scale[:] = self.smooth.scale
 
-    def _accept(self) -> None:
+    def accept(self) -> None:
         """Go on from the point found."""
         self._go_to(np.array(self.newton.z), np.asarray(self.newton.tangent) * np.asarray(self.newton.scale))
 
     def _go_to(self, z: FloatArray, direction: FloatArray) -> None:
         """Go on from a point with a direction in the units of z."""
         self.z = np.array(z)
-        self._measure(self.z)
+        self.measure_at(self.z)
         t = direction / np.asarray(self.newton.scale)
         self.t = t / np.linalg.norm(t)
 
-    def _point(self, z: FloatArray, t: FloatArray) -> TrackedPoint:
+    def point_at(self, z: FloatArray, t: FloatArray) -> TrackedPoint:
         at = None if self.corner is None else self.corner.at
         return TrackedPoint(z, t * np.asarray(self.newton.scale), at)
 
@@ -112,8 +112,8 @@ class CornerCrossing:
     def _pass_kink(self) -> bool | Ending:
         """Go on just beyond a kink that the curve has come to."""
         row = np.sign(self.t[-1]) * self.held
-        if self._solve(self._past_kink(self.z, row), row) and self._holds():
-            self._accept()
+        if self.solve(self._past_kink(self.z, row), row) and self._holds():
+            self.accept()
             return True
         return self._pass_on_circle()
 
@@ -129,8 +129,8 @@ class CornerCrossing:
         z, before, known = self.z, float(self.t[-1]), list(self.points)
         came = self.t * np.asarray(self.newton.scale)
         for at in self._corners_near(z):
-            self._switch_equations(at)
-            self._measure(z)
+            self.switch_equations(at)
+            self.measure_at(z)
             assert self.corner is not None
             self.corner.problem.evaluate(z)
             side = int(self.corner.problem.residual[-1] > 0.0)
@@ -144,8 +144,8 @@ class CornerCrossing:
             if ending and self._leave_corner(there, side, came, before):
                 return True
             self.points[:] = known
-        self._switch_equations(None)
-        self._measure(z)
+        self.switch_equations(None)
+        self.measure_at(z)
         return False
 
     def _retreat_before(self, corner: FloatArray) -> None:
@@ -161,11 +161,11 @@ class CornerCrossing:
         """As `_keep_values`, by the equations of the smooth curve, up to a corner."""
         if not any(self._values_between(self.z, corner)):
             return True
-        self._switch_equations(None)
-        self._measure(self.z)
+        self.switch_equations(None)
+        self.measure_at(self.z)
         ending = self._keep_values(self.options.corner_distance, corner)
-        self._switch_equations(at)
-        self._measure(self.z)
+        self.switch_equations(at)
+        self.measure_at(self.z)
         return ending
 
     def _is_ahead(self, corner: FloatArray) -> bool:
@@ -193,11 +193,11 @@ class CornerCrossing:
         scale, t = np.array(self.newton.scale), found[1]
         ways = [t, -t] if t @ (came / scale) > 0.0 else [-t, t]
         for way in ways:
-            if self._solve(z + scale * self.options.departure_lengths[1] * way, way) and self._holds():
+            if self.solve(z + scale * self.options.departure_lengths[1] * way, way) and self._holds():
                 self.newton.z[:], self.newton.tangent[:] = z, way
-                self._accept()
+                self.accept()
                 self.first = self.options.step.initial_step
-                self.points.append(replace(self._point(z, way), switch=True, turn=before * way[-1] < 0.0))
+                self.points.append(replace(self.point_at(z, way), switch=True, turn=before * way[-1] < 0.0))
                 return True
         return False
 
@@ -206,22 +206,22 @@ class CornerCrossing:
         corner = self.corner
         assert corner is not None
         for leap in self.options.departure_lengths:
-            self._switch_equations(corner.at)
-            self._measure(z)
+            self.switch_equations(corner.at)
+            self.measure_at(z)
             there = self.corner.special_root(z, None, sign * leap) if self.corner is not None else None
             if there is None:
                 continue
-            self._switch_equations(None)
-            self._measure(there)
+            self.switch_equations(None)
+            self.measure_at(there)
             row = (there - z) / np.asarray(self.newton.scale)
-            if self._solve(there, row / np.linalg.norm(row)) and self.newton.moved < self.options.max_move:
-                self._accept()
+            if self.solve(there, row / np.linalg.norm(row)) and self.newton.moved < self.options.max_move:
+                self.accept()
                 self.first = leap
                 turn = bool(before * self.t[-1] < 0.0)
-                self.points += [TrackedPoint(z, came, None, turn, switch=True), self._point(self.z, self.t)]
+                self.points += [TrackedPoint(z, came, None, turn, switch=True), self.point_at(self.z, self.t)]
                 return True
-        self._switch_equations(corner.at)
-        self._measure(z)
+        self.switch_equations(corner.at)
+        self.measure_at(z)
         return False
 
     def _leave_along_smooth(self) -> bool | Ending:
@@ -249,7 +249,7 @@ class CornerCrossing:
             for change in Circle(problem, self.z, self.t, radius).changes(back):
                 if change.jump:
                     ending = Ending.CORNER
-                elif (taken := self._turn_to(change.z, radius)) is not None:
+                elif (taken := self.turn_to(change.z, radius)) is not None:
                     return taken
         return ending
 
@@ -264,12 +264,12 @@ class CornerCrossing:
             near = point.z
         return None
 
-    def _turn_to(self, there: FloatArray, radius: float) -> bool | Ending | None:
+    def turn_to(self, there: FloatArray, radius: float) -> bool | Ending | None:
         """Go on to a point on a circle; None if it is none of the curve."""
         came, last = float(self.t[-1]), self.points[-1]
         row = (there - self.z) / np.asarray(self.newton.scale)
         row /= np.linalg.norm(row)
-        if not self._solve(there, row) or self.newton.moved > self.options.radius_tolerance * radius:
+        if not self.solve(there, row) or self.newton.moved > self.options.radius_tolerance * radius:
             return None
         if np.asarray(self.newton.tangent) @ row < self.options.min_radial_cosine:
             return None
@@ -277,7 +277,7 @@ class CornerCrossing:
         self.points[-1] = replace(last, turn=last.turn or came * t[-1] < 0.0)
         ending = self._keep_values(radius, z)
         if ending is True:
-            self.points.append(self._point(z, t))
+            self.points.append(self.point_at(z, t))
             self._go_to(z, self.points[-1].direction)
             self.first = radius
             return True
@@ -291,10 +291,10 @@ class CornerCrossing:
             ending = self._ends(i, value, other[i] - one[i])
             guess, row = one + part * (other - one), np.zeros(one.size)
             guess[i], row[i] = value, np.sign(other[i] - one[i])
-            if not self._solve(guess, row) or self.newton.moved > step:
+            if not self.solve(guess, row) or self.newton.moved > step:
                 del self.points[known:]
                 return False
-            point = self._point(np.array(self.newton.z), np.array(self.newton.tangent))
+            point = self.point_at(np.array(self.newton.z), np.array(self.newton.tangent))
             point.z[i] = value
             self.points.append(replace(point, user_point=i == -1))
             if ending is not None:

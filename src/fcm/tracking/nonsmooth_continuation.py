@@ -55,40 +55,40 @@ class Pieces(CornerCrossing):
         return point
 
     def _landed(self, z: FloatArray) -> TrackedPoint | None:
-        self._measure(z)
+        self.measure_at(z)
         for at in self._corners_near(z):
-            self._switch_equations(at)
-            self._measure(z)
+            self.switch_equations(at)
+            self.measure_at(z)
             if (
-                self._solve(z, self.held)
+                self.solve(z, self.held)
                 and self.newton.moved < self.options.corner_distance
                 and self._holds()
             ):
                 return self._held(z)
-        self._switch_equations(None)
-        self._measure(z)
-        if self._solve(z, self.held) and self.newton.moved < self.options.max_correction:
+        self.switch_equations(None)
+        self.measure_at(z)
+        if self.solve(z, self.held) and self.newton.moved < self.options.max_correction:
             return self._held(z)
         return None
 
     def _held(self, z: FloatArray) -> TrackedPoint:
         """The point found with s held, which is as it was but for rounding."""
         self.newton.z[-1] = z[-1]
-        return self._point(np.array(self.newton.z), np.array(self.newton.tangent))
+        return self.point_at(np.array(self.newton.z), np.array(self.newton.tangent))
 
     def run(self, start: TrackedPoint, forward: bool) -> tuple[list[TrackedPoint], Ending]:
         """See `follow_special_point`."""
-        self._switch_equations(start.corner)
-        self._measure(start.z)
+        self.switch_equations(start.corner)
+        self.measure_at(start.z)
         row, z = self.held if forward else -self.held, np.array(start.z)
         if z[-1] in self.kinks:
             z = self._past_kink(z, row)
-        if not self._solve(z, row):
+        if not self.solve(z, row):
             return [], Ending.STALLED
         self.newton.z[-1] = z[-1]
-        self._accept()
+        self.accept()
         first, heading = self.z, self.t * np.asarray(self.newton.scale)
-        self.points = [self._point(self.z, self.t)]
+        self.points = [self.point_at(self.z, self.t)]
         if z[-1] != start.z[-1]:
             self.points.insert(0, start)
         if self._leaves():
@@ -198,8 +198,8 @@ class Pieces(CornerCrossing):
         row[-2] = np.sign(self.t[-2]) or 1.0
         guess = np.array(self.z)
         guess[-2] = omega
-        if self._solve(guess, row) and self.newton.moved < self.options.step.initial_step:
-            point = self._point(np.array(self.newton.z), np.array(self.newton.tangent))
+        if self.solve(guess, row) and self.newton.moved < self.options.step.initial_step:
+            point = self.point_at(np.array(self.newton.z), np.array(self.newton.tangent))
             point.z[-2] = omega
             self.points[-1] = replace(point, turn=self.points[-1].turn, user_point=self.points[-1].user_point)
         return Ending.RANGE
