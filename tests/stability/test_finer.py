@@ -43,7 +43,7 @@ def test_halves_held_together_by_contacts_have_the_further_harmonics_that_are_ba
     few = Multipliers(System(scene), omega)
     finer = few.finer
     finer.at(only(scene, omega, (1,)))
-    harmonics = tuple(int(h) for h in finer.seen.harmonics)
+    harmonics = tuple(int(h) for h in finer.receptance.harmonics)
     z = only(scene, omega, harmonics)
     width = 2 + 4 * len(harmonics)
     added, balanced = (np.reshape(x, (contacts, width))[:, 6:] for x in (finer.x, z[:-1]))

@@ -7,8 +7,8 @@ from fcm.structure.receptance cimport Receptance
 cdef void apply_to_forces(Receptance receptance, double[::1] force, double[::1] out) noexcept
 cdef void apply_to_tangents(Receptance receptance, double[:, :, ::1] tangent, double[:, ::1] out) noexcept
 cdef void slope(Receptance receptance, double[::1] force, double load, double[::1] out) noexcept
-cdef void subtract_external(Receptance receptance, double load, double[::1] out) noexcept
-cdef void subtract_external_slopes(Receptance receptance, double load, double[::1] out) noexcept
+cdef void apply_to_waves(Receptance receptance, double[:, :, ::1] G_re, double[:, :, ::1] G_im, double[::1] force, double[::1] out) noexcept
+cdef void subtract_external(Receptance receptance, double[:, ::1] X_re, double[:, ::1] X_im, double load, double[::1] out) noexcept
 
 cdef class Balance(Problem):
     cdef public Receptance receptance

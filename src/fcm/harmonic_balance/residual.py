@@ -45,23 +45,39 @@ def apply_to_forces(
     receptance: Receptance, force: cython.double[::1], out: cython.double[::1]
 ) -> cython.void:
     """Fill out (unknown,) with the answer to forces (unknown,)."""
+    p: cython.Py_ssize_t
+    q: cython.Py_ssize_t
+    for p in range(receptance.ports):
+        total: cython.double = 0.0
+        for q in range(receptance.ports):
+            total += receptance.static[p, q] * force[receptance.mean_at[q]]
+        out[receptance.mean_at[p]] = total
+    apply_to_waves(receptance, receptance.G_re, receptance.G_im, force, out)
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def apply_to_waves(
+    receptance: Receptance,
+    G_re: cython.double[:, :, ::1],
+    G_im: cython.double[:, :, ::1],
+    force: cython.double[::1],
+    out: cython.double[::1],
+) -> cython.void:
+    """Fill all but the means of out (unknown,) with G (harmonic, port, port) times the forces (unknown,)."""
     row: cython.Py_ssize_t
     f: cython.Py_ssize_t
     p: cython.Py_ssize_t
     q: cython.Py_ssize_t
     j: cython.Py_ssize_t
     for p in range(receptance.ports):
-        total: cython.double = 0.0
-        for q in range(receptance.ports):
-            total += receptance.static[p, q] * force[receptance.mean_at[q]]
-        out[receptance.mean_at[p]] = total
         for j in range(receptance.count):
             re: cython.double = 0.0
             im: cython.double = 0.0
             for q in range(receptance.ports):
                 f = receptance.wave_at[q] + receptance.stride * j
-                re += receptance.G_re[j, p, q] * force[f] - receptance.G_im[j, p, q] * force[f + 1]
-                im += receptance.G_im[j, p, q] * force[f] + receptance.G_re[j, p, q] * force[f + 1]
+                re += G_re[j, p, q] * force[f] - G_im[j, p, q] * force[f + 1]
+                im += G_im[j, p, q] * force[f] + G_re[j, p, q] * force[f + 1]
             row = receptance.wave_at[p] + receptance.stride * j
             out[row], out[row + 1] = re, im
 
@@ -116,46 +132,24 @@ def slope(
 ) -> cython.void:
     """Fill out (unknown,) with the derivative by the frequency of the answer to forces, less that to a level
     of the external ones; the means have none."""
-    row: cython.Py_ssize_t
-    f: cython.Py_ssize_t
     p: cython.Py_ssize_t
-    q: cython.Py_ssize_t
-    j: cython.Py_ssize_t
     for p in range(receptance.ports):
         out[receptance.mean_at[p]] = 0.0
-        for j in range(receptance.count):
-            row = receptance.wave_at[p] + receptance.stride * j
-            re: cython.double = 0.0
-            im: cython.double = 0.0
-            for q in range(receptance.ports):
-                f = receptance.wave_at[q] + receptance.stride * j
-                re += receptance.dG_re[j, p, q] * force[f] - receptance.dG_im[j, p, q] * force[f + 1]
-                im += receptance.dG_im[j, p, q] * force[f] + receptance.dG_re[j, p, q] * force[f + 1]
-            out[row], out[row + 1] = re, im
-    subtract_external_slopes(receptance, load, out)
+    apply_to_waves(receptance, receptance.dG_re, receptance.dG_im, force, out)
+    subtract_external(receptance, receptance.dX_re, receptance.dX_im, load, out)
 
 
 @cython.cfunc
 @cython.exceptval(check=False)
-def subtract_external(receptance: Receptance, load: cython.double, out: cython.double[::1]) -> cython.void:
-    """Take from out (unknown,) the answer to a level of the external forces."""
-    j: cython.int
-    p: cython.Py_ssize_t
-    for j in range(receptance.count):
-        k: cython.int = receptance.forced[j]
-        if k >= 0:
-            for p in range(receptance.ports):
-                row: cython.Py_ssize_t = receptance.wave_at[p] + receptance.stride * j
-                out[row] -= load * receptance.X_re[k, p]
-                out[row + 1] -= load * receptance.X_im[k, p]
-
-
-@cython.cfunc
-@cython.exceptval(check=False)
-def subtract_external_slopes(
-    receptance: Receptance, load: cython.double, out: cython.double[::1]
+def subtract_external(
+    receptance: Receptance,
+    X_re: cython.double[:, ::1],
+    X_im: cython.double[:, ::1],
+    load: cython.double,
+    out: cython.double[::1],
 ) -> cython.void:
-    """Take from out (unknown,) the derivative of that by the frequency."""
+    """Take from out (unknown,) the answer X (forced harmonic, port) to a level of the external forces, or its
+    derivative."""
     j: cython.int
     p: cython.Py_ssize_t
     for j in range(receptance.count):
@@ -163,8 +157,8 @@ def subtract_external_slopes(
         if k >= 0:
             for p in range(receptance.ports):
                 row: cython.Py_ssize_t = receptance.wave_at[p] + receptance.stride * j
-                out[row] -= load * receptance.dX_re[k, p]
-                out[row + 1] -= load * receptance.dX_im[k, p]
+                out[row] -= load * X_re[k, p]
+                out[row + 1] -= load * X_im[k, p]
 
 
 @cython.cclass
@@ -247,7 +241,9 @@ class Balance(Problem):
             self.answer.displace(self.force, self.residual)
         for p in range(self.ports):
             self.residual[self.receptance.mean_at[p]] -= self.share * self.rest[p]
-        subtract_external(self.receptance, self.load, self.residual)
+        subtract_external(
+            self.receptance, self.receptance.X_re, self.receptance.X_im, self.load, self.residual
+        )
         for i in range(self.unknowns):
             self.residual[i] += z[i]
         for i in range(self.unknowns + 1):
@@ -263,7 +259,9 @@ class Balance(Problem):
             return 0
         assert self.answer is not None
         self.answer.rate(self.force, self.by_frequency)
-        subtract_external_slopes(self.receptance, self.load, self.by_frequency)
+        subtract_external(
+            self.receptance, self.receptance.dX_re, self.receptance.dX_im, self.load, self.by_frequency
+        )
         return 0
 
     @cython.cfunc
