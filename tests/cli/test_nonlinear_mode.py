@@ -146,10 +146,13 @@ def test_an_interruption_keeps_the_modes_that_are_finished(fcm, scene):
 
 
 def test_loads_that_nothing_holds_are_said(fcm, scene):
-    """The first mode has no stiffness, and the contact holds it by its friction alone."""
+    """The first mode has no stiffness, and the contact holds it by its friction alone, 2 at most."""
     text = scene.read_text().replace("frequency = [1.0, 10.0]", "frequency = [0.0, 10.0]")
     text = text.replace("[[0.707, 0.707], [1.0, -0.5]]", "[[1.0, 0.0], [0.0, 1.0]]")
     scene.write_text(text + '\n[[load]]\ndof = "u"\nforce = 5.0\n')
+    done = fcm("respond", scene, "--mode", 1, "--level", "0.1:10")
+    assert done.code == 3 and "no equilibrium" in done.out and "friction is at most mu n" in done.out
+    scene.write_text(scene.read_text().replace("mu = 0.4", "mu = 0"))
     done = fcm("respond", scene, "--mode", 1, "--level", "0.1:10")
     assert done.code == 2 and "does not come to rest" in done.err
 

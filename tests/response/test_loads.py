@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.linalg
+import scipy.optimize
 
 import fcm
 from fcm.harmonic_balance.static_equilibrium import RestError, rest_of
@@ -202,7 +203,9 @@ def test_a_free_body_that_a_load_presses_onto_a_contact(before):
 def test_what_nothing_can_hold_is_refused_in_plain_words(tmp_path):
     adrift = BODY | {"frequency": [0.0, 0.0], "damping": 0.0}
     with pytest.raises(ResponseError, match="push the structure along a rigid-body mode that no contact"):
-        fcm.respond(scene_from_dict(body({"x": 0.1}, adrift, n_0=5.0)))
+        fcm.respond(scene_from_dict(body({"x": 0.1}, adrift, n_0=5.0, mu=0.0)))
+    (curve,) = trace(scene_from_dict(body({"x": 2.1}, adrift, n_0=5.0))).curves  # more than mu n_0
+    assert not curve.complete and "no equilibrium with the static loads" in curve.reason
     pulled = scene_from_dict(body({"y": -6.0}, n_0=1.0))  # off its contact
     with pytest.raises(RestError, match="no equilibrium"):
         rest_of(pulled)
@@ -329,11 +332,69 @@ def test_a_floating_plate_rests_where_contacts_balance_the_load_or_nowhere():
         f[i] = 7.0 * np.array([contact.tangential @ q, contact.second @ q])
         f[i] *= min(1.0, 0.3 * n[i] / np.hypot(*f[i]))
     assert n.sum() == pytest.approx(6.0, rel=1e-9)
-    turning = n @ [contact.normal[3] for contact in scene.contacts] + 0.4 * f[:, 0].sum()
-    assert turning == pytest.approx(1.8, rel=1e-9)
-    assert q[4:] * [9.0, 16.0, 25.0] == pytest.approx([f[:, 0].sum(), f[:, 1].sum(), 0.0], abs=1e-9)
+    assert n @ [contact.normal[3] for contact in scene.contacts] == pytest.approx(1.8, rel=1e-9)
+    assert f.sum(axis=0) == pytest.approx([0.0, 0.0], abs=1e-9)  # along x and y friction alone holds it
+    assert q[4:] * [9.0, 16.0, 25.0] == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
     with pytest.raises(RestError, match="no equilibrium"):
         rest_of(floating_plate(-6.0))
+
+
+PLACES = np.array([[-1.0, 0.3], [-0.4, -0.5], [0.1, 0.6], [0.8, -0.2], [1.2, 0.4]])
+
+
+def block_on_friction(push, amplitude=1e-4):
+    """Free but for five contacts, which bear different loads; a load presses it down and pushes it along."""
+    turn = np.linalg.qr(np.random.default_rng(5).normal(size=(5, 5)))[0]  # any basis of rigid-body modes
+    contacts = [
+        {"name": f"c{i}", "tangential": [{"x": 1.0, "rz": -y}, {"y": 1.0, "rz": x}],
+         "normal": {"z": 1.0, "ry": x}, "mu": 0.3, "k_u": 7.0, "k_v": 11.0, "n_0": 0.0}
+        for i, (x, y) in enumerate(PLACES.tolist())
+    ]  # fmt: skip
+    data = {
+        "modal": {"dofs": ["x", "y", "rz", "z", "ry"], "frequency": [0.0] * 5, "damping": 0.0,
+                  "shapes": turn.tolist()},
+        "contact": contacts,
+        "load": [{"dof": {"z": 1.0, "ry": 0.4}, "force": 9.0},
+                 {"dof": {"x": 0.8, "y": 0.6, "rz": 0.7}, "force": push}],
+        "force": [{"dof": "y", "amplitude": amplitude}],
+        "response": {"frequency": [0.7, 1.1], "harmonics": 1},
+    }  # fmt: skip
+    return scene_from_dict(data, "block")
+
+
+@pytest.mark.parametrize("push", [0.5, 2.0])
+def test_contacts_that_stick_hold_a_free_body_in_their_plane(push):
+    """As the sum of all forces, by a solver that knows neither modes nor shares: with the larger push some
+    slip. It was at x = y = 0, and what pushed it was refused, or not balanced."""
+    x, y = PLACES.T
+
+    def forces(q):
+        n = np.maximum(11.0 * (q[3] + x * q[4]), 0.0)
+        u = np.array([q[0] - y * q[2], q[1] + x * q[2]])
+        return 7.0 * u * np.minimum(1.0, 0.3 * n / (7.0 * np.hypot(*u))), n
+
+    def unbalanced(q):
+        (f_x, f_y), n = forces(q)
+        held = f_x.sum(), f_y.sum(), (x * f_y - y * f_x).sum(), n.sum(), (x * n).sum()
+        return np.array([0.8 * push, 0.6 * push, 0.7 * push, 9.0, 3.6]) - held
+
+    expected = scipy.optimize.root(unbalanced, [0.01, 0.01, 0.01, 0.15, 0.05])
+    assert np.abs(unbalanced(expected.x)).max() < 1e-9
+    (f_x, f_y), n = forces(expected.x)
+    slipping = np.hypot(f_x, f_y) > 0.3 * n * (1.0 - 1e-9)
+    assert slipping.any() == (push > 1.0) and not slipping.all()
+    scene = block_on_friction(push)
+    assert rest_of(scene)[0] @ scene.modal.shapes == pytest.approx(expected.x, rel=1e-7)
+    assert rest_of(scene)[1] == pytest.approx(f_x, rel=1e-7)
+    (curve,) = trace(scene).curves  # which hardly moves it
+    assert curve.complete and curve.mean == pytest.approx(
+        np.broadcast_to(expected.x, curve.mean.shape), rel=1e-3
+    )
+
+
+def test_a_load_in_the_plane_that_friction_cannot_hold_is_refused():
+    (curve,) = trace(block_on_friction(4.0)).curves  # 0.3 times the load of 9 is 2.7
+    assert not curve.complete and "no equilibrium with the static loads" in curve.reason
 
 
 def test_no_peaks_are_looked_for_where_only_loads_work():

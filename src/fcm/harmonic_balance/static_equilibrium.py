@@ -2,71 +2,132 @@
 
 The loads grow from nothing, all in proportion, with no harmonic force beside them. A closed contact resists
 with k_u (u - 0) as far as mu n allows, for it is unstressed without them, and with its k_v; what is a preload
-without the loads is one still. The harmonic balance has this equilibrium as the limit of small forces.
+without the loads is one still. So contacts that stick hold rigid-body modes that move none along its normal:
+such a mode rests where their friction balances the loads along it. Vibration leaves it there in the mean.
+The harmonic balance has this equilibrium as the limit of small forces.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from fcm.continuation import FollowOptions, Status, follow
 from fcm.continuation.corrector import Newton
 from fcm.continuation.problem import Problem
 from fcm.harmonic_balance.options import HARMONIC_BALANCE
-from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.structure.linear import Linear
 from fcm.structure.options import RIGID_BODY
 
 RIGID_BODY_FAULT = (
-    "the static loads push the structure along a rigid-body mode that no contact holds along its normal. "
-    "It does not come to rest. Hold it by a contact along its normal, or by a small frequency of that mode"
+    "the static loads push the structure along a rigid-body mode that no contact holds, nor its friction. "
+    "It does not come to rest. Hold it by a contact, or by a small frequency of that mode"
 )
 FLOATING = (
     "no contact is closed at rest, and contact forces cannot balance along the rigid-body modes. The first "
     "touch ends contact for good, so that there is no steady state. Rigid-body modes are at rest only while "
     "closed contacts hold them: give contacts a preload (n_0 above 0), or a static load that closes them"
 )
-NO_EQUILIBRIUM = "no equilibrium with the static loads was found. The contacts may not be able to hold them"
+NO_EQUILIBRIUM = (
+    "no equilibrium with the static loads was found. The contacts may not be able to hold them: they push and "
+    "do not pull, and friction is at most mu n"
+)
 
 
 class RestError(ValueError):
     """There is no equilibrium; the message says why."""
 
 
-class StaticLoadProblem(Problem):
-    """The balance without harmonic forces, followed in the share of the static loads.
+@dataclass(frozen=True)
+class Held:
+    """The structure in coordinates that the contacts at their stiffest hold: its modes, but of rigid-body
+    modes adrift those combinations that move no contact with friction.
 
-    Shares are measured by themselves, and below a unit by that.
+    modes (mode, coordinate); stiffness (coordinate,), 0 of rigid-body motions; ports (coordinate, port);
+    load (coordinate,).
+    """
+
+    modes: FloatArray
+    stiffness: FloatArray
+    ports: FloatArray
+    load: FloatArray
+
+    @classmethod
+    def of(cls, system: System) -> Held:
+        """That of a system."""
+        linear = system.linear
+        turn, count = _held_by_friction(linear, system.springs(stuck=True))
+        modes = np.hstack(
+            [np.eye(linear.natural.size)[:, ~linear.adrift], np.zeros((linear.natural.size, count))]
+        )
+        modes[linear.adrift, modes.shape[1] - count :] = turn[:, :count]
+        stiffness = np.append(linear.natural[~linear.adrift] ** 2, np.zeros(count))
+        return cls(modes, stiffness, modes.T @ linear.ports, modes.T @ linear.load)
+
+    def rigid_by(self, springs: FloatArray) -> bool:
+        """Whether springs (port,) hold all rigid-body motions."""
+        rigid = self.ports[self.stiffness == 0.0]
+        size = np.linalg.svd(rigid * (springs > 0.0), compute_uv=False)
+        held = np.count_nonzero(size > RIGID_BODY.min_normal_motion * size.max(initial=0.0))
+        return bool(held == len(rigid))
+
+
+def _held_by_friction(linear: Linear, springs: FloatArray) -> tuple[FloatArray, int]:
+    """A turn (adrift, adrift) of the rigid-body modes adrift, of which the first move contacts with friction,
+    and how many these are."""
+    turn, size, _ = np.linalg.svd(linear.ports[linear.adrift] * (springs > 0.0))
+    return turn, int(np.count_nonzero(size > RIGID_BODY.min_normal_motion * size.max(initial=0.0)))
+
+
+class StaticLoadProblem(Problem):
+    """Forces of the structure, the contacts and the static loads, followed in the share of the loads.
+
+    Unknowns are the coordinates of `Held`. Shares are measured by themselves, and below a unit by that.
     """
 
     def __init__(
-        self, balance: Balance, omega: float, unit: float = HARMONIC_BALANCE.rest.min_share_unit
+        self, system: System, held: Held, unit: float = HARMONIC_BALANCE.rest.min_share_unit
     ) -> None:
-        Problem.__init__(self, balance.unknowns, balance.margins, 0, balance.rank)
-        self.rooted, self.unit = balance.rooted, unit
-        self.balance, self.at_omega = balance, np.full(balance.unknowns + 1, omega)
-        self.by_share = np.zeros(balance.unknowns)
-        self.by_share[balance.layout.mean_at] = -np.asarray(balance.rest)
+        balance = system.new_balance(loaded=False)
         balance.load = 0.0
+        Problem.__init__(self, held.stiffness.size, balance.margins, 0)
+        self.rooted, self.unit, self.balance, self.held = balance.rooted, unit, balance, held
+        self.counted, self.mean_at, self.moved = system.linear.counted, system.layout.mean_at, 0.0
+        self.force = np.zeros(held.ports.shape[1])  # of the contacts, beyond their preloads
+        self.at = np.zeros(balance.unknowns + 1)
+        self.at[-1] = max(float(system.linear.natural.max(initial=0.0)), 1.0)  # any: nothing moves
+        self.stiffest = held.stiffness + held.ports**2 @ system.springs(stuck=True)
 
     def evaluate(self, z: FloatArray) -> int:
-        """Residual and derivatives."""
-        self.balance.evaluate(self._placed(z))
-        self.residual[:] = self.balance.residual
-        if not self.rank:
-            np.asarray(self.jacobian)[:] = self.balance.jacobian
-        np.asarray(self.jacobian)[:, -1] = self.by_share
+        """Residual and derivatives, each coordinate's over its stiffness with the contacts."""
+        y, share, d = np.asarray(z)[:-1], float(z[-1]), self.balance.directions
+        at = self._placed(z)
+        self.balance.evaluate(at)
+        tangent = np.array(self.balance.tangent)[:, :d, :d]
+        tangent[:, d - 1, d - 1] += self.counted
+        self.force[:] = np.asarray(self.balance.force)[self.mean_at]
+        self.force[d - 1 :: d] += self.counted * at[self.mean_at][d - 1 :: d]
+        ports, unit = self.held.ports, 1.0 / self.stiffest
+        by_contact = ports.reshape(y.size, -1, d)
+        yields = np.einsum("icp,cpq->icq", by_contact, tangent).reshape(y.size, -1)
+        stiffness = np.diag(self.held.stiffness) + yields @ ports.T
+        self.residual[:] = unit * (self.held.stiffness * y + ports @ self.force - share * self.held.load)
+        np.asarray(self.jacobian)[:, :-1] = unit[:, None] * stiffness
+        np.asarray(self.jacobian)[:, -1] = -unit * self.held.load
         return 0
 
     def measure(self, z: FloatArray) -> int:
-        """Scale."""
-        self.balance.measure(self._placed(z))
-        self.scale[:] = self.balance.scale
+        """Coordinates by the root mean square of the ports' displacements, the greatest so far."""
+        y, ports = np.asarray(z)[:-1], self.held.ports
+        self.moved = max(self.moved, float(np.sqrt(np.mean((y @ ports) ** 2))))
+        motion = np.abs(ports).max(axis=1)
+        own = np.where(motion > 0.0, self.moved / np.where(motion > 0.0, motion, 1.0), np.abs(y))
+        self.scale[:-1] = np.sqrt(y.size) * np.where(own > 0.0, own, 1.0)
         self.scale[self.unknowns] = max(abs(z[-1]), self.unit)
         return 0
 
@@ -77,23 +138,32 @@ class StaticLoadProblem(Problem):
         self.kind[:], self.angle[:] = self.balance.kind, self.balance.angle
         return 0
 
-    def factor(self, row: FloatArray, scale: FloatArray) -> float:
-        """The system closed by a row."""
-        self.balance.jacobian[:, :] = self.jacobian
-        return float(self.balance.factor(row, scale))
+    def balances_rigid_body(self, z: FloatArray, tolerance: float) -> bool:
+        """Whether contact forces balance the loads along all rigid-body motions.
 
-    def solve(self, right: FloatArray) -> int:
-        """Its solution for a right side."""
-        return int(self.balance.solve(right))
+        Where no contact holds one the equations are singular, and what solves them is rounding.
+        """
+        self.evaluate(z)
+        rigid = self.held.stiffness == 0.0
+        load, ports = float(z[-1]) * self.held.load[rigid], self.held.ports[rigid]
+        size = np.abs(load) + np.abs(ports) @ np.abs(self.force)
+        return bool((np.abs(load - ports @ self.force) <= tolerance * size.max(initial=0.0)).all())
 
     def _placed(self, z: FloatArray) -> FloatArray:
-        self.at_omega[:-1] = np.asarray(z)[:-1]
-        self.balance.share = float(z[-1])
-        return self.at_omega
+        self.at[self.mean_at] = np.asarray(z)[:-1] @ self.held.ports
+        return self.at
 
 
-def at_rest(system: System) -> FloatArray:
-    """Displacements (port,) at rest under the static loads of a system; zeros without any.
+class AtRest(NamedTuple):
+    """Displacements at rest under the static loads: of the ports (port,), and of the modes adrift (mode,),
+    where the friction of contacts that stick holds them; 0 of other modes."""
+
+    ports: FloatArray
+    adrift: FloatArray
+
+
+def at_rest(system: System) -> AtRest:
+    """Where a system is at rest under its static loads; zeros without any.
 
     Raises
     ------
@@ -101,29 +171,36 @@ def at_rest(system: System) -> FloatArray:
         If there is no equilibrium.
     """
     linear, ports = system.linear, system.layout.ports
-    if loads_move_rigid_body(linear):
+    nothing = AtRest(np.zeros(ports), np.zeros(linear.natural.size))
+    if not linear.load.any():
+        return nothing
+    if loads_move_rigid_body(linear, system.springs(stuck=True)):
         raise RestError(RIGID_BODY_FAULT)
-    if not linear.load.any() or not ports:
-        return np.zeros(ports)
+    if not ports:
+        return nothing
     options = system.options.rest
     single = System(system.scene, options=system.options)
-    omega = max(float(linear.natural.max(initial=0.0)), 1.0)  # any: nothing moves
-    for guess in _linear(single, options.initial_share):
-        problem = StaticLoadProblem(single.new_balance(), omega, options.min_share_unit)
-        start, span = np.append(guess, options.initial_share), (options.initial_share, 1.0)
+    held = Held.of(single)
+    for y in _linear(single, held, options.initial_share):
+        problem = StaticLoadProblem(single, held, options.min_share_unit)
+        start, span = np.append(y, options.initial_share), (options.initial_share, 1.0)
         path = follow(problem, start, span, options=FollowOptions(options.max_step))
         complete = path.status is Status.COMPLETE and path.z.shape[0] and path.parameter[-1] == 1.0
-        if complete and _balances_rigid_body(single, problem, path.z[-1]):
-            return path.z[-1][single.layout.mean_at]  # type: ignore[no-any-return]
-    for guess in _linear(single, 1.0):
-        problem = StaticLoadProblem(single.new_balance(), omega, options.min_share_unit)
-        newton, z = Newton(problem), np.append(guess, 1.0)
+        if complete and problem.balances_rigid_body(path.z[-1], options.balance_tolerance):
+            return _found(linear, held, path.z[-1][:-1])
+    for y in _linear(single, held, 1.0):
+        problem = StaticLoadProblem(single, held, options.min_share_unit)
+        newton, z = Newton(problem), np.append(y, 1.0)
         problem.measure(z)
         newton.scale[:], newton.z[:] = problem.scale, z
         newton.row[:] = np.eye(z.size)[-1]
-        if newton.correct(1.0) and _balances_rigid_body(single, problem, newton.z):
-            return np.asarray(newton.z)[single.layout.mean_at]
+        if newton.correct(1.0) and problem.balances_rigid_body(np.array(newton.z), options.balance_tolerance):
+            return _found(linear, held, np.array(newton.z)[:-1])
     raise RestError(NO_EQUILIBRIUM)
+
+
+def _found(linear: Linear, held: Held, y: FloatArray) -> AtRest:
+    return AtRest(y @ held.ports, np.where(linear.adrift, held.modes @ y, 0.0))
 
 
 def normal_forces_at_rest(scene: Scene) -> FloatArray:
@@ -137,10 +214,14 @@ def normal_forces_at_rest(scene: Scene) -> FloatArray:
     return np.maximum(System(scene).loads_at_rest, 0.0)
 
 
-def loads_move_rigid_body(linear: Linear) -> bool:
-    """Whether static loads push along a rigid-body mode that nothing holds."""
-    size = np.abs(linear.load)
-    return bool((size[linear.adrift] > RIGID_BODY.min_normal_motion * size.max(initial=0.0)).any())
+def loads_move_rigid_body(linear: Linear, springs: FloatArray) -> bool:
+    """Whether static loads push along a rigid-body mode that not even springs (port,) hold, those of contacts
+    that are all stuck."""
+    if not linear.adrift.any():
+        return False
+    turn, count = _held_by_friction(linear, springs)
+    loose = np.abs(turn.T @ linear.load[linear.adrift])[count:]
+    return bool((loose > RIGID_BODY.min_normal_motion * np.abs(linear.load).max()).any())
 
 
 def check_contacts_can_close(system: System) -> None:
@@ -175,45 +256,20 @@ def check_contacts_can_close(system: System) -> None:
         raise RestError(FLOATING)
 
 
-def _balances_rigid_body(system: System, problem: StaticLoadProblem, z: FloatArray) -> bool:
-    """Whether contact forces balance the loads along the rigid-body modes that contacts hold.
-
-    Where all these contacts open the equations are singular, and what solves them is rounding.
-    """
-    linear, mean = system.linear, system.layout.mean_at
-    problem.evaluate(z)
-    force, d = np.array(problem.balance.force)[mean], linear.directions_of_contact
-    force[d - 1 :: d] += linear.counted * np.asarray(z)[mean][d - 1 :: d]
-    rigid = (linear.natural == 0.0) & ~linear.adrift
-    load, ports = linear.load[rigid], linear.ports[rigid]
-    size = np.abs(load) + np.abs(ports) @ np.abs(force)
-    return bool((np.abs(load - ports @ force) <= system.options.rest.balance_tolerance * size).all())
-
-
-def _held(linear: Linear, closed: npt.NDArray[np.bool_]) -> bool:
-    """Whether closed contacts (contact,) hold the rigid-body modes that all of them would."""
-    rigid = (linear.natural == 0.0) & ~linear.adrift
-    size = np.linalg.svd(linear.normal[rigid] * (closed & (linear.counted > 0.0)), compute_uv=False)
-    return int((size > RIGID_BODY.min_normal_motion * size.max(initial=0.0)).sum()) == int(rigid.sum())
-
-
-def _linear(system: System, share: float) -> Iterator[FloatArray]:
-    """Unknowns with the contacts as they are without the loads, then all stuck, then all open."""
-    contacts, balance, layout = system.scene.contacts, system.new_balance(), system.layout
-    d = layout.directions
-    n_0 = np.array([c.n_0 for c in contacts])
-    static, rest = np.asarray(balance.receptance.static), share * np.asarray(balance.rest)
+def _linear(system: System, held: Held, share: float) -> Iterator[FloatArray]:
+    """Coordinates with the contacts as they are without the loads, then all stuck, then all open."""
+    n_0 = np.array([c.n_0 for c in system.scene.contacts])
+    d = system.layout.directions
     for closed in (n_0 > 0.0, np.ones(n_0.size, dtype=bool), np.zeros(n_0.size, dtype=bool)):
-        if not _held(system.linear, closed):
+        springs = system.springs(stuck=True) * np.repeat(closed, d)
+        if not held.rigid_by(springs):
             continue
-        stiffness = system.springs(stuck=True) * np.repeat(closed, d)
-        stiffness[d - 1 :: d] -= system.linear.counted
-        force = np.zeros(rest.size)  # of the normal springs where v = 0
+        force = np.zeros(springs.size)  # of the normal springs where v = 0
         force[d - 1 :: d] = np.where(closed, np.minimum(n_0, 0.0), -np.maximum(n_0, 0.0))
-        ports = np.linalg.solve(np.eye(rest.size) + static * stiffness, rest - static @ force)
-        x = np.zeros(layout.unknowns)
-        x[layout.mean_at] = ports
-        yield x
+        stiffness = np.diag(held.stiffness) + (held.ports * springs) @ held.ports.T
+        unit = 1.0 / np.sqrt(stiffness.diagonal())
+        right = unit * (share * held.load - held.ports @ force)
+        yield unit * np.linalg.solve(stiffness * unit[:, None] * unit, right)
 
 
 def rest_of(scene: Scene) -> tuple[FloatArray, FloatArray]:
@@ -233,6 +289,7 @@ def rest_of(scene: Scene) -> tuple[FloatArray, FloatArray]:
     balance.evaluate(z)
     force = np.asarray(balance.force)[balance.layout.mean_at]
     q = linear.flexibility @ (linear.load - linear.ports @ force)  # of mass 1, rigid ones turned
+    q += system.adrift_at_rest
     moved, rigid = q / np.sqrt(modal.mass), linear.natural == 0.0
     if rigid.any():
         displacements = linear.dofs[rigid].T @ q[rigid]

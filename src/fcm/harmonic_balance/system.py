@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -36,6 +36,9 @@ from fcm.structure.linear import ComplexArray, Linear, linear_of
 from fcm.structure.receptance import Receptance, TravellingReceptance
 from fcm.structure.ring import RingLinear
 from fcm.table.lookup import Table
+
+if TYPE_CHECKING:
+    from fcm.harmonic_balance.static_equilibrium import AtRest
 
 Options = TypeVar("Options")
 
@@ -150,11 +153,21 @@ class System:
         return self.layout_of(harmonics).with_harmonics(z, harmonics, self.harmonics)
 
     @cached_property
-    def rest(self) -> FloatArray:
-        """Displacements (port,) at rest under the static loads; see `harmonic_balance.static_equilibrium`."""
+    def _at_rest(self) -> AtRest:
+        """See `harmonic_balance.static_equilibrium`."""
         from fcm.harmonic_balance.static_equilibrium import at_rest  # which balances a system
 
         return at_rest(self)
+
+    @property
+    def rest(self) -> FloatArray:
+        """Displacements (port,) at rest under the static loads."""
+        return self._at_rest.ports
+
+    @property
+    def adrift_at_rest(self) -> FloatArray:
+        """Displacements (mode,) of the modes adrift at rest under the static loads; 0 of others."""
+        return self._at_rest.adrift if self.linear.adrift.any() else np.zeros(self.linear.natural.size)
 
     @cached_property
     def loads_at_rest(self) -> list[float]:
@@ -204,8 +217,8 @@ class System:
         balance.load = 1.0
         return balance
 
-    def new_balance(self) -> Balance:
-        """A problem of its own, to be followed in the frequency."""
+    def new_balance(self, loaded: bool = True) -> Balance:
+        """A problem of its own, to be followed in the frequency; loaded: with the static loads."""
         low, high = self.scene.frequency_range
         linear = self.linear
         rank = condensed_size(self, linear.ports.shape[1], len(self.harmonics))
@@ -227,9 +240,9 @@ class System:
             answer = ModalCompliance(receptance, linear.flexibility)
             stuck, yields, counted = self.springs(stuck=True), self.modal_compliance, linear.counted
             balance.condense(CondensedSystem(answer, tangent, yields, stuck, counted, options))
-        if self.scene.loads:
-            balance.rest[:] = linear.ports.T @ linear.flexibility @ linear.load
-            displacements.rest[:] = linear.dofs.T @ linear.flexibility @ linear.load
+        if self.scene.loads and loaded:
+            modes = linear.flexibility @ linear.load + self.adrift_at_rest
+            balance.rest[:], displacements.rest[:] = linear.ports.T @ modes, linear.dofs.T @ modes
         return balance
 
     @cached_property

@@ -1,9 +1,9 @@
 """Points that are no steady states, or not determined, because of a rigid-body mode.
 
-Friction does not depend on where a mode adrift is, so that the balance leaves its mean out. Where all
-contacts slip, nothing balances that: the structure creeps on. Contacts that stick hold it by residual
-friction, as long as their share does not make them slip. And while no closed contact carries any load along
-the other rigid-body modes, the structure floats in its gaps.
+Friction does not depend on where a mode adrift is, so that the balance leaves its mean where it is at
+rest. Where all contacts slip, nothing balances that: the structure creeps on. Contacts that stick hold it by
+residual friction, as long as their share does not make them slip. And while no closed contact carries any
+load along the other rigid-body modes, the structure floats in its gaps.
 """
 
 from __future__ import annotations
@@ -47,7 +47,8 @@ def hold_unknown(system: System, z: FloatArray, force: FloatArray) -> BoolArray:
 
 
 def _pushed(system: System, z: FloatArray, x: FloatArray, force: FloatArray) -> tuple[BoolArray, BoolArray]:
-    """Whether the mean friction on a mode adrift is not 0 and nothing holds it; and whether something may.
+    """Whether the mean friction on a mode adrift does not balance the static loads on it and nothing holds
+    it; and whether something may.
 
     x, force (point, contact, width) at points z (point, unknown + 1).
     """
@@ -58,6 +59,7 @@ def _pushed(system: System, z: FloatArray, x: FloatArray, force: FloatArray) -> 
         ports, at = linear.ports[:, along::d], first + 2 * along
         mean += force[:, :, along] @ ports.T
         size += np.hypot(force[:, :, at], force[:, :, at + 1]) @ np.abs(ports).T
+    mean -= linear.load
     least = system.options.rigid.friction_tolerance * size
     pushed: BoolArray = np.any(linear.adrift & (np.abs(mean) > least), axis=1)
     unknown, rows = np.zeros_like(pushed), np.flatnonzero(pushed)

@@ -59,7 +59,7 @@ class Mode:
         """Displacements of the modes under the static loads, (mode,)."""
         linear, force = self.system.linear, self.problem.contacts.means_at_rest()
         found: FloatArray = linear.flexibility @ (linear.load - linear.ports @ force)
-        return found
+        return found + self.system.adrift_at_rest
 
 
 def nonlinear_mode(

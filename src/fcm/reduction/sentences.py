@@ -48,4 +48,6 @@ def on_means(lighter: ReducedScenes) -> list[str]:
     if adrift == 0:
         return []
     what = counted(adrift, "rigid-body mode")
+    if any(scene.loads for scene in lighter.exact):
+        return [f"the mean of {what}, given as at rest under the static loads: friction alone holds it there"]
     return [f"the mean of {what}, given as 0: no contact holds it along its normal, so nothing depends on it"]

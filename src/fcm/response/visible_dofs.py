@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from fcm.harmonic_balance.static_equilibrium import RIGID_BODY_FAULT, loads_move_rigid_body
+from fcm.harmonic_balance.system import System
 from fcm.model.scene import Scene
 from fcm.response.request import ResponseError
 from fcm.results.result import Curve, Response
-from fcm.structure.linear import linear_of
 
 POINTS = ("amplitude", "fundamental", "phase", "mean", "error")  # of curves, arrays over the dofs
 ORBITS = ("cycle_least", "cycle_greatest", "family_least", "family_greatest")
@@ -20,8 +20,13 @@ CYCLES = ("displacement", "amplitude", "mean", "greatest", "least")  # of histor
 
 def check_solvable(scene: Scene) -> None:
     """Raise ResponseError for what no method can compute: static loads that nothing holds."""
-    if any(curve.loads and loads_move_rigid_body(linear_of(curve)) for curve in scene.each_curve()):
+    if any(curve.loads and _loads_move_rigid_body(curve) for curve in scene.each_curve()):
         raise ResponseError(f"{scene.name}: load: {RIGID_BODY_FAULT}")
+
+
+def _loads_move_rigid_body(curve: Scene) -> bool:
+    system = System(curve)
+    return loads_move_rigid_body(system.linear, system.springs(stuck=True))
 
 
 def visible(response: Response, scene: Scene) -> Response:
