@@ -95,11 +95,13 @@ def _draw_line(axes: Axes, line: Line, marker: str, colour: str) -> None:
 
 
 def _number(axes: Axes, line: Line, colour: str) -> None:
-    """The harmonics at the points of a line."""
+    """The harmonics at the points of a line, with a white edge over what they meet."""
+    from matplotlib.patheffects import withStroke
+
     for one in line.balanced:
         axes.annotate(
             f"{one.harmonics}", (one.milliseconds, one.error), (5, 3), textcoords="offset points",
-            fontsize=8, color=colour,
+            fontsize=8, color=colour, zorder=5, path_effects=[withStroke(linewidth=2.0, foreground="white")],
         )  # fmt: skip
 
 

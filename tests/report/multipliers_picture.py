@@ -42,7 +42,7 @@ def draw_multipliers(ways: Sequence[Way]) -> Figure:
         left.axhline(1.0, color="0.5", linewidth=0.6, linestyle="--")
         left.set_xlabel("frequency [rad/s]")
         left.set_ylabel("greatest multiplier")
-        left.legend()
+        figure.legend(loc="outside upper left", ncols=len(ways))
         angle = np.linspace(0.0, 2.0 * np.pi, 361)
         right.plot(np.cos(angle), np.sin(angle), color="0.5", linewidth=0.6, linestyle="--")
         last = ways[-1]
