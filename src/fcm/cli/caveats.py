@@ -105,7 +105,7 @@ def mirrored(summary: Mapping[str, Any]) -> str:
     return f"{count} {one} of unsymmetric motions: {other}, of the same amplitudes, {verb} not traced"
 
 
-def search_grid(summary: Mapping[str, Any]) -> str:
+def searched_levels(summary: Mapping[str, Any]) -> str:
     """Between which levels of the forces isolated branches were looked for; empty if nowhere."""
     found = [curve["levels_looked_at"] for curve in summary["curves"] if "levels_looked_at" in curve]
     if not found:

@@ -16,7 +16,7 @@ from fcm.cli.caveats import (
     nothing_stable,
     peaks_not_followed,
     residual_friction,
-    search_grid,
+    searched_levels,
     short_of_accuracy,
     symmetry_lost,
     tracked_uncertain,
@@ -101,7 +101,7 @@ def close(
         messages.info(cost_and_error(result))
     elif "tracked" in result:
         messages.info(track.cost(result))
-    if levels := search_grid(result):
+    if levels := searched_levels(result):
         messages.detail(levels)
     if resonant and (stuck := linear(result)):
         messages.info(stuck)

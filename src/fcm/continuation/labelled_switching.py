@@ -1,5 +1,7 @@
 """Steps along a curve whose margins are labels, which tell no distance to their change.
 
+A label is what hybrid systems call the discrete state: the number of the regime in which a contact moves.
+
 The length of a step is chosen by how far from its prediction the curve is, in the curve's own size: what is
 smaller than that is passed. A step that is good has no corner in it, whatever its labels are. One that is
 short and still not good has: the change of label is approached until it is met, and the curve is left in the

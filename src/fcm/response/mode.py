@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -87,14 +87,15 @@ def trace_modes(
     request = request_of(scene, harmonics, accuracy, options)
     levels = tuple(float(level) for level in force_levels)
     at = None if motion_at is None else tuple(float(one) for one in motion_at)
-    of_curves = (number, span, request, levels, at, anonymous(scene.each_curve()))
+    asked = ModeRequest(number, span, levels, at)
+    of_curves = (asked, request, anonymous(scene.each_curve()))
     mark = b"" if execution.keep is None else fingerprint("mode", *of_curves)
     try:
         curves = one_by_one(
             [
                 (
                     lost_curve(one, NOT_BEGUN, Cause.INTERRUPTED),
-                    partial(_curve, one, number, span, request, levels, at),
+                    partial(_curve, one, asked, request),
                 )
                 for one in scene.each_curve()
             ],
@@ -116,20 +117,23 @@ def check_free(scene: Scene) -> None:
     refuse_other_harmonics(scene, "what a nonlinear mode predicts")
 
 
-def _curve(
-    scene: Scene,
-    number: int,
-    span: tuple[float, float],
-    request: Request,
-    levels: tuple[float, ...],
-    at: tuple[float, ...] | None,
-    tell: Tell,
-) -> Curve:
+@dataclass(frozen=True)
+class ModeRequest:
+    """A nonlinear mode by its number, over a span of modal amplitudes; the levels of the forces at which its
+    resonances are wanted, and the modal amplitudes at which its motions are."""
+
+    number: int
+    span: tuple[float, float]
+    levels: tuple[float, ...] = ()
+    motion_at: tuple[float, ...] | None = None
+
+
+def _curve(scene: Scene, asked: ModeRequest, request: Request, tell: Tell) -> Curve:
     begin = time.perf_counter()
     system = request.system(scene)
     try:
         check_contacts_can_close(system)
-        mode = nonlinear_mode(system, number, span, scene.max_step)
+        mode = nonlinear_mode(system, asked.number, asked.span, scene.max_step)
     except RestError as nowhere:
         return lost_curve(scene, str(nowhere))
     (error, theirs), stopped = truncation(mode), ""
@@ -140,7 +144,7 @@ def _curve(
         count = len(enlarged.harmonics)
         try:
             tell(f"with {count} harmonics")
-            more = nonlinear_mode(enlarged, number, span, scene.max_step)
+            more = nonlinear_mode(enlarged, asked.number, asked.span, scene.max_step)
             if more.path.status is not Status.COMPLETE and mode.path.status is Status.COMPLETE:
                 break
             tell(f"the error with {count} harmonics")
@@ -148,12 +152,12 @@ def _curve(
         except KeyboardInterrupt:
             stopped = f"{INTERRUPTED} before it was known with {count} harmonics"
             break
-    curve = _recorded(mode, number, error, theirs, levels)
+    curve = _recorded(mode, asked, error, theirs)
     if request.harmonics is None and curve.complete and not _worst(error) <= request.accuracy:
         these = counted(len(mode.system.harmonics), "harmonic")
         curve.short_of = f"with {these} an estimated error of {_worst(error):.1e} remains"
-    if at is not None and curve.mode is not None:
-        curve.mode.motions = tuple(_motions(mode, at, levels))
+    if asked.motion_at is not None and curve.mode is not None:
+        curve.mode.motions = tuple(_motions(mode, asked.motion_at, asked.levels))
     if stopped:
         curve.complete, curve.reason, curve.cause = False, stopped, Cause.INTERRUPTED
     curve.seconds = time.perf_counter() - begin
@@ -165,9 +169,7 @@ def _worst(error: FloatArray) -> float:
     return float(known.max()) if known.size else np.inf
 
 
-def _recorded(
-    mode: Mode, number: int, error: FloatArray, theirs: FloatArray, levels: tuple[float, ...]
-) -> Curve:
+def _recorded(mode: Mode, asked: ModeRequest, error: FloatArray, theirs: FloatArray) -> Curve:
     system, path = mode.system, mode.path
     scene, first = system.scene, system.harmonics.index(1)
     empty = lost_curve(scene, "no motion was found at the least amplitude; try another")
@@ -205,27 +207,25 @@ def _recorded(
         evaluations=path.evaluations,
         harmonics=system.harmonics,
         harmonic=X if len(system.harmonics) > 1 else None,
-        mode=_along(mode, number, levels, ~np.logical_or.reduce([np.zeros(rows.size, bool), *lost.values()])),
+        mode=_along(mode, asked, ~np.logical_or.reduce([np.zeros(rows.size, bool), *lost.values()])),
         across=contact_motions(system, mode.contacts),
     )
     curve.greatest = greatest_of(curve)
     return curve
 
 
-def _along(
-    mode: Mode, number: int, levels: tuple[float, ...], steady: npt.NDArray[np.bool_]
-) -> NonlinearMode:
+def _along(mode: Mode, asked: ModeRequest, steady: npt.NDArray[np.bool_]) -> NonlinearMode:
     """What is a mode's own, and the response that it foretells at levels of the forces."""
     return NonlinearMode(
-        number=number,
+        number=asked.number,
         amplitude=mode.amplitude,
         damping=mode.damping,
         force=modal_force(mode),
         resonant_level=resonant_level(mode),
-        levels=levels,
-        flanks=np.stack([flanks(mode, level) for level in levels], axis=1),
+        levels=asked.levels,
+        flanks=np.stack([flanks(mode, level) for level in asked.levels], axis=1),
         folds=mode.amplitude[(mode.path.mark & Mark.FOLD) > 0].tolist(),
-        resonances=[one for level in levels for one in _resonances(mode, level)],
+        resonances=[one for level in asked.levels for one in _resonances(mode, level)],
         steady=steady,
     )
 
