@@ -151,6 +151,11 @@ def test_phases_that_are_none(phase):
     assert "force[0].phase: must be a number" in message and 'degrees are written "45deg"' in message
 
 
+def test_a_phase_with_the_sign_of_degrees_is_told_how_it_is_written():
+    message = refused(force=[{"dof": "1x", "amplitude": 1.0, "phase": "90 \u00b0"}])
+    assert 'degrees are written "90deg"' in message
+
+
 def test_forces_in_proportion_to_the_square_of_the_frequency():
     scene = read(force=[{"dof": "3x", "amplitude": 0.2, "proportional_to": "omega^2"}])
     assert scene.forces[0].power == 2

@@ -267,6 +267,7 @@ def test_one_pair_alone_is_swept_by_its_name():
         ({"nodes": [[40, 40]]}, "nodes[0]: is the same node twice, 40"),
         ({"nodes": [[40, ""]]}, "nodes[0]: must be two nodes, or one that touches the ground"),
         ({"k_u": "300 N/mm"}, 'k_u: "300 N/mm" has "N/mm" behind the number: write 300, without quotes'),
+        ({"mu": "30%"}, 'mu: "30%" has "%" behind the number: write 0.3, without quotes'),
         ({"k_u": "gone.txt"}, 'k_u: "gone.txt" is not there'),
         ({"nodes": [[40, 41], [50, 51], [41, 40]]}, "nodes[2]: is the same as nodes[0]; each is there once"),
         ({"nodes": [[40, 99]]}, 'nodes: node 99 has no degree of freedom along "x", "y", "z"'),

@@ -54,7 +54,7 @@ def test_an_empty_list_asks_for_no_more_than_those_of_few():
 @pytest.mark.parametrize(
     "output, words",
     [
-        (["7q"], 'response.output[0]: no degree of freedom matches "7q"'),
+        (["7q"], 'response.output[0]: no degree of freedom matches "7q"; there are "1x", "1y", '),
         (["1x", "99*"], 'response.output[1]: no degree of freedom matches "99*"'),
         (3, "response.output: must be a list of degrees of freedom, or of patterns"),
         ([3], 'response.output[0]: must be a degree of freedom or a pattern such as "40*", is 3'),

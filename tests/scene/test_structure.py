@@ -232,6 +232,7 @@ def test_a_node_and_a_direction_in_several_ways(name):
         ({"file": "dofs.txt"}, "structure: has both dofs and file"),
         ({"damping": -0.1}, "structure.damping: must be at least 0, is -0.1"),
         ({"damping": "high"}, "structure.damping: must be a ratio"),
+        ({"damping": "1 %"}, 'is "1 %"; it has "%" behind the number: write 0.01'),
         ({"damping": (-0.1 * K).tolist()}, "structure: the damping of mode 3 is negative"),
         ({"damping": {}}, "structure.damping: is empty"),
         ({"damping": {"mas": 1}}, 'structure.damping.mas: unknown key; did you mean "mass"?'),

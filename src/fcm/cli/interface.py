@@ -70,7 +70,9 @@ def contacts(
     if count > LAYOUT.panels:
         asked = (("--at", at), ("--amplitude", amplitude), ("--curve", curves))
         options = " and ".join(name for name, given in asked if len(given) > 1)
-        raise click.UsageError(f"{options} ask for {count} points; a picture has room for {LAYOUT.panels}.")
+        raise click.UsageError(
+            f"{count} points by {options} are too many: a picture has room for {LAYOUT.panels}."
+        )
     read = read_interface(file)
     points = [point for curve in curves for point in points_of(read, at, curve, amplitude)]
     where, axes = read.places, read.axes

@@ -12,7 +12,7 @@ from fcm import resources
 from fcm.model.ring import NEXT
 from fcm.model.scene import FloatArray
 from fcm.scene.cyclic import own_name, ring_names
-from fcm.scene.errors import quoted
+from fcm.scene.errors import choices, quoted
 from fcm.scene.excitation import BASE, DIRECTIONS, distributions, with_displacements
 from fcm.scene.files import Files
 from fcm.scene.mistuning import energy_of_matrices
@@ -201,7 +201,9 @@ def _matching(section: Section, key: str, pattern: object, dofs: Names | None) -
     if not matching:
         of_all = "" if dofs.find(pattern.partition("@")[0]) == "" or "@" not in pattern else OF_ALL_SECTORS
         hint = dofs.of_node(pattern)
-        said = f"no degree of freedom matches {quoted(pattern)}{of_all}{hint}"
+        said = (
+            f"no degree of freedom matches {quoted(pattern)}{of_all}{hint or f'; there are {choices(dofs)}'}"
+        )
         section.wrong(key, said, "" if hint else pattern, dofs)
     return matching
 

@@ -68,7 +68,7 @@ class Section:
         """The value as a number within the rule; nan after a mistake."""
         number = as_float(value)
         if number is None:
-            self.mistakes.add(path, f"must be a number, is {described(value)}{_of_text(value)}")
+            self.mistakes.add(path, f"must be a number, is {described(value)}{written_as(value)}")
             return nan
         fault = rule.fault(number)
         if fault:
@@ -83,7 +83,9 @@ class Section:
         degrees = number_in(value.removesuffix("deg").rstrip()) if value.endswith("deg") else None
         if degrees is None:
             what = f"must be a number, is the string {quoted(value)}"
-            self.wrong(key, f'{what}; degrees are written "45deg"')
+            number = number_in(value.rstrip("\u00b0 "))
+            asked = "45" if number is None or "\u00b0" not in value else f"{number:.12g}"
+            self.wrong(key, f'{what}; degrees are written "{asked}deg"')
         return nan if degrees is None else radians(degrees)
 
     def text(self, key: str, default: str | None = None) -> str:
@@ -204,10 +206,10 @@ def _combination(dofs: Names | None) -> str:
     return "{{ {} = 1.0, {} = -1.0 }}".format(*map(bare, two))
 
 
-def _of_text(value: object) -> str:
+def written_as(value: object) -> str:
     """What to write in the place of a string that is a number, or nearly one.
 
-    >>> _of_text("0.4"), _of_text("0,4"), _of_text("x")
+    >>> written_as("0.4"), written_as("0,4"), written_as("x")
     ('; write 0.4', '; it has a decimal comma: write 0.4', '')
     """
     text = value.strip() if isinstance(value, str) else ""

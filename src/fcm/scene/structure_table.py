@@ -19,7 +19,7 @@ from fcm.scene.matrix_file import is_matrix_file, read_matrix
 from fcm.scene.names import Names
 from fcm.scene.row_names import in_order, labels_of, row_names
 from fcm.scene.rules import ANY, NOT_NEGATIVE, RULES, as_float
-from fcm.scene.section import Section
+from fcm.scene.section import Section, written_as
 from fcm.structure.eigen import StructureError, system_of
 
 
@@ -205,7 +205,7 @@ def _damping(section: Section, files: Files, rows: int | None, dofs: Names | Non
     if as_float(value) is not None:
         return found | {"ratio": section.number("damping", RULES["damping"])}
     if isinstance(value, str) and not is_matrix_file(value):
-        section.wrong("damping", f"must be {right}, is {quoted(value)}")
+        section.wrong("damping", f"must be {right}, is {quoted(value)}{written_as(value)}")
         return found
     C = in_order(section, "damping", matrix_of(section, "damping", value, files), dofs)
     if C is not None and rows is not None and C.shape[0] != rows:
