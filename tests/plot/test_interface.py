@@ -191,7 +191,7 @@ def test_curves_of_a_sweep_are_columns_each_at_its_own_peak(tmp_path, fcm):
     assert "(amplitude = 0.01); 2 contacts: none takes energy" in done.err and "$" not in done.err
     few = [word for k in (0, 1, 2) for word in ("--curve", k)]
     many = [word for at in ("1.2", "1.3", "1.4") for word in ("--at", at)]
-    assert "ask for 9 points" in fcm("plot", "contacts", output, *few, *many).err
+    assert "9 points by --at and --curve are too many" in fcm("plot", "contacts", output, *few, *many).err
 
 
 def test_contacts_of_node_pairs_are_drawn_where_they_are(tmp_path):
