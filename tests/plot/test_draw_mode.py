@@ -7,6 +7,7 @@ import pytest
 from matplotlib.text import Text
 from tests.program import called
 
+from fcm.plot import draw_response, read_response
 from fcm.plot.mode import DrawnMode, DrawnModes, draw_modes, read_modes
 from fcm.plot.unfinished import Unfinished
 
@@ -144,6 +145,20 @@ def test_where_there_is_no_steady_state_a_mode_is_dotted(number, tmp_path):
     held = mode.amplitude[mode.steady].max()
     assert called("plot", "contacts", tmp_path / "m.nc").err.count(f"modal amplitude {held:.4g}") == 1
     assert f"modal amplitude {held:.4g}" in called("plot", "loop", tmp_path / "m.nc").err
+
+
+def test_a_mode_is_drawn_by_a_degree_of_freedom_as_a_plain_line(tmp_path):
+    """It was dotted as of unknown stability, above an empty panel of errors, with a cross where it begins."""
+    (tmp_path / "free.toml").write_text(FREE)
+    done = called(
+        "respond", tmp_path / "free.toml", "--mode", 2, "--level", "0.01:50", "-o", tmp_path / "m.nc"
+    )
+    assert done.code == 3
+    (axes,) = draw_response(read_response(tmp_path / "m.nc")).axes
+    line, cross = axes.lines
+    assert line.get_linestyle() == "-" and np.isfinite(line.get_ydata()).all()
+    assert cross.get_marker() == "x" and cross.get_xdata().tolist() == [line.get_xdata()[-1]]
+    assert axes.get_legend() is None
 
 
 def test_few_errors_have_a_line_and_no_panel():

@@ -189,8 +189,9 @@ def _response(dataset: Any) -> DrawnResponse:
     if not dofs:
         raise ValueError("it has no degree of freedom")
     frequency, amplitude = floats(variables["frequency"]), floats(variables["amplitude"])
+    free = "modal_amplitude" in variables  # motion, which is neither stable nor a response over a range
     stable, *errors = (
-        floats(variables[name]) if name in variables else None
+        floats(variables[name]) if name in variables and not free else None
         for name in ("stable", "table_error", "truncation_error")
     )
     regime = variables["regime"][:] if "regime" in variables else None
@@ -213,7 +214,7 @@ def _response(dataset: Any) -> DrawnResponse:
     measured = measured_of(variables)
     units, asked = swept_units(variables, swept), asked_for(getattr(dataset, "output", ""), dofs)
     unfinished = unfinished_of(dataset)
-    if level is not None:  # the range is of frequencies
+    if level is not None or free:  # the range is of frequencies
         unfinished = Unfinished(unfinished.reasons)
     return DrawnResponse(
         dofs, unit, curves, length, drawn, units, measured, asked, unfinished, fitted_of(dataset)
