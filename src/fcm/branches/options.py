@@ -55,7 +55,7 @@ class FoldOptions:
     report_interval: int = 16  # steps after which it is told what they took
     curve_tolerance: float = 0.3  # of a step: a known fold this near to a curve is on it
     work_fraction: float = 0.5  # of the work before, that all curves may take,
-    min_seconds: float = 0.2  # and seconds of work that they may in any case
+    min_seconds: float = 1.0  # and seconds of work that they may in any case
 
     def covers(self, level: float) -> bool:
         """Whether folds at a level are looked at."""
