@@ -117,6 +117,25 @@ def test_direction_and_orientation_are_those_of_the_whole_system(scene, options,
     assert newton.orientation == np.sign(np.linalg.det(whole))
 
 
+def test_orientation_does_not_hang_on_what_is_left_out_of_the_condensed_system():
+    """Condensed to one mode the determinant has another sign at some motions near the resonance."""
+    few = CondensationOptions(min_unknowns=1, max_fraction=1.0, compliance_limits=(10.0,))
+    problem, whole = (System(strip(), (1,), condensation=one).new_balance() for one in (few, WHOLE))
+    rng, condensed, found, expected = np.random.default_rng(2), [], [], []
+    for omega in np.linspace(0.9, 1.5, 25):
+        z = np.append(0.1 * rng.normal(size=problem.unknowns), omega)
+        row = rng.normal(size=z.size)
+        row /= np.linalg.norm(row)
+        for one, signs in ((problem, found), (whole, expected)):
+            one.measure(z)
+            newton = Newton(one)
+            newton.scale[:], newton.row[:], newton.z[:] = one.scale, row, z
+            assert newton.take_tangent()
+            signs.append(newton.orientation)
+        condensed.append(problem.factor(row, np.array(problem.scale)))
+    assert found == expected != condensed
+
+
 @pytest.mark.parametrize("harmonics", [(1,), (1, 3)])
 @pytest.mark.parametrize("scene", [mostly_stuck, mostly_open])
 def test_contacts_that_stay_stuck_or_open_are_condensed(scene, harmonics):

@@ -111,11 +111,11 @@ class BorderedSystem:
         size: cython.Py_ssize_t = self.problem.unknowns + 1
         total: cython.double = 0.0
         moved: cython.double = 0.0
-        self.orientation = self.sign
         for i in range(size):
             self.delta[i] = 0.0
         self.delta[size - 1] = 1.0
         self.solve()
+        self.orientation = self.problem.solved_sign() if self.problem.rank else self.sign
         for i in range(size):
             total += self.delta[i] * self.delta[i]
             moved += ((self.z[i] - self.guess[i]) / self.scale[i]) ** 2

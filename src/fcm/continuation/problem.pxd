@@ -28,6 +28,7 @@ cdef class Problem:
     cpdef int report(self, double[::1] z, double[::1] direction) except -1
     cpdef double factor(self, double[::1] row, double[::1] scale) except -2.0
     cpdef int solve(self, double[::1] right) except -1
+    cpdef double solved_sign(self) except -2.0
 
 cdef class Point:
     cdef public double[::1] z

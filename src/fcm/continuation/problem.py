@@ -121,6 +121,13 @@ class Problem:
         """Replace a right side (n + 1,) of the equations factored last by the solution, in their units."""
         return 0
 
+    @cython.ccall
+    @cython.exceptval(-2.0, check=False)
+    def solved_sign(self) -> cython.double:
+        """The sign of the determinant of the equations, where a direction of their curve was solved for last:
+        what was factored may be near to them only."""
+        return 0.0
+
 
 @cython.cclass
 class Point:

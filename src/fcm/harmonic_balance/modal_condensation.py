@@ -162,7 +162,7 @@ class CondensedSystem:
         self.choose_modes(retained_modes(yields, answer.receptance.ports, parts, options))
         self.linear_contacts = LinearContacts(answer, springs, counted)
         self.row, self.scale = np.zeros((2, tangent.shape[0] * tangent.shape[1] + 1))
-        self.omega = 0.0  # of what was factored
+        self.omega, self.sign = 0.0, 0.0  # of what was factored
 
     @property
     def by_contacts(self) -> bool:
@@ -185,9 +185,11 @@ class CondensedSystem:
         self.equations.set_closing_row(row, by, scale)
         if self.linear_contacts.choose(self.tangent, self.equations.rank):
             self.equations.held = self.linear_contacts
-            return self.linear_contacts.factor(self.row, by)
-        self.equations.held = None
-        return float(self.equations.factor())
+            self.sign = self.linear_contacts.factor(self.row, by)
+        else:
+            self.equations.held = None
+            self.sign = float(self.equations.factor())
+        return self.sign
 
     @np.errstate(invalid="ignore", over="ignore")
     def solve(self, right: FloatArray, step: bool = True) -> None:
@@ -206,14 +208,17 @@ class CondensedSystem:
         whole, found = right * self.scale, np.empty_like(right)
         whole[-1] = right[-1]
         self.equations.condensed(whole, found)
-        enough = self._tolerance(found, step and bool(right[:-1].any()))
+        is_step = bool(right[:-1].any())
+        enough = self._tolerance(found, step and is_step)
         while (self.by_contacts or self.modes < self.ranking.size) and np.isfinite(found).all():
-            if self._corrected(whole, found, enough):
+            done, turned = self._corrected(whole, found, enough)
+            if done:
+                self.sign *= 1.0 if is_step else turned
                 break
             if not self.by_contacts:
                 self.choose_modes(2 * self.modes)
             self.equations.held = None
-            self.equations.factor()
+            self.sign = float(self.equations.factor())
             if self.modes == self.ranking.size:  # that is the system itself
                 left, change = np.empty((2, right.size))
                 self.equations.multiply(found, left)
@@ -221,18 +226,20 @@ class CondensedSystem:
                 found += change
         np.divide(found, self.scale, out=right)
 
-    def _corrected(self, whole: FloatArray, found: FloatArray, enough: float) -> bool:
-        """Whether corrections of a solution, as long as they shrink, leave no more than enough.
+    def _corrected(self, whole: FloatArray, found: FloatArray, enough: float) -> tuple[bool, float]:
+        """Whether corrections of a solution, as long as they shrink, leave no more than enough; and -1 where
+        those of the first hold another sign of the determinant, else 1.
 
         Where a contact in a plane begins to slip its tangent has no bound: that takes some more of them, but
         no more modes at all other points.
         """
-        before, options = np.inf, self.options
+        before, turned, options = np.inf, 0.0, self.options
         while (left := self.equations.correct(whole, found, enough, options.max_corrections)) > enough:
+            turned = turned or self.equations.turned
             if not left < options.max_contraction * before:
-                return False
+                return False, turned
             before = left
-        return True
+        return True, turned or self.equations.turned
 
     def _tolerance(self, found: FloatArray, step: bool) -> float:
         """What a correction of a solution may leave, in units of scale; of a direction, which is no step,

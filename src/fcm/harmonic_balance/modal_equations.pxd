@@ -108,6 +108,7 @@ cdef class ModalEquations:
     cdef public object held
     cdef public int modes
     cdef public int rank
+    cdef readonly double turned
     cdef int contacts
     cdef int width
     cdef int each

@@ -150,7 +150,8 @@ class ModalEquations:
     """`choose_modes` modes, `set_closing_row` the system, `factor` it; tangent (contact, width, width) of
     the contacts' forces.
 
-    held: None, or what solves in the place of `condensed`; most: corrections of a solution at most.
+    held: None, or what solves in the place of `condensed`; most: corrections of a solution at most. turned:
+    -1 where, by the directions of the last of these, the determinant has another sign than the condensed one.
     """
 
     def __init__(self, answer: ModalCompliance, tangent: npt.NDArray[np.float64], most: int) -> None:
@@ -167,7 +168,7 @@ class ModalEquations:
         self.on_ports, self.moved = np.zeros((2, answer.parts, ports))
         self.basis, self.R = np.zeros((most + 1, unknowns + 1)), np.zeros((most, most))
         self.cosine, self.sine, self.reduced = np.zeros((3, most + 1))
-        self.modes, self.rank = 0, 0
+        self.modes, self.rank, self.turned = 0, 0, 1.0
 
     def choose_modes(self, chosen: npt.NDArray[np.intp]) -> None:
         """Condense to some of the modes."""
@@ -339,13 +340,14 @@ class ModalEquations:
         most: cython.int,
     ) -> cython.double:
         """Correct what was found for a right side by at most so many directions, to what is enough in units
-        of scale; the length that is left of a correction."""
+        of scale; the length that is left of a correction. Fill `turned`."""
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         k: cython.int
         n: cython.Py_ssize_t = self.scale.shape[0]
         taken: cython.int = 0
         size: cython.double = 0.0
+        self.turned = 1.0
         self.multiply(found, self.whole)
         for i in range(n):
             self.whole[i] = right[i] - self.whole[i]
@@ -377,6 +379,8 @@ class ModalEquations:
             size = fabs(self.reduced[taken])
             if not size > enough or further == 0.0:
                 break
+        if taken > 0 and self.cosine[taken - 1] < 0.0:  # all but the last of the diagonal of R are positive
+            self.turned = -1.0
         for k in range(taken - 1, -1, -1):
             part: cython.double = self.reduced[k]
             for j in range(k + 1, taken):

@@ -114,6 +114,11 @@ class ForceLevelProblem(Problem):
     def solve(self, right: cython.double[::1]) -> cython.int:
         return self.balance.solve(right)
 
+    @cython.ccall
+    @cython.exceptval(-2.0, check=False)
+    def solved_sign(self) -> cython.double:
+        return self.balance.solved_sign()
+
 
 @cython.cclass
 class Homotopy(Problem):
@@ -153,6 +158,11 @@ class Homotopy(Problem):
     @cython.exceptval(-1, check=False)
     def solve(self, right: cython.double[::1]) -> cython.int:
         return self.inner.solve(right)
+
+    @cython.ccall
+    @cython.exceptval(-2.0, check=False)
+    def solved_sign(self) -> cython.double:
+        return self.inner.solved_sign()
 
 
 @cython.cclass

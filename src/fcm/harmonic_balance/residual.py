@@ -416,6 +416,13 @@ class Balance(Problem):
         self.condensed.solve(np.asarray(right))
         return 0
 
+    @cython.ccall
+    @cython.exceptval(-2.0, check=False)
+    def solved_sign(self) -> cython.double:
+        assert self.condensed is not None
+        sign: cython.double = self.condensed.sign
+        return sign
+
 
 @cython.cclass
 class PointQuantities:

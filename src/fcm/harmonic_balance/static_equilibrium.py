@@ -149,6 +149,10 @@ class StaticLoadProblem(Problem):
         size = np.abs(load) + np.abs(ports) @ np.abs(self.force)
         return bool((np.abs(load - ports @ self.force) <= tolerance * size.max(initial=0.0)).all())
 
+    def solved_sign(self) -> float:
+        """The sign of its determinant."""
+        return float(self.balance.solved_sign())
+
     def _placed(self, z: FloatArray) -> FloatArray:
         self.at[self.mean_at] = np.asarray(z)[:-1] @ self.held.ports
         return self.at
