@@ -8,11 +8,15 @@ import pytest
 from fcm.accuracy.budget import Budget
 from fcm.accuracy.embedded_pair import errors_along
 from fcm.accuracy.options import OF_GIVEN
+from fcm.accuracy.reference_curve import ReferenceCurve
 from fcm.accuracy.reference_harmonics import prolongation_to
+from fcm.accuracy.reference_pieces import ReportedPath
 from fcm.accuracy.reference_stretch import StretchFollower
 from fcm.accuracy.refinement import with_given_harmonics
 from fcm.branches.trace import traced
 from fcm.continuation import Status
+from fcm.harmonic_balance.reported_quantities import reported_quantities
+from fcm.harmonic_balance.response_quantities import ContactRecord
 from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.response.exact import trace_exact
@@ -20,7 +24,7 @@ from fcm.scene import scene_from_dict
 from fcm.shooting import periodic
 from fcm.shooting.harmonic_balance_state import state_of
 
-from ..harmonic_balance.strips import planar_strip
+from ..harmonic_balance.strips import planar_strip, strip
 
 
 def test_errors_where_a_corner_has_moved_are_those_at_the_same_frequency():
@@ -94,10 +98,34 @@ def test_the_reference_is_followed_to_the_other_end_of_a_stretch_and_no_further(
     follower = StretchFollower(system, finer, prolongation, path, OF_GIVEN, Budget(1e3))
     first = int(np.flatnonzero(path.parameter > 1.05)[0])
     assert (np.diff(path.parameter[first : first + 3]) > 0.0).all()
-    (piece,) = follower.between(first, first + 2)
+    (piece,) = follower.between(first, first + 2, nowhere(path, prolongation))
     low, high = path.parameter[[first, first + 2]]
     assert piece.reached_end and piece.path.status is Status.EVENT
     assert piece.path.parameter.max() - piece.path.parameter.min() == pytest.approx(high - low, rel=0.1)
+
+
+def nowhere(path, prolongation):
+    """No motion of the reference is known at any point of a path."""
+    return np.full((len(path.z), len(prolongation.newton.z)), np.nan)
+
+
+def test_a_stretch_begins_where_the_reference_was_found_from_beside_another_point():
+    """Of many contacts it is not found from these points alone."""
+    system, more = System(strip(), (1,)), (1, 2, 3)
+    (path,) = traced(system).branches.paths
+    quantities, loads = reported_quantities(system, path), ContactRecord.at(system, path.z).contact_loads
+    reported = ReportedPath(path, quantities, loads.reshape(len(loads), -1))
+    reference = ReferenceCurve(system, reported, more, OF_GIVEN, Budget(1e3))
+    reference.displacements(np.array([0, len(path.z) - 1]))
+    follower, found = reference.stretches, reference.reference_unknowns
+    first, last = 96, 104
+    assert np.isfinite(found[[first, last]]).all()
+    (piece,) = follower.between(first, last, found)
+    assert piece.reached_end
+    for end, row in ((piece.path.z[0], first), (piece.path.z[-1], last)):
+        np.testing.assert_allclose(end, found[row], rtol=0.0, atol=1e-5 * np.abs(found[row]).max())
+    alone = prolongation_to(system, more)
+    assert not any(alone.find_normal(path.z[row], path.direction[row], True) for row in (first, last))
 
 
 def test_each_look_at_the_reference_of_many_contacts_may_interrupt():

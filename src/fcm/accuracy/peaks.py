@@ -35,7 +35,10 @@ def heights(
     near = np.zeros(len(amplitude), dtype=np.bool_)
     near[resonant] = True
     high = [run for run in runs(near) if (amplitude[slice(*run)] > options.rival_fraction * now).any()]
-    between = [FollowedStretch(*run, reference.stretches.between(run[0] - 1, run[1])) for run in high]
+    between = [
+        FollowedStretch(*run, reference.stretches.between(run[0] - 1, run[1], reference.reference_unknowns))
+        for run in high
+    ]
     for one in (*followed, *between):
         for piece in one.pieces:
             greatest = np.fmax(greatest, piece.quantities.amplitude.max(axis=0))

@@ -362,7 +362,10 @@ class ReferenceCurve:
         are first."""
         found = [run for run in runs(np.any(np.isnan(change), axis=1)) if not self._is_bridged(*run, change)]
         found.sort(key=lambda run: -float(self.amplitude[run[0] : run[1]].max()))
-        return [FollowedStretch(first, end, self.stretches.between(first - 1, end)) for first, end in found]
+        return [
+            FollowedStretch(first, end, self.stretches.between(first - 1, end, self.reference_unknowns))
+            for first, end in found
+        ]
 
     def _is_bridged(self, first: int, end: int, change: FloatArray) -> bool:
         """Whether points first to before end are so few between two of nearly the same displacement that this

@@ -42,6 +42,12 @@ class ReferencePiece:
         """Whether it ends where the reference does, or the stretch."""
         return self.path.status not in (Status.INTERRUPTED, Status.STALLED)
 
+    def passes(self, frequency: FloatArray) -> bool:
+        """Whether it has any of the frequencies between the least and the greatest of some; what has none
+        leads away from a stretch."""
+        there = self.path.parameter
+        return bool(there.min() < frequency.max() and there.max() > frequency.min())
+
 
 @dataclass(frozen=True)
 class StretchEnd:
@@ -73,21 +79,24 @@ class StretchFollower:
         self.each = seconds_of(finer, 1, len(finer.harmonics))
         self.budget, self.evaluations = budget, 0
 
-    def between(self, first: int, last: int) -> list[ReferencePiece]:
+    def between(self, first: int, last: int, found: FloatArray) -> list[ReferencePiece]:
         """The reference between point first and point last of the curve, which may be beyond its ends.
 
         One piece that leads from one to the other, or what hangs on both as far as that stays near the
-        stretch, and as the work allows.
+        stretch, and as the work allows. found (point, unknown + 1): where it was found; NaN elsewhere.
         """
         if self.budget.seconds <= 0.0:
             return []
         tries, count = self.options.end_tries, len(self.curve.z)
         before = (
-            self._end(range(first, max(first - tries, -1), -1)) if first >= 0 else self._same_frequency(0)
+            self._end(range(first, max(first - tries, -1), -1), found)
+            if first >= 0
+            else self._same_frequency(0)
         )
-        behind = self._end(range(last, min(last + tries, count))) if last < count else None
+        behind = self._end(range(last, min(last + tries, count)), found) if last < count else None
         pieces = self._from_ends(before, behind)
-        if first < 0 and before is None and not any(piece.whole for piece in pieces):
+        own = self.curve.parameter[max(first, 0) : last + 1]
+        if first < 0 and before is None and not any(piece.whole and piece.passes(own) for piece in pieces):
             before = self._nearest_passed(0, True)  # the level takes more than the reference from an end
             pieces += self._from_ends(before, None)
         if before is None and behind is None:
@@ -126,12 +135,17 @@ class StretchFollower:
         path = self._path(z, direction, span, Events(), forward)
         return ReferencePiece(path, reported_quantities(self.finer, path), False)
 
-    def _end(self, places: Iterable[int]) -> StretchEnd | None:
-        """At the first of some places where there is one."""
+    def _end(self, places: Iterable[int], found: FloatArray) -> StretchEnd | None:
+        """At the first of some places where there is one: where it was found from there, if it was.
+
+        Of many contacts that was from beside another, and may not be found from the point alone.
+        """
         for i in places:
-            if 0 <= i < len(self.curve.z) and self.prolongation.find_normal(
-                self.curve.z[i], self.curve.direction[i], True
-            ):
+            if not 0 <= i < len(self.curve.z):
+                continue
+            if np.isfinite(found[i]).all():
+                self.prolongation.predict_from(self.curve.z[i], found[i])
+            if self.prolongation.find_normal(self.curve.z[i], self.curve.direction[i], True):
                 return self._found(i)
         return None
 
