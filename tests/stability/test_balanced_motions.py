@@ -91,7 +91,7 @@ def test_few_points_tell_where_further_harmonics_confirm_one(preload):
     workspace = Multipliers(of, 1.7)
     each = np.array([workspace.confirmation(z).stable == 1.0 for z in found.z]) & even
     assert 0.9 < each[even].mean() < 1.0
-    np.testing.assert_array_equal(confirmed_stable(of, found.z, even), each)
+    np.testing.assert_array_equal(confirmed_stable(of, found.z, even).stable, each)
 
 
 def test_each_look_at_a_motion_of_many_contacts_may_interrupt():

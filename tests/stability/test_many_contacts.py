@@ -7,9 +7,11 @@ import pytest
 
 from fcm.accuracy.embedded_pair import errors_along
 from fcm.branches.trace import traced
+from fcm.cli.caveats import not_confirmed
 from fcm.harmonic_balance.residual_spectrum import enriched_harmonics
 from fcm.harmonic_balance.system import System
 from fcm.response import trace
+from fcm.response.options import ResponseOptions
 from fcm.shooting import periodic
 from fcm.stability.bifurcations import stability
 from fcm.stability.confirmation import ConfirmedPoints, confirmed_stable
@@ -88,7 +90,7 @@ def test_points_between_two_that_are_confirmed_are_confirmed():
     system = System(elastic_strip((11.3, 20.0)), (1,))
     path = traced(system).branches.paths[-1]
     to_confirm = (path.parameter > 11.35) & (path.parameter < 13.0)
-    found = confirmed_stable(system, path.z, to_confirm)
+    found = confirmed_stable(system, path.z, to_confirm).stable
     of = multipliers_of(system, float(path.parameter.max()))
     some = np.flatnonzero(to_confirm)[::4]
     assert not found[~to_confirm].any()
@@ -102,13 +104,28 @@ def test_of_many_contacts_no_more_than_a_part_of_the_points_are_looked_at():
     path = traced(system).branches.paths[-1]
     to_confirm = (path.parameter > 11.35) & (path.parameter < 13.0)
     whole = confirmed_stable(system, path.z, to_confirm)
+    assert not whole.limited
     for part in (0.0, 0.02):
         few = replace(STABILITY, confirmation=replace(STABILITY.confirmation, max_fraction_of_many=part))
         looks = ConfirmedPoints(system, path.z, few)
         known = [looks.at(int(i)) for i in np.flatnonzero(to_confirm)]
         assert len(looks.known) <= part * len(path.z)
         assert sum(not np.isnan(one.stable) for one in known) <= len(looks.known)
-        assert not (confirmed_stable(system, path.z, to_confirm, options=few) & ~whole).any()
+        found = confirmed_stable(system, path.z, to_confirm, options=few)
+        assert found.limited and not (found.stable & ~whole.stable).any()
+
+
+def test_that_no_more_points_were_looked_at_is_said_with_their_number():
+    few = replace(STABILITY, confirmation=replace(STABILITY.confirmation, max_fraction_of_many=0.02))
+    curves = [
+        trace(elastic_strip((11.04, 11.2)), harmonics=1, options=options).curves[0]
+        for options in (ResponseOptions(others=(few,)), ResponseOptions())
+    ]
+    unknown = [int(np.isnan(one.stable[np.isfinite(one.frequency)]).sum()) for one in curves]
+    assert [one.not_confirmed for one in curves] == unknown == [unknown[0], 0] and unknown[0] > 10
+    said = not_confirmed({"curves": [{"stability_not_confirmed": one.not_confirmed} for one in curves]})
+    assert said.startswith(f"at {unknown[0]} points stability is unknown: ")
+    assert not_confirmed({"curves": [{}]}) == ""
 
 
 def test_a_motion_that_is_far_is_found_from_beside_the_next_points():

@@ -10,6 +10,7 @@ from fcm.cli.columns import share_of
 from fcm.cli.curves import shown_dofs
 from fcm.cli.jump_table import resolution_of
 from fcm.cli.limits import SENTENCES
+from fcm.stability.options import STABILITY
 
 _LINEAR = {  # keys of curves on which no contact changes its state: what is said, and what helps
     "all_stick": ("no contact slips or opens {}", "less preload or more force"),
@@ -93,6 +94,20 @@ def _may_be_missing(summary: Mapping[str, Any], key: str, what: str, helps: str)
 def _given(curve: Mapping[str, Any]) -> str:
     """The numbers of a sweep that a curve is for."""
     return ", ".join(f"{key} = {value:.6g}" for key, value in curve.get("parameters", {}).items())
+
+
+def not_confirmed(summary: Mapping[str, Any]) -> str:
+    """At how many points stability is unknown because no more of many contacts were looked at; empty if at
+    none."""
+    count = sum(curve.get("stability_not_confirmed", 0) for curve in summary["curves"])
+    if not count:
+        return ""
+    most = f"{STABILITY.confirmation.max_fraction_of_many:.0%}"
+    return (
+        f"at {count} points stability is unknown: a motion with more harmonics was looked for at {most} of "
+        "the points at most, as of many contacts each takes long. With more --harmonics, or a narrower "
+        "range, fewer are needed"
+    )
 
 
 def mirrored(summary: Mapping[str, Any]) -> str:

@@ -13,6 +13,7 @@ from fcm.cli.caveats import (
     linear,
     maybe_not_unique,
     mirrored,
+    not_confirmed,
     nothing_stable,
     peaks_not_followed,
     residual_friction,
@@ -113,6 +114,8 @@ def close(
         messages.info(many)
     if nothing := nothing_stable(result):
         messages.info(nothing)
+    if few := not_confirmed(result):
+        messages.info(few)
     if beyond := peaks_not_followed(result):
         messages.info(beyond)
     if away := nonlinear_mode.outside_range(result):

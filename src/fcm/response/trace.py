@@ -181,12 +181,14 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
     far = unreliable_points(points.z[:, -1], believed, stable, folds, system.option(VALIDITY))
     doubted = far & (stable == 1.0)
     beside = (doubted | np.isnan(stable)) & np.isfinite(np.concatenate(believed))
+    not_confirmed = 0
     for k in np.unique(points.path[doubted | beside]).tolist() if not quick else ():
         of = points.path == k
         own = points.z[of], doubted[of], beside[of]
         sure = confirmed_stable(system, *own, system.option(STABILITY), found.errors[k].motions)
-        stable[of] = np.where(sure, 1.0, stable[of])
-        doubted[of] &= ~sure
+        stable[of] = np.where(sure.stable, 1.0, stable[of])
+        doubted[of] &= ~sure.stable
+        not_confirmed += int(doubted[of].sum()) if sure.limited else 0
     stable[doubted] = np.nan
     if not quick:  # with more harmonics the branch turns back before
         ended = np.concatenate([one.ends_before for one in found.errors])
@@ -229,6 +231,7 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
         digits=bool(rounding.any()),
         folds_between=(FOLDS.min_level, FOLDS.max_level) if scene.contacts else None,
         mirrored=len(found.traced.mirrored),
+        not_confirmed=not_confirmed,
     )
     contact_load_errors = _of_greatest(found, points.path, contact_loads)
     if system.table is not None:

@@ -50,6 +50,10 @@ def _caveats(response: Response, condensed_curves: Sequence[CondensedCurve]) -> 
         meaning = "points at which the motion is one of many, by the residual friction of stuck contacts"
         undetermined = np.array([curve.undetermined for curve in curves], dtype=np.float64)
         out["points_maybe_not_unique"] = Field(("curve",), undetermined, {"long_name": meaning, "units": "1"})
+    if any(curve.not_confirmed for curve in curves):
+        meaning = "points of unknown stability, as no more of many contacts were looked at"
+        points = np.array([curve.not_confirmed for curve in curves], dtype=np.float64)
+        out["points_not_confirmed"] = Field(("curve",), points, {"long_name": meaning, "units": "1"})
     if any(curve.uncertain_at for curve in curves):
         meaning = "frequencies at which solutions were not looked for to the end: branches may be missing"
         uncertain_at = by_fold(curves, lambda curve: in_unit(np.array(curve.uncertain_at), unit))

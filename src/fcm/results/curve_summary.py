@@ -50,6 +50,8 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
         out["no_stable_motion_not_looked_at"] = in_unit(sorted(missing), unit).tolist()
     if curve.folds_between is not None:
         out["levels_looked_at"] = list(curve.folds_between)
+    if curve.not_confirmed:
+        out["stability_not_confirmed"] = curve.not_confirmed
     if curve.mirrored:
         out["mirrored_branches"] = curve.mirrored
     if condensed.linear:

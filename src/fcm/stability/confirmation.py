@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -31,6 +32,15 @@ from fcm.stability.spaced_points import SpacedPoints
 Mask = npt.NDArray[np.bool_]
 
 
+@dataclass(frozen=True)
+class Confirmation:
+    """stable (point,): what has a stable motion with further harmonics near it. limited: whether there would
+    have been more to look at than the most points of many contacts."""
+
+    stable: Mask
+    limited: bool = False
+
+
 def confirmed_stable(
     system: System,
     z: FloatArray,
@@ -38,7 +48,7 @@ def confirmed_stable(
     far: Mask | None = None,
     options: StabilityOptions = STABILITY,
     motions: KnownMotions | None = None,
-) -> Mask:
+) -> Confirmation:
     """Which of the points to_confirm (point,) have a stable motion with further harmonics near them.
 
     Parameters
@@ -60,19 +70,20 @@ def confirmed_stable(
     """
     found = np.zeros(len(z), dtype=np.bool_)
     far = np.zeros_like(to_confirm) if far is None else far
-    if (to_confirm | far).any() and not system.own_laws:
-        points = ConfirmedPoints(system, z, options, far, motions)
-        for first, end in runs(to_confirm):
-            nodes = points.nodes(first, end - 1)
-            found[nodes[0]] = points.confirms(nodes[0])
-            for a, b in itertools.pairwise(nodes):
-                points.between(a, b, found)
-        for first, end in runs(far & ~found):
-            if points.is_far(first):
-                points.along(first - 1, end - 1, found)
-            if points.is_far(end - 1):
-                points.along(end, first, found)
-    return found
+    if system.own_laws or not (to_confirm | far).any():
+        return Confirmation(found)
+    points = ConfirmedPoints(system, z, options, far, motions)
+    for first, end in runs(to_confirm):
+        nodes = points.nodes(first, end - 1)
+        found[nodes[0]] = points.confirms(nodes[0])
+        for a, b in itertools.pairwise(nodes):
+            points.between(a, b, found)
+    for first, end in runs(far & ~found):
+        if points.is_far(first):
+            points.along(first - 1, end - 1, found)
+        if points.is_far(end - 1):
+            points.along(end, first, found)
+    return Confirmation(found, points.limited)
 
 
 class ConfirmedPoints:
@@ -95,6 +106,7 @@ class ConfirmedPoints:
         self.far = np.zeros(len(z), dtype=np.bool_) if far is None else far
         self.known = dict[int, tuple[Classification, FloatArray | None]]()  # classifications, and of what
         self.evaluations_left = options.confirmation.max_fraction_of_many * len(z) if self.many else math.inf
+        self.limited = False  # whether more were asked for
 
     def nodes(self, first: int, last: int) -> list[int]:
         """Points from one to another that are looked at first; of many contacts, as a look takes long, the
@@ -114,10 +126,8 @@ class ConfirmedPoints:
     def at(self, i: int) -> Classification:
         """Of the motion with further harmonics; unknown where there are no evaluations left."""
         if i not in self.known:
-            if self.evaluations_left < 1.0:
+            if not self._may_look():
                 return UNKNOWN
-            self.evaluations_left -= 1.0
-            self._poll()
             self.known[i] = self._classify(i), self.multipliers.refined_solution
         return self.known[i][0]
 
@@ -133,6 +143,15 @@ class ConfirmedPoints:
             if self.multipliers.refined_solution is not None:
                 return found
         return self.multipliers.confirmation(z)
+
+    def _may_look(self) -> bool:
+        """Whether another evaluation is left; it is taken then."""
+        self.limited |= self.evaluations_left < 1.0
+        if self.limited:
+            return False
+        self.evaluations_left -= 1.0
+        self._poll()
+        return True
 
     def _poll(self) -> None:
         """Of many contacts, as a look takes long: multipliers of few may be those of another curve then."""
@@ -164,9 +183,7 @@ class ConfirmedPoints:
             return
         last, motion = self._before_turn(at, last), self.known[at][1]
         step = options.point_interval
-        while motion is not None and (last - at) * way > 0 and self.evaluations_left >= 1.0:
-            self.evaluations_left -= 1.0
-            self._poll()
+        while motion is not None and (last - at) * way > 0 and self._may_look():
             ahead = at + way * min(step, abs(last - at))
             if self.multipliers.continued(self.z[ahead], motion).stable == 1.0:
                 found[min(at + way, ahead) : max(at + way, ahead) + 1] = True
