@@ -42,6 +42,13 @@ def test_every_combination_is_drawn_once(fcm, tmp_path):
     assert (tmp_path / "a.svg").read_bytes().startswith(b"<?xml")
 
 
+def test_an_angle_of_many_turns_is_asked_about(fcm):
+    args = ("plot", "loop", "--n0-bar", 1, "--b-bar", 0.5, "-o", "a.svg")
+    assert "--phi 45: is it right? 45 rad are 7.16 turns" in fcm(*args, "--phi", "45").err
+    for right in ("45deg", "0.7854", "400deg"):
+        assert "is it right" not in fcm(*args, "--phi", right).err
+
+
 def test_a_contact_with_dimensions_is_that_of_its_ratios(fcm):
     scaled = ("--mu", 0.4, "--k-u", 2e4, "--k-v", 1e4, "--n0", 16.0, "--a", 1e-3, "--b", 2e-3)
     (one,) = loops(fcm("plot", "loop", *scaled, "--json", "--units", "m", "N"))

@@ -253,6 +253,17 @@ def test_damping_of_a_mode_in_which_a_contact_holds_a_rigid_body(listed):
     assert "rigid-body modes have none" in said and "structure: its mass along x is 4, without" in said
 
 
+def test_proportional_damping_that_leaves_no_resonance_is_asked_about(listed):
+    """Of a factor in other units: nothing was said, and the ratios stood among many."""
+    rest = SCENE[SCENE.index("[[contact]]") :].replace('"w"', '"v"')
+    text = '[structure]\ndofs = ["u", "v"]\nstiffness = [[3.0, -1.0], [-1.0, 2.0]]\nmass = [[1, 0], [0, 1]]\n'
+    for factor, asked in ((0.01, False), (8.0, True)):
+        said = listed(f"{text}damping = {{ stiffness = {factor} }}\n{rest}").err
+        assert (
+            "structure.damping: is it right? It damps each of these more than critically" in said
+        ) == asked
+
+
 def test_stiffness_and_mass_in_each_others_place(tmp_path):
     """Nothing was said: the response of so heavy a structure is small, and an error of none."""
     matrices = 'dofs = ["u", "v"]\nstiffness = {}\nmass = {}\ndamping = 0.01\n'

@@ -585,6 +585,27 @@ def test_stiffness_and_mass_of_a_mesh_in_each_others_place(swapped):
     assert "in each other's place" in said and f"which is {first:.6g} rad/s" in said
 
 
+@pytest.mark.parametrize("names_in_order", [True, False])
+def test_the_mass_of_a_structure_that_floats_is_the_same_along_all_axes(names_in_order):
+    """Four points of different masses and rods between them; with two names exchanged they differ."""
+    corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.2, 0.0], [0.2, 0.3, 1.1]])
+    K = np.zeros((12, 12))
+    for a in range(4):
+        for b in range(a):
+            along = np.zeros(12)
+            along[3 * a : 3 * a + 3] = corners[a] - corners[b]
+            along[3 * b : 3 * b + 3] = corners[b] - corners[a]
+            K += np.outer(along, along)
+    names = [f"{node}{axis}" for node in (1, 2, 3, 4) for axis in "xyz"]
+    if not names_in_order:
+        names[2], names[9] = names[9], names[2]
+    M = np.diag(np.repeat([1.0, 2.0, 3.0, 4.0], 3))
+    contact = [{"name": "c", "tangential": "1x", "normal": "1y", "mu": 0.3, "k_u": 1, "k_v": 1, "n_0": 1}]
+    scene = read(top={"contact": contact}, stiffness=K.tolist(), mass=M.tolist(), dofs=names)
+    asked = [note for note in scene.notes if "it floats, but its mass differs" in note]
+    assert len(asked) == (not names_in_order)
+
+
 def test_stiffness_and_mass_of_a_mesh_that_are_the_same():
     """Every mode had 1 rad/s, and of a blade the curve stopped after half a minute."""
     count = 120

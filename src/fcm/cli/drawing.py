@@ -50,9 +50,18 @@ def is_page(output: Path) -> bool:
     return output.suffix.lower() == PAGE
 
 
-def angles(_ctx: click.Context, _param: click.Parameter, texts: tuple[str, ...]) -> tuple[float, ...]:
-    """Callback of an option for angles [rad]."""
-    return tuple(map(angle, texts))
+def angles(ctx: click.Context, param: click.Parameter, texts: tuple[str, ...]) -> tuple[float, ...]:
+    """Callback of an option for angles [rad]; more than a turn without a unit is asked about."""
+    from fcm.scene.options import LIMITS
+
+    found = tuple(map(angle, texts))
+    for text, radians in zip(texts, found, strict=True):
+        if abs(radians) >= LIMITS.angle and not text.endswith("deg"):
+            ctx.ensure_object(Messages).info(
+                f"{param.opts[0]} {text}: is it right? {text} rad are {abs(radians) / (2.0 * math.pi):.3g} "
+                f"turns; if degrees are meant, write {text}deg"
+            )
+    return found
 
 
 def angle(text: str) -> float:

@@ -143,23 +143,34 @@ def _net(weights: FloatArray | None, dofs: Names | None) -> FloatArray | None:
     return np.stack((each.sum(axis=1), np.abs(each).sum(axis=1)), axis=1)
 
 
-def note_of_mass(masses: Mapping[str, float], length: str, force: str) -> list[str]:
+def note_of_mass(masses: Mapping[str, float], length: str, force: str, floats: bool = False) -> list[str]:
     """The mass of a structure along each axis, in the unit that follows from those of length and force.
+
+    Of one that floats it is the same along all: else a question.
 
     >>> note_of_mass({"x": 0.25, "y": 0.25, "z": 0.2}, "mm", "N")
     ['structure: its mass along x, y, z is 0.25, 0.25, 0.2 t, without rows that are held']
     >>> note_of_mass({"z": 2.0}, "", "")
     ['structure: its mass along z is 2, without rows that are held']
+    >>> print(note_of_mass({"x": 2.0, "y": 2.0, "z": 1.9}, "", "", floats=True)[1])
+    structure: it floats, but its mass differs by 5 % along the axes. Do dofs name the rows in their order?
     """
     if not masses:
         return []
     unit = MASS_UNITS.get((length, force), f"{force} s^2/{length}" if length and force else "")
     each = [f"{mass:.4g}" for mass in masses.values()]
     values = each[0] if len(set(each)) == 1 else ", ".join(each)
-    return [
+    said = [
         f"structure: its mass along {', '.join(masses)} is {values}{f' {unit}' if unit else ''}, "
         "without rows that are held"
     ]
+    least, most = min(masses.values()), max(masses.values())
+    if floats and least < (1.0 - TOLERANCES.floating_mass) * most:
+        said.append(
+            f"structure: it floats, but its mass differs by {100 * (1 - least / most):.2g} % along the axes. "
+            "Do dofs name the rows in their order?"
+        )
+    return said
 
 
 def notes_of_loads(drafts: Sequence[Mapping[str, Any]], unit: str) -> list[str]:

@@ -9,7 +9,7 @@ import numpy as np
 from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray, Force, Scene
 from fcm.scene.errors import counted
-from fcm.scene.options import MESSAGES, TOLERANCES
+from fcm.scene.options import LIMITS, MESSAGES, TOLERANCES
 from fcm.structure.ring import nodal_diameters
 
 METRE_AND_MILLIMETRE = float(np.sqrt(1000.0))  # of frequencies, where stiffness and mass mix the two systems
@@ -161,10 +161,17 @@ def notes_of_modes(scene: Scene) -> list[str]:
     damped = f". Their damping ratios while stuck: {_listed(ratio[:most], 3)}" if omega.size else ""
     among = ": of the first of each, of the second, and so on" if rigid else ""
     of_stuck = f"{_listed(omega[:most] / UNIT[unit])} {unit}" if omega.size else "none"
-    return [
+    said = [
         f"structure: first resonances with all contacts open: {of_open}; with all stuck: {of_stuck}{damped}. "
         f"The main peak of a mode lies between the two{among}"
     ]
+    if scene.of_matrices and ratio.min(initial=np.inf) >= LIMITS.damping_ratio:
+        said.append(
+            f"structure.damping: is it right? It damps each of these more than critically, {ratio.min():.3g} "
+            "times at least, so that no resonance is seen. Is it in the units of the stiffness, and the "
+            "frequency in rad/s?"
+        )
+    return said
 
 
 def _listed(values: FloatArray, digits: int = 5) -> str:

@@ -188,7 +188,7 @@ def _read(top: Section, files: Files, reading: _Reading) -> dict[str, Any]:
     notes = [
         *files.noted,
         *notes,
-        *note_of_mass(files.masses, *units),
+        *note_of_mass(files.masses, *units, floats=_floats(parts)),
         *notes_of_loads(parts["load"], units[1]),
         *questions(top, parts, draft.swept),
     ]
@@ -247,6 +247,15 @@ def _made(name: str, fields: dict[str, Any], told: Told | None) -> Scene:
             *notes_of_stiffness(scene),
         ),
     )
+
+
+RIGID = 6  # rigid-body modes of a body that nothing holds
+
+
+def _floats(parts: Parts) -> bool:
+    """Whether a structure moves as a rigid body in all six ways."""
+    frequency = parts["modal"].get("frequency")
+    return frequency is not None and int((np.asarray(frequency, dtype=np.float64) == 0.0).sum()) >= RIGID
 
 
 def _in_doubt(scene: Scene) -> bool:

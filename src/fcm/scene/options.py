@@ -106,6 +106,7 @@ class ToleranceOptions:
     displacement: float = 1e-12  # a displacement this small, beside the largest, is none
     cancelled: float = 1e-14  # of the sizes of forces: where no more is left of their sum, it is rounding
     mass_ratio: float = 1e20  # of modes: beyond it, sums over the modes lose the heavy ones to rounding
+    floating_mass: float = 1e-3  # masses along axes of a structure that floats, which are the same
     scaled_shape: float = 1e-6  # how near to 1 the largest value of a shape is that was scaled to it
     same_direction: float = 1e-9  # directions that differ by no more are one
     right_angle: float = 0.01  # sine of the angle by which a normal may lean: about half a degree
