@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
+from fcm import load_scene
 from fcm.branches.force_level import solutions
 from fcm.continuation import FollowOptions, Mark, Status, follow
 from fcm.harmonic_balance.system import System
 from fcm.response import trace
+from fcm.response.options import ResponseOptions
 from fcm.scene import Contact, Force, Modal, Scene, scene_from_dict
 from fcm.shooting import periodic
 from fcm.stability.bifurcation_functions import multiplier_sample, predicted_minimum
@@ -21,7 +23,7 @@ from fcm.stability.classification import Bifurcation, Classification, Multiplier
 from fcm.stability.confirmation import confirmed_stable
 from fcm.stability.floquet import multipliers
 from fcm.stability.multipliers import Multipliers
-from fcm.stability.options import STABILITY
+from fcm.stability.options import STABILITY, StabilityOptions
 from fcm.time_domain import simulate
 
 from ..harmonic_balance.strips import strip
@@ -428,3 +430,11 @@ def test_small_disturbances_grow_as_the_multipliers_say():
         left = np.abs(ends.q - orbit.state.q).max() / np.abs(1e-7 * orbit.state.q).max()
         grows = abs(first) > 1.0
         assert (left > 1.0) == grows
+
+
+def test_options_that_are_given_with_a_response_are_those_of_its_stability():
+    """With a growth that none has, no motion is stable but those without an event, which are linear."""
+    strict = StabilityOptions(classification=replace(STABILITY.classification, growth_tolerance=-1e3))
+    options = ResponseOptions(others=(strict,))
+    (curve,) = trace(load_scene("yang1998-n5"), "closed-form", harmonics=(1,), options=options).curves
+    assert set(curve.regime[curve.stable == 1.0].ravel()) == {"E"} < set(curve.regime.ravel())

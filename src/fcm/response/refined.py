@@ -24,6 +24,7 @@ from fcm.response.further_levels import with_levels_below_peaks, with_levels_whe
 from fcm.response.master_dofs import with_all_dofs
 from fcm.response.options import SWEEP
 from fcm.stability.bifurcations import stability, with_points
+from fcm.stability.options import STABILITY
 
 Rows = npt.NDArray[np.intp]
 Harmonics = tuple[int, ...]
@@ -163,16 +164,16 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
         beyond = on_other_branch(error.on_same_branch, options) if short else None
         unmatched = without_neighbour(error.truncation, error.is_same_curve, options)
         to_confirm = error.on_same_branch > options.max_error
-        judged = stability(found.system, path, beyond, without_neighbour=unmatched, to_confirm=to_confirm)
-        inserted = judged.inserted
-        bifurcations += [(one.kind.value, one.frequency) for one in judged.crossings]
+        along = stability(found.system, path, beyond, found.system.option(STABILITY), unmatched, to_confirm)
+        inserted = along.inserted
+        bifurcations += [(one.kind.value, one.frequency) for one in along.crossings]
         if accuracy is not None and not short:
-            lost += stability_limits(found.system, path, judged.crossings, accuracy)
+            lost += stability_limits(found.system, path, along.crossings, accuracy)
         if not inserted:
             paths.append(path)
             quantities.append(seen)
             errors.append(error)
-            stable.append(judged.stable)
+            stable.append(along.stable)
             continue
         after = np.array([one.after for one in inserted], dtype=np.intp)
         paths.append(with_points(path, inserted))
@@ -189,7 +190,7 @@ def _with_stability(now: Refined, accuracy: float | None) -> Refined:
                 contacts=error.contacts.with_rows(after, ContactRecord.at(found.system, z)),
             )
         )
-        stable.append(np.insert(judged.stable, after + 1, [one.stable for one in inserted]))
+        stable.append(np.insert(along.stable, after + 1, [one.stable for one in inserted]))
     branches = replace(found.traced.branches, paths=tuple(paths))
     traced = replace(found.traced, branches=branches)
     found = replace(found, traced=traced, quantities=tuple(quantities), errors=tuple(errors))

@@ -112,7 +112,7 @@ def _data(
     column = level if isinstance(level, str) else ""
     others = {"damping": "damping_ratio"} if backbone else {}
     others["amplitude"] = f"amplitude {dof}" if dof else "modal_amplitude"
-    columns = _columns(section, files, name, backbone, column, others, length) if name else None
+    columns = _columns(section, files, name, column, others, length) if name else None
     if columns is None or section.mistakes.count > before:
         return None
     scaled = columns["angular_frequency"] if "angular_frequency" in columns else unit * columns["frequency"]
@@ -152,12 +152,12 @@ def _columns(
     section: Section,
     files: Files,
     name: str,
-    backbone: bool,
     level: str,
     others: Mapping[str, str],
     length: str,
 ) -> dict[str, FloatArray] | None:
     """The columns of a file; None after a mistake."""
+    backbone = "backbone" in section.data
     key = "backbone" if backbone else "file"
     wanted = ["frequency", "amplitude", *(["damping"] if backbone else []), *([level] if level else [])]
     try:
