@@ -139,6 +139,11 @@ def test_places_that_do_not_fit_are_all_said_at_once(tmp_path):
         read_places(file, ("a", "b"))
     said = str(raised.value).splitlines()
     assert [one.partition("line ")[2][0] for one in said] == ["1", "2", "4", "5"]
+    file.write_text("what is no place\n" * 40)
+    with pytest.raises(PlotError) as raised:
+        read_places(file, ("a", "b"))
+    said = str(raised.value).splitlines()
+    assert len(said) == 6 and said[-1].endswith("35 more of this kind")
     file.write_bytes(b"\xff\xfe a")
     with pytest.raises(PlotError, match="not a text"):
         read_places(file, ("a",))

@@ -264,7 +264,8 @@ def read_places(path: Path, contacts: Sequence[str]) -> FloatArray:
         more = f" and {len(missing) - 3} others" if len(missing) > 3 else ""
         wrong.append(f"no line for {', '.join(missing[:3])}{more}")
     if wrong:
-        raise PlotError("\n".join(f"{path}: {one}" for one in wrong))
+        rest = [f"{len(wrong) - LAYOUT.mistakes} more of this kind"] if len(wrong) > LAYOUT.mistakes else []
+        raise PlotError("\n".join(f"{path}: {one}" for one in [*wrong[: LAYOUT.mistakes], *rest]))
     return np.array([places[name] for name in contacts])
 
 

@@ -149,6 +149,12 @@ def opened(path: Path, kind: str, needed: Sequence[str], also: Sequence[str] = (
             yield Held(dataset)
 
 
+def _cause(error: BaseException) -> str:
+    """What a library says of a file, without its name and number of the error, which are said before."""
+    said = getattr(error, "strerror", None) or str(error)
+    return str(said).partition("\n")[0]
+
+
 @contextmanager
 def read(path: Path, otherwise: str, of: Failures = UNREAD) -> Iterator[None]:
     """What is read from a file, which may be damaged, or written by anything: `PlotError` says what it is
@@ -162,7 +168,7 @@ def read(path: Path, otherwise: str, of: Failures = UNREAD) -> Iterator[None]:
             raise MemoryError(str(error)) from error
         reason = str(error).partition("\n")[0]
         if (reason.startswith(NETCDF) and NO_NETCDF not in reason) or "HDF" in reason:
-            raise PlotError(f"{path}: damaged, or cut off: {reason}") from error
+            raise PlotError(f"{path}: damaged, or cut off; write it anew ({_cause(error)})") from error
         why = "" if isinstance(error, OSError) else f": {reason or type(error).__name__}"
         raise PlotError(f"{path}: {otherwise}{why}") from error
 

@@ -94,6 +94,7 @@ class Layout:
     loop_room: float = 0.18  # beside a loop, relative to its extent
     loop_named: int = 60  # transitions whose angles still find room beside them
     loop_narrowest: float = 11.0  # [degree] a state shorter than this has no letter
+    mistakes: int = 5  # of a file of places that are listed; the rest are counted
     same_circle: float = 0.99  # of the radius of another: a circle that is greater is drawn as one with it
     planar_room: float = 0.56  # of the extent of a planar loop, to each side of the middle
     planar_samples: int = 1440  # of a cycle of a planar loop
