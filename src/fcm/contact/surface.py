@@ -86,9 +86,9 @@ class Edges:
     n0_bar: dict[str, FloatArray]  # for each line (j,) [-]
 
 
-def edges(plane: Plane, steps: int = STEPS[0]) -> Edges:
+def edges(plane: Plane) -> Edges:
     """The lines between the regimes, at all b_bar of a plane."""
-    b = np.linspace(*plane.b_range, steps + 1)
+    b = np.linspace(*plane.b_range, STEPS[0] + 1)
     return Edges(b, boundaries(b, plane.phi))
 
 

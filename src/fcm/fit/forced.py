@@ -213,7 +213,6 @@ class _Curve:
 def _curve(scene: Scene, level: float, harmonics: tuple[int, ...], observed: Observed) -> _Curve:
     """The response at a level of the forces."""
     number = number_of(scene, LEVEL)
-    assert number is not None
     system = System(number.put(scene, level), harmonics)
     paths = [path for path in traced(system).branches.paths if len(path.z) > 1]
     if not paths:

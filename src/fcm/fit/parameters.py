@@ -80,8 +80,7 @@ def parameters_of(
     FitError
         If a number stands for several of a scene that differ and are not bounded.
     """
-    found = [number_of(scene, key) for key in keys]
-    numbers = tuple(number for number in found if number is not None)
+    numbers = tuple(number_of(scene, key) for key in keys)
     start, low, high = (np.empty(len(numbers)) for _ in range(3))
     for i, (number, ends) in enumerate(zip(numbers, bounds, strict=True)):
         values = [value / weight for _, value, weight in number.each(scene)]

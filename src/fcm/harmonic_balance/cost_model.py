@@ -57,7 +57,10 @@ class CurveCost:
     each: EvaluationCost = HARMONIC_BALANCE.cost
 
 
-def seconds_of_curve(scene: Scene, harmonics: int, cost: CurveCost | None = None) -> float:
+CURVE_COST = CurveCost()
+
+
+def seconds_of_curve(scene: Scene, harmonics: int, cost: CurveCost = CURVE_COST) -> float:
     """About what a curve of a scene takes, told from its sizes alone, before anything is made of it.
 
     Many contacts are taken as condensed to all modes where these are fewer than half their directions; modes
@@ -67,7 +70,6 @@ def seconds_of_curve(scene: Scene, harmonics: int, cost: CurveCost | None = None
     >>> f"{seconds_of_curve(load_scene('yang1998'), 1):.1f}"
     '0.1'
     """
-    cost = cost or CurveCost()
     layout = layout_of(len(scene.contacts), scene.directions_of_contact, harmonics)
     highest = cost.high_frequency * harmonics * scene.frequency_range[1]
     modes, many = int((scene.modal.frequency <= highest).sum()), layout.unknowns >= CONDENSATION.min_unknowns

@@ -110,11 +110,12 @@ class SampledLaw(Law):
         return f"the law {type(self.own).__name__} of the contact {self.name!r}"
 
 
-def check_own_laws(scene: Scene, most: float = HARMONIC_BALANCE.own_law_changes) -> None:
+def check_own_laws(scene: Scene) -> None:
     """Raise ContactLawError where a contact's own law gives no forces of a motion, or not their changes.
 
     `ContactLaw.off_by` is taken at motions as large as those at which the contact may slip, and larger ones.
     """
+    most = HARMONIC_BALANCE.own_law_changes
     for contact in scene.contacts:
         if contact.law is not None:
             law = SampledLaw(contact, (1,), (1,), scene.directions_of_contact, 1)

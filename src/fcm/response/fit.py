@@ -206,7 +206,6 @@ def _at_levels(parameters: Parameters, found: Solved, data: Sequence[Measured]) 
     if every.size > FIT.max_levels:
         every = np.geomspace(every[0], every[-1], FIT.max_levels)
     number = number_of(scene, LEVEL)
-    assert number is not None
     curves = tuple(
         replace(number.put(scene, level), parameters={EXCITED: level}, draft=None, curves=())
         for level in every.tolist()

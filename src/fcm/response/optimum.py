@@ -101,7 +101,7 @@ def optimise(
 
 def _freed(scene: Scene, keys: Iterable[str]) -> tuple[list[Number], Scene]:
     """The numbers of some keys, and the scene in which they are free."""
-    numbers = [number for key in keys if (number := number_of(scene, key)) is not None]
+    numbers = [number_of(scene, key) for key in keys]
     for number in numbers:
         scene = number.freed(scene)
     return numbers, scene

@@ -96,7 +96,6 @@ def track(
     if what not in WHAT:
         raise ResponseError(f"track {what!r} is not one of {', '.join(WHAT)}")
     number = number_of(scene, over)
-    assert number is not None
     _check(scene, number, span)
     begin = time.perf_counter()
     free = number.freed(scene)

@@ -22,9 +22,7 @@ class Peak(NamedTuple):
     )  # greatest change, relative, by the residual friction of contacts that always stick; NaN: not known
 
 
-def stability_at_top(
-    amplitude: FloatArray, stable: FloatArray, same: float = RESULTS.jumps.amplitude_tolerance
-) -> FloatArray:
+def stability_at_top(amplitude: FloatArray, stable: FloatArray) -> FloatArray:
     """Whether the motion is stable at the greatest amplitude of each degree of freedom, (dof,).
 
     Of several points that are the same height, relative, as where two branches meet, a stable one counts.
@@ -33,7 +31,7 @@ def stability_at_top(
     array([1., 0.])
     """
     top = np.fmax.reduce(amplitude, axis=0, initial=np.nan)  # NaN where there is no amplitude
-    there = amplitude >= (1.0 - same) * top
+    there = amplitude >= (1.0 - RESULTS.jumps.amplitude_tolerance) * top
     told = (there & (stable == 1.0)[:, None]).any(axis=0)
     if told.all():
         return np.ones(told.size)

@@ -148,13 +148,13 @@ class Number:
         return replace(scene, draft=free, curves=curves)
 
 
-def number_of(scene: Scene, key: str, mistakes: Mistakes | None = None, path: str = "") -> Number | None:
-    """The number of a scene with a key path, as in [sweep], or "level"; None after a mistake.
+def number_of(scene: Scene, key: str) -> Number:
+    """The number of a scene with a key path, as in [sweep], or "level".
 
     Raises
     ------
     SceneError
-        If there is no such number, unless mistakes are collected.
+        If there is no such number.
 
     Examples
     --------
@@ -164,10 +164,10 @@ def number_of(scene: Scene, key: str, mistakes: Mistakes | None = None, path: st
     >>> preload.value(scene), preload.put(scene, 7.0).contacts[0].n_0
     (5.0, 7.0)
     """
-    found = mistakes or Mistakes(scene.name)
-    number = number_in(_draft(scene), key, path or quoted(key), found)
-    if mistakes is None:
-        found.raise_if_any()
+    mistakes = Mistakes(scene.name)
+    number = number_in(_draft(scene), key, quoted(key), mistakes)
+    mistakes.raise_if_any()
+    assert number is not None
     return number
 
 

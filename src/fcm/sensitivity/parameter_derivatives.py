@@ -191,7 +191,6 @@ def rates_of(system: System, address: str, options: SensitivityOptions = SENSITI
     [0.0618, -1.1225, 0.0618, -1.1377]
     """
     number = number_of(system.scene, address)
-    assert number is not None
     contact = np.zeros((len(system.scene.contacts), 4))
     total = {name: np.zeros_like(getattr(system.linear, name)) for name in ARRAYS}
     for one, value, weight in number.each(system.scene):

@@ -59,8 +59,7 @@ def numbers_of(scene: Scene) -> list[Number]:
     own = scene.modal.mass.size - scene.modal.added  # not the flexibility of the modes left out
     keys += [f"modal.{key}.{i}" for key in ("frequency", "damping") for i in range(own)]
     known = Addresses(parts)
-    found = (number_of(scene, key) for key in keys if known.numbers.get(key) or key.startswith("contact."))
-    return [number for number in found if number is not None]
+    return [number_of(scene, key) for key in keys if known.numbers.get(key) or key.startswith("contact.")]
 
 
 def _names(drafts: Sequence[Mapping[str, Any]]) -> list[str]:

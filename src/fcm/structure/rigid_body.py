@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 MOST = 6  # rigid-body modes of one body
 
 
-def rigid_by_gap(frequency: FloatArray, below: float = RIGID_BODY.rigid_ratio, most: int = MOST) -> int:
+def rigid_by_gap(frequency: FloatArray, most: int = MOST) -> int:
     """How many of the lowest modes are rigid-body modes, of those with a frequency above 0: at most `most`.
 
     Their own frequencies are rounding, and may be as far from each other.
@@ -24,7 +24,7 @@ def rigid_by_gap(frequency: FloatArray, below: float = RIGID_BODY.rigid_ratio, m
     (3, 0)
     """
     ordered = np.sort(frequency[frequency > 0.0])
-    gaps = np.flatnonzero(ordered[:-1] <= below * ordered[1:])
+    gaps = np.flatnonzero(ordered[:-1] <= RIGID_BODY.rigid_ratio * ordered[1:])
     gaps = gaps[gaps < most]
     return int(gaps[-1]) + 1 if gaps.size else 0
 
