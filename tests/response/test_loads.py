@@ -392,6 +392,23 @@ def test_contacts_that_stick_hold_a_free_body_in_their_plane(push):
     )
 
 
+def test_what_friction_holds_at_rest_creeps_where_it_slips():
+    """As the exact motion does from rest: it stays where the contact sticks, and moves on near resonance."""
+    adrift = BODY | {"frequency": [0.0, 2.0], "damping": [0.0, 0.02]}
+    data = body({"x": 1.0}, adrift, n_0=5.0) | {"force": [{"dof": "x", "amplitude": 0.3}]}
+    scene = scene_from_dict(data)
+    assert rest_of(scene)[0] @ scene.modal.shapes == pytest.approx([1.0, 0.0], abs=1e-12)
+    (curve,) = trace(scene).curves
+    ends = [float(word) for word in curve.reason.split()[1:4:2]]
+    assert "the static loads push the structure on" in curve.reason and 0.8 < ends[0] < 1.0 < ends[1] < 1.2
+    for omega, stays in ((0.5, True), (sum(ends) / 2.0, False)):
+        mean = simulate(scene, omega, 300).measures(last=100)[-1].mean[0]
+        assert (abs(mean - 1.0) < 0.1) == stays and (stays or mean > 50.0)
+    slip = (curve.regime != "E").all(axis=1)
+    assert (curve.mean[:, 0] == 1.0).all() and slip.any()
+    assert (curve.stable[slip] == 0.0).all()
+
+
 def test_a_load_in_the_plane_that_friction_cannot_hold_is_refused():
     (curve,) = trace(block_on_friction(4.0)).curves  # 0.3 times the load of 9 is 2.7
     assert not curve.complete and "no equilibrium with the static loads" in curve.reason

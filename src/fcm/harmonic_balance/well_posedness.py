@@ -20,12 +20,14 @@ BoolArray = npt.NDArray[np.bool_]
 REASONS = {
     "pushed": "friction pushes the structure one way on average, along a rigid-body mode that nothing holds, "
     "so there is no steady state. Hold it by a contact along its normal, or by {}",
+    "loaded": "the static loads push the structure on, along a rigid-body mode that friction alone holds at "
+    "rest, so there is no steady state. Hold it by a contact along its normal, or by {}",
     "floating": "no closed contact holds the structure along a rigid-body mode: its place is not determined",
 }
 
 
 def undetermined(system: System, z: FloatArray, force: FloatArray) -> dict[str, BoolArray]:
-    """For each of REASONS whether it applies at points z (point, unknown + 1), each (point,).
+    """For "pushed" and "floating" of REASONS whether it applies at points z (point, unknown + 1), (point,).
 
     force (point, unknown): of the contacts, laid out as the unknowns.
     """

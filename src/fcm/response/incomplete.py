@@ -46,7 +46,9 @@ def incomplete(found: RefinedResponse, points: PointRecord) -> tuple[str, npt.ND
 
 
 def reason_for(system: System, why: str) -> str:
-    """One of REASONS in the keys of the scene."""
+    """One of REASONS in the keys of the scene; what is pushed by static loads is said to be."""
+    linear = system.linear
+    why = "loaded" if why == "pushed" and linear.load[linear.adrift].any() else why
     return REASONS[why].format(_soft(system.scene.of_matrices))
 
 
