@@ -109,14 +109,20 @@ def nowhere(path, prolongation):
     return np.full((len(path.z), len(prolongation.newton.z)), np.nan)
 
 
-def test_a_stretch_begins_where_the_reference_was_found_from_beside_another_point():
-    """Of many contacts it is not found from these points alone."""
-    system, more = System(strip(), (1,)), (1, 2, 3)
-    (path,) = traced(system).branches.paths
+def found_reference(system, path, more):
+    """The reference of a path, beside which its points are looked for."""
     quantities, loads = reported_quantities(system, path), ContactRecord.at(system, path.z).contact_loads
     reported = ReportedPath(path, quantities, loads.reshape(len(loads), -1))
     reference = ReferenceCurve(system, reported, more, OF_GIVEN, Budget(1e3))
     reference.displacements(np.array([0, len(path.z) - 1]))
+    return reference
+
+
+def test_a_stretch_begins_where_the_reference_was_found_from_beside_another_point():
+    """Of many contacts it is not found from these points alone."""
+    system, more = System(strip(), (1,)), (1, 2, 3)
+    (path,) = traced(system).branches.paths
+    reference = found_reference(system, path, more)
     follower, found = reference.stretches, reference.reference_unknowns
     first, last = 96, 104
     assert np.isfinite(found[[first, last]]).all()
@@ -126,6 +132,23 @@ def test_a_stretch_begins_where_the_reference_was_found_from_beside_another_poin
         np.testing.assert_allclose(end, found[row], rtol=0.0, atol=1e-5 * np.abs(found[row]).max())
     alone = prolongation_to(system, more)
     assert not any(alone.find_normal(path.z[row], path.direction[row], True) for row in (first, last))
+
+
+def test_a_stretch_without_ends_is_followed_from_the_nearest_that_was_found():
+    """At the beginning of a curve, from points there that are too far from the reference."""
+    system, more = System(planar_strip(frequency=(1.0, 1.2)), (1,)), (1, 2, 3)
+    path, prolongation = traced(system).branches.paths[0], prolongation_to(system, more)
+    found = found_reference(system, path, more).reference_unknowns
+    z, astray = path.z.copy(), 20
+    z[:astray, :-1] *= 30.0
+    found[:astray] = np.nan
+    finer = system.with_harmonics(more)
+    follower = StretchFollower(system, finer, prolongation, replace(path, z=z), OF_GIVEN, Budget(1e3))
+    (piece,) = follower.between(-1, 6, found)
+    assert piece.whole and piece.passes(path.parameter[:7])
+    assert prolongation.find_at_frequency(finer.extended(path.z[0], system.harmonics), True)
+    expected = np.array(prolongation.newton.z)
+    np.testing.assert_allclose(piece.path.z[-1], expected, rtol=0.0, atol=1e-3 * np.abs(expected).max())
 
 
 def test_each_look_at_the_reference_of_many_contacts_may_interrupt():

@@ -6,7 +6,7 @@ both sides, and from one of them the reference can be followed to the other.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -96,10 +96,12 @@ class StretchFollower:
         behind = self._end(range(last, min(last + tries, count)), found) if last < count else None
         pieces = self._from_ends(before, behind)
         own = self.curve.parameter[max(first, 0) : last + 1]
-        if first < 0 and before is None and not any(piece.whole and piece.passes(own) for piece in pieces):
+        if first < 0 and before is None and not _any_passes(pieces, own):
+            pieces += self._towards(own, found)
+        if first < 0 and before is None and not _any_passes(pieces, own):
             before = self._nearest_passed(0, True)  # the level takes more than the reference from an end
             pieces += self._from_ends(before, None)
-        if before is None and behind is None:
+        if before is None and behind is None and not _any_passes(pieces, own):
             pieces += self._from_ends(None, self._same_parity(last - 1))
         return pieces
 
@@ -116,6 +118,19 @@ class StretchFollower:
                 return [piece]
             pieces += [piece] if len(piece.path.z) > 1 else []
         return pieces
+
+    def _towards(self, frequency: FloatArray, found: FloatArray) -> list[ReferencePiece]:
+        """What leads to the frequencies of a stretch from the nearest to them of what was found; nothing if
+        that is among them."""
+        known = found[np.isfinite(found[:, -1])]
+        low, high = float(frequency.min()), float(frequency.max())
+        off = np.maximum(low - known[:, -1], known[:, -1] - high)
+        if not off.size or off.min() <= 0.0 or self.budget.seconds <= 0.0:
+            return []
+        begin = known[off.argmin()]
+        span, rises = (min(low, begin[-1]), max(high, begin[-1])), bool(begin[-1] < low)
+        piece = self.along(begin, None, span, rises)
+        return [piece] if len(piece.path.z) > 1 else []
 
     def start(self, i: int, by_level: bool) -> FloatArray | None:
         """A motion of the reference at the frequency of a point, if one is found as the work allows: what the
@@ -265,6 +280,11 @@ class StretchFollower:
             finally:
                 stepper.newton.poll = None
                 pay()
+
+
+def _any_passes(pieces: Sequence[ReferencePiece], frequency: FloatArray) -> bool:
+    """Whether one that is whole has frequencies of a stretch."""
+    return any(piece.whole and piece.passes(frequency) for piece in pieces)
 
 
 def _part(path: Path, rows: slice) -> Path:
