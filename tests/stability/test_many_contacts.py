@@ -128,6 +128,24 @@ def test_that_no_more_points_were_looked_at_is_said_with_their_number():
     assert not_confirmed({"curves": [{}]}) == ""
 
 
+def test_what_confirms_lacks_little_with_twice_the_harmonics_if_need_be():
+    """Of one harmonic: seven may lack more than is believed, and fourteen less."""
+    system = System(elastic_strip((11.3, 20.0)), (1,))
+    path, told = traced(system).branches.paths[-1], []
+    z = path.z[int(np.abs(path.parameter - 12.0).argmin())]
+    left = []
+    for more in (enriched_harmonics([1]), enriched_harmonics(enriched_harmonics([1]))):
+        finer = system.with_harmonics(tuple(more))
+        motion = multipliers_of(finer, float(path.parameter.max())).finer
+        motion.at(Rebalancing(system, more).rebalance(z, finer.extended(z, (1,))[:-1]))
+        left.append(motion.shift)
+    assert left[1] < 0.5 * left[0]
+    for most in (1.5 * left[0], 0.5 * sum(left), 0.5 * left[1]):
+        strict = replace(STABILITY, confirmation=replace(STABILITY.confirmation, max_addition=most))
+        told.append(multipliers_of(system, float(path.parameter.max()), strict).confirms(z, 1.0))
+    assert told == [True, True, False]
+
+
 def test_a_motion_that_is_far_is_found_from_beside_the_next_points():
     """As at each point by itself, down to 11.64 rad/s, where the upper branch of more harmonics ends."""
     system = System(elastic_strip((11.3, 20.0)), (1,))

@@ -360,14 +360,14 @@ class Multipliers:
         return UNKNOWN if there is None else self._classify_if_sufficient(multipliers, there) or UNKNOWN
 
     def _classify_if_sufficient(self, multipliers: Multipliers, z: FloatArray) -> Classification | None:
-        """Of a motion with further harmonics; None where those beyond its own add more than the most to it,
-        so that it errs as much as what it is to confirm."""
+        """Of a motion with further harmonics. Where those beyond its own add more than the most to it, it
+        errs as much as what it is to confirm: then of one with these balanced, too; None where none tells."""
         multipliers.finer.at(z)
-        return (
-            multipliers.classify(z)
-            if multipliers.finer.shift <= self.options.confirmation.max_addition
-            else None
-        )
+        if multipliers.finer.shift <= self.options.confirmation.max_addition:
+            return multipliers.classify(z)
+        if self.last:
+            return None
+        return multipliers._rebalanced(z, np.array(multipliers.finer.x), persistent=True)
 
     def _matrix(self, followed: VariationalProblem, omega: float) -> FloatArray | None:
         """The monodromy matrix of the motion that was looked at."""
