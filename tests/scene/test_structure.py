@@ -585,6 +585,20 @@ def test_stiffness_and_mass_of_a_mesh_in_each_others_place(swapped):
     assert "in each other's place" in said and f"which is {first:.6g} rad/s" in said
 
 
+@pytest.mark.parametrize("ending", [".npy", ".txt", ".csv"])
+def test_what_numpy_writes_otherwise_is_told_how_it_is_made_an_archive(ending, tmp_path, monkeypatch):
+    """By doing what the message says."""
+    monkeypatch.chdir(tmp_path)
+    if ending == ".npy":
+        np.save("M.npy", M)
+    else:
+        np.savetxt(f"M{ending}", M, delimiter="," if ending == ".csv" else " ")
+    said = refused(tmp_path, mass=f"M{ending}")
+    command = said.rpartition("; ")[2].partition(" writes one")[0]
+    exec(command, {"numpy": np})
+    assert read(tmp_path, mass="M.npz").modal.frequency == pytest.approx(EXACT)
+
+
 @pytest.mark.parametrize("names_in_order", [True, False])
 def test_the_mass_of_a_structure_that_floats_is_the_same_along_all_axes(names_in_order):
     """Four points of different masses and rods between them; with two names exchanged they differ."""

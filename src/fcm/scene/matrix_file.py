@@ -33,13 +33,21 @@ ENDINGS = (
 )
 
 
+REWRITTEN = {  # endings of what numpy makes one of these of
+    ".npy": "; numpy.savez('{0}.npz', numpy.load('{1}')) writes one",
+    ".csv": "; numpy.savez('{0}.npz', numpy.loadtxt('{1}', delimiter=',')) writes one",
+    **dict.fromkeys((".txt", ".dat"), "; numpy.savez('{0}.npz', numpy.loadtxt('{1}')) writes one"),
+}
+
+
 def read_matrix(name: str, files: Files) -> Labelled:
     """The matrix of a file as a scipy sparse array; "model.mat:K" is the one of that name in the file."""
     path, chosen = split_name(name)
     ending = Path(path).suffix.lower()
     if ending not in ENDINGS and own_reader(ending) is None:
         endings = ", ".join((*ENDINGS, *own_endings()))
-        raise DataFileError(f"{quoted(path)} cannot be read: such a file is {endings}")
+        hint = REWRITTEN.get(ending, "").format(Path(path).stem, path)
+        raise DataFileError(f"{quoted(path)} cannot be read: such a file is {endings}{hint}")
     if ending == ".op4":  # pyyeti gives the names in lower case
         chosen = chosen.lower()
     if ending == ".pch":  # Nastran's names are upper case
