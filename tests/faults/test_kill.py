@@ -19,7 +19,7 @@ FORMER = b"the result of an earlier run, which nothing but a whole one may repla
 NOTED = (
     FEW
     + """
-import fcm.response.curve_sweep as module
+import fcm.response.curve_batches as module
 real = module.sweep
 def sweep(compute, batches, at, kept, progress):
     taken, begun = set(kept.finished), set(kept.states)

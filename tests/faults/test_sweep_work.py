@@ -203,7 +203,7 @@ def test_killed_just_after_the_start_what_was_kept_is_still_there(program):
     at_once = (
         ALONE
         + """
-import fcm.response.curve_sweep as module, os
+import fcm.response.curve_batches as module, os
 module.sweep = lambda *_: os.kill(os.getpid(), 9)
 """
     )

@@ -1,10 +1,11 @@
-"""Groups of curves that are traced together, as the batches of a sweep (`fcm.run`)."""
+"""Groups of curves that are traced together, as batches (`fcm.run`): on cores, kept while not written."""
 
 from __future__ import annotations
 
 import time
+import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
@@ -21,8 +22,20 @@ from fcm.results.jumps import Jump, Swept, UnknownStability
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance
 from fcm.results.orbits import Orbits, Stuck
 from fcm.results.peak import Peak
-from fcm.results.result import DEFECT, Curve
-from fcm.run import Interrupted, Lost, Report
+from fcm.results.result import DEFECT, NOT_BEGUN, Curve
+from fcm.run import (
+    Checkpoint,
+    Compute,
+    Factory,
+    Interrupted,
+    Lost,
+    Progress,
+    Report,
+    Results,
+    fingerprint,
+    place_for,
+    sweep,
+)
 
 Group = Sequence[Scene]
 KINDS = (
@@ -177,3 +190,42 @@ def lost_curve(scene: Scene, reason: str, cause: Cause = Cause.CALCULATION) -> C
         folds=[],
         seconds=0.0,
     )
+
+
+@dataclass
+class CurveBatches:
+    """Where curves are computed and kept: the same for everything that one run computes."""
+
+    jobs: int  # processes of this machine
+    checkpoint: Checkpoint | None
+    place: Factory | None = None  # instead: an executor or a cluster
+    defects: list[str] = field(default_factory=list)  # tracebacks, of curves that were lost to them
+
+    def curves(
+        self,
+        compute: Compute,
+        batches: Sequence[Group],
+        mark: bytes,
+        progress: Progress | None,
+        states: tuple[type, ...] = (),
+    ) -> list[Curve]:
+        """The curves of all batches in order; those that could not be had say why.
+
+        mark : digest of everything besides the scenes that decides the results.
+        states : what compute saves consists of these.
+        """
+        kept = Results()
+        if self.checkpoint is not None:
+            whole = fingerprint(mark, [anonymous(batch) for batch in batches])
+            kept = self.checkpoint.results(whole, (*KINDS, *states), lambda i, found: fit(batches, i, found))
+        place = self.place or place_for(self.jobs if len(batches) > 1 else 1)
+        outcome = sweep(compute, batches, place, kept, progress)
+        if outcome.lost:
+            warnings.warn(outcome.lost, stacklevel=2)
+        curves: list[Curve] = []
+        for number, batch in enumerate(batches):
+            found = outcome.of(number)
+            found += [None] * (len(batch) - len(found))
+            curves += [as_curve(scene, one, NOT_BEGUN) for scene, one in zip(batch, found, strict=True)]
+            self.defects += [one.defect for one in found if isinstance(one, Lost) and one.defect]
+        return curves

@@ -15,7 +15,7 @@ from fcm.reduction.negligible_parts import leave_out_modes
 from fcm.reduction.sentences import on_modes
 from fcm.response.coexisting_orbits import CoexistingOrbits
 from fcm.response.coexisting_search import FOUND
-from fcm.response.curve_sweep import CurveSweep
+from fcm.response.curve_batches import CurveBatches
 from fcm.response.exact_curve import ExactWork
 from fcm.response.options import INPUT_LIMITS, RESPONSE, ResponseOptions
 from fcm.response.request import ResponseError
@@ -84,7 +84,7 @@ def trace_exact(
         work = ExactWork(
             frequencies, only is not None, tolerance is None, periods, options.shooting, options.exact
         )
-        run = _SweepRun(work, CurveSweep(execution.processes, checkpoint, execution.place))
+        run = _SweepRun(work, CurveBatches(execution.processes, checkpoint, execution.place))
         response = run.response(scene, tolerance, execution.progress)
         if not response.interrupted:
             execution.discard(checkpoint)
@@ -98,7 +98,7 @@ class _SweepRun:
     """One after the other the sweeps of a run, the second with all modes where they turn out to be needed."""
 
     work: ExactWork
-    sweep: CurveSweep
+    sweep: CurveBatches
 
     def response(self, scene: Scene, tolerance: float | None, progress: Progress | None) -> Response:
         """The curves without the modes that they do not need."""

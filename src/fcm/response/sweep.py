@@ -15,8 +15,7 @@ from fcm.reduction.negligible_parts import ReducedScenes, unreduced, without_neg
 from fcm.reduction.options import REDUCTION
 from fcm.reduction.restore import checked, restored
 from fcm.response.blades import with_blades
-from fcm.response.curve_batches import Work
-from fcm.response.curve_sweep import CurveSweep
+from fcm.response.curve_batches import CurveBatches, Work
 from fcm.response.options import ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_modes, unknown
@@ -87,7 +86,7 @@ def trace(
     check_modes(scene, request)
     progress = execution.progress
     with execution.checkpoint() as checkpoint:
-        curves = CurveSweep(execution.processes, checkpoint, execution.place)
+        curves = CurveBatches(execution.processes, checkpoint, execution.place)
         response = _traced(_Sweep(scene, name, table, request, curves), progress)
         if not response.interrupted:
             execution.discard(checkpoint)
@@ -140,7 +139,7 @@ class _Sweep:
         method: str,
         table: Table | None,
         request: Request,
-        curves: CurveSweep,
+        curves: CurveBatches,
     ) -> None:
         self.scene, self.method, self.table, self.curves = scene, method, table, curves
         self.request, self.peaks_only = request, request.options.sweep.peaks_only
