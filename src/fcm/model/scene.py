@@ -185,7 +185,7 @@ class Fit:
     starts: int | None = None  # tried at most; None for the usual ones
 
 
-class Swept(Protocol):
+class SweptKey(Protocol):
     """A key of a sweep, and whether its values are random draws."""
 
     @property
@@ -202,7 +202,7 @@ class Source(Protocol):
     def parts(self) -> dict[str, Any]: ...
 
     @property
-    def swept(self) -> tuple[Swept, ...]: ...
+    def swept(self) -> tuple[SweptKey, ...]: ...
 
     def curve(self, scene: Scene, values: Mapping[str, float], more: Mapping[Address, float] = {}) -> Scene:
         """The scene with swept values, and then numbers at addresses."""

@@ -18,7 +18,7 @@ from fcm.response.trace import traced_curve
 from fcm.results.cause import Cause
 from fcm.results.condensed_curves import CondensedCurve, without_points
 from fcm.results.contact_maxima import Greatest
-from fcm.results.jumps import Jump, Swept, UnknownStability
+from fcm.results.jumps import FrequencySweep, Jump, UnknownStability
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance
 from fcm.results.orbits import Orbits, Stuck
 from fcm.results.peak import Peak
@@ -45,7 +45,7 @@ KINDS = (
     ContactMotions,
     Orbits,
     Stuck,
-    Swept,
+    FrequencySweep,
     Jump,
     UnknownStability,
     Peak,

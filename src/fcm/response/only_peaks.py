@@ -20,7 +20,7 @@ from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.orbit_curve import curve_of_points, orbit_curve
 from fcm.response.request import ONE_HARMONIC, Request
 from fcm.response.trace import traced_curve
-from fcm.results.jumps import Jump, Swept
+from fcm.results.jumps import FrequencySweep, Jump
 from fcm.results.result import Curve
 from fcm.run import Report
 from fcm.shooting.harmonic_balance_state import state_of
@@ -91,7 +91,7 @@ def peaks_only(
 
 def peaks_curve(scene: Scene, alone: PeaksOnly, reason: str, search: Search) -> Curve:
     """The curve of peaks, folds and jumps; complete without a reason."""
-    return _curve(scene, alone.points, Swept(alone.jumps, []), alone.periods, reason, search)
+    return _curve(scene, alone.points, FrequencySweep(alone.jumps, []), alone.periods, reason, search)
 
 
 def peaks_of(groups: Sequence[OrbitBranches], reason: str, search: Search) -> Curve:
@@ -104,7 +104,7 @@ def peaks_of(groups: Sequence[OrbitBranches], reason: str, search: Search) -> Cu
 
 
 def _curve(
-    scene: Scene, points: list[OrbitRecord], swept: Swept, periods: int, reason: str, search: Search
+    scene: Scene, points: list[OrbitRecord], swept: FrequencySweep, periods: int, reason: str, search: Search
 ) -> Curve:
     curve = curve_of_points(scene, points, reason, search)
     curve.folds = [one.frequency for one in points if one.mark & Mark.FOLD]
@@ -126,7 +126,7 @@ def _one_harmonic_suffices(single: Curve) -> bool:
     return single.complete and near and told and _at_folds(swept, single)
 
 
-def _at_folds(swept: Swept, curve: Curve) -> bool:
+def _at_folds(swept: FrequencySweep, curve: Curve) -> bool:
     """Whether each jump is at a fold, and none where stability is lost otherwise, which is not looked for."""
     return all(jump.frequency in curve.folds for jump in swept.jumps)
 

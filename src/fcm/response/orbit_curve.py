@@ -27,7 +27,7 @@ from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.stepped_sweep import SteppedSweep
 from fcm.response.undetermined_traction import undetermined
 from fcm.results.contact_maxima import greatest_of
-from fcm.results.jumps import Swept
+from fcm.results.jumps import FrequencySweep
 from fcm.results.orbits import Orbits, Stuck
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve
@@ -103,7 +103,7 @@ def visited_curve(
     curve = _curve(scene, [*visitor.points, *others], reason, search, everywhere=True)
     if curve.orbits is not None:
         curve.orbits.sweep = np.array(visitor.sweep + [""] * len(others), dtype="<U4")
-        curve.orbits.swept = Swept(visitor.jumps, [])
+        curve.orbits.swept = FrequencySweep(visitor.jumps, [])
     return curve
 
 

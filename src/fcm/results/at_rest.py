@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from fcm.at_rest import RestOptions, at_rest
 from fcm.results.condensed_curves import CondensedCurve
-from fcm.results.jumps import Swept
+from fcm.results.jumps import FrequencySweep
 from fcm.results.nonlinear_mode import NonlinearMode
 from fcm.results.peak import Peak
 from fcm.results.result import Curve
@@ -72,11 +72,11 @@ def _mode(mode: NonlinearMode, rest: Collection[str]) -> NonlinearMode:
     return replace(mode, resonances=resonances)
 
 
-def _swept(swept: Swept, rest: BoolArray) -> Swept:
+def _swept(swept: FrequencySweep, rest: BoolArray) -> FrequencySweep:
     jumps = [
         replace(one, before=_still(one.before, rest), after=_still(one.after, rest)) for one in swept.jumps
     ]
-    return Swept(jumps, [replace(one, before=_still(one.before, rest)) for one in swept.untold])
+    return FrequencySweep(jumps, [replace(one, before=_still(one.before, rest)) for one in swept.untold])
 
 
 def _still(values: npt.NDArray[Any], rest: BoolArray) -> npt.NDArray[Any]:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
-from fcm.results.jumps import Swept
+from fcm.results.jumps import FrequencySweep
 from fcm.results.local_maxima import lower_peaks, rise_beside
 from fcm.stability.unstable_ranges import Stretch, unstable_stretches
 
@@ -27,7 +27,7 @@ class CondensedCurve:
     ends: tuple[float, float]  # [rad/s] lowest and highest frequency sought; of one point, or none, NaN
     stable: bool | None  # whether all of the curve is; None where that is not known
     unstable: tuple[Stretch, ...]  # [rad/s] where nothing that was found is, the widest stretch first
-    swept: Swept  # of a slow upward and a slow downward sweep
+    swept: FrequencySweep  # of a slow upward and a slow downward sweep
     table_error: float | None  # the largest that is known
     truncation_error: float | None
     # (dof, 3): amplitude, frequency [rad/s] and error of the greatest motion that is stable; NaN without one

@@ -36,13 +36,13 @@ class UnknownStability:
 
 
 @dataclass(frozen=True)
-class Swept:
+class FrequencySweep:
     """What a slow upward, then a slow downward sweep meets."""
 
     jumps: list[Jump]
     untold: list[UnknownStability]
 
-    def without_flips(self, options: JumpOptions = RESULTS.jumps) -> Swept:
+    def without_flips(self, options: JumpOptions = RESULTS.jumps) -> FrequencySweep:
         """Without those at which the period doubles: the motion goes on with hardly another amplitude."""
         change = [
             np.abs(one.after - one.before) > options.flip_tolerance * np.maximum(one.before, one.after)
@@ -53,10 +53,10 @@ class Swept:
         ]
         return replace(self, jumps=kept)
 
-    def at(self, shown: BoolArray) -> Swept:
+    def at(self, shown: BoolArray) -> FrequencySweep:
         """At some of the degrees of freedom."""
         jumps = [replace(one, before=one.before[shown], after=one.after[shown]) for one in self.jumps]
-        return Swept(jumps, [replace(one, before=one.before[shown]) for one in self.untold])
+        return FrequencySweep(jumps, [replace(one, before=one.before[shown]) for one in self.untold])
 
 
 def swept(
@@ -64,7 +64,7 @@ def swept(
     amplitude: FloatArray,
     stable: FloatArray,
     options: JumpOptions = RESULTS.jumps,
-) -> Swept:
+) -> FrequencySweep:
     """What slow sweeps meet along a curve; amplitude (point, dof), stable 1, 0, or NaN where it is not known.
 
     A sweep begins at the first frequency with a motion that is not known to be unstable, stays on such
@@ -82,7 +82,7 @@ def swept(
     [('up', 1.0, 3.0), ('down', 3.0, 1.0)]
     """
     frequency, amplitude, stable = _once(frequency, amplitude, stable, options)
-    found = Swept([], [])
+    found = FrequencySweep([], [])
     for sweep in ("up", "down"):
         _sweep(frequency, amplitude, stable, sweep, found, options.amplitude_tolerance)
     return found
@@ -105,7 +105,12 @@ def _once(
 
 
 def _sweep(
-    frequency: FloatArray, amplitude: FloatArray, stable: FloatArray, sweep: str, found: Swept, same: float
+    frequency: FloatArray,
+    amplitude: FloatArray,
+    stable: FloatArray,
+    sweep: str,
+    found: FrequencySweep,
+    same: float,
 ) -> None:
     """Walk along stable segments in the direction of the sweep, and jump where they end.
 
@@ -168,7 +173,7 @@ def _note_untold(
     walked: list[int],
     start: tuple[float, FloatArray],
     told: bool,
-    found: Swept,
+    found: FrequencySweep,
 ) -> None:
     """Note the ways on which stability is not told, of a walk that begins before its first point."""
     frequency, amplitude, there = curve

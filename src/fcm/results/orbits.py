@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
-from fcm.results.jumps import Swept
+from fcm.results.jumps import FrequencySweep
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Orbits:
     family_greatest: FloatArray  # (point, dof) contacts that never slip, of stable motions where the point is
     # stable, else of all; nan where unique, or not sought
     family_complete: FloatArray  # (point,) 1 where all of these were reached, 0 where there may be others
-    swept: Swept | None = None  # what slow sweeps met; None where the curve itself tells
+    swept: FrequencySweep | None = None  # what slow sweeps met; None where the curve itself tells
     periods: int = 0  # of the motion that were computed to trace the curve
     held: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))  # (contact, 2) what contacts that were
     # left out keep of their slip limits, or of their gaps; nan where computed, no contacts where none was

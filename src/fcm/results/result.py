@@ -18,7 +18,7 @@ from fcm.results.condensed_curves import CondensedCurve
 from fcm.results.contact_maxima import Greatest
 from fcm.results.curve_summary import curve_summary
 from fcm.results.directions import directions_of, positions_of
-from fcm.results.jumps import Jump, Swept, swept
+from fcm.results.jumps import FrequencySweep, Jump, swept
 from fcm.results.peak import Peak
 
 if TYPE_CHECKING:
@@ -106,12 +106,12 @@ class Curve:
         """Number of the branch of each point, (point,); a row of NaN stands between branches."""
         return np.cumsum(np.isnan(self.frequency))
 
-    def swept(self) -> Swept:
+    def swept(self) -> FrequencySweep:
         """What a slow upward and a slow downward sweep of the frequency meet."""
         if self.orbits is not None and self.orbits.swept is not None:
             return self.orbits.swept
         if self.level is not None or self.mode is not None:
-            return Swept([], [])
+            return FrequencySweep([], [])
         found = swept(self.frequency, self.amplitude, self.stable)
         if self.orbits is not None and (self.orbits.repeats > 1).any():
             return found.without_flips()

@@ -20,7 +20,7 @@ from fcm.scene.modal import UNITS, modal_of
 from fcm.scene.parts import contact_of, force_of
 from fcm.scene.rules import RULES, Rule
 from fcm.scene.section import Parts
-from fcm.scene.sweep import Swept, combinations, field_of
+from fcm.scene.sweep import SweptKey, combinations, field_of
 
 LEVEL = "level"  # of the forces: all amplitudes times this
 
@@ -30,7 +30,7 @@ class Draft:
     """The parts of a scene as read, and its swept keys; the same for all of its curves."""
 
     parts: Parts
-    swept: tuple[Swept, ...]
+    swept: tuple[SweptKey, ...]
 
     def curve(self, scene: Scene, values: Mapping[str, float], more: Mapping[Address, float] = {}) -> Scene:
         """The scene with swept values, and then numbers at addresses; what does not change is shared."""

@@ -19,7 +19,7 @@ from fcm.scene.keys import names
 from fcm.scene.names import Names
 from fcm.scene.rules import RULES
 from fcm.scene.section import Part, Parts, Section
-from fcm.scene.sweep import Swept, draws_in
+from fcm.scene.sweep import SweptKey, draws_in
 
 if TYPE_CHECKING:
     from fcm.scene.structure_table import Matrices
@@ -85,13 +85,13 @@ def _factors(table: Section, sectors: float) -> tuple[FloatArray | None, Any]:
     return found, draws
 
 
-def drawn_rings(parts: Parts) -> list[Swept]:
+def drawn_rings(parts: Parts) -> list[SweptKey]:
     """The sweep over drawn rings: of one key, or of none."""
     if not parts.get("whole") or parts["whole"][0]["drawn"] is None:
         return []
     draws = parts["whole"][0]["drawn"]
     values = tuple(float(i) for i in range(draws.count))
-    return [Swept(DRAW, (("whole", 0, "draw"),), values, ("drawn", draws.count), draws)]
+    return [SweptKey(DRAW, (("whole", 0, "draw"),), values, ("drawn", draws.count), draws)]
 
 
 def read_blade(
@@ -372,9 +372,9 @@ def turned(draft: Part, whole: Part) -> list[Part]:
     ]
 
 
-def tuned_sweep(parts: Parts, swept: Sequence[Swept]) -> tuple[Swept, ...]:
+def tuned_sweep(parts: Parts, swept: Sequence[SweptKey]) -> tuple[SweptKey, ...]:
     """The swept keys that the tuned ring has, too."""
-    known, found = Addresses(parts), list[Swept]()
+    known, found = Addresses(parts), list[SweptKey]()
     for one in swept:
         addresses = () if one.key.startswith(KEY) else known.find(one.key, "", Mistakes(""))
         if addresses:

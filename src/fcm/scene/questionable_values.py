@@ -12,12 +12,12 @@ from fcm.scene.errors import bare, shown
 from fcm.scene.options import LIMITS
 from fcm.scene.rules import as_float
 from fcm.scene.section import Parts, Section
-from fcm.scene.sweep import Swept
+from fcm.scene.sweep import SweptKey
 
 CRITICAL = "critical damping"
 
 
-def questions(top: Section, parts: Parts, swept: Sequence[Swept]) -> list[str]:
+def questions(top: Section, parts: Parts, swept: Sequence[SweptKey]) -> list[str]:
     """A question for each key whose number is hardly meant as it is; the scene is read as it says.
 
     damping ratios and loss factors of 1 and more, damping ratios of which the least is large,
@@ -29,7 +29,9 @@ def questions(top: Section, parts: Parts, swept: Sequence[Swept]) -> list[str]:
     return [one for one in found if one]
 
 
-def _ratios(top: Section, parts: Parts, swept: Sequence[Swept]) -> Iterator[tuple[str, Iterable[float], str]]:
+def _ratios(
+    top: Section, parts: Parts, swept: Sequence[SweptKey]
+) -> Iterator[tuple[str, Iterable[float], str]]:
     """Key, values, and what the values are parts of."""
     structure = top.data.get("structure")
     if isinstance(structure, Mapping):
@@ -46,7 +48,7 @@ def _ratios(top: Section, parts: Parts, swept: Sequence[Swept]) -> Iterator[tupl
             yield _of_sweep(one), one.values, CRITICAL
 
 
-def _angles(top: Section, swept: Sequence[Swept]) -> Iterator[tuple[str, Iterable[float]]]:
+def _angles(top: Section, swept: Sequence[SweptKey]) -> Iterator[tuple[str, Iterable[float]]]:
     for table, key in (("force", "phase"), ("base", "phase"), ("start", "angle")):
         value = top.data.get(table)
         if isinstance(value, Mapping):
@@ -59,7 +61,7 @@ def _angles(top: Section, swept: Sequence[Swept]) -> Iterator[tuple[str, Iterabl
             yield _of_sweep(one), one.values
 
 
-def _frictions(top: Section, swept: Sequence[Swept]) -> Iterator[tuple[str, Iterable[float]]]:
+def _frictions(top: Section, swept: Sequence[SweptKey]) -> Iterator[tuple[str, Iterable[float]]]:
     contacts = top.data.get("contact")
     for index, one in enumerate(contacts if isinstance(contacts, list | tuple) else ()):
         yield f"contact[{index}].mu", _numbers(one.get("mu") if isinstance(one, Mapping) else None)
@@ -68,7 +70,7 @@ def _frictions(top: Section, swept: Sequence[Swept]) -> Iterator[tuple[str, Iter
             yield _of_sweep(varied), varied.values
 
 
-def _of_sweep(one: Swept) -> str:
+def _of_sweep(one: SweptKey) -> str:
     return f"sweep.{bare(one.key)}"
 
 

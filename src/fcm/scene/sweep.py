@@ -43,7 +43,7 @@ FORMS = (
 
 
 @dataclass(frozen=True)
-class Swept:
+class SweptKey:
     """One key of a sweep; keys of one group go in step."""
 
     key: str
@@ -58,7 +58,7 @@ class Swept:
         return self.draws is not None
 
 
-def read_sweep(top: Section, parts: Mapping[str, Any], others: Sequence[Swept] = ()) -> list[Swept]:
+def read_sweep(top: Section, parts: Mapping[str, Any], others: Sequence[SweptKey] = ()) -> list[SweptKey]:
     """The swept keys with their values; `parts` are the drafts of modal, contact and force.
 
     Before them are others, which are not of this table.
@@ -67,7 +67,7 @@ def read_sweep(top: Section, parts: Mapping[str, Any], others: Sequence[Swept] =
     if section is None:
         return list(others)
     addresses = Addresses(parts)
-    found: list[Swept | None] = []
+    found: list[SweptKey | None] = []
     correlation = read_correlation(section) if "correlation" in section.data else None
     correlated = () if correlation is None else correlation.keys
     for key in section.data:
@@ -92,12 +92,12 @@ def read_sweep(top: Section, parts: Mapping[str, Any], others: Sequence[Swept] =
     return swept
 
 
-def curves_of(swept: Sequence[Swept]) -> int:
+def curves_of(swept: Sequence[SweptKey]) -> int:
     """How many curves swept keys ask for: 1 where nothing is swept."""
     return prod(len(group[0].values) for group in _groups(swept))
 
 
-def combinations(swept: Sequence[Swept]) -> Iterator[dict[str, float]]:
+def combinations(swept: Sequence[SweptKey]) -> Iterator[dict[str, float]]:
     """Values of each curve: the product in the order of the file, the last key fastest."""
     if not swept:
         return
@@ -108,16 +108,16 @@ def combinations(swept: Sequence[Swept]) -> Iterator[dict[str, float]]:
         yield {one.key: values[one.key] for one in swept}
 
 
-def _groups(swept: Sequence[Swept]) -> list[list[Swept]]:
-    groups: dict[object, list[Swept]] = {}
+def _groups(swept: Sequence[SweptKey]) -> list[list[SweptKey]]:
+    groups: dict[object, list[SweptKey]] = {}
     for one in swept:
         groups.setdefault(one.group, []).append(one)
     return list(groups.values())
 
 
-def _paired(section: Section, addresses: Addresses) -> list[Swept | None]:
+def _paired(section: Section, addresses: Addresses) -> list[SweptKey | None]:
     """The keys of each [[sweep.paired]] table, which go in step."""
-    found: list[Swept | None] = []
+    found: list[SweptKey | None] = []
     for number, table in enumerate(section.tables("paired")):
         keys = [_swept(table, key, addresses) for key in table.data]
         counts = {len(one.values) for one in keys if one is not None}
@@ -129,7 +129,7 @@ def _paired(section: Section, addresses: Addresses) -> list[Swept | None]:
     return found
 
 
-def _correlated(section: Section, swept: list[Swept], correlation: Correlation) -> list[Swept]:
+def _correlated(section: Section, swept: list[SweptKey], correlation: Correlation) -> list[SweptKey]:
     """The swept keys, the draws of those that are correlated in their places."""
     table = Section({}, section.at("correlation"), section.mistakes)
     draws = {one.key: one.draws for one in swept if one.draws is not None}
@@ -157,7 +157,7 @@ def _correlated(section: Section, swept: list[Swept], correlation: Correlation) 
     ]
 
 
-def _swept(section: Section, key: str, addresses: Addresses, checked: bool = True) -> Swept | None:
+def _swept(section: Section, key: str, addresses: Addresses, checked: bool = True) -> SweptKey | None:
     path = section.at(quoted(key))
     value = section.data[key]
     if isinstance(value, Mapping) and "." not in str(key) and not _FORM_KEYS & set(value):
@@ -174,7 +174,7 @@ def _swept(section: Section, key: str, addresses: Addresses, checked: bool = Tru
     if checked:
         _check(section, path, values, RULES[field_of(found[0])], listed=not isinstance(value, Mapping))
     group = str(key) if draws is None else ("drawn", len(values))
-    return Swept(str(key), found, tuple(values.tolist()), group, draws)
+    return SweptKey(str(key), found, tuple(values.tolist()), group, draws)
 
 
 def field_of(address: Address) -> str:
@@ -191,7 +191,7 @@ def _check(section: Section, path: str, values: Any, rule: Rule, listed: bool) -
         section.mistakes.add(f"{path}[{index}]" if listed else path, fault if listed else summary)
 
 
-def _note_overlaps(section: Section, swept: list[Swept]) -> None:
+def _note_overlaps(section: Section, swept: list[SweptKey]) -> None:
     for index, one in enumerate(swept):
         for other in swept[:index]:
             if any(overlap(mine, its) for mine in one.addresses for its in other.addresses):
