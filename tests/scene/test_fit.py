@@ -73,6 +73,16 @@ def test_frequencies_are_in_the_unit_of_the_scene(written):
     assert one.frequency == pytest.approx(2.0 * np.pi * np.array([0.9, 1.1, 1.3]), rel=1e-15)
 
 
+def test_data_outside_the_range_are_asked_about(written):
+    """Of frequencies in Hz for rad/s the fit ended anywhere, at no effect of its numbers."""
+    for points, asked in ((POINTS, False), ("frequency,amplitude\n90,1\n110,2\n", True)):
+        notes = load_scene(written(FIT, points)).notes
+        said = [
+            one for one in notes if one.startswith("fit: a.csv has frequencies from 90 to 110 rad/s, none")
+        ]
+        assert len(said) == asked
+
+
 def test_a_column_of_forces_is_a_level_of_each_point(written):
     points = "frequency amplitude F\n0.9 1.5 2.0\n1.1 2.5 1.0\n"
     scene = oscillator(RANGE, amplitude=4.0)

@@ -19,7 +19,7 @@ from fcm.scene.optimum import pair_of_bounds, varied_numbers
 from fcm.scene.options import LIMITS
 from fcm.scene.rules import FRACTION, POSITIVE, Rule
 from fcm.scene.section import Section
-from fcm.units import QUANTITIES
+from fcm.units import QUANTITIES, in_unit
 
 RESPONSE_KEYS = ("dof", "level", "quantity", "amplitude_error", "frequency_error")
 BACKBONE_KEYS = ("dof", "mode", "frequency_error", "damping_error")
@@ -66,6 +66,24 @@ def read_fit(top: Section, files: Files, draft: Draft, reported: Sequence[str], 
         return None
     keys = tuple(number.key for number in numbers if number)
     return Fit(keys, tuple(bounds), known, None if starts is None else int(starts))
+
+
+def notes_of_data(fit: Fit | None, ends: tuple[float, float], unit: str) -> list[str]:
+    """A question for each file of a response whose frequencies are all outside the range of the scene
+    [rad/s]."""
+    said = []
+    for one in fit.data if fit is not None else ():
+        low, high = float(one.frequency.min()), float(one.frequency.max())
+        if one.damping is None and not (low <= ends[1] and high >= ends[0]) and np.isfinite(ends).all():
+            own, whole = (
+                " to ".join(f"{float(in_unit(end, unit)):.6g}" for end in both)
+                for both in ((low, high), ends)
+            )
+            said.append(
+                f"fit: {one.file} has frequencies from {own} {unit}, none within the range, {whole} {unit}. "
+                "Is its unit that of the scene?"
+            )
+    return said
 
 
 def _bounds(section: Section, numbers: Sequence[Number | None]) -> list[tuple[float, float] | None]:

@@ -19,7 +19,7 @@ from fcm.scene.draft import Draft, forces_of, modes_of
 from fcm.scene.errors import Mistakes, SceneError, choices, kind, quoted, suggestion
 from fcm.scene.excitation import load_of, note_of_mass, notes_of_loads, read_base, read_loads
 from fcm.scene.files import Files
-from fcm.scene.fit import read_fit
+from fcm.scene.fit import notes_of_data, read_fit
 from fcm.scene.keys import names
 from fcm.scene.linear import (
     check_matrices,
@@ -185,6 +185,7 @@ def _read(top: Section, files: Files, reading: _Reading) -> dict[str, Any]:
     start = read_start(top, parts)
     draft = Draft(parts, tuple(read_sweep(top, parts, drawn_rings(parts))))
     units = read_units(top)
+    fit = read_fit(top, files, draft, reported or tuple(parts["modal"]["dofs"] or ()), unit)
     notes = [
         *files.noted,
         *notes,
@@ -206,11 +207,11 @@ def _read(top: Section, files: Files, reading: _Reading) -> dict[str, Any]:
         "start": start,
         "reported": reported,
         "output": asked,
-        "notes": tuple(notes),
+        "notes": (*notes, *notes_of_data(fit, ends, unit)),
         "read": tuple(files.said),
         "interfaces": tuple(files.interfaces),
         "optimum": read_optimum(top, draft, reported or tuple(parts["modal"]["dofs"] or ())),
-        "fit": read_fit(top, files, draft, reported or tuple(parts["modal"]["dofs"] or ()), unit),
+        "fit": fit,
         "draft": draft,
     }
 
