@@ -244,19 +244,27 @@ def with_nearest(
         truncation = _truncation(error, amplitude)
         every[k] = replace(every[k], amplitude=error, truncation=truncation, contact_loads=contact_loads)
         if np.isnan(every[k].height).any() and np.isfinite(there).all():
-            every[k] = _with_greatest(every[k], amplitude.max(axis=0), pieces)
+            every[k] = _with_greatest(every[k], path, amplitude, pieces, options)
     return tuple(every)
 
 
-def _with_greatest(errors: Errors, top: FloatArray, pieces: Sequence[CurvePiece]) -> Errors:
-    """Errors of a path with tops (dof,), where those of peaks are not known by the greatest amplitudes of all
-    pieces; of its own reference the greatest is that of its own pieces."""
+def _with_greatest(
+    errors: Errors, path: Path, amplitude: FloatArray, pieces: Sequence[CurvePiece], options: PairOptions
+) -> Errors:
+    """Errors of a path with amplitudes (point, dof), where those of peaks are not known by the greatest
+    amplitudes of all pieces; of its own reference the greatest is that of its own pieces.
+
+    Of degrees of freedom that peak together each has at least the error of the greatest.
+    """
+    tops, top, place = amplitude.argmax(axis=0), amplitude.max(axis=0), lengths(path)
     own, every = (
         np.max([np.zeros_like(top), *(one.value[:, : len(top)].max(axis=0) for one in some)], axis=0)
         for some in (errors.pieces, pieces)
     )
     off, unknown = np.abs(every - top), np.isnan(errors.height)
-    error = np.maximum(off / np.where(top > 0.0, top, 1.0), off.max() / (top.max() or 1.0))
+    together = np.abs(place[tops, None] - place[tops]) <= options.peak_spacing * place[-1]
+    shared, largest = (np.where(together, one, 0.0).max(axis=1) for one in (off, top))
+    error = np.maximum(off / np.where(top > 0.0, top, 1.0), shared / np.where(largest > 0.0, largest, 1.0))
     return replace(
         errors,
         height=np.where(unknown, own, errors.height),
