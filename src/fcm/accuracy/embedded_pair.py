@@ -244,27 +244,25 @@ def with_nearest(
         truncation = _truncation(error, amplitude)
         every[k] = replace(every[k], amplitude=error, truncation=truncation, contact_loads=contact_loads)
         if np.isnan(every[k].height).any() and np.isfinite(there).all():
-            every[k] = _with_greatest(every[k], path, amplitude, pieces, options)
+            every[k] = _with_greatest(every[k], amplitude, pieces)
     return tuple(every)
 
 
-def _with_greatest(
-    errors: Errors, path: Path, amplitude: FloatArray, pieces: Sequence[CurvePiece], options: PairOptions
-) -> Errors:
+def _with_greatest(errors: Errors, amplitude: FloatArray, pieces: Sequence[CurvePiece]) -> Errors:
     """Errors of a path with amplitudes (point, dof), where those of peaks are not known by the greatest
     amplitudes of all pieces; of its own reference the greatest is that of its own pieces.
 
-    Of degrees of freedom that peak together each has at least the error of the greatest.
+    Where the reference does not come to the frequency of a peak that is another motion, and each such peak
+    has at least the error of the greatest.
     """
-    tops, top, place = amplitude.argmax(axis=0), amplitude.max(axis=0), lengths(path)
+    tops, top = amplitude.argmax(axis=0), amplitude.max(axis=0)
     own, every = (
         np.max([np.zeros_like(top), *(one.value[:, : len(top)].max(axis=0) for one in some)], axis=0)
         for some in (errors.pieces, pieces)
     )
     off, unknown = np.abs(every - top), np.isnan(errors.height)
-    together = np.abs(place[tops, None] - place[tops]) <= options.peak_spacing * place[-1]
-    shared, largest = (np.where(together, one, 0.0).max(axis=1) for one in (off, top))
-    error = np.maximum(off / np.where(top > 0.0, top, 1.0), shared / np.where(largest > 0.0, largest, 1.0))
+    shared = np.where(errors.is_same_curve[tops], 0.0, off.max() / (top.max() or 1.0))
+    error = np.maximum(off / np.where(top > 0.0, top, 1.0), shared)
     return replace(
         errors,
         height=np.where(unknown, own, errors.height),

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
+from fcm.accuracy.further_levels import with_levels_below_peaks, with_levels_where_unstable, with_traced
 from fcm.accuracy.options import VALIDITY
 from fcm.accuracy.refinement import OnTraced, RefinedResponse, enlarged, retrace
 from fcm.accuracy.stability_limits import StabilityLimit, distances_from, stability_limits
@@ -20,7 +21,6 @@ from fcm.branches.search import symmetry_loss, with_further_branches
 from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.response_quantities import ContactRecord
 from fcm.model.scene import FloatArray, Scene
-from fcm.response.further_levels import with_levels_below_peaks, with_levels_where_unstable, with_traced
 from fcm.response.master_dofs import with_all_dofs
 from fcm.response.options import SWEEP
 from fcm.stability.bifurcations import stability, with_points

@@ -132,6 +132,7 @@ def converged_balance(
 def every_balance(whole: Scene, poll: Poll, options: ShootingOptions = SHOOTING) -> UncheckedResponse:
     """The response of the balance with as many harmonics as it takes, those among them by which symmetric
     motions lose their symmetry, and every branch; of many contacts with one harmonic."""
+    from fcm.accuracy.further_levels import with_levels_below_peaks
     from fcm.accuracy.refinement import refined_response, retrace
     from fcm.accuracy.unchecked_response import unchecked_response
     from fcm.branches.search import symmetry_loss
@@ -140,6 +141,9 @@ def every_balance(whole: Scene, poll: Poll, options: ShootingOptions = SHOOTING)
     if len(whole.contacts) >= options.balance.many_contacts:
         return unchecked_response(single)
     found = refined_response(single, options.balance.accuracy)
+    if not found.quantities:
+        return found
+    found = with_levels_below_peaks(found, options.balance.accuracy)
     lost = symmetry_loss(found.system, found.traced).harmonics
     if lost:
         more = tuple(sorted({*found.system.harmonics, *lost}))
