@@ -22,11 +22,13 @@ class Interrupting(Messages):
 
 
 def interrupted_after(calls):
-    """After so many parts that are finished; the steps within a part are said, too, and not counted."""
-    left = iter(range(calls))
+    """After so many parts that are finished; steps within a part, and shares of it, are not counted."""
+    left, last = iter(range(calls)), None
 
     def progress(_share, text):
-        if "step " not in text and next(left, None) is None:
+        nonlocal last
+        new, last = text != last, text
+        if new and "step " not in text and next(left, None) is None:
             raise KeyboardInterrupt
 
     return progress

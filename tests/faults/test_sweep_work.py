@@ -16,6 +16,8 @@ import pytest
 
 import fcm
 from fcm.response import curve_batches, trace
+from fcm.response.level import trace_levels
+from fcm.response.mode import trace_modes
 from fcm.run import Checkpoint, CheckpointError, Execution, ExecutorPlace, Lost, fingerprint, place_for, sweep
 from fcm.run.fingerprint import installed
 from fcm.run.fingerprint import program as of_program
@@ -452,6 +454,20 @@ def test_the_progress_of_one_curve_moves_with_the_frequency(harmonics):
     assert shown == sorted(shown) and shown[-1] == 1.0
     first = [share for share in dict.fromkeys(shown) if share < 0.45]  # of what is traced at first
     assert len(first) > 10 and max(np.diff(first)) < 0.1
+
+
+@pytest.mark.parametrize("of", ["levels", "mode"])
+def test_the_progress_of_one_mode_or_level_moves_with_its_span(of):
+    shown = []
+    scene = replace(fcm.load_scene("yang1998-n5"), max_step=0.005)
+    execution = Execution(progress=lambda share, _: shown.append(share))
+    if of == "mode":
+        trace_modes(scene, 1, (0.1, 100.0), execution, harmonics=1)
+    else:
+        trace_levels(scene, [1.2], (0.0, 2.0), execution, harmonics=1)
+    assert shown == sorted(shown) and shown[-1] <= 1.0
+    first = [share for share in dict.fromkeys(shown) if share < 0.4]
+    assert len(first) > 5 and max(np.diff(first)) < 0.2
 
 
 @pytest.mark.slow

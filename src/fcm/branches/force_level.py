@@ -28,6 +28,7 @@ from fcm.branches.options import LEVEL_CURVE, LINEAR_LIMITS
 from fcm.branches.shared_levels import shared_curve, solutions_at_level_one
 from fcm.continuation import End, Events, FollowOptions, Path, Status, follow
 from fcm.continuation.corrector import Newton
+from fcm.continuation.follow import Progress
 from fcm.harmonic_balance.cost_model import charged_to_work, seconds_of
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
@@ -260,6 +261,8 @@ class LevelRange:
         Whether nothing but the user points matters, as of `FollowOptions`.
     over_corners : bool
         Whether slight corners are stepped over.
+    progress : callable, optional
+        Told the share of the span that is covered, now and then.
     """
 
     span: tuple[float, float]
@@ -268,6 +271,7 @@ class LevelRange:
     linear: float = 0.0
     user_points_only: bool = False
     over_corners: bool = False
+    progress: Progress | None = None
 
 
 def level_curve(system: System, omega: float, levels: LevelRange) -> Path:
@@ -315,7 +319,7 @@ def _follow_level(system: System, start: FloatArray, omega: float, levels: Level
             enough = _WayBeyond(stepper.newton, seconds_of(system, 1, len(system.harmonics)), reach)
             wanted = replace(wanted, ends=(End(enough),))
     along = partial(follow, level, start, levels.span, wanted, options, stepper=stepper)
-    return charged_to_work(system, stepper, None, lambda report: along(progress=report))
+    return charged_to_work(system, stepper, levels.progress, lambda report: along(progress=report))
 
 
 class _WayBeyond:

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from fcm.continuation import FollowOptions, Path
 from fcm.continuation.corrector import Newton
+from fcm.continuation.follow import Progress
 from fcm.harmonic_balance.response_quantities import contact_loads_along
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
@@ -68,6 +69,7 @@ def nonlinear_mode(
     span: tuple[float, float],
     max_step: float,
     options: NonlinearModeOptions = NONLINEAR_MODE,
+    progress: Progress | None = None,
 ) -> Mode:
     """The mode with a number, from the linear one at the least amplitude of the span.
 
@@ -88,7 +90,9 @@ def nonlinear_mode(
         new_problem = partial(AutonomousProblem, followed, guess, options)
         first = new_problem()
         following = FollowOptions(max_step, newton=first.precision)
-        path = follow_past_corners(new_problem, first.start(low), (low, high), following, options.restart)
+        path = follow_past_corners(
+            new_problem, first.start(low), (low, high), following, options.restart, progress
+        )
         if path.z.shape[0]:
             break
     if followed is not system:

@@ -12,6 +12,7 @@ import numpy as np
 
 from fcm.continuation import FollowOptions, Path, Problem, Status, follow
 from fcm.continuation.corrector import Newton
+from fcm.continuation.follow import Progress
 from fcm.model.scene import FloatArray
 from fcm.nonlinear_modes.options import NONLINEAR_MODE, RestartOptions
 
@@ -26,11 +27,17 @@ def follow_past_corners(
     span: tuple[float, float],
     options: FollowOptions,
     restart: RestartOptions = NONLINEAR_MODE.restart,
+    progress: Progress | None = None,
 ) -> Path:
     """The curve through start, upwards from the lower end of the span, as of `follow`."""
     whole, low = None, span[0]
+
+    def report(share: float) -> None:
+        if progress is not None:
+            progress((low - span[0] + share * (span[1] - low)) / (span[1] - span[0]))
+
     for _ in range(restart.max_restarts):
-        path, ended = _first_piece(new_problem, start, (low, span[1]), options, restart)
+        path, ended = _first_piece(new_problem, start, (low, span[1]), options, restart, report)
         if not path.z.shape[0]:
             return path if whole is None else whole
         if low > span[0] and path.status is Status.RETURNED:  # to where it was taken up
@@ -52,12 +59,14 @@ def _first_piece(
     span: tuple[float, float],
     options: FollowOptions,
     restart: RestartOptions,
+    report: Progress,
 ) -> tuple[Path, bool]:
     """The curve as far as its steps lead, and whether that is its end."""
     last, same = -1.0, 0
 
     def watch(share: float) -> None:
         nonlocal last, same
+        report(share)
         same = same + 1 if abs(share - last) < restart.min_progress else 0
         last = share
         if same > restart.max_reports:

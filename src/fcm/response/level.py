@@ -129,14 +129,14 @@ def _level_curve(
     """With the harmonics of the request; with ever more until they are enough for the accuracy."""
     begin, stopped = time.perf_counter(), ""
     system = request.system(scene)
-    curve = _followed(system, omega, span)
+    curve = _followed(system, omega, span, tell)
     while request.harmonics is None and curve.complete and not _worst(curve, scene) <= request.accuracy:
         more = with_twice_as_many(system, curve.evaluations)
         if more is None:
             break
         try:
             tell(f"with {len(more.harmonics)} harmonics")
-            then = _followed(more, omega, span)
+            then = _followed(more, omega, span, tell)
         except KeyboardInterrupt:
             stopped = f"{INTERRUPTED} before it was known with {len(more.harmonics)} harmonics"
             break
@@ -171,7 +171,7 @@ def _worst(curve: Curve, scene: Scene) -> float:
     return float(np.max([*peaks, *there[np.isfinite(there)]], initial=0.0))
 
 
-def _followed(system: System, omega: float, span: tuple[float, float]) -> Curve:
+def _followed(system: System, omega: float, span: tuple[float, float], tell: Tell) -> Curve:
     """The curve with the harmonics of a system."""
     try:
         check_contacts_can_close(system)
@@ -180,7 +180,11 @@ def _followed(system: System, omega: float, span: tuple[float, float]) -> Curve:
         return _without(system.scene, omega, str(error))
     # what folds back into the span from beyond it is part of the curve
     reach = (span[0], max(span[1], highest_linear_limit(system, omega)))
-    path = level_curve(system, omega, LevelRange(reach, system.scene.max_step, (1.0, span[1])))
+    beyond = (reach[1] - reach[0]) / (span[1] - span[0])
+    levels = LevelRange(
+        reach, system.scene.max_step, (1.0, span[1]), progress=lambda share: tell.covered(share * beyond)
+    )
+    path = level_curve(system, omega, levels)
     inside = np.flatnonzero((path.parameter >= span[0]) & (path.parameter <= span[1]))
     curve = _without(system.scene, omega, "no response was found at the least level")
     if inside.size:

@@ -133,7 +133,7 @@ def _curve(scene: Scene, asked: ModeRequest, request: Request, tell: Tell) -> Cu
     system = request.system(scene)
     try:
         check_contacts_can_close(system)
-        mode = nonlinear_mode(system, asked.number, asked.span, scene.max_step)
+        mode = nonlinear_mode(system, asked.number, asked.span, scene.max_step, progress=tell.covered)
     except RestError as nowhere:
         return lost_curve(scene, str(nowhere))
     (error, theirs), stopped = truncation(mode), ""
@@ -144,7 +144,7 @@ def _curve(scene: Scene, asked: ModeRequest, request: Request, tell: Tell) -> Cu
         count = len(enlarged.harmonics)
         try:
             tell(f"with {count} harmonics")
-            more = nonlinear_mode(enlarged, asked.number, asked.span, scene.max_step)
+            more = nonlinear_mode(enlarged, asked.number, asked.span, scene.max_step, progress=tell.covered)
             if more.path.status is not Status.COMPLETE and mode.path.status is Status.COMPLETE:
                 break
             tell(f"the error with {count} harmonics")

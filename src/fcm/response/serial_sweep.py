@@ -4,14 +4,37 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import partial
 
 from fcm.response.curve_batches import KINDS, fits
 from fcm.results.cause import Cause
 from fcm.results.result import INTERRUPTED, Curve
 from fcm.run import IN_THIS_PROCESS, Execution, Progress, Results
 
-Tell = Callable[[str], None]  # how far a curve is; an interruption may come of it
+
+class Tell:
+    """How far one of the curves is; an interruption may come of it.
+
+    How often it is followed again nobody knows. So each time takes half of what is left of its progress.
+    """
+
+    def __init__(self, progress: Progress | None, number: int, count: int) -> None:
+        self.progress, self.number, self.count = progress, number, count
+        self.text, self.left, self.done = "", 1.0, 0.0
+
+    def __call__(self, text: str) -> None:
+        """What is followed now."""
+        self.left *= 0.5 if text else 1.0
+        self.text = text
+        self.covered(0.0)
+
+    def covered(self, share: float) -> None:
+        """It is followed up to a share of what it spans."""
+        self.done = max(self.done, 1.0 - self.left * (1.0 - 0.5 * min(share, 1.0)))
+        if self.progress is not None:
+            of = f"{self.number} of {self.count} curves{', ' if self.text else ''}{self.text}"
+            self.progress((self.number + self.done) / self.count, of)
+
+
 Task = tuple[Curve, Callable[[Tell], Curve]]  # the curve without points, and what follows it
 
 
@@ -48,7 +71,7 @@ def _followed(tasks: Sequence[Task], progress: Progress | None, kept: Results) -
         if i in kept.finished:
             curves += kept.finished[i]
             continue
-        tell = partial(_tell, progress, i, len(tasks))
+        tell = Tell(progress, i, len(tasks))
         try:
             tell("")
             curves.append(followed(tell))
@@ -60,12 +83,6 @@ def _followed(tasks: Sequence[Task], progress: Progress | None, kept: Results) -
             if len(curves) == i:
                 curves.append(replace(none, reason=f"{INTERRUPTED} at the start", cause=Cause.INTERRUPTED))
     return curves
-
-
-def _tell(progress: Progress | None, number: int, count: int, text: str) -> None:
-    """Show which curve is followed, and how far it is."""
-    if progress is not None:
-        progress(number / count, f"{number} of {count} curves{', ' if text else ''}{text}")
 
 
 def _cut_off(curve: Curve) -> bool:
