@@ -10,7 +10,6 @@ from fcm.cli.columns import share_of
 from fcm.cli.curves import shown_dofs
 from fcm.cli.jump_table import resolution_of
 from fcm.cli.limits import SENTENCES
-from fcm.stability.options import STABILITY
 
 _LINEAR = {  # keys of curves on which no contact changes its state: what is said, and what helps
     "all_stick": ("no contact slips or opens {}", "less preload or more force"),
@@ -102,11 +101,13 @@ def not_confirmed(summary: Mapping[str, Any]) -> str:
     count = sum(curve.get("stability_not_confirmed", 0) for curve in summary["curves"])
     if not count:
         return ""
+    from fcm.stability.options import STABILITY  # numerics, which the help does not import
+
     most = f"{STABILITY.confirmation.max_fraction_of_many:.0%}"
     return (
-        f"at {count} points stability is unknown: a motion with more harmonics was looked for at {most} of "
-        "the points at most, as of many contacts each takes long. With more --harmonics, or a narrower "
-        "range, fewer are needed"
+        f"at {count} points stability is unknown. Of many contacts a motion with more harmonics takes long, "
+        f"and was looked for at {most} of the points at most. With more --harmonics, or a narrower range, "
+        "fewer are needed"
     )
 
 
