@@ -124,7 +124,7 @@ def test_that_no_more_points_were_looked_at_is_said_with_their_number():
     unknown = [int(np.isnan(one.stable[np.isfinite(one.frequency)]).sum()) for one in curves]
     assert [one.not_confirmed for one in curves] == unknown == [unknown[0], 0] and unknown[0] > 10
     said = not_confirmed({"curves": [{"stability_not_confirmed": one.not_confirmed} for one in curves]})
-    assert said.startswith(f"at {unknown[0]} points stability is unknown: ")
+    assert said.startswith(f"at {unknown[0]} points stability is unknown. ")
     assert not_confirmed({"curves": [{}]}) == ""
 
 
