@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fcm.accuracy import refinement
 from fcm.accuracy.budget import Budget
 from fcm.accuracy.embedded_pair import errors_along
-from fcm.accuracy.options import OF_GIVEN
+from fcm.accuracy.options import OF_GIVEN, PAIR
 from fcm.accuracy.reference_curve import ReferenceCurve
 from fcm.accuracy.reference_harmonics import prolongation_to
 from fcm.accuracy.reference_pieces import ReportedPath
@@ -15,6 +16,7 @@ from fcm.accuracy.reference_stretch import StretchFollower
 from fcm.accuracy.refinement import with_given_harmonics
 from fcm.branches.trace import traced
 from fcm.continuation import Status
+from fcm.harmonic_balance.options import HARMONIC_BALANCE, WorkOptions
 from fcm.harmonic_balance.reported_quantities import reported_quantities
 from fcm.harmonic_balance.response_quantities import ContactRecord
 from fcm.harmonic_balance.system import System
@@ -24,7 +26,7 @@ from fcm.scene import scene_from_dict
 from fcm.shooting import periodic
 from fcm.shooting.harmonic_balance_state import state_of
 
-from ..harmonic_balance.strips import planar_strip, strip
+from ..harmonic_balance.strips import elastic_strip, planar_strip, strip
 
 
 def test_errors_where_a_corner_has_moved_are_those_at_the_same_frequency():
@@ -149,6 +151,18 @@ def test_a_stretch_without_ends_is_followed_from_the_nearest_that_was_found():
     assert prolongation.find_at_frequency(finer.extended(path.z[0], system.harmonics), True)
     expected = np.array(prolongation.newton.z)
     np.testing.assert_allclose(piece.path.z[-1], expected, rtol=0.0, atol=1e-3 * np.abs(expected).max())
+
+
+def test_of_many_contacts_what_is_not_traced_again_has_the_errors_of_given_harmonics(monkeypatch):
+    """Although the pair may not be followed while harmonics are chosen."""
+    unfollowed = replace(PAIR, work_fraction=0.0, min_seconds=0.0)
+    monkeypatch.setattr(refinement, "PAIR", unfollowed)
+    short = replace(HARMONIC_BALANCE, work=WorkOptions(max_seconds=0.05, max_seconds_repeated=0.0))
+    found = refinement.refined_response(System(elastic_strip((11.3, 20.0)), (1,), options=short), 1e-5)
+    assert not found.agrees and found.system.harmonics == (1,)
+    chosen, given = (refinement.with_errors(found, accuracy) for accuracy in (1e-5, np.inf))
+    told = [[int(one.is_same_curve.sum()) for one in each.errors] for each in (chosen, given, found)]
+    assert told[2] == told[1] and sum(told[1]) > sum(told[0])
 
 
 def test_each_look_at_the_reference_of_many_contacts_may_interrupt():

@@ -123,7 +123,10 @@ def refined_response(
     if checked is None:
         found = found.with_levels()
         further, begun = (found.further, found.begun) if found.further else (further, begun)
-        checked = with_errors(found, accuracy)
+    many = len(system.scene.contacts) >= PAIR.many_contacts
+    if checked is None or (many and not checked.agrees):
+        # nothing is traced again: the pair of many contacts is for the errors alone, as of given harmonics
+        checked = with_errors(found, accuracy, options=OF_GIVEN if many else None)
     return replace(checked, further=further, begun=begun)
 
 
