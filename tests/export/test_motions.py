@@ -260,6 +260,23 @@ def test_paraviews_file_has_what_the_contacts_bear_at_their_nodes(made):
         assert slip[15] * 0.3 * load.max() > expected["energy"] and not slip[:15].any()
 
 
+def test_the_weights_of_a_direction_take_nothing_from_the_energy_of_its_node(made, tmp_path):
+    """With a normal displacement of a fiftieth the same contact has fifty times the normal forces."""
+    folder, _ = made
+    scene = SCENE.replace('normal = "16z"', "normal = { 16z = 0.02 }").replace("mu = 0.3", "mu = 0.006")
+    scene = scene.replace("k_v = 1e6", "k_v = 2.5e9").replace("n_0 = 20.0", "n_0 = 1000.0")
+    (tmp_path / "model.toml").write_text(scene)
+    done = called(
+        "respond", tmp_path / "model.toml", "--mesh", BEAM / "beam.inp", "--motion-at", 4500, "--export",
+        tmp_path / "c.vtu",
+    )  # fmt: skip
+    assert done.code == 0, done.err
+    scaled, plain = (meshio.read(one / "c.vtu").point_data for one in (tmp_path, folder))
+    for what, factor in (("energy", 1.0), ("slip_path", 1.0), ("greatest_normal_force", 50.0)):
+        name = f"at_4500_rad_s_{what}"
+        assert scaled[name] == pytest.approx(factor * plain[name], rel=1e-6) and plain[name][15] > 0.0
+
+
 def test_a_mesh_of_some_nodes_will_do(made, tmp_path):
     folder, _ = made
     (tmp_path / "some.csv").write_text("node,x,y,z\n16,0.3,0.05,0.04\n8,0.3,0.05,0\n1,0,0,0\n")

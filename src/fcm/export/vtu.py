@@ -27,8 +27,7 @@ def write_vtu(motions: Sequence[Motion], scene: Scene, mesh: Mesh, path: Path) -
     Of the contacts there are NAME_energy and NAME_slip_path in a cycle and NAME_greatest_normal_force, each
     (node,) with 0 at nodes of no contact, and NAME_state: a place among
     `fcm.results.contact_states.STATES`, -1 there. A node of several contacts has the sum of energies and
-    forces, the longest slip, the highest state. A contact between many nodes gives each the part with which
-    it moves with it.
+    forces, the longest slip, the highest state. Of a contact between many nodes those of a side share these.
     """
     import meshio
 
@@ -56,11 +55,16 @@ def write_vtu(motions: Sequence[Motion], scene: Scene, mesh: Mesh, path: Path) -
 
 
 def _shares(scene: Scene, rows: Rows, nodes: IntArray) -> FloatArray:
-    """With which part of its motion each node takes part in that across each contact, (contact, node)."""
+    """With which part of the motion of its side each node takes part in that across each contact, (contact,
+    node): those of the nodes of a side are 1 together, whatever the weights of rows are."""
     found = np.zeros((len(scene.contacts), nodes.size))
     for of_contact, contact in zip(found, scene.contacts, strict=True):
         along = contact.normal if contact.normal.any() else contact.tangential
-        of_contact[:] = np.linalg.norm(rows.by_node(along[rows.places].astype(np.complex128), nodes), axis=-1)
+        weights = rows.by_node(along[rows.places].astype(np.complex128), nodes).real
+        size = np.linalg.norm(weights, axis=-1)
+        same_side = weights @ weights[size.argmax()] > 0.0
+        total = max(size[same_side].sum(), size[~same_side].sum())
+        of_contact[:] = size / total if total > 0.0 else 0.0
     return found
 
 
