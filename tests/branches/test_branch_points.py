@@ -70,7 +70,7 @@ def test_where_odd_harmonics_alone_are_given_it_is_said_where_symmetry_is_lost(f
         point.z[-1]
         for point in branch_points(system, (1, 3, 5), traced(System(SCENE, (1, 3, 5))).branches.paths)
     ]
-    assert odd.symmetry_lost and odd.symmetry_lost == pytest.approx(there)
+    assert there and all(np.abs(np.subtract(odd.symmetry_lost, one)).min() < 1e-6 for one in there)
     whole = traced_curve(SCENE, Request((1, 2, 3, 4, 5)))
     assert whole.symmetry_lost == [] and whole.mirrored and not odd.mirrored
     done = fcm("respond", Path(__file__).parent / "scenes/equal_stops.toml", "--harmonics", "1,3,5", "--json")

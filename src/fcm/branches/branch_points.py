@@ -26,6 +26,7 @@ from fcm.branches.options import BRANCHING, BranchingOptions
 from fcm.continuation import Path, Segment
 from fcm.continuation.all_branches import contains
 from fcm.continuation.corrector import Newton
+from fcm.continuation.problem import Problem
 from fcm.harmonic_balance.dense_jacobian import jacobian_of
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.system import System
@@ -74,10 +75,9 @@ def branch_points(
         change = whole.orientation[:-1] * whole.orientation[1:] < 0.0
         for i in np.flatnonzero(change).tolist():
             balance = balance or system.new_balance()
-            z = _located(Segment(balance, whole, i), whole.orientation[i], options)
-            starts = tuple(_leaving(system, z, whole, i, options))
-            if starts:
-                yield BranchPoint(z, starts)
+            point = branch_point_at(balance, balance, whole, i, options)
+            if point.starts:
+                yield point
 
 
 def _with_all(
@@ -100,6 +100,15 @@ def _with_all(
     return replace(path, z=z, direction=direction, orientation=orientation)
 
 
+def branch_point_at(
+    problem: Problem, balance: Balance, path: Path, i: int, options: BranchingOptions = BRANCHING
+) -> BranchPoint:
+    """That between point i of a path of a problem and the next; the problem is one of a balance, in its
+    frequency or in the level of its forces."""
+    z = _located(Segment(problem, path, i), path.orientation[i], options)
+    return BranchPoint(z, tuple(_leaving(problem, balance, z, path, i, options)))
+
+
 def _located(between: Segment, before: float, options: BranchingOptions) -> FloatArray:
     """The place between two points where the determinant changes its sign."""
     low, high = 0.0, 1.0
@@ -115,22 +124,21 @@ def _located(between: Segment, before: float, options: BranchingOptions) -> Floa
 
 
 def _leaving(
-    system: System, z: FloatArray, path: Path, i: int, options: BranchingOptions
+    problem: Problem, balance: Balance, z: FloatArray, path: Path, i: int, options: BranchingOptions
 ) -> Iterator[FloatArray]:
     """Solutions on both sides of a branch point that follows point i of a path, off the path, at the least
     distance at which there are any. The path's direction is that of its chord: it has no one tangent there.
     """
-    balance = system.new_balance()
-    balance.measure(z)
-    balance.evaluate(z)
-    scale = np.array(balance.scale)
+    problem.measure(z)
+    problem.evaluate(z)
+    scale = np.array(problem.scale)
     t = (path.z[i + 1] - path.z[i]) / scale
     t /= np.linalg.norm(t)
     matrix = np.vstack((jacobian_of(balance) * scale / scale[:-1, None], t))
     singular = np.linalg.svd(matrix)[2][-1]
     singular -= (singular @ t) * t
     singular /= np.linalg.norm(singular)
-    newton = Newton(balance)
+    newton = Newton(problem)
     for distance in options.distances:
         found = list[FloatArray]()
         for way in (distance, -distance):
@@ -138,7 +146,7 @@ def _leaving(
             newton.z[:] = z + way * scale * singular
             if newton.correct(distance) and newton.moved < options.max_deviation * distance:
                 start = np.array(newton.z)
-                found += [] if contains(path, start, balance) else [start]
+                found += [] if contains(path, start, problem) else [start]
         if found:
             yield from found
             return

@@ -14,7 +14,9 @@ from fcm.branches.branch_points import (
 )
 from fcm.branches.isolas import level_one_crossings
 from fcm.branches.options import BRANCHING, BranchingOptions
+from fcm.branches.prolongation import at_its_frequency
 from fcm.branches.symmetry import broken_symmetries
+from fcm.branches.symmetry_in_level import few_even, unsymmetric_solutions
 from fcm.branches.trace import Traced, with_further
 from fcm.continuation import Path, Status
 from fcm.continuation.all_branches import contains
@@ -22,8 +24,8 @@ from fcm.harmonic_balance.system import System
 
 
 def with_further_branches(system: System, found: Traced) -> Traced:
-    """With isolated branches, and those through branch points."""
-    return with_branching(system, with_isolas(system, found))
+    """With isolated branches, and those through branch points, of the response and of levels."""
+    return with_unsymmetric(system, with_branching(system, with_isolas(system, found)))
 
 
 def with_isolas(system: System, found: Traced) -> Traced:
@@ -43,16 +45,35 @@ class SymmetryLoss:
     harmonics: tuple[int, ...] = ()
 
 
+def with_unsymmetric(system: System, found: Traced) -> Traced:
+    """With the unsymmetric branches that curves of the level lead to, of two mirror images one; of a system
+    with even harmonics."""
+    if not any(h % 2 == 0 for h in system.harmonics):
+        return found
+    for one in unsymmetric_solutions(system, found.found, found.branches.paths):
+        z, symmetric = (
+            one.few.layout.with_harmonics(each, one.few.harmonics, system.harmonics)
+            for each in (one.z, one.symmetric)
+        )
+        start = at_its_frequency(system, z)
+        if start is not None:
+            found = _with_branches_of(system, found, BranchPoint(symmetric, (start,)))
+    return found
+
+
 def symmetry_loss(system: System, found: Traced) -> SymmetryLoss:
     """Where branches of a system leave symmetric ones by even harmonics that it lacks."""
     whole = with_even_harmonics(system)
     if whole.harmonics == system.harmonics or not system.scene.contacts:
         return SymmetryLoss()
     points = branch_points(whole, system.harmonics, found.branches.paths)
-    lacking = [(one, set(leading_harmonics(whole, one)) - set(system.harmonics)) for one in points]
-    lost = [(float(one.z[-1]), harmonics) for one, harmonics in lacking if harmonics]
+    lead = [(float(one.z[-1]), leading_harmonics(whole, one)) for one in points]
+    if not {*few_even(system)} <= {*system.harmonics}:
+        by_level = unsymmetric_solutions(system, found.found, found.branches.paths)
+        lead += [(float(one.z[-1]), one.even) for one in by_level]
+    lost = [(omega, lacking) for omega, every in lead if (lacking := set(every) - set(system.harmonics))]
     every = {h for _, harmonics in lost for h in harmonics}
-    return SymmetryLoss(tuple(omega for omega, _ in lost), tuple(sorted(every)))
+    return SymmetryLoss(tuple(dict.fromkeys(omega for omega, _ in lost)), tuple(sorted(every)))
 
 
 def with_branching(system: System, found: Traced, options: BranchingOptions = BRANCHING) -> Traced:

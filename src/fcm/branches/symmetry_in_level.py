@@ -1,0 +1,123 @@
+"""Unsymmetric motions that leave symmetric ones as the level of the forces grows.
+
+At a fixed frequency the motion from rest is symmetric as long as the level is low, and may lose its symmetry
+at a branch point of the curve of the level. What leaves it there may pass the level 1 where the symmetric
+response itself has no branch point: then its branch is closed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from fcm.branches.branch_points import branch_point_at
+from fcm.branches.force_level import LevelRange, LevelSolutions, few_harmonics, level_curve
+from fcm.branches.options import BRANCHING, FOLDS, BranchingOptions
+from fcm.continuation import Events, FollowOptions, Path, Status, follow
+from fcm.continuation.all_branches import contains
+from fcm.harmonic_balance.cost_model import seconds_of
+from fcm.harmonic_balance.prolongation import ForceLevelProblem
+from fcm.harmonic_balance.system import System
+from fcm.harmonic_balance.work_budget import WorkLimitError
+from fcm.model.scene import FloatArray
+
+
+class UnsymmetricSolution(NamedTuple):
+    """A solution z (unknown + 1,) at the level 1 of a balance with a few harmonics, the symmetric motion at
+    the level at which its branch leaves that, and which even harmonics lead in it."""
+
+    few: System
+    z: FloatArray
+    symmetric: FloatArray
+    even: tuple[int, ...]
+
+
+def few_even(system: System) -> tuple[int, ...]:
+    """The even harmonics with which such motions are looked for."""
+    return tuple(range(2, few_harmonics(system) + 1, 2))
+
+
+def unsymmetric_solutions(
+    system: System,
+    found: Sequence[LevelSolutions],
+    paths: Sequence[Path],
+    options: BranchingOptions = BRANCHING,
+) -> Iterator[UnsymmetricSolution]:
+    """Those that curves of the level lead to where it was followed, if a path of a system is symmetric."""
+    few = system.with_harmonics(tuple(range(1, few_harmonics(system) + 1)))
+    if len(few.harmonics) < 2 or not any(_is_symmetric(system, path, options) for path in paths):
+        return
+    folds, work = system.option(FOLDS), system.work
+    seconds = max(folds.work_fraction * work.seconds, folds.min_seconds)
+    try:
+        with work.limited_to(work.seconds + seconds):
+            for omega in dict.fromkeys(one.omega for one in found):
+                yield from _past_branch_points(few, omega, options)
+    except WorkLimitError:  # those at the frequencies that are left are not looked for
+        return
+
+
+def _past_branch_points(
+    few: System, omega: float, options: BranchingOptions
+) -> Iterator[UnsymmetricSolution]:
+    """Those at one frequency."""
+    span = (0.0, few.option(FOLDS).max_level)
+    path = level_curve(few, omega, LevelRange(span))
+    balance, known = few.new_balance(), list[Path]()
+    level = ForceLevelProblem(balance, omega)
+    for i in np.flatnonzero(path.orientation[:-1] * path.orientation[1:] < 0.0).tolist():
+        point = branch_point_at(level, balance, path, i, options)
+        if not point.starts or any(contains(one, z, level) for one in known for z in point.starts):
+            continue
+        new = _branch_through(few, level, point.starts[0], span, options)  # the other is its image
+        known += new
+        for z in (z for one in new for z in one.z[one.parameter == 1.0]):
+            even = _leading_even(few, z, options)
+            if even:
+                there, symmetric = (np.append(each[:-1], omega) for each in (z, point.z))
+                yield UnsymmetricSolution(few, there, symmetric, even)
+
+
+def _branch_through(
+    few: System,
+    level: ForceLevelProblem,
+    start: FloatArray,
+    span: tuple[float, float],
+    options: BranchingOptions,
+) -> list[Path]:
+    """The branch both ways from a start; one way where it is closed."""
+    ways, wanted = list[Path](), Events((1.0,))
+    for forward in (True, False):
+        steps = FollowOptions(options.max_level_step)
+        ways.append(follow(level, start, span, wanted, steps, forward=forward))
+        few.work.add(seconds_of(few, ways[-1].evaluations, len(few.harmonics)))
+        if ways[-1].status is Status.CLOSED:
+            break
+    return ways
+
+
+def _even_parts(system: System, z: FloatArray) -> tuple[FloatArray, float]:
+    """Of the displacements of a motion the greatest means and amplitudes of each even harmonic, which a
+    symmetric one has not; and the greatest of all."""
+    parts = np.abs(system.layout.complex_ports(z)).max(axis=0, initial=0.0)
+    return parts[[True, *(h % 2 == 0 for h in system.harmonics)]], float(parts.max())
+
+
+def _is_symmetric(system: System, path: Path, options: BranchingOptions) -> bool:
+    """Whether the motions of a path are symmetric."""
+    rows = path.z[:: max(len(path.z) // options.symmetry_points, 1)]
+    return all(
+        (part < options.min_residual * most).all() for part, most in (_even_parts(system, z) for z in rows)
+    )
+
+
+def _leading_even(system: System, z: FloatArray, options: BranchingOptions) -> tuple[int, ...]:
+    """The even harmonics of a motion that is not symmetric, without those small beside the others."""
+    parts, most = _even_parts(system, z)
+    if (parts < options.motion_tolerance * most).all():
+        return ()
+    even = [h for h in system.harmonics if h % 2 == 0]
+    leads = parts[1:] > options.min_leading_fraction * parts[1:].max()
+    return tuple(np.array(even)[leads].tolist())
