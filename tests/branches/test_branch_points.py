@@ -7,9 +7,11 @@ import pytest
 
 from fcm.accuracy.refinement import every_branch
 from fcm.branches.branch_points import branch_points
-from fcm.branches.search import SymmetryLoss, symmetry_loss
+from fcm.branches.options import FoldOptions
+from fcm.branches.search import SymmetryLoss, symmetry_loss, with_unsymmetric
 from fcm.branches.symmetry import broken_symmetries
 from fcm.branches.trace import traced
+from fcm.continuation import Status
 from fcm.continuation.all_branches import contains
 from fcm.harmonic_balance.system import System
 from fcm.response.request import Request
@@ -91,3 +93,27 @@ def test_symmetry_is_lost_by_even_harmonics_whatever_odd_ones_are_balanced():
         if with_them.layout.complex_ports(path.z[0])[:, 4].any()
     ]
     assert any(min(abs(one - omega)) < 1e-3 for one in unsymmetric for omega in lost.frequencies)
+
+
+def test_where_unsymmetric_motions_of_a_level_are_not_looked_for_to_the_end_it_is_incomplete():
+    """So the run says that branches may be missing there."""
+    scene = KINDS["stops"](16)
+    hasty = System(scene, (1, 2, 3, 4, 5), other_options=(FoldOptions(work_fraction=0.0, min_seconds=0.0),))
+    known = traced(hasty)
+    assert all(one.complete for one in known.found)
+    assert not any(one.complete for one in with_unsymmetric(hasty, known).found)
+
+
+def test_even_harmonics_by_which_a_level_loses_symmetry_are_lacking_or_balanced():
+    """A closed branch, which marches come to, leaves the level at 1.478 rad/s, and the response nowhere."""
+    scene = KINDS["stops"](16)
+    few, whole = (System(scene, one) for one in ((1, 3, 5), (1, 2, 3, 4, 5)))
+    by_level = with_unsymmetric(few, traced(few)).symmetry_lost_in_level
+    assert by_level and all({2, 4} & set(even) for _, even in by_level)
+    known = traced(whole)
+    found = with_unsymmetric(whole, known)
+    assert found.symmetry_lost_in_level == () and len(found.mirrored) > 0
+    further = found.branches.paths[len(known.branches.paths) :]
+    assert any(
+        path.parameter.min() < 1.3 < path.parameter.max() and path.status is Status.CLOSED for path in further
+    )

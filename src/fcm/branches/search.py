@@ -16,7 +16,7 @@ from fcm.branches.isolas import level_one_crossings
 from fcm.branches.options import BRANCHING, BranchingOptions
 from fcm.branches.prolongation import at_its_frequency
 from fcm.branches.symmetry import broken_symmetries
-from fcm.branches.symmetry_in_level import few_even, unsymmetric_solutions
+from fcm.branches.symmetry_in_level import unsymmetric_solutions
 from fcm.branches.trace import Traced, with_further
 from fcm.continuation import Path, Status
 from fcm.continuation.all_branches import contains
@@ -46,11 +46,19 @@ class SymmetryLoss:
 
 
 def with_unsymmetric(system: System, found: Traced) -> Traced:
-    """With the unsymmetric branches that curves of the level lead to, of two mirror images one; of a system
-    with even harmonics."""
-    if not any(h % 2 == 0 for h in system.harmonics):
+    """With the unsymmetric branches that curves of the level lead to, of two mirror images one; those that
+    take other harmonics, and where the level was not followed to its end, are noted."""
+    if system.harmonics[-1] < 2:
         return found
-    for one in unsymmetric_solutions(system, found.found, found.branches.paths):
+    looked = unsymmetric_solutions(system, found.found, found.branches.paths)
+    if looked.unfinished:
+        levels = (replace(x, complete=x.complete and x.omega not in looked.unfinished) for x in found.found)
+        found = replace(found, found=tuple(levels))
+    lost = list[tuple[float, tuple[int, ...]]]()
+    for one in looked.solutions:
+        if not {*one.even} <= {*system.harmonics}:
+            lost.append((float(one.z[-1]), one.even))
+            continue
         z, symmetric = (
             one.few.layout.with_harmonics(each, one.few.harmonics, system.harmonics)
             for each in (one.z, one.symmetric)
@@ -58,7 +66,7 @@ def with_unsymmetric(system: System, found: Traced) -> Traced:
         start = at_its_frequency(system, z)
         if start is not None:
             found = _with_branches_of(system, found, BranchPoint(symmetric, (start,)))
-    return found
+    return replace(found, symmetry_lost_in_level=tuple(lost)) if lost else found
 
 
 def symmetry_loss(system: System, found: Traced) -> SymmetryLoss:
@@ -68,12 +76,10 @@ def symmetry_loss(system: System, found: Traced) -> SymmetryLoss:
         return SymmetryLoss()
     points = branch_points(whole, system.harmonics, found.branches.paths)
     lead = [(float(one.z[-1]), leading_harmonics(whole, one)) for one in points]
-    if not {*few_even(system)} <= {*system.harmonics}:
-        by_level = unsymmetric_solutions(system, found.found, found.branches.paths)
-        lead += [(float(one.z[-1]), one.even) for one in by_level]
-    lost = [(omega, lacking) for omega, every in lead if (lacking := set(every) - set(system.harmonics))]
-    every = {h for _, harmonics in lost for h in harmonics}
-    return SymmetryLoss(tuple(dict.fromkeys(omega for omega, _ in lost)), tuple(sorted(every)))
+    every = [*lead, *found.symmetry_lost_in_level]
+    lost = [(omega, lacking) for omega, led in every if (lacking := {*led} - {*system.harmonics})]
+    harmonics = {h for _, lacking in lost for h in lacking}
+    return SymmetryLoss(tuple(dict.fromkeys(omega for omega, _ in lost)), tuple(sorted(harmonics)))
 
 
 def with_branching(system: System, found: Traced, options: BranchingOptions = BRANCHING) -> Traced:

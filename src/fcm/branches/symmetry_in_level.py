@@ -7,7 +7,8 @@ response itself has no branch point: then its branch is closed.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
@@ -34,9 +35,12 @@ class UnsymmetricSolution(NamedTuple):
     even: tuple[int, ...]
 
 
-def few_even(system: System) -> tuple[int, ...]:
-    """The even harmonics with which such motions are looked for."""
-    return tuple(range(2, few_harmonics(system) + 1, 2))
+class UnsymmetricSolutions(NamedTuple):
+    """What was found, and the frequencies [rad/s] at which the curve of the level, or what leaves it, was not
+    followed to its end."""
+
+    solutions: tuple[UnsymmetricSolution, ...] = ()
+    unfinished: tuple[float, ...] = ()
 
 
 def unsymmetric_solutions(
@@ -44,26 +48,28 @@ def unsymmetric_solutions(
     found: Sequence[LevelSolutions],
     paths: Sequence[Path],
     options: BranchingOptions = BRANCHING,
-) -> Iterator[UnsymmetricSolution]:
+) -> UnsymmetricSolutions:
     """Those that curves of the level lead to where it was followed, if a path of a system is symmetric."""
     few = system.with_harmonics(tuple(range(1, few_harmonics(system) + 1)))
     if len(few.harmonics) < 2 or not any(_is_symmetric(system, path, options) for path in paths):
-        return
+        return UnsymmetricSolutions()
     folds, work = system.option(FOLDS), system.work
     seconds = max(folds.work_fraction * work.seconds, folds.min_seconds)
-    try:
-        with work.limited_to(work.seconds + seconds):
-            for omega in dict.fromkeys(one.omega for one in found):
-                yield from _past_branch_points(few, omega, options)
-    except WorkLimitError:  # those at the frequencies that are left are not looked for
-        return
+    solutions, left = list[UnsymmetricSolution](), dict.fromkeys(one.omega for one in found)
+    with suppress(WorkLimitError), work.limited_to(work.seconds + seconds):
+        for omega in tuple(left):
+            new, whole = _past_branch_points(few, omega, options)
+            solutions += new
+            if whole:
+                del left[omega]
+    return UnsymmetricSolutions(tuple(solutions), tuple(left))
 
 
 def _past_branch_points(
     few: System, omega: float, options: BranchingOptions
-) -> Iterator[UnsymmetricSolution]:
-    """Those at one frequency."""
-    span = (0.0, few.option(FOLDS).max_level)
+) -> tuple[list[UnsymmetricSolution], bool]:
+    """Those at one frequency, and whether all was followed to its end."""
+    span, found = (0.0, few.option(FOLDS).max_level), list[UnsymmetricSolution]()
     path = level_curve(few, omega, LevelRange(span))
     balance, known = few.new_balance(), list[Path]()
     level = ForceLevelProblem(balance, omega)
@@ -77,7 +83,9 @@ def _past_branch_points(
             even = _leading_even(few, z, options)
             if even:
                 there, symmetric = (np.append(each[:-1], omega) for each in (z, point.z))
-                yield UnsymmetricSolution(few, there, symmetric, even)
+                found.append(UnsymmetricSolution(few, there, symmetric, even))
+    ended = (Status.COMPLETE, Status.CLOSED, Status.RETURNED)
+    return found, all(one.status in ended for one in (path, *known))
 
 
 def _branch_through(
@@ -98,26 +106,27 @@ def _branch_through(
     return ways
 
 
-def _even_parts(system: System, z: FloatArray) -> tuple[FloatArray, float]:
+def _parts(system: System, z: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Of the displacements of a motion the greatest means and amplitudes of each even harmonic, which a
-    symmetric one has not; and the greatest of all."""
+    symmetric one has not; and those of the odd ones."""
     parts = np.abs(system.layout.complex_ports(z)).max(axis=0, initial=0.0)
-    return parts[[True, *(h % 2 == 0 for h in system.harmonics)]], float(parts.max())
+    even = np.array([True, *(h % 2 == 0 for h in system.harmonics)])
+    return parts[even], parts[~even]
 
 
 def _is_symmetric(system: System, path: Path, options: BranchingOptions) -> bool:
-    """Whether the motions of a path are symmetric."""
-    rows = path.z[:: max(len(path.z) // options.symmetry_points, 1)]
-    return all(
-        (part < options.min_residual * most).all() for part, most in (_even_parts(system, z) for z in rows)
-    )
+    """Whether the motions of a path are symmetric, and not linear, of which each is: they have odd harmonics
+    that are not driven."""
+    undriven = [h not in system.linear.driven for h in system.harmonics if h % 2]
+    rows = [_parts(system, z) for z in path.z[:: max(len(path.z) // options.symmetry_points, 1)]]
+    symmetric = all((even < options.min_residual * odd.max()).all() for even, odd in rows)
+    return symmetric and any((odd[undriven] > options.min_residual * odd.max()).any() for _, odd in rows)
 
 
 def _leading_even(system: System, z: FloatArray, options: BranchingOptions) -> tuple[int, ...]:
     """The even harmonics of a motion that is not symmetric, without those small beside the others."""
-    parts, most = _even_parts(system, z)
-    if (parts < options.motion_tolerance * most).all():
+    parts, odd = _parts(system, z)
+    if (parts < options.motion_tolerance * odd.max()).all():
         return ()
-    even = [h for h in system.harmonics if h % 2 == 0]
     leads = parts[1:] > options.min_leading_fraction * parts[1:].max()
-    return tuple(np.array(even)[leads].tolist())
+    return tuple(h for h, led in zip((h for h in system.harmonics if h % 2 == 0), leads, strict=True) if led)

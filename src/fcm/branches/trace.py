@@ -43,7 +43,9 @@ class Traced:
     branches whose mirror images are branches, too, and are not among them. folds_lost: frequencies [rad/s]
     from where curves of folds were not followed further, so that isolated branches may be missing.
     symmetry_lost: where a symmetric motion loses its symmetry by harmonics that are not among those balanced.
-    fewer_peaks: those of the responses with fewer harmonics.
+    symmetry_lost_in_level: frequencies at which what leaves the curve of the level is unsymmetric by even
+    harmonics that are not among those balanced, and which lead. fewer_peaks: those of the responses with
+    fewer harmonics.
     """
 
     branches: Branches
@@ -52,6 +54,7 @@ class Traced:
     mirrored: tuple[int, ...] = ()
     folds_lost: tuple[float, ...] = ()
     symmetry_lost: tuple[float, ...] = ()
+    symmetry_lost_in_level: tuple[tuple[float, tuple[int, ...]], ...] = ()
     fewer_peaks: tuple[FoundPeak, ...] = ()
 
     @property

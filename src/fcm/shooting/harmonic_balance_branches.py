@@ -144,11 +144,13 @@ def every_balance(whole: Scene, poll: Poll, options: ShootingOptions = SHOOTING)
     if not found.quantities:
         return found
     found = with_levels_below_peaks(found, options.balance.accuracy)
-    lost = symmetry_loss(found.system, found.traced).harmonics
+    every = found.with_every_branch()
+    lost = symmetry_loss(every.system, every.traced).harmonics
     if lost:
         more = tuple(sorted({*found.system.harmonics, *lost}))
-        found = retrace(found, more, options.balance.accuracy) or found
-    return found.with_every_branch()
+        again = retrace(found, more, options.balance.accuracy)
+        every = again.with_every_branch() if again else every
+    return every
 
 
 def states_across(
