@@ -58,7 +58,7 @@ def test_rates_are_those_of_frequency_and_damping(dof):
 @pytest.mark.slow
 def test_a_backbone_gives_back_the_numbers_of_its_contact():
     parameters = parameters_of(scene(0.3, 0.8, 0.02), KEYS, [None] * 3)
-    found = solved(parameters, [backbone("")], HARMONICS, begin=parameters.start)
+    found = solved(parameters, [backbone("")], HARMONICS, begin=[parameters.start])
     assert found.values == pytest.approx(TRUTH, rel=1e-5)
 
 

@@ -85,3 +85,17 @@ def test_numbers_with_small_errors_are_told_apart_however_correlated():
     assert told.alike == ()
     vague = estimated(parameters(2), np.array([1.0, 1.0]), rows_with([one / 1e3 for one in columns]))
     assert len(vague.alike) == 1 and (vague.error > 0.05).any()
+
+
+def test_a_pair_is_alike_by_its_correlation_and_not_by_its_columns():
+    """A pair whose correlation is -0.32 was said, for its columns are parallel where the third is held."""
+    correlation = np.array([[1.0, 0.235, -0.996], [0.235, 1.0, -0.32], [-0.996, -0.32, 1.0]])
+    information = np.linalg.inv(correlation)
+    unit = 1.0 / np.sqrt(np.diag(information))
+    assert abs(information * np.outer(unit, unit))[1, 2] > 0.98
+    spread = np.linalg.qr(np.random.default_rng(1).standard_normal((POINTS, 3)))[0]
+    J = spread @ np.linalg.cholesky(information).T
+    told = estimated(parameters(3), np.ones(3), rows_with(0.01 * J.T))
+    assert told.correlation == pytest.approx(correlation, rel=1e-9)
+    ((i, j, power),) = told.alike
+    assert (i, j) == (0, 2) and power == pytest.approx(0.996, rel=1e-9)

@@ -53,7 +53,7 @@ def measured(quantity="displacement", phased=False, level=1.0):
 def test_a_linear_response_gives_back_its_stiffness_and_damping(quantity, phased):
     parameters = parameters_of(stuck(0.5, 0.03), ["contact.c.k_u", "modal.damping.0"], [None, None])
     data = [measured(quantity, phased), measured(quantity, phased, level=3.0)]
-    found = solved(parameters, data, (1,), begin=parameters.start)
+    found = solved(parameters, data, (1,), begin=[parameters.start])
     assert found.values == pytest.approx([K_U, DAMPING], rel=1e-7)
 
 
@@ -155,6 +155,6 @@ def test_each_point_may_have_a_level_of_its_own():
     level = 1.0 - 0.8 / (1.0 + ((omega - 1.3) / 0.1) ** 2)
     data = Measured("made", "u", omega, np.abs(linear(omega, level)), np.ones(omega.size), level)
     parameters = parameters_of(stuck(0.5, 0.03), ["contact.c.k_u", "modal.damping.0"], [None, None])
-    assert solved(parameters, [data], (1,), begin=parameters.start).values == pytest.approx(
+    assert solved(parameters, [data], (1,), begin=[parameters.start]).values == pytest.approx(
         [K_U, DAMPING], rel=1e-6
     )

@@ -67,3 +67,24 @@ def test_numbers_that_are_hardly_told_are_said_once_and_their_product():
     ]
     (said,) = replace(hardly, untold=np.array([1.0, 0.0]), alike=()).problems()
     assert said == "contact.c.mu is hardly told by these data: its standard error is 150 %"
+
+
+def misfit_of(residual):
+    """Data of a response whose points are off by this, in units of errors of 1 % of the greatest."""
+    ones = np.ones(residual.size)
+    data = Measured("a.csv", "u", np.arange(1.0, residual.size + 1.0), 2.0 * ones, ones, ones)
+    off = np.column_stack((0.0 * residual, residual))
+    return FittedData(data, off, 0.02 * ones[:, None], 0)
+
+
+def test_points_off_by_chance_are_no_systematic_misfit_and_those_of_a_wave_are():
+    """Of 1000 sets of independent points a share as rare as three standard deviations is named."""
+    rng = np.random.default_rng(4)
+    drawn = [misfit_of(rng.standard_normal(40)) for _ in range(1000)]
+    assert sum(one.systematic for one in drawn) <= 5
+    assert np.mean([one.scatter for one in drawn]) == pytest.approx(0.01, rel=0.03)
+    wave = misfit_of(np.sin(np.linspace(0.0, 4.0 * np.pi, 40)) + 0.1 * rng.standard_normal(40))
+    assert wave.systematic and wave.scatter < 0.3 * wave.misfit
+    one = replace(fitted(0.0), data=[wave])
+    (said,) = one.problems()
+    assert said.startswith("a.csv: neighbouring points are off to the same side. Of the misfit, 0.7")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.columns import aligned
+from fcm.cli.columns import aligned, ranges
 from fcm.cli.messages import Messages
 from fcm.cli.terminal import plain
 
@@ -76,7 +76,20 @@ def as_table(result: Mapping[str, Any]) -> str:
         "misfit: root mean square distance of the points from the curve, as a share of the greatest "
         "amplitude. Of a backbone it is a share of the frequencies"
     )
-    return f"{aligned(rows, left=1)}\n\n{aligned(data, left=1)}\n{note}"
+    said = f"harmonics of the fit: {ranges(found['harmonics'])}"
+    return f"{aligned(rows, left=1)}\n\n{aligned(data, left=1)}\n{note}\n\n{_searches(found)}\n{said}"
+
+
+def _searches(found: Mapping[str, Any]) -> str:
+    """Where each search ended."""
+    from fcm.plot.labels import with_mode
+
+    rows = [["search", "points", "cost", *(plain(with_mode(key)) for key in found["numbers"]), "harmonics"]]
+    for k, one in enumerate(found["starts"], 1):
+        ends = [f"{value:.6g}" for value in one["end"]]
+        points = "all" if one["finished"] else "some"
+        rows.append([str(k), points, f"{one['cost']:.3g}", *ends, ranges(one["harmonics"])])
+    return aligned(rows, left=1)
 
 
 def caveats(result: Mapping[str, Any]) -> list[str]:

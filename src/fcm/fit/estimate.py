@@ -68,7 +68,7 @@ def estimated(parameters: Parameters, values: FloatArray, rows: Rows, options: F
         parameters.log > 0.0, spread, spread * parameters.unit / np.maximum(abs(values), 1e-300)
     )
     close = [np.isclose(values, end, rtol=1e-4, atol=0.0) for end in (parameters.low, parameters.high)]
-    pairs = _alike(J[:, :, told].reshape(J.shape[0] * J.shape[1], told.size), options)
+    pairs = _alike(_floored(J[:, :, told].reshape(-1, told.size), options.rank_tolerance), options)
     alike = tuple(
         (int(told[i]), int(told[j]), power)
         for i, j, power in pairs
@@ -104,14 +104,29 @@ def _covariance(residual: FloatArray, J: FloatArray, freedom: int, rank: float) 
     return found
 
 
-def _alike(J: FloatArray, options: FitOptions) -> list[tuple[int, int, float]]:
-    """Pairs whose effects differ by hardly more than a factor: i, j, and p of i times j to the power of p.
+def _floored(J: FloatArray, rank: float) -> FloatArray:
+    """(J^T J)^-1 with J of columns of size 1, its singular values not below a share of the greatest.
 
-    Numbers a and b with parallel columns J_a = p J_b are seen as b a^p alone.
+    So correlations are known of combinations too that the points do not see.
     """
     size = np.sqrt((J**2).sum(axis=0))
-    cosine = J.T @ J / np.outer(size, size)
+    _, singular, V = np.linalg.svd(J / size, full_matrices=False)
+    inverse = (V.T / np.maximum(singular, rank * singular.max(initial=0.0)) ** 2) @ V
+    found: FloatArray = inverse / np.outer(size, size)
+    return found
+
+
+def _alike(covariance: FloatArray, options: FitOptions) -> list[tuple[int, int, float]]:
+    """Pairs whose errors are hardly more than one: i, j, and p of i times j to the power of p.
+
+    Of unknowns x the combination x_i + p x_j has the least variance with p = -C_ij / C_jj.
+    """
+    spread = np.sqrt(np.diag(covariance))
+    correlation = covariance / np.outer(spread, spread)
     pairs = [
-        (i, j) for i in range(len(size)) for j in range(i) if abs(cosine[i, j]) > options.max_correlation
+        (j, i)
+        for i in range(len(spread))
+        for j in range(i)
+        if abs(correlation[i, j]) > options.max_correlation
     ]
-    return [(j, i, float(np.sign(cosine[i, j]) * size[i] / size[j])) for i, j in pairs]
+    return [(i, j, float(-covariance[i, j] / covariance[j, j])) for i, j in pairs]

@@ -51,8 +51,8 @@ class SavedSearches(Protocol):
 class Start:
     """Numbers that were tried: where they began, and where they came to, with the cost by the errors stated.
 
-    cost is that of a start while it is sought, of a finalist that of all points; effect: (number,)
-    whether the data change with a number there.
+    cost is that of a start while it is sought, of a finalist that of all points, before errors of theirs are
+    estimated; effect: (number,) whether the data change with a number there.
     """
 
     begin: FloatArray
@@ -120,6 +120,10 @@ class Problem:
             size = sum(data.points * data.components for data in self.data)
             return np.full(size, self.options.lost_residual)
         return np.concatenate([part.residual.ravel() for part in parts])
+
+    def cost(self, x: FloatArray) -> float:
+        """Half the sum of the squares of the residuals."""
+        return 0.5 * float((self.residual(x) ** 2).sum())
 
     def jacobian(self, x: FloatArray) -> FloatArray:
         parts, rates = self.parts(x), self.parameters.rates(self.parameters.values(x))
@@ -201,9 +205,11 @@ def solved(
     harmonics: tuple[int, ...],
     options: FitOptions = FIT,
     searches: Searches | None = None,
-    begin: FloatArray | None = None,
+    begin: Sequence[FloatArray] = (),
 ) -> Solved:
-    """The numbers with which the residuals are least; begin: numbers of which it is known that they are near.
+    """The numbers with which the residuals are least.
+
+    begin : numbers of which some are known to be near; those with the least residuals are begun with.
 
     searches : those of an earlier run with the same arguments, and where more goes.
 
@@ -219,13 +225,12 @@ def solved(
     fine = Problem(parameters, data, harmonics, False, options)
     searches, starts = searches or Searches(), list[Start]()
     best: SearchResult | None = None
+    chosen: Start | None = None
     try:
-        if begin is None:
-            _tried(parameters, rough, starts, options, searches)
-            finalists = _by_cost(starts, options)[: options.finalists] if starts else []
-        else:
-            finalists = [Start(begin, begin, np.inf, np.ones(len(begin), dtype=bool))]
-            starts.extend(finalists)
+        begins = [parameters.unknowns(one) for one in begin]
+        nearest = sorted(begins, key=rough.cost)[: options.finalists]
+        _tried(parameters, rough, starts, options, searches, nearest)
+        finalists = _by_cost(starts, options)[: options.finalists] if starts else []
         for k, one in enumerate(finalists):
             begun = options.search_share
             share = tuple(begun + (1.0 - begun) * (k + i) / (len(finalists) + 1) for i in (0, 1))
@@ -237,12 +242,14 @@ def solved(
                 continue
             one.end, one.cost, one.finished = parameters.values(found.x), found.cost, True
             if best is None or found.cost < best.cost * (1.0 - options.cost_tolerance):
-                best = found
+                best, chosen = found, one
     except KeyboardInterrupt:
         return _so_far(fine, rough, starts)
-    if best is None or best.x is None:
+    if best is None or best.x is None or chosen is None:
         raise FitError("fit: the model has no response in the range of the data, from any start")
-    return _weighed(fine, best.x, starts, options, searches)
+    weighed = _weighed(fine, best.x, starts, options, searches)
+    chosen.end = weighed.values
+    return weighed
 
 
 def _so_far(fine: Problem, rough: Problem, starts: list[Start]) -> Solved:
@@ -286,12 +293,19 @@ def _weighed(
 
 
 def _tried(
-    parameters: Parameters, rough: Problem, starts: list[Start], options: FitOptions, searches: Searches
+    parameters: Parameters,
+    rough: Problem,
+    starts: list[Start],
+    options: FitOptions,
+    searches: Searches,
+    begins: Sequence[FloatArray] = (),
 ) -> None:
-    """Starts, until some have led to the same numbers, and these are the best."""
-    for k, x in enumerate(parameters.starts(options.starts)):
-        share = options.search_share * k / options.starts, options.search_share * (k + 1) / options.starts
-        what = f"start {k + 1} of at most {options.starts}"
+    """Starts, until some have led to the same numbers, and these are the best; begins: other than usual."""
+    every = begins or parameters.starts(options.starts)
+    most = len(begins) or options.starts
+    for k, x in enumerate(every):
+        share = options.search_share * k / most, options.search_share * (k + 1) / most
+        what = f"start {k + 1} of at most {most}"
         found = searches.least(rough, x, options.start_evaluations, share, what)
         if found.x is None:
             continue

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -24,7 +24,7 @@ from fcm.response.options import FITTED_RESPONSE, ResponseOptions
 from fcm.response.request import Request, ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
 from fcm.response.sweep import trace
-from fcm.results.fitted import Fitted, FittedData, FittedStart
+from fcm.results.fitted import Fitted, FittedData, FittedStart, misfit
 from fcm.results.result import Response
 from fcm.run import IN_THIS_PROCESS, Checkpoint, Execution, Results, fingerprint
 from fcm.scene.draft import LEVEL, number_of
@@ -47,7 +47,7 @@ def fit(
     If all data are backbones of one mode, it is this nonlinear mode instead.
 
     With an accuracy the fit begins with one harmonic, and is repeated with as many as the response at the
-    numbers found takes.
+    numbers found takes: for the accuracy, and for a tenth of what the data are off.
 
     Parameters
     ----------
@@ -76,60 +76,94 @@ def fit(
 
 
 def _fit(scene: Scene, method: str | Table, request: Request, execution: Execution) -> Response:
-    """With the harmonics that are asked for, or as many as the response at the numbers found takes."""
+    """With the harmonics that are asked for, or as many as the data take at the numbers found.
+
+    These are the harmonics with which the response errs by less than the data are off: with fewer the numbers
+    would make up for those that are left out.
+    """
     assert scene.fit is not None
-    plain = replace(scene, fit=None)
-    chosen, fitted = request.harmonics or (1,), None
+    plain, data = replace(scene, fit=None), scene.fit.data
+    chosen, rounds = request.harmonics or (1,), list[_Round]()
     response = Response.without_curves(plain)
-    for _ in range(FITTED_RESPONSE.max_rounds):
-        near = None if fitted is None else fitted[1].values
+    while True:
+        near = [_ends(one) for one in rounds[-1:]]
         try:
             stage = execution.stage(0.0, FITTED_RESPONSE.fit_share)
-            found = _fitted_parameters(plain, scene, chosen, near, stage)
+            rounds.append(_Round(*_fitted_parameters(plain, scene, chosen, *near, execution=stage), chosen))
         except KeyboardInterrupt:
-            if fitted is None:
+            if not rounds:
                 raise
-            fitted = (fitted[0], replace(fitted[1], interrupted=True), fitted[2])
+            rounds[-1].solved.interrupted = True
+        if rounds[-1].solved.interrupted:
             break
-        fitted = (*found, chosen)
-        if found[1].interrupted:
-            break
+        last = request.harmonics is not None or len(rounds) == FITTED_RESPONSE.max_rounds
         stage = execution.stage(FITTED_RESPONSE.fit_share, 1.0)
+        accuracy = None if last else _accuracy(rounds[-1].solved, request)
         try:
-            response = _model_response(found, scene.fit.data, chosen, method, request, stage)
+            response = _model_response(rounds[-1], data, accuracy, method, request, stage)
+            if accuracy is not None and not response.interrupted:
+                more = tuple(sorted({h for curve in response.curves for h in curve.harmonics} | set(chosen)))
+                if more != chosen:
+                    chosen = more
+                    continue
+                if any(tuple(curve.harmonics) != chosen for curve in response.curves):
+                    response = _model_response(rounds[-1], data, None, method, request, stage)
         except KeyboardInterrupt:
             response = Response.without_curves(plain)
-            response.fitted = _fitted(*fitted, advise=False, untraced=True)
+            response.fitted = _fitted(rounds, advise=False, untraced=True)
             return response
-        more = tuple(sorted({h for curve in response.curves for h in curve.harmonics} | set(chosen)))
-        if response.interrupted or len(more) == len(chosen):
-            break
-        chosen = more
-    assert fitted is not None
-    response.fitted = _fitted(*fitted, advise=not (fitted[1].interrupted or response.interrupted))
+        break
+    response.fitted = _fitted(rounds, advise=not (rounds[-1].solved.interrupted or response.interrupted))
     response.fitted.data = [_on_mode(one, response) for one in response.fitted.data]
     return response
 
 
+@dataclass(frozen=True)
+class _Round:
+    """The numbers found with some harmonics."""
+
+    parameters: Parameters
+    solved: Solved
+    harmonics: tuple[int, ...]
+
+
+def _ends(one: _Round) -> list[FloatArray]:
+    """Where the searches of a round have come to, the best first, each once."""
+    found = [one.solved.values]
+    for start in one.solved.starts:
+        same = (np.allclose(start.end, known, rtol=FIT.number_tolerance, atol=0.0) for known in found)
+        if not any(same):
+            found.append(start.end)
+    return found
+
+
+def _accuracy(found: Solved, request: Request) -> float:
+    """That of the response beside which what the data are off is not of the harmonics left out."""
+    off = min(
+        misfit(one, rows.residual, _errors(one)) for one, rows in zip(found.data, found.parts, strict=True)
+    )
+    return min(request.accuracy, max(FITTED_RESPONSE.misfit_share * off, FITTED_RESPONSE.min_accuracy))
+
+
 def _model_response(
-    found: tuple[Parameters, Solved],
+    found: _Round,
     data: Sequence[Measured],
-    harmonics: tuple[int, ...],
+    accuracy: float | None,
     method: str | Table,
     request: Request,
     execution: Execution,
 ) -> Response:
     """What the data were measured of, with the numbers found: the responses at their levels, or the mode of
-    which all are backbones."""
-    given, accuracy = (harmonics, None) if request.harmonics else (None, request.accuracy)
-    parameters, numbers = found
+    which all are backbones; with the harmonics of the numbers, or those that an accuracy takes."""
+    given = found.harmonics if accuracy is None else None
+    parameters, numbers = found.parameters, found.solved
     modes = {one.mode if one.damping is not None else None for one in data}
     number = modes.pop()
     if modes or number is None:
         there = _at_levels(parameters, numbers, data)
         return trace(there, method, execution, harmonics=given, accuracy=accuracy, options=request.options)
     scene = parameters.at(numbers.values)
-    spans = [measured_span(System(scene, harmonics), one) for one in data]
+    spans = [measured_span(System(scene, found.harmonics), one) for one in data]
     span = min(low for low, _ in spans), max(high for _, high in spans)
     return trace_modes(
         scene, number, span, execution, harmonics=given, accuracy=accuracy, options=request.options
@@ -153,10 +187,11 @@ def _fitted_parameters(
     plain: Scene,
     scene: Scene,
     harmonics: tuple[int, ...],
-    near: FloatArray | None,
+    near: Sequence[FloatArray] = (),
+    *,
     execution: Execution,
 ) -> tuple[Parameters, Solved]:
-    """The numbers with the harmonics chosen; near: those with fewer."""
+    """The numbers with the harmonics chosen; near: the ends of searches with fewer."""
     assert scene.fit is not None
     try:
         parameters = parameters_of(plain, scene.fit.vary, scene.fit.bounds)
@@ -177,11 +212,11 @@ def _fitted_parameters(
 
 
 def _kept(
-    scene: Scene, harmonics: tuple[int, ...], near: FloatArray | None, checkpoint: Checkpoint
+    scene: Scene, harmonics: tuple[int, ...], near: Sequence[FloatArray], checkpoint: Checkpoint
 ) -> Results:
     """What is finished of this fit; it is known by all that decides its numbers."""
     count = len(scene.fit.vary) if scene.fit is not None else 0
-    mark = fingerprint("fit", FIT, harmonics, near, replace(scene, name="", title=""))
+    mark = fingerprint("fit", FIT, harmonics, list(near), replace(scene, name="", title=""))
     found = checkpoint.results(mark, (SearchResult,), lambda _, results: is_search_result(count, results))
     for number, states in list(found.states.items()):
         found.states[number] = [one for one in states if is_search_result(count, [one]) and one.x is not None]
@@ -213,10 +248,9 @@ def _at_levels(parameters: Parameters, found: Solved, data: Sequence[Measured]) 
     return replace(scene, curves=curves, draft=None)
 
 
-def _fitted(
-    parameters: Parameters, found: Solved, harmonics: tuple[int, ...], *, advise: bool, untraced: bool = False
-) -> Fitted:
-    """What is told of the numbers; untraced: their response was interrupted."""
+def _fitted(rounds: Sequence[_Round], *, advise: bool, untraced: bool = False) -> Fitted:
+    """What is told of the numbers of the last round; untraced: their response was interrupted."""
+    parameters, found, harmonics = rounds[-1].parameters, rounds[-1].solved, rounds[-1].harmonics
     told = estimated(parameters, found.values, found.rows)
     return Fitted(
         keys=parameters.keys,
@@ -235,7 +269,11 @@ def _fitted(
             FittedData(one, rows.residual, _errors(one), int(rows.unreached.sum()))
             for one, rows in zip(found.data, found.parts, strict=True)
         ],
-        starts=[FittedStart(one.begin, one.end, one.cost, one.finished) for one in found.starts],
+        starts=[
+            FittedStart(one.begin, one.end, one.cost, one.finished, each.harmonics)
+            for each in rounds
+            for one in each.solved.starts
+        ],
         harmonics=harmonics,
         advice=_advice(parameters, found, told, harmonics) if advise else [],
         final=not found.interrupted,

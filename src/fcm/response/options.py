@@ -270,11 +270,17 @@ class FittedResponseOptions:
     ----------
     max_rounds : int
         Of more harmonics, until the response takes no more than the fit had.
+    misfit_share : float
+        Of what the data are off, relative, that the response may err by.
+    min_accuracy : float
+        Relative, below which no more harmonics are taken for it.
     fit_share : float
         Share of the progress bar that is over when the numbers are found.
     """
 
     max_rounds: int = 3
+    misfit_share: float = 0.1
+    min_accuracy: float = 1e-5
     fit_share: float = 0.8
 
 

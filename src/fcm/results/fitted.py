@@ -23,6 +23,14 @@ def _told(one: str, other: str, power: float) -> str:
     return f"{one} {'*' if power > 0.0 else '/'} {other}{'' if written == '1' else f'^{written}'}"
 
 
+def misfit(data: Measured, residual: FloatArray, error: FloatArray) -> float:
+    """Root mean square of the distances, relative to the greatest amplitude; of a backbone, of the
+    frequencies. Arrays as of `FittedData`."""
+    square = residual[:, 0] ** 2 if data.damping is not None else (residual**2).sum(axis=1)
+    size = data.frequency if data.damping is not None else data.amplitude.max()
+    return float(np.sqrt((square * (error[:, 0] / size) ** 2).mean()))
+
+
 @dataclass(frozen=True)
 class FittedData:
     """A set of measured points beside the fitted model.
@@ -38,15 +46,13 @@ class FittedData:
     error: FloatArray
     unreached: int  # points that the model's curve does not come to
     modal_amplitude: FloatArray | None = None
+    least: float = 1e-8  # misfit, relative: what is below is rounding
+    deviations: float = 3.0  # standard deviations from chance, from which a misfit is systematic
 
     @property
     def misfit(self) -> float:
-        """Root mean square of the distances, relative to the greatest amplitude; of a backbone, of the
-        frequencies."""
-        of_backbone = self.measured.damping is not None
-        square = self.residual[:, 0] ** 2 if of_backbone else (self.residual**2).sum(axis=1)
-        size = self.measured.frequency if of_backbone else self.measured.amplitude.max()
-        return float(np.sqrt((square * (self.error[:, 0] / size) ** 2).mean()))
+        """See `misfit`."""
+        return misfit(self.measured, self.residual, self.error)
 
     @property
     def damping_misfit(self) -> float:
@@ -55,6 +61,33 @@ class FittedData:
             return np.nan
         off = self.residual[:, 1] * self.error[:, 1] / self.measured.damping.max()
         return float(np.sqrt((off**2).mean()))
+
+    @property
+    def scatter(self) -> float:
+        """The misfit that differences of neighbours tell: all of it, if points are off independently."""
+        square, difference = self._squares()
+        return self.misfit * float(np.sqrt(0.5 * difference / square)) if square > 0.0 else 0.0
+
+    @property
+    def systematic(self) -> bool:
+        """Whether neighbouring points are off to the same side more often than by chance."""
+        square, difference = self._squares()
+        count = self.measured.points
+        return (
+            self.misfit > self.least and difference < (2.0 - self.deviations * 2.0 / np.sqrt(count)) * square
+        )
+
+    def _squares(self) -> tuple[float, float]:
+        r"""Sums of r_i^2 and of (r_(i+1) - r_i)^2 over the points in order of their frequency or amplitude.
+
+        Their ratio is 2 of points that are off independently, with the standard deviation 2 / sqrt(N).
+        Source: von Neumann, "Distribution of the Ratio of the Mean Square Successive Difference to the
+        Variance", Annals of Mathematical Statistics 12 (1941).
+        """
+        one = self.measured
+        along = np.lexsort((one.frequency, one.level)) if one.damping is None else np.argsort(one.amplitude)
+        r = (self.residual[:, 1:] if one.damping is None else self.residual)[along]
+        return float((r**2).sum()), float((np.diff(r, axis=0) ** 2).sum())
 
     def summary(self) -> dict[str, Any]:
         """For JSON."""
@@ -67,6 +100,8 @@ class FittedData:
             "points": one.points,
             "misfit": self.misfit,
             "damping_misfit": self.damping_misfit,
+            "scatter": self.scatter,
+            "systematic": bool(self.systematic),
             "unreached": self.unreached,
         }
 
@@ -79,6 +114,7 @@ class FittedStart:
     end: FloatArray
     cost: float
     finished: bool  # whether it was fitted to all points with the errors stated
+    harmonics: tuple[int, ...]
 
 
 @dataclass
@@ -137,6 +173,12 @@ class Fitted:
                     f"{part.measured.file}: the model does not meet these data, from which it is off by "
                     f"{100.0 * off:.0f} %. It lacks something, and the intervals do not know what"
                 )
+            elif part.systematic:
+                said.append(
+                    f"{part.measured.file}: neighbouring points are off to the same side. Of the misfit, "
+                    f"{100.0 * part.misfit:.2g} %, only {100.0 * part.scatter:.1g} % is scatter. The model "
+                    "lacks something, as harmonics, or other numbers are nearer: the intervals do not know it"
+                )
         return said
 
     def _relative(self, k: int) -> str:
@@ -170,6 +212,7 @@ class Fitted:
                     "end": one.end.tolist(),
                     "cost": one.cost,
                     "finished": one.finished,
+                    "harmonics": list(one.harmonics),
                 }
                 for one in self.starts
             ],
