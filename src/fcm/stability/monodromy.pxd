@@ -95,17 +95,19 @@ cdef void add_products(
 cdef class ManyMonodromy:
     cdef public StateSequence sequence
     cdef readonly int modes, contacts, columns, moving, first
-    cdef bint soft
+    cdef Py_ssize_t pushing
+    cdef bint soft, by_modes
     cdef double rate, omega, step_radians, series_tolerance
-    cdef object shapes, natural, ratio, all_stuck
+    cdef object shapes, natural, ratio, following, stiff, all_stuck
     cdef public list remembering
-    cdef double[:, ::1] contact, K, lower, upper, left, right, changed, pulled
+    cdef double[:, ::1] contact, K, lower, upper, left, right, changed, pulled, own, weights
     cdef double[:, ::1] q, v, tq, tv, work, g, w, phi, port, followed, row
-    cdef double[::1] damping
+    cdef double[::1] damping, push
     cdef int[::1] state, number
     cpdef int follow(self, double omega) except -1
     cdef int apply_event(self, int e) except -1
     cdef int find_products(self, Py_ssize_t one) except -1
+    cdef double flexibility(self, Py_ssize_t r, Py_ssize_t at) noexcept
     cdef void find_rate(self) noexcept
     cdef void propagate(self, double length) noexcept
     cdef void apply(self, double h) noexcept

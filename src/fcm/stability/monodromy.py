@@ -38,6 +38,14 @@ changes by a product of its columns and rows. What the sliders push the modes wi
 alone, too. Contacts that keep their state through the period are no ports. All is told from the state where
 every contact sticks, which is put together once.
 
+Where the modes that follow are fewer than these ports, they take their place (`by_modes`): with all of them,
+K_ab = W_ab^2 + P_a D P_b^T, B = K_ff^-1 and p_f = P_f phi,
+
+    d = P^T q + P_f^T q_f,   q_f = B (p_f - K_fm q)
+    [[-K, V], [U, G]] = [[-(K_mm - K_mf B K_fm), -K_mf B], [-B K_fm, B]]
+
+and the rows and columns of a contact's ports, by which it changes, are its shapes on both.
+
 The period begins after the event at which the fewest sliders remember where they rest: so many disturbances
 less are to be followed.
 """
@@ -320,10 +328,9 @@ class ManyMonodromy:
         self.shapes, self.natural, self.ratio = shapes[~far], natural[~far], damping[~far]
         self.modes, self.contacts = len(self.shapes), contact.shape[0]
         self.contact, self.sequence = np.ascontiguousarray(contact), sequence
+        self.following, self.stiff = shapes[far], natural[far]
         self.all_stuck: npt.NDArray[np.float64] | None = None
-        self.soft = bool(far.any())
-        if self.soft:
-            self.all_stuck = self.with_springs((shapes[far].T * natural[far] ** -2.0) @ shapes[far])
+        self.soft, self.by_modes = bool(far.any()), False
         self.K = np.zeros((self.modes, self.modes))
         self.damping, self.state = np.zeros(self.modes), np.zeros(self.contacts, dtype=np.intc)
         self.first, self.rate, self.omega = 0, 1.0, 1.0
@@ -331,8 +338,9 @@ class ManyMonodromy:
         self.remembering: list[int] = []
         self.allocate(2 * self.modes, 0)
 
-    def with_springs(self, flexibility: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def with_springs(self) -> npt.NDArray[np.float64]:
         """[[-K, V], [U, G]] where all contacts stick, of modes and then tangential and normal ports."""
+        flexibility = (self.following.T * self.stiff**-2.0) @ self.following
         order, m = _by_direction(np.arange(self.contacts)), self.modes
         k_u, k_v = np.asarray(self.contact).T[1:3]
         springs, P = np.concatenate((k_u, k_v)), self.shapes[:, order]
@@ -345,11 +353,14 @@ class ManyMonodromy:
     def allocate(self, columns: int, moving: int) -> None:
         """Arrays for so many disturbances, and contacts that move."""
         self.columns, self.moving, wide = columns, moving, -(-columns // LANES) * LANES
+        self.by_modes = self.soft and len(self.following) < moving
         self.q, self.v, self.tq, self.tv, self.work, self.g = np.zeros((6, self.modes, wide))
-        self.w, self.phi = np.zeros((self.contacts, wide)), np.zeros((moving, wide))
+        follow = len(self.following) if self.by_modes else 2 * moving if self.soft else 0
+        self.pushing = follow if self.by_modes else moving
+        self.w, self.phi = np.zeros((self.contacts, wide)), np.zeros((self.pushing, wide))
         self.port, self.followed, self.row = np.zeros((3, 2, wide))
-        ports = 2 * moving if self.soft else 0
-        self.left, self.right, self.changed = np.zeros((3, 2, self.modes + ports))
+        self.push = np.zeros(wide)
+        self.left, self.right, self.changed = np.zeros((3, 2, self.modes + follow))
         self.pulled = np.zeros((2, self.modes))
 
     @cython.ccall
@@ -424,14 +435,21 @@ class ManyMonodromy:
         for one in self.remembering:
             force = self.contact[one, 1] / self.omega**2
             self.w[one, column] = 1.0
-            self.phi[self.number[one], column] = force
-            np.asarray(self.g)[:, column] = force * np.asarray(self.upper)[:, self.number[one]]
+            at: cython.Py_ssize_t = self.number[one]
+            if self.by_modes:
+                weights = np.asarray(self.weights)[at]
+                np.asarray(self.phi)[:, column] = force * weights
+                pushed = np.asarray(self.own)[at] + np.asarray(self.upper) @ weights
+            else:
+                self.phi[at, column] = force
+                pushed = np.asarray(self.upper)[:, at]
+            np.asarray(self.g)[:, column] = force * pushed
             column += 1
 
     def assemble(self, state: npt.NDArray[np.intc], moving: npt.NDArray[np.intp]) -> None:
         """All of the matrices, for states of the contacts; stiffnesses over omega^2: all is by the angle.
 
-        lower is [U, G], and upper V, of the ports of moving contacts.
+        lower is [U, G], and upper V, of the ports of moving contacts, or of the modes that follow.
         """
         unit, m, n = 1.0 / self.omega**2, self.modes, self.contacts
         mu, k_u, k_v = np.asarray(self.contact).T[:3]
@@ -439,13 +457,26 @@ class ManyMonodromy:
         across = np.where(state == POSITIVE, mu * k_v, np.where(state == NEGATIVE, -mu * k_v, 0.0))
         np.asarray(self.damping)[:] = 2.0 * self.ratio * self.natural / self.omega
         ports = _by_direction(moving)
-        if self.all_stuck is None:
-            P, Q = self.shapes[:, ::2], self.shapes[:, 1::2]
-            K = np.diag(self.natural**2) + (P * u) @ P.T + (Q * v) @ Q.T + (P * across) @ Q.T
-            np.asarray(self.K)[:] = unit * K
-            self.upper = np.ascontiguousarray(self.shapes[:, ports])
-            self.lower = np.ascontiguousarray(np.asarray(self.upper).T)
+        if self.by_modes or not self.soft:
+            shapes = np.concatenate((self.shapes, self.following))
+            P, Q = shapes[:, ::2], shapes[:, 1::2]
+            K = (P * u) @ P.T + (Q * v) @ Q.T + (P * across) @ Q.T
+            K += np.diag(np.concatenate((self.natural, self.stiff)) ** 2)
+            if not self.soft:
+                np.asarray(self.K)[:] = unit * K
+                self.upper = np.ascontiguousarray(self.shapes[:, ports])
+                self.lower = np.ascontiguousarray(np.asarray(self.upper).T)
+                return
+            B = np.linalg.inv(K[m:, m:])
+            U, V = -B @ K[m:, :m], -K[:m, m:] @ B
+            np.asarray(self.K)[:] = unit * (K[:m, :m] + K[:m, m:] @ U)
+            self.upper = np.ascontiguousarray(V)
+            self.lower = np.concatenate((U, self.omega**2 * B), axis=1)
+            self.own = np.ascontiguousarray(self.shapes[:, ports].T)
+            self.weights = np.ascontiguousarray(self.following[:, ports].T)
             return
+        if self.all_stuck is None:
+            self.all_stuck = self.with_springs()
         other = np.flatnonzero(state != STICK)
         at, k = m + np.concatenate((other, n + other)), len(other)
         s = np.diag(np.concatenate((u[other] - k_u[other], v[other] - k_v[other])))
@@ -468,6 +499,7 @@ class ManyMonodromy:
         to: cython.int = self.sequence.into[e]
         was: cython.int = self.state[c]
         m: cython.Py_ssize_t = self.modes
+        i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         wide: cython.Py_ssize_t = self.w.shape[1]
         unit: cython.double = 1.0 / (self.omega * self.omega)
@@ -478,10 +510,10 @@ class ManyMonodromy:
         one: cython.Py_ssize_t = self.number[c]
         self.find_products(one)
         # G between the ports, and (1 + s G)^-1 s with the change s of the stiffness
-        G_uu: cython.double = self.right[0, m + one] if self.soft else 0.0
-        G_uv: cython.double = self.right[0, m + n + one] if self.soft else 0.0
-        G_vu: cython.double = self.right[1, m + one] if self.soft else 0.0
-        G_vv: cython.double = self.right[1, m + n + one] if self.soft else 0.0
+        G_uu: cython.double = self.flexibility(0, one)
+        G_uv: cython.double = self.flexibility(0, n + one)
+        G_vu: cython.double = self.flexibility(1, one)
+        G_vv: cython.double = self.flexibility(1, n + one)
         s_uu: cython.double = (k_u if to == STICK else 0.0) - (k_u if was == STICK else 0.0)
         s_vv: cython.double = (k_v if to != SEPARATION else 0.0) - (k_v if was != SEPARATION else 0.0)
         s_uv: cython.double = mu * k_v * (_side(to) - _side(was))
@@ -514,9 +546,15 @@ class ManyMonodromy:
                     + weight * (self.port[1, k] - self.followed[1, k])
                 )  # fmt: skip
             new = after * self.w[c, k]
-            self.phi[one, k] = new
+            self.push[k] = new - old
+            if not self.by_modes:
+                self.phi[one, k] = new
             self.row[0, k] = d_uu * f_u + d_uv * f_v + share * new - old
             self.row[1, k] = d_vu * f_u + d_vv * f_v + other * new
+        if self.by_modes:
+            for i in range(self.pushing):
+                for k in range(wide):
+                    self.phi[i, k] += self.weights[one, i] * self.push[k]
         add_products(self.g, self.left[0], self.row[0], self.left[1], self.row[1])
         self.state[c] = to
         if was == to:
@@ -539,24 +577,51 @@ class ManyMonodromy:
         """left, the columns of V and G, and right, the rows of U and G, of the two ports of a moving contact;
         its displacements, from port less followed, with followed, -G phi, by the modes that follow."""
         i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
         r: cython.Py_ssize_t
         at: cython.Py_ssize_t
         m: cython.Py_ssize_t = self.modes
         for r in range(2):
             at = one + r * self.moving
-            for i in range(m):
-                self.left[r, i] = self.upper[i, at]
-            for i in range(self.lower.shape[1]):
-                self.right[r, i] = self.lower[at, i]
+            if self.by_modes:
+                sum_of_rows(self.weights[at], self.lower, self.right[r])
+                for i in range(m):
+                    self.right[r, i] += self.own[at, i]
+                    self.left[r, i] = self.own[at, i]
+                    for k in range(self.pushing):
+                        self.left[r, i] += self.upper[i, k] * self.weights[at, k]
+                for i in range(self.pushing):
+                    self.left[r, m + i] = 0.0
+                    for k in range(self.pushing):
+                        self.left[r, m + i] += self.lower[i, m + k] * self.weights[at, k]
+            else:
+                for i in range(m):
+                    self.left[r, i] = self.upper[i, at]
+                for i in range(self.lower.shape[1]):
+                    self.right[r, i] = self.lower[at, i]
+                for i in range(self.lower.shape[0] if self.soft else 0):
+                    self.left[r, m + i] = self.lower[i, m + at]
             sum_of_rows(self.right[r, :m], self.q, self.port[r])
             if not self.soft:
                 continue
-            for i in range(self.lower.shape[0]):
-                self.left[r, m + i] = self.lower[i, m + at]
-            sum_of_rows(self.right[r, m : m + self.moving], self.phi, self.followed[r])
+            sum_of_rows(self.right[r, m : m + self.pushing], self.phi, self.followed[r])
             for i in range(self.followed.shape[1]):
                 self.followed[r, i] = -self.followed[r, i]
         return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def flexibility(self, r: cython.Py_ssize_t, at: cython.Py_ssize_t) -> cython.double:
+        """G between a port whose rows were found, and one at a place."""
+        i: cython.Py_ssize_t
+        found: cython.double = 0.0
+        if not self.soft:
+            return 0.0
+        if not self.by_modes:
+            return self.right[r, self.modes + at]
+        for i in range(self.pushing):
+            found += self.right[r, self.modes + i] * self.weights[at, i]
+        return found
 
     @cython.cfunc
     @cython.exceptval(check=False)

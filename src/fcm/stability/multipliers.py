@@ -35,6 +35,7 @@ from fcm.stability.classification import (
 )
 from fcm.stability.disturbance import Propagator, Stiffness
 from fcm.stability.eigenvalues import eigenvalues
+from fcm.stability.following_modes import combined
 from fcm.stability.many_planar_monodromy import ManyPlanarMonodromy
 from fcm.stability.monodromy import ManyMonodromy, Monodromy
 from fcm.stability.options import STABILITY, StabilityOptions
@@ -438,8 +439,16 @@ def _many_contacts(
     options: StabilityOptions,
 ) -> list[VariationalProblem]:
     """Each change of one contact's state as that."""
-    linear = system.linear
-    shown = linear.ports, linear.natural, linear.damping, far
+    linear, near = system.linear, ~far
+    following = combined(
+        linear.ports[far], linear.natural[far], contact[:, 1:3].ravel(), options.structure.min_yield
+    )
+    shown = (
+        np.concatenate((linear.ports[near], following)),
+        np.concatenate((linear.natural[near], np.ones(len(following)))),
+        np.concatenate((linear.damping[near], np.zeros(len(following)))),
+        np.arange(near.sum() + len(following)) >= near.sum(),
+    )
     return [
         VariationalProblem(one, ManyMonodromy(*shown, contact, one, options.propagation)) for one in states
     ]

@@ -52,6 +52,9 @@ class StructureOptions:
         Times the excitation, and times the highest harmonic, from where modes are far.
     above_of_few : float
         Times that, with fewer modes, and contacts in a plane.
+    min_yield : float
+        Of many contacts' springs, by which the structure yields along a combination of modes that are far:
+        along others it is taken as rigid.
     max_cached : int
         Disturbances; with fewer the last workspace is used again.
     max_held : int
@@ -65,6 +68,7 @@ class StructureOptions:
     above_excitation: float = 6.0
     above_harmonics: float = 1.5
     above_of_few: float = 2.0
+    min_yield: float = 1e-3
     max_cached: int = 12
     max_entries: int = 20_000
     max_disturbances: int = 600
