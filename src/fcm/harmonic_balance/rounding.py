@@ -44,18 +44,20 @@ class PreciseFundamental(NamedTuple):
 
 
 def with_precise_fundamental(
-    system: System, points: PointRecord, quick: bool = False
+    system: System, points: PointRecord, quick: npt.NDArray[np.bool_] | None = None
 ) -> tuple[PointRecord, FloatArray]:
     """Points with the digits that can be kept, and the relative rounding of the amplitudes (point, dof).
 
     Points of a structure whose contacts are not stiff stay as they are; their rounding is not looked at: 0.
     Of a sector of a ring it is told what digits are lost. Many contacts are looked at in some points; those
-    between two of these have the greater rounding of both. quick: the points stay as they are, and are looked
-    at like those of many contacts.
+    between two of these have the greater rounding of both. quick: the points stay as they are, and those
+    marked (point,), whose errors are told, are looked at like those of many contacts.
     """
     options, rounding = system.options.digits, np.zeros_like(points.amplitude)
     springs = system.springs(stuck=True)
     stiff = np.flatnonzero(_stiffness(system, points.z[:, -1], springs) > options.stiff_ratio)
+    if quick is not None:
+        stiff = stiff[quick[stiff]]
     if not stiff.size:
         return points, rounding
     balance = system.new_balance()
@@ -66,12 +68,12 @@ def with_precise_fundamental(
     displacements, forces = balance.displacements, _Forces(system)
     apart = np.asarray(displacements.without_modes) != 0
     looked = stiff
-    if (quick or balance.rank) and stiff.size > options.max_points:
+    if (quick is not None or balance.rank) and stiff.size > options.max_points:
         looked = stiff[np.linspace(0, stiff.size - 1, options.max_points).round().astype(np.intp)]
     for i in looked:
         z, tangent = made.z[i].copy(), points.tangent[i]
         balance.evaluate(z)
-        found = None if quick else _precise(balance, z, springs, forces, options)
+        found = None if quick is not None else _precise(balance, z, springs, forces, options)
         if found is None:
             found = _as_balanced(balance, system.linear, springs, tangent, options)
         made.z[i] = found.z

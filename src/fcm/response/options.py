@@ -110,10 +110,13 @@ class InterruptedOptions:
         Points times contacts: a curve with more is written with fewer points, and no more errors.
     min_points : int
         However many contacts there are.
+    max_seconds_of_errors : float
+        [s] that errors may take which are not known yet.
     """
 
     max_states: int = 20_000
     min_points: int = 200
+    max_seconds_of_errors: float = 0.2
 
     def max_points(self, contacts: int) -> int:
         """Of a curve with so many contacts.

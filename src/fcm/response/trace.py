@@ -19,12 +19,13 @@ from fcm.accuracy.refinement import (
     without_errors,
 )
 from fcm.accuracy.stability_validity import unreliable_points
-from fcm.accuracy.unchecked_response import ResponseInterrupted, points_of
+from fcm.accuracy.unchecked_response import ResponseInterrupted, UncheckedResponse, points_of
 from fcm.branches.options import FOLDS
 from fcm.contact.contact_law import ContactLawError
 from fcm.continuation import Mark
 from fcm.continuation.follow import Progress
 from fcm.harmonic_balance.contact_motions import contact_motions
+from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.response_quantities import ContactRecord, PointRecord, recorded, table_errors
 from fcm.harmonic_balance.rounding import with_precise_fundamental
 from fcm.harmonic_balance.static_equilibrium import RestError, check_contacts_can_close
@@ -98,7 +99,7 @@ def _unfinished(so_far: BestSoFar, scene: Scene, options: InterruptedOptions) ->
     few = whole.thinned(most)
     if isinstance(few, RefinedResponse):
         found = few
-    elif points_of(few) < points_of(whole):
+    elif points_of(few) < points_of(whole) or _seconds_of_errors(few) > options.max_seconds_of_errors:
         found = without_errors(few)
     else:
         found = with_errors(few, np.inf, options=NO_CHECKS)
@@ -110,6 +111,14 @@ def _unfinished(so_far: BestSoFar, scene: Scene, options: InterruptedOptions) ->
     curve = _curve(Refined(found, stable, every=every), quick=True)
     curve.complete, curve.reason, curve.cause = False, so_far.reason(), Cause.INTERRUPTED
     return curve
+
+
+def _seconds_of_errors(found: UncheckedResponse) -> float:
+    """About what it takes to look at each branch with its reference, where nothing is followed."""
+    system, probes = found.system, PAIR.probes * len(found.traced.branches.paths)
+    count = len(system.harmonics)
+    reference = min(max(PAIR.harmonics_factor * count, PAIR.min_harmonic), count + PAIR.max_added)
+    return seconds_of(system, probes, reference)
 
 
 def _traced_curve(scene: Scene, wanted: Request, poll: Callable[[], None] | None, so_far: BestSoFar) -> Curve:
@@ -166,7 +175,10 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
     quick: without what takes further motions to tell."""
     found, parts = _reported(response), response.stable
     system, paths = found.system, found.traced.branches.paths
-    points, rounding = with_precise_fundamental(system, recorded(system, paths, found.quantities), quick)
+    told = np.concatenate([np.isfinite(one.amplitude).any(axis=1) for one in found.errors])
+    points, rounding = with_precise_fundamental(
+        system, recorded(system, paths, found.quantities), told if quick else None
+    )
     scene, first = system.scene, system.harmonics.index(1)
     ends, rows = np.flatnonzero(np.diff(points.path)) + 1, np.arange(points.path.size)
     rows = np.insert(rows, ends, -1) if ends.size else rows
