@@ -316,6 +316,9 @@ def test_rounding_between_points_that_are_looked_at_is_the_greater_of_theirs():
         options = HarmonicBalanceOptions(digits=DigitOptions(stiff_ratio=0.0, max_points=points))
         looking = replace(system, options=options)
         roundings.append(with_precise_fundamental(looking, recorded(looking, [path]))[1])
+    told = np.arange(len(path.z)) % 2 == 0
+    quick = with_precise_fundamental(looking, recorded(looking, [path]), told)[1]
+    assert quick[told].min() > 0.0 and not quick[~told].any()
     every, some = roundings
     last = len(path.z) - 1
     looked = [0, round(0.5 * last), last]

@@ -131,6 +131,17 @@ def _interrupted(request, **where):
     return curve
 
 
+def test_errors_that_take_long_are_not_begun_after_an_interruption():
+    """Those that are known then stay."""
+    limits = InterruptedOptions(max_seconds_of_errors=0.0)
+    request = Request((1,), options=replace(RESPONSE, interrupted=limits))
+    short, whole = (_interrupted(one, tell=_Stops(1)) for one in (request, Request((1,))))
+    assert np.isnan(short.peaks["u"].error) and np.isnan(short.error).all()
+    assert np.isfinite(whole.peaks["u"].error)
+    assert _points(short) == _points(whole)
+    assert np.isfinite(_interrupted(request, tell=_Stops(2)).peaks["u"].error)
+
+
 @pytest.mark.parametrize("at", [1, 2])
 def test_of_many_points_an_interrupted_curve_has_those_that_are_special_and_some_between(at):
     """Before its errors are told, and when they are: then they stay."""

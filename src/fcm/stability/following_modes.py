@@ -17,7 +17,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 def combined(shapes: FloatArray, natural: FloatArray, springs: FloatArray, tolerance: float) -> FloatArray:
-    """Shapes (mode, direction) of modes of frequency 1, in the place of others of frequencies natural (mode,).
+    """Shapes (mode, direction) of modes of frequency 1 that yield as some of frequencies natural (mode,) do.
 
     Directions without a spring (direction,) are left out: nothing acts along them.
 
