@@ -431,3 +431,13 @@ def test_a_loop_in_a_plane_without_dimensions():
     still = PlanarCase(loop, ("x", "y"), (), "", {"a": 0.0, "k_u a": 0.0}, None)
     with pytest.raises(click.UsageError, match="the motion in the plane is zero"):
         still.dimensionless()
+
+
+def test_a_point_beside_the_frequency_asked_for_is_said(fcm, folded):
+    """It was drawn as if it were there."""
+    done = fcm("plot", "loop", folded, "--curve", 0, "--at", 1.2, "--json")
+    (one,) = loops(done)
+    assert one["frequency"] != 1.2
+    assert f"at 1.2: drawn is the nearest point of the file, at {one['frequency']:.6g} rad/s" in done.err
+    again = fcm("plot", "loop", folded, "--curve", 0, "--at", repr(one["frequency"]), "--json")
+    assert "nearest point" not in again.err

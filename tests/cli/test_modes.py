@@ -70,6 +70,16 @@ def test_forces_stay_in_the_table_beside_many_contacts_and_what_does_not_fit_is_
     assert "2 of 5 directions of contacts and forces: --json has all" in long.err
 
 
+def test_a_second_force_takes_no_place_of_the_first_contacts_normal(listed):
+    """It was left out, where names are so long that three directions fit."""
+    name = "an interlocked shroud ring 1"
+    force = 'amplitude = 1\n[[force]]\ndof = "u"\namplitude = 1\n'
+    found = listed(SCENE.replace('"shroud"', f'"{name}"').replace("amplitude = 1\n", force, 1))
+    head = found.out.splitlines()[0]
+    assert f"{name}.normal" in head and "force.v" in head and "force.u" not in head
+    assert "3 of 4 directions of contacts and forces: --json has all" in found.err
+
+
 def test_what_is_amiss_is_said_before_anything_is_solved(listed):
     warnings = json.loads(listed(SCENE, "--json").out)["warnings"]
     assert "contact.shroud.normal: no mode moves along it" in warnings

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fcm import load_scene
-from fcm.cli.limits import RemarkOptions
+from fcm.cli.limits import SENTENCES, RemarkOptions
 from fcm.cli.messages import Messages
 from fcm.cli.settings import Settings
 from fcm.harmonic_balance.cost_model import seconds_of_curve
@@ -179,9 +179,10 @@ def test_draws_that_take_long_are_told_before_they_are_drawn(fcm):
     assert said == 'sweep."force.u.amplitude": 9 draws of this distribution take about 0 s'
 
 
-def timed(*seconds):
-    """Messages by a clock that shows one after the other."""
-    return Messages(settings=Settings(clock=iter(seconds).__next__))
+def timed(*seconds, lines=float("inf")):
+    """Messages by a clock that shows one after the other; the first line of progress after so long."""
+    remarks = replace(SENTENCES, first_line=lines)
+    return Messages(settings=Settings(clock=iter(seconds).__next__, remarks=remarks))
 
 
 def test_the_time_of_curves_is_not_told_by_a_first_one_that_loads_what_all_need(capsys):
@@ -199,6 +200,15 @@ def test_how_long_all_curves_take_is_said_once_by_the_first(capsys):
         messages.progress(share)
     said = "100 curves take about 25 minutes: the first 2 of them took 30 s"
     assert capsys.readouterr().err.splitlines() == [said]
+
+
+def test_progress_is_said_where_no_terminal_draws_it_ever_more_rarely(capsys):
+    """A fit of a minute said nothing."""
+    messages = timed(0.0, 19.0, 21.0, 41.0, 60.5, lines=20.0)
+    for share in (0.0, 0.2, 0.3, 0.4, 0.5):
+        messages.progress(share, "start 1 of at most 8")
+    text = "start 1 of at most 8"
+    assert capsys.readouterr().err.splitlines() == [f"30 % after 21 s: {text}", f"40 % after 41 s: {text}"]
 
 
 def test_the_time_of_few_or_fast_curves_is_not_said(capsys):

@@ -147,6 +147,14 @@ def test_a_gap_in_a_tracked_peak_is_explained():
         assert np.isnan(line.get_ydata()).tolist() == trough.astype(bool).tolist()
 
 
+def test_dots_of_fold_curves_are_named():
+    number, none = np.array([1.0, 2.0, 3.0, 2.0, 1.0]), np.zeros(5)
+    for turn, said in ((none, ""), (np.eye(5)[2], "; dots: a window ends")):
+        track = DrawnTrack("fold", number, 5.0 + number, number[:, None], turn, none, none + 1.0)
+        axes = draw_tracked(DrawnTracking("contact.c.n_0", ("u",), "Hz", (track,))).axes[0]
+        assert axes.get_title(loc="right") == f"shaded: several solutions{said}"
+
+
 @pytest.mark.parametrize("low, scale", [(1.0, "log"), (100.0, "linear"), (0.0, "linear"), (-5.0, "linear")])
 def test_a_number_over_decades_has_a_logarithmic_axis(low, scale):
     number, none = np.linspace(low, 200.0, 5), np.zeros(5)

@@ -27,6 +27,12 @@ def notes(data, **more):
             ["modal.damping: is 2 right? It is 200 % of critical damping; if 2 % is meant, write 0.02"],
         ),
         (("modal", "damping"), [0.01, 1.0], ["modal.damping: is 1 right?"]),
+        (
+            ("modal", "damping"),
+            [0.0, 0.0],
+            ["modal.damping: is 0 right? Where no contact slips nothing damps"],
+        ),
+        (("modal", "damping"), [0.0, 0.01], []),
         (("modal", "damping"), [0.01, 0.99], []),
         (("modal", "damping"), 0.2, ["It is 20 % of critical damping; if 0.2 % is meant, write 0.002"]),
         (("modal", "damping"), 0.19, []),
@@ -82,7 +88,11 @@ def test_the_run_goes_on(tmp_path):
     text += '[[force]]\ndof = "u"\namplitude = 1\nphase = 30\n[response]\nfrequency = [0.5, 2]\n'
     (tmp_path / "s.toml").write_text(text)
     done = called("respond", tmp_path / "s.toml")
-    assert done.code == 0 and done.err.count(" right? ") == 2 and "right?" not in done.out
+    assert (
+        done.code == 0
+        and done.err.count(" right? ") == 2 == done.err.count("fcm: warning: ")
+        and "right?" not in done.out
+    )
 
 
 def test_a_mode_that_contacts_bring_near_the_range_is_no_slip_of_units():

@@ -88,6 +88,15 @@ def test_directions_that_cannot_be_right_are_refused(contact, said):
     assert said in refused(contact)
 
 
+def test_a_rotation_is_no_direction_of_a_plane():
+    """Its unit is another: k_u and mu n are those of displacements."""
+    dofs = ["21u", "21w", "21th", "bx", "by", "bz"]
+    modal = data(PLANE)["modal"] | {"dofs": dofs}
+    more = {"modal": modal, "force": [{"dof": "21u", "amplitude": 1.0}]}
+    said = refused({"tangential": ["21w", "21th"], "normal": "21u"}, **more)
+    assert 'are of different units: "21th" is a rotation' in said
+
+
 def test_all_mistakes_of_both_directions_at_once():
     text = refused({"tangential": ["nowhere", {"ay": "one"}]})
     assert "tangential[0]" in text

@@ -320,6 +320,15 @@ def test_both_matrices_are_said_not_to_be_those_of_a_structure():
     assert "the mass has 1 negative eigenvalue" in said and "the stiffness has 3 negative" in said
 
 
+def test_all_negative_eigenvalues_are_counted_of_low_modes_too():
+    """Of a fixed chain the lowest modes were not: a shift against rounding had made them positive."""
+    count = 60
+    chain = 2.0 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1)
+    chain[0, 0] = 100.0
+    said = refused(mass=[1.0] * count, stiffness=(-chain).tolist())
+    assert f"the stiffness has {count} negative eigenvalues" in said
+
+
 def test_names_are_looked_for_where_their_number_does_not_fit_the_matrix():
     said = refused(top={"force": [{"dof": "9x", "amplitude": 1.0}]}, dofs=["1x", "2x"])
     assert "structure.dofs: names 2 rows, but the stiffness has 3" in said

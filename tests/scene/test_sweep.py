@@ -209,6 +209,7 @@ REFUSED = [
         "must be a whole number of at least 0",
     ),
     ("contact.shroud.n_0", {"uniform": [1, 2], "count": 2, "seed": True}, "of at least 0, is true"),
+    ("level", [1, 2], 'sweep "force.*.amplitude", or follow the level at one frequency by'),
 ]
 
 

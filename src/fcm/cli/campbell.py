@@ -47,7 +47,7 @@ def campbell(messages: Messages, scene: str, output: Path | None, to_json: bool,
     if to_json:
         click.echo(json.dumps(found, indent=2, allow_nan=False))
     for note in loaded.notes:
-        messages.info(note)
+        messages.note(note)
     if not to_json or output is not None:
         output = picture_of(Path(scene), output, "-campbell.png", *loaded.files)
         save_picture(_picture(found), output)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import isclose
+from math import inf, isclose
 from typing import Any
 
 from fcm.cli.columns import share_of
@@ -56,10 +56,10 @@ def branches_uncertain(summary: Mapping[str, Any]) -> str:
 def folds_uncertain(summary: Mapping[str, Any]) -> str:
     """Where folds of the level were not followed to their end: branches may be missing; empty if nowhere."""
     what = (
-        "isolated branches may be missing beyond {}: there a fold of the level of the forces was lost. "
+        "isolated branches may be missing {side} {}: there a fold of the level of the forces was lost. "
         "The curve itself is whole"
     )
-    helps = f"{_BY_LEVEL} F, with F beyond {{}}"
+    helps = f"{_BY_LEVEL} F, with F {{side}} {{}}"
     if how := _how(summary):
         helps += f", or a sweep up and down by {how.replace('--at F', '--at FROM:TO:COUNT')},"
     return _may_be_missing(summary, "folds_unsure_at", what, f"{helps} looks there")
@@ -83,11 +83,22 @@ def _may_be_missing(summary: Mapping[str, Any], key: str, what: str, helps: str)
     if not uncertain_at:
         return ""
     (first, *more), given = uncertain_at[0][key], _given(uncertain_at[0])
-    at = f"{first:.5g}"
+    at, side = f"{first:.5g}", _side(first, summary.get("range"))
     count = f"on {len(uncertain_at)} of {len(curves)} curves"
     which = f" ({given}; {count})" if len(curves) > 1 and given else f" ({count})" if len(curves) > 1 else ""
     every = f". All of them: {key} of --json" if len(uncertain_at) > 1 or more else ""
-    return f"{what.format(f'{at} {unit}{which}')}. {helps.format(at)}{every}"
+    return f"{what.format(f'{at} {unit}{which}', side=side)}. {helps.format(at, side=side)}{every}"
+
+
+def _side(at: float, span: Sequence[float] | None) -> str:
+    """On which side of a frequency the rest of the range is, if it is an end.
+
+    >>> _side(40.0, (40.0, 90.0)), _side(90.0, (40.0, 90.0)), _side(50.0, (40.0, 90.0)), _side(50.0, None)
+    ('above', 'below', 'beyond', 'beyond')
+    """
+    low, high = span or (-inf, inf)
+    near = SENTENCES.resolution * (high - low) if span else 0.0
+    return "above" if at - low <= near else "below" if high - at <= near else "beyond"
 
 
 def _given(curve: Mapping[str, Any]) -> str:

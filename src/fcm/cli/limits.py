@@ -25,6 +25,7 @@ class RemarkOptions:
     problems: int = 3  # on a terminal; --json has all
     contact_name: int = 24  # characters of a contact's name
     redraw: float = 0.1  # [s] shortest time between two drawings of the progress line
+    first_line: float = 20.0  # [s] after which progress is said where it cannot be drawn
     bar: int = 24  # characters of the progress bar
     long_run: float = 60.0  # [s] a run from which on its time is said
     # [s] after which curves tell how long others take: before, what is read and loaded once counts too

@@ -196,13 +196,31 @@ def of_file(
         points = points_at(file, curve, contact, frequency, amplitude)
         if solution is not None and solution > len(points):
             raise click.UsageError(f"--solution {solution}: there are {len(points)} at this frequency.")
-        for point in points if solution is None else points[solution - 1 : solution]:
+        points = points if solution is None else points[solution - 1 : solution]
+        wanted, found = (frequency, "frequency") if amplitude is None else (amplitude, "modal_amplitude")
+        if wanted is not None and (
+            said := _beside(wanted, [getattr(point, found) for point in points], file)
+        ):
+            tell(said)
+        for point in points:
             with read(path, "its loops cannot be drawn"):
                 if isinstance(point.motion, PlanePoint):
                     planar.append(_in_plane(point, point.motion, file))
                 else:
                     cases.append(_on_a_line(point, point.motion, file))
     return planar or cases
+
+
+def _beside(wanted: float, there: Sequence[float], file: LoopFile) -> str:
+    """Where the points of the file are that are drawn in place of one between them; empty if there is one."""
+    off = [f"{at:.6g}" for at in there if abs(at - wanted) > SENTENCES.resolution * 1e-3 * abs(wanted)]
+    unit = "" if file.unit == "level" else f" {file.unit}"
+    closer = "A smaller --max-step of fcm respond has nearer ones"
+    return (
+        f"at {wanted:.6g}: drawn is the nearest point of the file, at {', '.join(off)}{unit}. {closer}"
+        if off
+        else ""
+    )
 
 
 def _said(point: LoopPoint, file: LoopFile) -> tuple[tuple[Name, ...], str, dict[str, Any]]:

@@ -23,6 +23,7 @@ class Messages:
     _share: float = field(default=0.0, repr=False)
     _curves: int = field(default=0, repr=False)  # that are to come, until their time is said
     _begun: float = field(default=0.0, repr=False)
+    _waited: tuple[float, float] | None = field(default=None, repr=False)  # since when, and for how long [s]
 
     def error(self, text: str) -> None:
         self._say(f"fcm: {text}")
@@ -30,6 +31,13 @@ class Messages:
     def warning(self, text: str) -> None:
         if self.verbosity >= 0:
             self._say(f"fcm: warning: {text}")
+
+    def note(self, text: str) -> None:
+        """What is to be known of how a scene was read; a question is of what is hardly meant, a warning."""
+        if "?" in text:
+            self.warning(text)
+        else:
+            self.info(text)
 
     def info(self, text: str) -> None:
         if self.verbosity >= 0:
@@ -44,17 +52,31 @@ class Messages:
         self._curves, self._begun = curves if curves > 1 else 0, self.settings.clock()
 
     def progress(self, fraction: float, text: str = "") -> None:
-        """Redraw the progress line, on a terminal only and not too often; it never goes back."""
+        """Redraw the progress line, not too often; it never goes back.
+
+        Where there is no terminal a line is said, each after twice the time of the one before.
+        """
         now, remarks = self.settings.clock(), self.settings.remarks
         self._share = min(max(fraction, self._share), 1.0)
         if self._share * self._curves >= 1.0 and now - self._begun >= remarks.time_told:
             self._say_time(now - self._begun)
+        if self.verbosity >= 0 and not sys.stderr.isatty():
+            self._say_progress(now, text)
         if self.verbosity < 0 or now - self._drawn < remarks.redraw or not sys.stderr.isatty():
             return
         full = int(remarks.bar * self._share)
         line = f"[{'#' * full}{'.' * (remarks.bar - full)}] {int(100 * self._share):3d} %  {text}"
         self._draw(line.ljust(self._width))
         self._drawn, self._width = now, len(line)
+
+    def _say_progress(self, now: float, text: str) -> None:
+        """How far the run is, as a line of its own."""
+        if self._waited is None:
+            self._waited = now, self.settings.remarks.first_line
+        since, wait = self._waited
+        if now - since >= wait:
+            self._waited = since, 2.0 * wait
+            self.info(f"{int(100 * self._share)} % after {duration(now - since)}: {text}".rstrip(": "))
 
     def _say_time(self, taken: float) -> None:
         """How long all curves take, where that is long."""

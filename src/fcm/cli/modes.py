@@ -48,7 +48,7 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
         for text in found["read"]:
             messages.info(f"read: {text}")
         for note in found["notes"]:
-            messages.info(note)
+            messages.note(note)
     for warning in found["warnings"]:
         messages.warning(warning)
 
@@ -96,12 +96,15 @@ def _listed(modes: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def _shown(found: dict[str, Any]) -> list[str]:
-    """The directions that fit beside each other: the first of the contacts, then the first of the forces."""
+    """The directions that fit beside each other: those of the first contact and a force, then other forces
+    and contacts."""
     every = list(found["modes"][0]["participation"])
     contacts = [name for name in every if name.startswith("contact.")]
+    whole = 1 + next((i for i, name in enumerate(contacts) if name.endswith(".normal")), -1)
     forces = [name for name in every if name not in contacts]
     for most in range(SENTENCES.directions, 0, -1):
-        few = forces[: max(min(SENTENCES.forces, most - 1), most - len(contacts))]
+        beside = min(SENTENCES.forces, most - 1, max(most - whole, 1))
+        few = forces[: max(beside, most - len(contacts))]
         chosen = contacts[: most - len(few)] + few
         if max(map(len, _lines(found, chosen).splitlines())) <= SENTENCES.width:
             break

@@ -44,6 +44,6 @@ def pairs(
     chosen = [one for one in loaded.interfaces if not contact or one.name in contact]
     output = picture_of(Path(scene), output, "-pairs.png", *loaded.files)
     for note in loaded.notes:
-        messages.info(note)
+        messages.note(note)
     save_picture_of(lambda: draw_pairs(chosen, loaded.length), output)
     messages.info(wrote(output))

@@ -139,7 +139,7 @@ def _loaded(messages: Messages, name: str, asked: Asked) -> tuple[Scene, export.
     scene = whole.in_use()
     check_solvable(scene)
     for note in scene.notes:
-        messages.info(note)
+        messages.note(note)
     schedule.check_options(scene, asked.history_csv)
     return _with_step(scene, asked), exporting
 

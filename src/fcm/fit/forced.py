@@ -29,7 +29,8 @@ from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.response_quantities import recorded
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Measured, Scene
-from fcm.scene.draft import LEVEL, number_of
+from fcm.scene.address import LEVEL
+from fcm.scene.draft import number_of
 from fcm.sensitivity.parameter_derivatives import Rates, growth_of, rates_of
 from fcm.units import QUANTITIES
 

@@ -132,7 +132,8 @@ def _draw_folds(drawn: DrawnTracking) -> Figure:
             axes.plot(track.number[at], track.frequency[at], "o", markersize=3.5, color=_MARK, zorder=3)
         axes.set_ylabel(frequency_label(drawn.frequency_unit).replace("Frequency", "Frequency of folds"))
         _name_number(axes, drawn, tracks)
-        axes.set_title("shaded: several solutions", loc="right", fontsize=8)
+        dots = "; dots: a window ends" if any((track.turn == 1.0).any() for track in tracks) else ""
+        axes.set_title(f"shaded: several solutions{dots}", loc="right", fontsize=8)
         _name_lines(axes, tracks)
     return figure
 

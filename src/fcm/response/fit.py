@@ -27,7 +27,8 @@ from fcm.response.sweep import trace
 from fcm.results.fitted import Fitted, FittedData, FittedStart, misfit
 from fcm.results.result import Response
 from fcm.run import IN_THIS_PROCESS, Checkpoint, Execution, Results, fingerprint
-from fcm.scene.draft import LEVEL, number_of
+from fcm.scene.address import LEVEL
+from fcm.scene.draft import number_of
 from fcm.scene.errors import quoted
 from fcm.table import Table
 from fcm.units import EXCITED

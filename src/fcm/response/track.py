@@ -32,7 +32,8 @@ from fcm.run import (
     place_for,
     sweep,
 )
-from fcm.scene.draft import LEVEL, Number, number_of
+from fcm.scene.address import LEVEL
+from fcm.scene.draft import Number, number_of
 from fcm.scene.errors import counted
 from fcm.structure.linear import linear_of
 from fcm.tracking.onset_functions import KINDS as ONSETS

@@ -15,6 +15,7 @@ from fcm.scene.errors import Mistakes, choices, nearest, quoted
 
 VECTORS = ("mass", "frequency", "damping")  # of the modal table
 SCALE = "cyclic.mistuning.scale"
+LEVEL = "level"  # of the forces: all amplitudes times this
 TOTAL = "total"  # of numbers that the pairs of a contact have each their own of, beside areas
 OF_SECTOR = re.compile(r"@\d+")  # in the name of a contact of a mistuned ring
 NUMBERS = {  # of each kind of table
@@ -44,9 +45,16 @@ class Addresses:
             return members
         if not self._excused(key, path, mistakes):
             what = "there is no such number in the scene to sweep"
-            hint = self._contact_meant(key)
+            hint = self._forces_meant() if key == LEVEL else self._contact_meant(key)
             mistakes.add(path, what + hint, *(() if hint else (key, self.numbers)))
         return ()
+
+    def _forces_meant(self) -> str:
+        """Of the level of the forces, of which --level makes a curve: what is swept in its place."""
+        forces = [f"force.{draft['name'] or i}.amplitude" for i, draft in enumerate(self.parts["force"])]
+        every = "force.*.amplitude" if len(forces) > 1 else "".join(forces)
+        swept = f"; sweep {quoted(every)}, or follow" if forces else "; follow"
+        return f"{swept} the level at one frequency by fcm respond --level FROM:TO --at F"
 
     def _contact_meant(self, key: str) -> str:
         """Of a contact that is not there the name that may be meant, or those that are; else nothing."""

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from fcm.model.ring import Ring
 from fcm.model.scene import Address, Force, Modal, Scene
-from fcm.scene.address import Addresses, overlap, replaced
+from fcm.scene.address import LEVEL, Addresses, overlap, replaced
 from fcm.scene.cyclic import ring_of
 from fcm.scene.errors import Mistakes, quoted
 from fcm.scene.excitation import DIRECTIONS, base_force, load_of
@@ -21,8 +21,6 @@ from fcm.scene.parts import contact_of, force_of
 from fcm.scene.rules import RULES, Rule
 from fcm.scene.section import Parts
 from fcm.scene.sweep import SweptKey, combinations, field_of
-
-LEVEL = "level"  # of the forces: all amplitudes times this
 
 
 @dataclass(frozen=True)

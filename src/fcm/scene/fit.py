@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from fcm.model.scene import Fit, FloatArray, Measured
-from fcm.scene.draft import LEVEL, Draft, Number
+from fcm.scene.address import LEVEL
+from fcm.scene.draft import Draft, Number
 from fcm.scene.errors import choices, counted, kind, quoted, shown
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names

@@ -344,7 +344,7 @@ def _check_curves(scene: Scene, mistakes: Mistakes) -> None:
         where = ", ".join(f"{key} = {value:g}" for key, value in curve.parameters.items())
         where = f"sweep with {where}" if where else ""
         for contact in curve.contacts:
-            check_plane(contact, mistakes, where)
+            check_plane(contact, curve.modal.dofs, mistakes, where)
         if check_diameters(curve, mistakes, where):
             found += [(where, what) for what in dict.fromkeys(_faults_of_curve(curve))]
     count = Counter(what for _, what in found)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeVar
 
 import numpy as np
 
 from fcm.model.scene import Contact, FloatArray, Scene
+from fcm.rotational_dofs import is_rotation
 from fcm.scene.errors import Mistakes, quoted, several
 from fcm.scene.options import TOLERANCES
 from fcm.scene.section import Section
@@ -51,14 +52,19 @@ def check_axes(section: Section, directions: Mapping[str, Mapping[str, float]]) 
         section.wrong("tangential", f"must be {TWO}; these are {angle:.4g} degrees apart")
 
 
-def check_plane(contact: Contact, mistakes: Mistakes, where: str) -> None:
-    """Note two directions of a contact that no displacement tells apart, or of different scale."""
+def check_plane(contact: Contact, dofs: Sequence[str], mistakes: Mistakes, where: str) -> None:
+    """Note two directions of a contact that no displacement tells apart, of different scale or unit."""
     one, other = contact.tangential, contact.second
     if other is None or not one.any() or not other.any():
         return
     name = f"the tangential directions of contact {quoted(contact.name)}"
     if axis_key(one) == axis_key(other):
         mistakes.add(where, f"{name} are one: no displacement tells them apart; give {TWO}")
+        return
+    turns = [[is_rotation(dofs[int(d)]) for d in np.flatnonzero(direction)] for direction in (one, other)]
+    if all(turns[0]) != all(turns[1]):
+        about = quoted(dofs[int(np.flatnonzero(one if all(turns[0]) else other)[0])])
+        mistakes.add(where, f"{name} are of different units: {about} is a rotation; give {TWO}")
         return
     sizes = [np.sort(np.abs(direction[direction != 0.0])) for direction in (one, other)]
     if sizes[0].size == sizes[1].size:

@@ -21,9 +21,11 @@ def questions(top: Section, parts: Parts, swept: Sequence[SweptKey]) -> list[str
     """A question for each key whose number is hardly meant as it is; the scene is read as it says.
 
     damping ratios and loss factors of 1 and more, damping ratios of which the least is large,
-    coefficients of friction above two, and angles of more than a turn that are given in rad.
+    no damping at all, coefficients of friction above two, and angles of more than a turn that are given in
+    rad.
     """
     found = [_of_ratio(*one) for one in _ratios(top, parts, swept)]
+    found += [_of_nothing(*one) for one in _ratios(top, parts, swept)]
     found += [_of_friction(*one) for one in _frictions(top, swept)]
     found += [_of_angle(*one) for one in _angles(top, swept)]
     return [one for one in found if one]
@@ -88,6 +90,13 @@ def _of_ratio(key: str, values: Iterable[float], whole: str) -> str:
         return ""
     meant = f"if {shown(value)} % is meant, write {value / 100.0:.12g}"
     return f"{key}: is {shown(value)} right? It is {100.0 * value:.12g} % of {whole}; {meant}"
+
+
+def _of_nothing(key: str, values: Iterable[float], _whole: str) -> str:
+    each = list(values)
+    if not each or any(each):
+        return ""
+    return f"{key}: is 0 right? Where no contact slips nothing damps, and a resonance has no peak"
 
 
 def _of_friction(key: str, values: Iterable[float]) -> str:

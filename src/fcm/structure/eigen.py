@@ -117,10 +117,13 @@ def system_of(K: Matrix, M: Matrix, top: float = 0.0) -> System:
     try:
         try:
             solve = solver(K - shift * M)
-        except NotPositiveError:  # what a reduction has left of rigid-body modes may be more negative
+        except NotPositiveError as error:  # what is left of rigid-body modes may be more negative
             if shift <= (shift := -OPTIONS.max_shift * ratio):
                 raise
-            solve = solver(K - shift * M)
+            try:
+                solve = solver(K - shift * M)
+            except NotPositiveError:
+                raise error from None  # which counts those between the shifts too
     except NotPositiveError as error:
         faults.append(_said("stiffness", error.negative))
     except TooLargeError as error:

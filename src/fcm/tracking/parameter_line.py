@@ -12,7 +12,8 @@ import numpy.typing as npt
 from fcm.harmonic_balance.dense_jacobian import Amplitude, apply_compliance
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
-from fcm.scene.draft import LEVEL, Number
+from fcm.scene.address import LEVEL
+from fcm.scene.draft import Number
 from fcm.sensitivity.parameter_derivatives import Rates, law_rates, rates_of
 from fcm.structure.linear import linear_of
 
