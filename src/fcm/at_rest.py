@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 
-@dataclass(frozen=True)
-class RestOptions:
+
+class RestOptions(Frozen):
     """How little is nothing.
 
     displacement : part of the greatest amplitude of a curve, up to which an amplitude is rounding. A sum over

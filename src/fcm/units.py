@@ -13,6 +13,7 @@ EXCITATION = "excitation.frequency"  # key of where a curve over the level of th
 QUANTITIES = {"displacement": 0, "velocity": 1, "acceleration": 2}  # powers of i omega, over a displacement
 EXCITED = "excitation.level"  # key of the level of the forces of a curve, where several were measured
 NATURAL = "modal.frequency"  # key of the frequencies of all modes; with its number of one
+TURN = 2.001 * np.pi  # [rad] a whole one, and what "6.2832" is more
 DIGITS = 15  # that every number of so many has again after it was a binary one
 
 

@@ -11,7 +11,7 @@ at the same frequency; of a peak it is the difference of the heights, of a fold 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
 import numpy as np
@@ -27,6 +27,7 @@ from fcm.accuracy.reference_errors import with_reference_errors
 from fcm.accuracy.reference_harmonics import reference_harmonics
 from fcm.accuracy.reference_pieces import CurvePiece, ReportedPath, distinct, lengths, nearest, piece_of
 from fcm.continuation import Mark, Path
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.harmonic_balance.response_quantities import ContactRecord
@@ -38,8 +39,7 @@ from fcm.stability.known_motions import KnownMotions
 Mask = npt.NDArray[np.bool_]
 
 
-@dataclass(frozen=True)
-class Errors:
+class Errors(Frozen):
     """Of a path; relative; NaN where the pair cannot tell.
 
     amplitude (point, dof): by how much the reference differs at the same frequency.

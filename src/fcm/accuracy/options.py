@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 
 from fcm.continuation.options import (
@@ -13,10 +13,10 @@ from fcm.continuation.options import (
     SignChangeOptions,
     StepOptions,
 )
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class CurveDistanceOptions:
+class CurveDistanceOptions(Frozen):
     """How differences of two curves are interpolated between their points.
 
     Attributes
@@ -37,8 +37,7 @@ class CurveDistanceOptions:
 CURVE_DISTANCE = CurveDistanceOptions()
 
 
-@dataclass(frozen=True)
-class PairOptions:
+class PairOptions(Frozen):
     """How the reference of a curve is chosen, and how closely it is looked at.
 
     Attributes
@@ -232,8 +231,7 @@ AT_POINTS = PairOptions(
 )
 
 
-@dataclass(frozen=True)
-class RefinementOptions:
+class RefinementOptions(Frozen):
     """How harmonics are added to a curve until its pair agrees.
 
     Attributes
@@ -276,8 +274,7 @@ class RefinementOptions:
 REFINEMENT = RefinementOptions()
 
 
-@dataclass(frozen=True)
-class ValidityOptions:
+class ValidityOptions(Frozen):
     """Up to which errors the stability of solutions is told.
 
     Attributes
@@ -301,8 +298,7 @@ class ValidityOptions:
 VALIDITY = ValidityOptions()
 
 
-@dataclass(frozen=True)
-class StabilityLimitOptions:
+class StabilityLimitOptions(Frozen):
     """How the limits of stability of more harmonics are found beside those of fewer.
 
     Attributes

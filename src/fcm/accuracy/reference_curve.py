@@ -4,7 +4,6 @@ leads nowhere."""
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -32,6 +31,7 @@ from fcm.accuracy.reference_pieces import (
 from fcm.accuracy.reference_stretch import ReferencePiece, StretchFollower
 from fcm.accuracy.residual import changes_left_out
 from fcm.continuation import Mark, Path
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.consecutive_points import runs
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.prolongation import Prolongation
@@ -45,8 +45,7 @@ Indices = npt.NDArray[np.intp]
 Mask = npt.NDArray[np.bool_]
 
 
-@dataclass(frozen=True)
-class FollowedStretch:
+class FollowedStretch(Frozen):
     """A stretch of a curve, points first to before end, beside which the reference was followed: its
     pieces."""
 
@@ -55,8 +54,7 @@ class FollowedStretch:
     pieces: list[ReferencePiece]
 
 
-@dataclass(frozen=True)
-class ComparedQuantities:
+class ComparedQuantities(Frozen):
     """What is compared of a curve with its reference: amplitudes, and then what the contacts bear.
 
     value, growth along the curve, unit (point, column); change (point, 1 + column) to the reference, that of

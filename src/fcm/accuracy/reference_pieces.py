@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.curve_distance import ReferenceCurveData, arc_lengths
 from fcm.continuation import Path
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities
 from fcm.model.scene import FloatArray
 
 
-@dataclass(frozen=True)
-class CurvePiece:
+class CurvePiece(Frozen):
     """A piece of a curve: frequency (point,) along it, what is compared and its slopes (point, column), of
     which the amplitudes are the first.
 
@@ -58,8 +57,7 @@ class CurvePiece:
         return found
 
 
-@dataclass(frozen=True)
-class ReportedPath:
+class ReportedPath(Frozen):
     """A path that was followed, what is reported of it, and what its contacts bear (point, 4 contact)."""
 
     path: Path

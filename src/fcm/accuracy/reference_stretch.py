@@ -7,7 +7,7 @@ both sides, and from one of them the reference can be followed to the other.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from fcm.branches.force_level import solutions
 from fcm.branches.options import LEVEL_CURVE
 from fcm.continuation import Events, Mark, Path, Status
 from fcm.continuation.follow import Follower
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
@@ -29,8 +30,7 @@ class BudgetSpentError(Exception):
     """Following the reference takes more than it may."""
 
 
-@dataclass(frozen=True)
-class ReferencePiece:
+class ReferencePiece(Frozen):
     """A piece of the reference, from one end of a stretch; reached_end: up to the other."""
 
     path: Path
@@ -49,8 +49,7 @@ class ReferencePiece:
         return bool(there.min() < frequency.max() and there.max() > frequency.min())
 
 
-@dataclass(frozen=True)
-class StretchEnd:
+class StretchEnd(Frozen):
     """A point of the reference at an end of a stretch, and whether the frequency rises there along the
     curve."""
 

@@ -4,7 +4,7 @@ names, again."""
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -28,7 +28,6 @@ from fcm.model.scene import FloatArray
 OnTraced = Callable[[UncheckedResponse, float, tuple[int, ...]], None]
 
 
-@dataclass(frozen=True)
 class RefinedResponse(UncheckedResponse):
     """A response, its errors, and the accuracy that was asked for.
 

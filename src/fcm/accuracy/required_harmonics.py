@@ -10,7 +10,6 @@ they change one another: by the gain, which the pair tells,
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -20,14 +19,14 @@ from fcm.accuracy.options import PAIR, REFINEMENT, PairOptions, RefinementOption
 from fcm.accuracy.reference_harmonics import keep_for_next, prolongation_to, reference_harmonics
 from fcm.accuracy.unchecked_response import UncheckedResponse
 from fcm.continuation import Mark, Path
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
 from fcm.model.scene import FloatArray, Scene
 from fcm.scene.options import LIMITS
 
 
-@dataclass(frozen=True)
-class RequiredHarmonics:
+class RequiredHarmonics(Frozen):
     """change: by how much a peak or fold is changed by the reference, relative, at most, as far as it is
     told.
 
@@ -41,8 +40,7 @@ class RequiredHarmonics:
     reference: tuple[int, ...]
 
 
-@dataclass(frozen=True)
-class _SpecialPoint:
+class _SpecialPoint(Frozen):
     """A peak or a fold: places of a path where the reference is looked for, one after the other, and
     which of the
     frequency and the amplitudes (1 + dof,) count there."""

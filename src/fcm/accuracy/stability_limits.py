@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from fcm.accuracy.reference_harmonics import keep_for_next, prolongation_to, ref
 from fcm.accuracy.required_harmonics import RequiredHarmonics, needed
 from fcm.continuation import Path, Segment
 from fcm.continuation.events import SignChange
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.residual_spectrum import FurtherHarmonics
@@ -28,8 +29,7 @@ from fcm.stability.floquet import multipliers_of
 from fcm.stability.inserted_points import MultiplierCrossing
 
 
-@dataclass(frozen=True)
-class StabilityLimit:
+class StabilityLimit(Frozen):
     """A crossing as more harmonics have it: by how much its frequency is another, relative; NaN where that
     cannot be told. harmonics are those that the accuracy takes."""
 

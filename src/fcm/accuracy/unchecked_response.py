@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +20,7 @@ from fcm.branches.search import with_further_branches
 from fcm.branches.trace import FoundPeak, Traced, traced, traced_from, with_levels
 from fcm.continuation import Branches, BranchesInterrupted, Path
 from fcm.continuation.follow import Progress
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
 from fcm.harmonic_balance.system import System
@@ -27,8 +28,7 @@ from fcm.harmonic_balance.work_budget import WorkLimitError
 from fcm.model.scene import FloatArray
 
 
-@dataclass(frozen=True)
-class UncheckedResponse:
+class UncheckedResponse(Frozen):
     """A response whose errors are not known yet; quantities (path,) belongs to the branches' paths.
 
     seconds: about what following its levels and branches took. further: the harmonics that would do more but

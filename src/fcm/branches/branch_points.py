@@ -18,7 +18,7 @@ balance with all even harmonics up to the highest as well, which the motion solv
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -27,14 +27,14 @@ from fcm.continuation import Path, Segment
 from fcm.continuation.all_branches import contains
 from fcm.continuation.corrector import Newton
 from fcm.continuation.problem import Problem
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.dense_jacobian import jacobian_of
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
 
-@dataclass(frozen=True)
-class BranchPoint:
+class BranchPoint(Frozen):
     """z (unknown + 1,); starts: solutions on either side of the branch there, which lie on branches that
     leave it."""
 

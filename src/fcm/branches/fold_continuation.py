@@ -14,17 +14,16 @@ part of the width of such a strip, and steps are short beside wider ones: a curv
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from fcm.branches.options import FOLDS, FoldOptions
 from fcm.branches.surface import Ending, FoldSteps, Point, Surface
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 
 
-@dataclass(frozen=True)
-class Folds:
+class Folds(Frozen):
     """Folds along a curve, in order.
 
     z (point, n + 2): displacements, frequency [rad/s], level; singular (point, n + 2): the direction in which

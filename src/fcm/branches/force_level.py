@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 
@@ -29,13 +29,13 @@ from fcm.branches.shared_levels import shared_curve, solutions_at_level_one
 from fcm.continuation import End, Events, FollowOptions, Path, Status, follow
 from fcm.continuation.corrector import Newton
 from fcm.continuation.follow import Progress
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.cost_model import charged_to_work, seconds_of
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
 
-@dataclass(frozen=True)
-class LevelSolutions:
+class LevelSolutions(Frozen):
     """Solutions at one frequency with some harmonics, z (unknown + 1,), and whether their level was followed
     to its end, or back to its beginning; how far it is to be followed with more harmonics, infinite if that
     is not told; and where it turned.
@@ -49,8 +49,7 @@ class LevelSolutions:
     folds: tuple[LevelFold, ...] = ()
 
 
-@dataclass(frozen=True)
-class LevelReachOptions:
+class LevelReachOptions(Frozen):
     """How far the level of the forces is followed with many contacts.
 
     Of these there always is one that slips or opens only far above 1.
@@ -243,8 +242,7 @@ def _level_reach(system: System, status: Status, levels: FloatArray) -> float:
     return options.reach_factor * max(most, options.clear_level)  # however far apart the points are
 
 
-@dataclass(frozen=True)
-class LevelRange:
+class LevelRange(Frozen):
     """Levels over which a response is followed, and how.
 
     Attributes

@@ -9,7 +9,6 @@ beyond 1 lies between two solutions of the response at that frequency, whose bra
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,6 +19,7 @@ from fcm.branches.options import FOLDS, FoldOptions
 from fcm.branches.surface import Surface
 from fcm.continuation import Path
 from fcm.continuation.all_branches import contains
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.cost_model import seconds_of
 from fcm.harmonic_balance.prolongation import Prolongation
 from fcm.harmonic_balance.system import System
@@ -27,8 +27,7 @@ from fcm.harmonic_balance.work_budget import WorkLimitError
 from fcm.model.scene import FloatArray
 
 
-@dataclass(frozen=True)
-class LevelOneCrossings:
+class LevelOneCrossings(Frozen):
     """Solutions (unknown + 1,) beside the folds at the level 1 that curves of folds come to; and the
     frequencies [rad/s] from where folds were not followed as far as they are looked at, so that others may be
     missing."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from fcm.continuation.options import StepOptions
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class SurfaceOptions:
+class SurfaceOptions(Frozen):
     """How places on the surface of all solutions are found; lengths are in the scaled unknowns."""
 
     level_floor: float = 0.1  # levels are measured by themselves, and below this by this
@@ -22,8 +22,7 @@ class SurfaceOptions:
 SURFACE = SurfaceOptions()
 
 
-@dataclass(frozen=True)
-class FoldOptions:
+class FoldOptions(Frozen):
     """How folds of the level of the forces are followed in (frequency, level).
 
     Lengths are in the scaled unknowns: displacements by their own size, the frequency by its range, the level
@@ -65,8 +64,7 @@ class FoldOptions:
 FOLDS = FoldOptions()
 
 
-@dataclass(frozen=True)
-class LevelOptions:
+class LevelOptions(Frozen):
     """Where the level of the forces is followed besides the resonances and the ends of the range."""
 
     strong_harmonics: int = 3  # harmonics whose resonances are strong enough to keep themselves up
@@ -80,8 +78,7 @@ class LevelOptions:
 LEVELS = LevelOptions()
 
 
-@dataclass(frozen=True)
-class ProlongationOptions:
+class ProlongationOptions(Frozen):
     """Which points of a branch are prolongated to more harmonics."""
 
     max_of_a_kind: int = 8  # peaks, and folds
@@ -95,8 +92,7 @@ class ProlongationOptions:
 PROLONGATION = ProlongationOptions()
 
 
-@dataclass(frozen=True)
-class BranchingOptions:
+class BranchingOptions(Frozen):
     """How branches are left at branch points; lengths are in the scaled unknowns."""
 
     tolerance: float = 1e-4  # of a step, to which a branch point is found
@@ -116,8 +112,7 @@ class BranchingOptions:
 BRANCHING = BranchingOptions()
 
 
-@dataclass(frozen=True)
-class LevelCurveOptions:
+class LevelCurveOptions(Frozen):
     """How the level of the forces is followed at one frequency, from rest.
 
     Levels are relative to that of the scene. Steps are lengths along the curve in its scaled unknowns, where
@@ -190,8 +185,7 @@ class LevelCurveOptions:
 LEVEL_CURVE = LevelCurveOptions()
 
 
-@dataclass(frozen=True)
-class LevelFoldOptions:
+class LevelFoldOptions(Frozen):
     """How folds of the level of the forces are brought to the level 1.
 
     Attributes
@@ -218,8 +212,7 @@ class LevelFoldOptions:
 LEVEL_FOLDS = LevelFoldOptions()
 
 
-@dataclass(frozen=True)
-class LinearLimitOptions:
+class LinearLimitOptions(Frozen):
     """Up to which level contacts change what they do; levels are relative to that of the scene.
 
     Attributes
@@ -244,8 +237,7 @@ class LinearLimitOptions:
 LINEAR_LIMITS = LinearLimitOptions()
 
 
-@dataclass(frozen=True)
-class SharedLevelOptions:
+class SharedLevelOptions(Frozen):
     """How curves of the level are shared by systems of other preloads.
 
     Attributes

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from fcm.branches.symmetry_in_level import unsymmetric_solutions
 from fcm.branches.trace import Traced, with_further
 from fcm.continuation import Path, Status
 from fcm.continuation.all_branches import contains
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.system import System
 
 
@@ -36,8 +37,7 @@ def with_isolas(system: System, found: Traced) -> Traced:
     return with_further(system, found, (), met.solutions) if met.solutions else found
 
 
-@dataclass(frozen=True)
-class SymmetryLoss:
+class SymmetryLoss(Frozen):
     """Frequencies [rad/s] at which symmetric motions lose their symmetry by harmonics that are not balanced,
     and which these are."""
 

@@ -8,18 +8,17 @@ image; that the image of another is a solution, too, its balance.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.branches.options import BRANCHING, BranchingOptions
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
 
-@dataclass(frozen=True)
-class Symmetry:
+class Symmetry(Frozen):
     """counterpart (contact,): whose motion a contact has in the image; factor (contact, unknown of one
     contact) of that motion's numbers."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
@@ -17,6 +17,7 @@ from fcm.continuation.all_branches import Follow, Following
 from fcm.continuation.follow import Progress
 from fcm.continuation.path import PathInterrupted
 from fcm.continuation.problem import Problem
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.cost_model import charged_to_work
 from fcm.harmonic_balance.response_quantities import recorded
 from fcm.harmonic_balance.system import System
@@ -36,8 +37,7 @@ class FoundPeak(NamedTuple):
         return near and other.size > options.same_peak[1] * self.size
 
 
-@dataclass(frozen=True)
-class Traced:
+class Traced(Frozen):
     """Branches, and what was found at the frequencies where solutions were looked for, maybe with fewer
     harmonics; work is what that took, in seconds of `cost_model`. mirrored: the numbers of the
     branches whose mirror images are branches, too, and are not among them. folds_lost: frequencies [rad/s]

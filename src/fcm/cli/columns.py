@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from fcm.cli.limits import SENTENCES
 from fcm.cli.terminal import plain
+from fcm.frozen import Frozen
 
 UNSTABLE = "!"  # beside a peak where the motion is not stable
 DOES_NOT_STAY = "unstable: with these harmonics the motion is not stable there, and leaves this peak"
@@ -30,8 +30,7 @@ def aligned(rows: Sequence[Sequence[str]], left: int) -> str:
     return "\n".join(line.rstrip() for line in lines)
 
 
-@dataclass(frozen=True)
-class DofTable:
+class DofTable(Frozen):
     """A table with some columns for each degree of freedom.
 
     They stand beside each other where a line has room for all; else each degree of freedom has a line.

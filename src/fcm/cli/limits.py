@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class RemarkOptions:
+class RemarkOptions(Frozen):
     """How much sentences, tables and pictures of the command line show."""
 
     harmonics: int = 10  # of which it is said what they meet
@@ -39,8 +38,7 @@ class RemarkOptions:
     )
 
 
-@dataclass(frozen=True)
-class RequestOptions:
+class RequestOptions(Frozen):
     """What can be asked for on the command line."""
 
     panels: int = 8  # of coefficients that can be read in one picture

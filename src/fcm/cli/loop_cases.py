@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +15,7 @@ from fcm.cli.columns import ranges
 from fcm.cli.drawing import shorten
 from fcm.cli.limits import SENTENCES
 from fcm.cli.loop_names import Harmonic, Name, named, phase_of, unit_of
+from fcm.frozen import Frozen
 from fcm.rotational_dofs import unit_of as dof_unit
 
 if TYPE_CHECKING:
@@ -23,8 +24,7 @@ if TYPE_CHECKING:
     from fcm.plot.loop_file import LinePoint, LoopFile, LoopPoint, PlanePoint
 
 
-@dataclass(frozen=True)
-class Case:
+class Case(Frozen):
     """A loop; its parameters as they are named in a picture, and what else is to be said of it."""
 
     loop: Loop | PeriodicLoop  # dimensionless: displacements divided by a, forces by k_u a
@@ -69,8 +69,7 @@ class Case:
         return F_b, F_s, F_c
 
 
-@dataclass(frozen=True)
-class PlanarCase:
+class PlanarCase(Frozen):
     """The loop of a contact that slides in a plane."""
 
     loop: PlanarLoop

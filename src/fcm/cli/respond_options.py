@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from textwrap import wrap
@@ -18,6 +17,7 @@ from fcm.cli.limits import SENTENCES
 from fcm.cli.options import FiniteRange
 from fcm.cli.time_limit import seconds
 from fcm.cli.track import track_options
+from fcm.frozen import Frozen
 
 
 def _printed(text: str) -> None:
@@ -186,8 +186,7 @@ def respond_options(command: Any) -> Any:
     return command
 
 
-@dataclass(frozen=True)
-class Asked:
+class Asked(Frozen):
     """What a command line asks for; each option by its name."""
 
     output: Path | None

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fcm import resources
 from fcm.cli.limits import SENTENCES, RemarkOptions
+from fcm.frozen import Frozen
 
 if TYPE_CHECKING:
     from fcm.compare.options import CompareOptions
@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     from fcm.scene.options import MessageOptions
 
 
-@dataclass(frozen=True)
-class Settings:
+class Settings(Frozen):
     """What no option of the command line says: ``main(args, obj=Messages(settings=Settings(...)))``.
 
     Attributes

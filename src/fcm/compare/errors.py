@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from fcm.compare.distance import Shape, of_curve, of_points, resolution, size_of
 from fcm.compare.lines import FloatArray, Line
 from fcm.compare.options import COMPARE
+from fcm.frozen import Frozen
 
 MEASURES = ("peak", "peak_frequency", "fold", "points", "curve")
 MEANINGS = {
@@ -23,8 +24,7 @@ MEANINGS = {
 Errors = dict[str, FloatArray]  # of each measure: (curve,)
 
 
-@dataclass(frozen=True)
-class Reference:
+class Reference(Frozen):
     """Curves that others are measured against, with the error of their own."""
 
     name: str
@@ -90,8 +90,7 @@ def _relative(value: float, exact: float) -> float:
     return abs(value - exact) / (abs(exact) if exact else 1.0)
 
 
-@dataclass(frozen=True)
-class Shown:
+class Shown(Frozen):
     """An error as it is shown: a number, or a limit below which it is; both missing if there is none."""
 
     value: float | None = None

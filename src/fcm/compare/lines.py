@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.model.scene import Scene
 from fcm.results.result import Curve
 
 FloatArray = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Line:
+class Line(Frozen):
     """One response curve: half the peak-to-peak displacement against frequency.
 
     Separate branches follow one another, with a point of NaN between them.

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from fcm.compare.exact import exact_lines
 from fcm.compare.lines import Line, line_of
 from fcm.compare.options import COMPARE, CompareOptions
+from fcm.frozen import Frozen
 from fcm.model.scene import Scene
 from fcm.reduction.negligible_parts import without_negligible_parts
 from fcm.response.options import leaving_out
@@ -20,8 +21,7 @@ from fcm.table import Table
 CLOSED_FORM, EXACT = "closed form", "exact"
 
 
-@dataclass(frozen=True)
-class Method:
+class Method(Frozen):
     """A table, the closed form, or the exact motion."""
 
     name: str
@@ -29,8 +29,7 @@ class Method:
     corrected: bool = True  # its points, with the closed form, as every result of fcm is
 
 
-@dataclass(frozen=True)
-class Run:
+class Run(Frozen):
     """One method at one resolution."""
 
     method: str

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
+
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class ChainOptions:
+class ChainOptions(Frozen):
     """How finely a line is drawn for its distance from another.
 
     Attributes
@@ -25,8 +26,7 @@ class ChainOptions:
     distinct_length: float = 1e-13
 
 
-@dataclass(frozen=True)
-class ExactLineOptions:
+class ExactLineOptions(Frozen):
     """Curves of the exact motion.
 
     Attributes
@@ -44,8 +44,7 @@ class ExactLineOptions:
     jump: float = 0.2
 
 
-@dataclass(frozen=True)
-class StartupOptions:
+class StartupOptions(Frozen):
     """How the start of a program is timed.
 
     Attributes
@@ -60,8 +59,7 @@ class StartupOptions:
     timeout: float = 60.0
 
 
-@dataclass(frozen=True)
-class CompareOptions:
+class CompareOptions(Frozen):
     """How methods are compared.
 
     Attributes

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 import numpy.typing as npt
@@ -10,10 +10,10 @@ import numpy.typing as npt
 from fcm.contact.closed_form import Sequence
 from fcm.contact.limits import FloatArray
 from fcm.contact.pieces import Pieces, friction
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class Loop(Pieces):
+class Loop(Frozen, Pieces):
     """One steady cycle of a contact under u = sin(theta), v = b sin(theta + phi), dimensionless.
 
     Attributes

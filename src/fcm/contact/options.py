@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class ClosedFormOptions:
+class ClosedFormOptions(Frozen):
     """The coefficients in closed form; angles in radians, motion and load over the amplitude a and k_u a.
 
     min_change: of w in a slip, and length of a stick; what is less, float64 cannot tell from none.
@@ -18,8 +17,7 @@ class ClosedFormOptions:
     light_load: float = 0.01
 
 
-@dataclass(frozen=True)
-class PeriodicOptions:
+class PeriodicOptions(Frozen):
     """The events of a contact on a line under any periodic motion; angles in radians.
 
     nodes_per_harmonic: times the highest harmonic, intervals of a cycle at first; those that prove nothing
@@ -34,8 +32,7 @@ class PeriodicOptions:
     min_state_length: float = 1e-14
 
 
-@dataclass(frozen=True)
-class KernelOptions:
+class KernelOptions(Frozen):
     """Kernels that are kept.
 
     max_kernels: of a thread, on a line and in a plane each; the curves of a sweep ask for some eighty sets of

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from fcm.contact.limits import FloatArray
 from fcm.contact.loop import Loop
 from fcm.contact.periodic.loop import PeriodicLoop
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class Part:
+class Part(Frozen):
     """One state of the cycle from its beginning to its end.
 
     Of a `Loop` displacements are divided by a and forces by k_u a; of a `PeriodicLoop` they have units.
@@ -27,8 +25,7 @@ class Part:
     limit: FloatArray  # (i,) mu n
 
 
-@dataclass(frozen=True)
-class Transition:
+class Transition(Frozen):
     """Where one state of the cycle ends and the next begins."""
 
     states: str  # both letters, the one that ends first

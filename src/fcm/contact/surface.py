@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
 from fcm.contact.fourier import fourier_coefficients
 from fcm.contact.limits import BoolArray, FloatArray, slip_limit
 from fcm.contact.loop import sequences
+from fcm.frozen import Frozen
 
 COEFFICIENTS = ("F_b", "F_s", "F_c")
 N0_RANGE, B_RANGE = (-2.0, 3.0), (0.0, 2.0)  # what is shown unless asked otherwise
@@ -20,8 +20,7 @@ FINE_CELLS = (800, 324)  # whose edges are seen as a line
 Law = Callable[[FloatArray, FloatArray, float], tuple[FloatArray, FloatArray, FloatArray]]
 
 
-@dataclass(frozen=True)
-class Plane:
+class Plane(Frozen):
     """A rectangle of n0_bar [-] and b_bar [-] at a phase [rad]."""
 
     phi: float = 0.0
@@ -41,8 +40,7 @@ class Plane:
         return n0, b
 
 
-@dataclass(frozen=True)
-class Surface:
+class Surface(Frozen):
     """One coefficient over a plane."""
 
     coefficient: str
@@ -78,8 +76,7 @@ def boundaries(b_bar: FloatArray, phi: float) -> dict[str, FloatArray]:
     return {"open": -b_bar, "separation": b_bar, "slip": slip_limit(b_bar, phi)}
 
 
-@dataclass(frozen=True)
-class Edges:
+class Edges(Frozen):
     """The lines of `Boundaries` across a plane."""
 
     b_bar: FloatArray  # (j,) [-]
@@ -92,8 +89,7 @@ def edges(plane: Plane) -> Edges:
     return Edges(b, boundaries(b, plane.phi))
 
 
-@dataclass(frozen=True)
-class Regions:
+class Regions(Frozen):
     """Where in a plane each sequence of states occurs."""
 
     n0_bar: FloatArray  # (i,) [-]

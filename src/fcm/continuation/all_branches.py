@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -14,12 +13,12 @@ from fcm.continuation.follow import Progress, follow
 from fcm.continuation.options import FOLLOW, PATH, FollowOptions, PathOptions
 from fcm.continuation.path import FloatArray, Path, PathInterrupted, Status
 from fcm.continuation.problem import Problem
+from fcm.frozen import Frozen
 
 Follow = Callable[..., Path]  # as `follow`
 
 
-@dataclass(frozen=True)
-class Following:
+class Following(Frozen):
     """How each path is followed.
 
     Attributes
@@ -37,8 +36,7 @@ class Following:
     follow: Follow = follow
 
 
-@dataclass(frozen=True)
-class Branches:
+class Branches(Frozen):
     """Separate paths; each solution that was given lies on one of them, or is in lost."""
 
     paths: tuple[Path, ...]

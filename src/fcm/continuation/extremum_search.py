@@ -7,7 +7,6 @@ the slope jumps, and no polynomial tells; but both sides are nearly straight clo
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import sqrt
 from typing import NamedTuple
 
@@ -16,10 +15,10 @@ import numpy as np
 from fcm.continuation.path import FloatArray
 from fcm.continuation.problem import Point
 from fcm.continuation.step_control import Stepper
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class ExtremumOptions:
+class ExtremumOptions(Frozen):
     """To what an extreme is known, and when a polynomial leads to it.
 
     Attributes

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import Enum
 
 import numpy as np
 import numpy.typing as npt
+
+from fcm.frozen import Frozen
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -50,8 +52,7 @@ class Mark:
 SPECIAL = Mark.END | Mark.FOLD | Mark.PEAK | Mark.USER_POINT | Mark.BRANCH | Mark.CROSSING
 
 
-@dataclass(frozen=True)
-class Path:
+class Path(Frozen):
     """Points of one curve in the order in which they were followed."""
 
     z: FloatArray  # (point, unknown + 1), the parameter last

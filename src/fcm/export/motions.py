@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from fcm.continuation.corrector import Newton
 from fcm.export.options import EXPORT, ExportOptions
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.response_quantities import ContactRecord, amplitudes_at
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Modal, Scene
@@ -98,8 +99,7 @@ def _of_modes(response: Response, scene: Scene, at: Sequence[float]) -> list[Mot
     return found
 
 
-@dataclass(frozen=True)
-class _Solver:
+class _Solver(Frozen):
     """A curve, and the balance that it solves."""
 
     scene: Scene

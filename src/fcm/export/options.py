@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from fcm.frozen import Frozen
 from fcm.rotational_dofs import MOST_DOFS
 
 
-@dataclass(frozen=True)
-class ExportOptions:
+class ExportOptions(Frozen):
     """Of the motions that are exported.
 
     Attributes

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from importlib.util import find_spec
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.mesh import Mesh
 from fcm.model.ring import NEXT
 from fcm.model.scene import Scene
@@ -24,8 +24,7 @@ class ExportError(ValueError):
     """A mesh or structure of which motions cannot be exported; the message says why."""
 
 
-@dataclass(frozen=True)
-class Rows:
+class Rows(Frozen):
     """The rows of a structure, by their names, with a node and a direction where the name says them.
 
     names (row,); node (row,), -1 where there is none; direction (row,) from 0 for x to 5 for rz.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,11 +11,11 @@ from fcm.fit.forced import NoMotionError, errors_of, forced_rows, sampled
 from fcm.fit.options import ADVICE, FIT, FitOptions
 from fcm.fit.parameters import Parameters
 from fcm.fit.solve import Solved
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 
 
-@dataclass(frozen=True)
-class Advice:
+class Advice(Frozen):
     """A response over the range of the data, at a degree of freedom and a level, and what it would leave.
 
     error : relative standard error of the number.

@@ -7,7 +7,6 @@ measured one. By a number p it changes there by w with R_z w = -R_p and the ampl
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from fcm.continuation.corrector import Newton
 from fcm.fit.forced import NoMotionError
 from fcm.fit.least_squares_rows import Rows
 from fcm.fit.options import BACKBONE, FitOptions
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.static_equilibrium import RestError
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Measured, Scene
@@ -184,8 +184,7 @@ class _Followed:
         return float(ends[0] - ends[1]) / (2.0 * BACKBONE.difference)
 
 
-@dataclass(frozen=True)
-class ResidualDerivative:
+class ResidualDerivative(Frozen):
     """A mode with other values of a number: weights of a derivative, with the problems."""
 
     terms: list[tuple[float, AutonomousProblem]]

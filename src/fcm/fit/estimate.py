@@ -12,19 +12,17 @@ Source: Seber and Wild, "Nonlinear Regression" (1989), section 2.1.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from scipy.stats import t as student
 
 from fcm.fit.least_squares_rows import Rows
 from fcm.fit.options import FIT, FitOptions
 from fcm.fit.parameters import Parameters
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 
 
-@dataclass(frozen=True)
-class Estimate:
+class Estimate(Frozen):
     """The numbers with which the residuals are least.
 
     values, error: (number,), the standard error in the number's unit; interval: (number, 2); correlation:

@@ -15,7 +15,7 @@ Source: orthogonal distance regression, as in Boggs, Byrd and Schnabel, SIAM J. 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +24,7 @@ from fcm.branches.trace import traced
 from fcm.continuation.corrector import Newton
 from fcm.fit.least_squares_rows import Rows
 from fcm.fit.options import NEAREST, FitOptions, NearestOptions
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.dense_jacobian import jacobian_of
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.response_quantities import recorded
@@ -41,8 +42,7 @@ class NoMotionError(ArithmeticError):
     """No response of the model is found in the range of the data."""
 
 
-@dataclass(frozen=True)
-class Errors:
+class Errors(Frozen):
     """Of measured points, (point,): of frequencies and of amplitudes."""
 
     frequency: FloatArray
@@ -190,8 +190,7 @@ def _by_level(level: FloatArray, options: FitOptions) -> list[tuple[float, npt.N
     return [(float(one), rows) for k, one in enumerate(apart) if (rows := np.flatnonzero(nearest == k)).size]
 
 
-@dataclass(frozen=True)
-class _Curve:
+class _Curve(Frozen):
     """Segments of the branches of a response: ends of each, (segment, component), and unknowns there."""
 
     begin: FloatArray

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 
 
-@dataclass(frozen=True)
-class Rows:
+class Rows(Frozen):
     """residual (point, component) in units of the errors; rates (point, component, number), by the numbers.
 
     unreached: (point,) whether the curve of the model does not come there, so that its end is taken.

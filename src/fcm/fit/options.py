@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class FitOptions:
+class FitOptions(Frozen):
     """How numbers are fitted.
 
     amplitude_error : of a measured amplitude, relative to the greatest of its data, where nothing is said.
@@ -69,8 +68,7 @@ class FitOptions:
     lost_residual: float = 1e6
 
 
-@dataclass(frozen=True)
-class NearestOptions:
+class NearestOptions(Frozen):
     """How the nearest point of a curve is found.
 
     max_steps : at most, along the curve.
@@ -85,8 +83,7 @@ class NearestOptions:
     max_halvings: int = 8
 
 
-@dataclass(frozen=True)
-class BackboneOptions:
+class BackboneOptions(Frozen):
     """How a mode of the model is met at the amplitudes of a backbone.
 
     amplitude_factor, modal_amplitude_factor : by which it is followed past the amplitudes measured; past
@@ -105,8 +102,7 @@ class BackboneOptions:
     step_tolerance: float = 1e-10
 
 
-@dataclass(frozen=True)
-class AdviceOptions:
+class AdviceOptions(Frozen):
     """Which measurements are imagined.
 
     level_factors : of the least and the greatest level that were measured.

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from scipy.stats import qmc
 
 from fcm.fit.options import FIT, FitOptions
+from fcm.frozen import Frozen
 from fcm.model.scene import Address, FloatArray, Scene
 from fcm.scene.draft import Number, number_of
 
@@ -17,8 +18,7 @@ class FitError(ValueError):
     """There is nothing to fit; the message says why."""
 
 
-@dataclass(frozen=True)
-class Parameters:
+class Parameters(Frozen):
     """Numbers of a scene.
 
     start, low, high: (number,); log: (number,) whether the unknown is the number's logarithm; unit (number,):

@@ -21,13 +21,13 @@ from fcm.fit.least_squares_rows import Rows, joined
 from fcm.fit.options import FIT, FitOptions
 from fcm.fit.parameters import FitError, Parameters
 from fcm.fit.weights import reweighted
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray, Measured
 
 Tell = Callable[[float, str], None]
 
 
-@dataclass(frozen=True)
-class SearchResult:
+class SearchResult(Frozen):
     """Unknowns that a search has come to, and their cost; None where there is no response at its start."""
 
     x: FloatArray | None

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
 
-@dataclass(frozen=True)
-class ContactMotions:
+class ContactMotions(Frozen):
     """Of every point; x(theta) = Re sum_h X_h exp(i h theta), the mean first."""
 
     motion: npt.NDArray[np.complex128]  # (point, contact, direction, 1 + harmonic) across the contacts

@@ -7,11 +7,11 @@ not from a clock: the same scene has the same answer on every machine.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from fcm.continuation import Path, PathInterrupted
 from fcm.continuation.follow import Progress
 from fcm.continuation.step_control import Stepper
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.modal_condensation import CONDENSATION, condensed_size
 from fcm.harmonic_balance.options import HARMONIC_BALANCE, EvaluationCost
 from fcm.harmonic_balance.system import System
@@ -40,8 +40,7 @@ def _evaluation(layout: Layout, rank: int, cost: EvaluationCost) -> float:
     return cost.cycle * of_contacts + cost.entry * of_entries + cost.system * cubes
 
 
-@dataclass(frozen=True)
-class CurveCost:
+class CurveCost(Frozen):
     """What the curves of a scene take that were measured, of 50 to 200 contacts with one harmonic.
 
     evaluations: of a curve, see `each`. evaluations_per_point: of each point that it has by its longest

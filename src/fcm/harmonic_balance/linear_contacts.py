@@ -19,18 +19,16 @@ itself but close to it: what is left out is put right by iterations, see `modal_
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from fcm.continuation.dense_solver import Solver
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.modal_equations import ModalCompliance, linear_contacts
 from fcm.model.scene import FloatArray
 from fcm.structure.receptance import Receptance
 
 
-@dataclass(frozen=True)
-class LinearContactOptions:
+class LinearContactOptions(Frozen):
     """Which contacts are linear.
 
     Attributes

@@ -26,18 +26,17 @@ condensed to, see `fcm.harmonic_balance.linear_contacts`.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.linear_contacts import LinearContacts
 from fcm.harmonic_balance.modal_equations import ModalCompliance, ModalEquations
 from fcm.model.scene import FloatArray
 
 
-@dataclass(frozen=True)
-class CondensationOptions:
+class CondensationOptions(Frozen):
     """What of a balance is condensed, and how well it is solved.
 
     Attributes

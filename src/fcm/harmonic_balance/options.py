@@ -7,11 +7,12 @@ They are an argument of `System`, and what is computed of a system takes its opt
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
+
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class ExtremeOptions:
+class ExtremeOptions(Frozen):
     """How the greatest and the least value of a motion over the cycle are found.
 
     Attributes
@@ -40,8 +41,7 @@ class ExtremeOptions:
     many_dofs: int = 50
 
 
-@dataclass(frozen=True)
-class SpectrumOptions:
+class SpectrumOptions(Frozen):
     """Which harmonics of the exact forces are looked at, and at which points.
 
     Attributes
@@ -72,8 +72,7 @@ class SpectrumOptions:
     compiled_ports: int = 20
 
 
-@dataclass(frozen=True)
-class DigitOptions:
+class DigitOptions(Frozen):
     """Where digits are counted, and how many are lost.
 
     Attributes
@@ -106,8 +105,7 @@ class DigitOptions:
     max_condition: float = 1e10
 
 
-@dataclass(frozen=True)
-class StiffContactOptions:
+class StiffContactOptions(Frozen):
     """Contacts so stiff that another stiffness is advised, by k |G| of the structure there.
 
     Attributes
@@ -126,8 +124,7 @@ class StiffContactOptions:
     rigid_stiffness_in_time: float = 1e5
 
 
-@dataclass(frozen=True)
-class StaticLoadOptions:
+class StaticLoadOptions(Frozen):
     """How the equilibrium under static loads is found, as their share grows from nearly nothing to 1.
 
     Attributes
@@ -148,8 +145,7 @@ class StaticLoadOptions:
     balance_tolerance: float = 1e-6
 
 
-@dataclass(frozen=True)
-class RigidMotionOptions:
+class RigidMotionOptions(Frozen):
     """When a motion is no steady state, or not determined, because of a rigid-body mode.
 
     Attributes
@@ -164,8 +160,7 @@ class RigidMotionOptions:
     load_tolerance: float = 1e-8
 
 
-@dataclass(frozen=True)
-class EvaluationCost:
+class EvaluationCost(Frozen):
     """Seconds of an evaluation of the balance, of a core on which numpy's sine takes 10 ns a number.
 
     Attributes
@@ -183,8 +178,7 @@ class EvaluationCost:
     system: float = 1.8e-11
 
 
-@dataclass(frozen=True)
-class WorkOptions:
+class WorkOptions(Frozen):
     """What may be taken for more harmonics, in seconds of the core that `EvaluationCost` is of.
 
     Attributes
@@ -199,8 +193,7 @@ class WorkOptions:
     max_seconds_repeated: float = 3.0
 
 
-@dataclass(frozen=True)
-class WorkspaceOptions:
+class WorkspaceOptions(Frozen):
     """Which workspaces are kept for the next system, as in a sweep.
 
     Attributes
@@ -215,8 +208,7 @@ class WorkspaceOptions:
     max_count: int = 16
 
 
-@dataclass(frozen=True)
-class UnitOptions:
+class UnitOptions(Frozen):
     """In which units displacements are measured along a curve.
 
     Attributes
@@ -242,8 +234,7 @@ class UnitOptions:
     min_level_unit: float = 0.1
 
 
-@dataclass(frozen=True)
-class DampedOptions:
+class DampedOptions(Frozen):
     """Of the damped Newton method of many contacts; steps are relative to the motion.
 
     Attributes
@@ -268,8 +259,7 @@ class DampedOptions:
     final_step: float = 1e-9
 
 
-@dataclass(frozen=True)
-class ProlongationOptions:
+class ProlongationOptions(Frozen):
     """How a point is moved to the balance of more harmonics; steps are relative to the solution's size.
 
     Attributes
@@ -314,8 +304,7 @@ class ProlongationOptions:
     damped: DampedOptions = field(default_factory=DampedOptions)
 
 
-@dataclass(frozen=True)
-class HarmonicBalanceOptions:
+class HarmonicBalanceOptions(Frozen):
     """What a `System` is computed with.
 
     Attributes

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Path
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.residual import PointQuantities
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
@@ -15,8 +14,7 @@ from fcm.model.scene import FloatArray
 ComplexArray = npt.NDArray[np.complex128]
 
 
-@dataclass(frozen=True)
-class ReportedQuantities:
+class ReportedQuantities(Frozen):
     """What is reported along a path, as of a `Record`; growth (point, dof) of the amplitude along the path's
     direction; linear (point,) where no contact slips or separates."""
 

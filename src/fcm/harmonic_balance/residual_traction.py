@@ -15,12 +15,11 @@ On a line t_i is a number and its limits an interval; in a plane it is a vector,
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation.corrector import Newton
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.contact_law import Law, LineLaw, PlanarLaw
 from fcm.harmonic_balance.dense_jacobian import apply_compliance, jacobian_of
 from fcm.harmonic_balance.residual import Balance
@@ -31,8 +30,7 @@ BoolArray = npt.NDArray[np.bool_]
 _End = tuple[float, float, FloatArray]  # of a stretch of a curve: length, slope of the amplitude, point
 
 
-@dataclass(frozen=True)
-class TractionOptions:
+class TractionOptions(Frozen):
     """How the members of a family are come to.
 
     start_distance : float

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ import numpy.typing as npt
 from fcm.contact.loop import sequences
 from fcm.continuation import Path
 from fcm.continuation.corrector import distances
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.options import MIN_AMPLITUDE
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_quantities
 from fcm.harmonic_balance.residual import PointQuantities, cycles_of
@@ -26,8 +26,7 @@ IntArray = npt.NDArray[np.intp]
 ComplexArray = npt.NDArray[np.complex128]
 
 
-@dataclass(frozen=True)
-class PointRecord:
+class PointRecord(Frozen):
     """Points of paths one after the other; x(theta) = mean + Re sum_j X_j exp(i h_j theta)."""
 
     path: IntArray  # (point,) number of the path
@@ -42,8 +41,7 @@ class PointRecord:
     linear: npt.NDArray[np.bool_]  # (point,) where no contact slips or separates
 
 
-@dataclass(frozen=True)
-class ContactRecord:
+class ContactRecord(Frozen):
     """What contacts do and bear at points: their loops (point, contact, 5), see `loops`; what they do over a
     cycle (point, contact) and bear (point, contact, 4), see `cycles`."""
 

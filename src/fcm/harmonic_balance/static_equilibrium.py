@@ -10,7 +10,6 @@ The harmonic balance has this equilibrium as the limit of small forces.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +17,7 @@ import numpy as np
 from fcm.continuation import FollowOptions, Status, follow
 from fcm.continuation.corrector import Newton
 from fcm.continuation.problem import Problem
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.options import HARMONIC_BALANCE
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
@@ -43,8 +43,7 @@ class RestError(ValueError):
     """There is no equilibrium; the message says why."""
 
 
-@dataclass(frozen=True)
-class Held:
+class Held(Frozen):
     """The structure in coordinates that the contacts at their stiffest hold: its modes, but of rigid-body
     modes adrift those combinations that move no contact with friction.
 

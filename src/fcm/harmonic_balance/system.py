@@ -6,7 +6,7 @@ import threading
 from collections import OrderedDict
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeVar
 
@@ -15,6 +15,7 @@ import numpy as np
 from fcm.contact.closed_form import ClosedForm, CoefficientLaw
 from fcm.contact.kernels import periodic_contact, planar_contact
 from fcm.continuation.step_control import Stepper
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.contact_law import Law, LineLaw, PlanarLaw, SingleHarmonicLaw
 from fcm.harmonic_balance.displacement import Displacements, TravellingDisplacements
 from fcm.harmonic_balance.modal_condensation import (
@@ -43,8 +44,7 @@ if TYPE_CHECKING:
 Options = TypeVar("Options")
 
 
-@dataclass(frozen=True)
-class System:
+class System(Frozen):
     """What is balanced: a scene with its linear structure, and the harmonics, the first of which is 1.
 
     The harmonics of its forces are balanced whatever harmonics are asked for.

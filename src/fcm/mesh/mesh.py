@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
+
+from fcm.frozen import Frozen
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.intp]
@@ -21,8 +23,7 @@ class MeshError(ValueError):
         super().__init__("; ".join(faults))
 
 
-@dataclass(frozen=True)
-class Mesh:
+class Mesh(Frozen):
     """Nodes by the numbers that their program gives them.
 
     nodes (node,); xyz (node, 3), in the unit of the file; cells: the name of a kind of element, as meshio

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.mesh.mesh import FloatArray, IntArray, Mesh, MeshError
 
 MOST_NAMED = 5  # nodes in a sentence
 
 
-@dataclass(frozen=True)
-class PairingOptions:
+class PairingOptions(Frozen):
     """What counts as nothing when nodes are paired and planes are fitted.
 
     Attributes
@@ -34,8 +33,7 @@ class PairingOptions:
 PAIRING = PairingOptions()
 
 
-@dataclass(frozen=True)
-class Paired:
+class Paired(Frozen):
     """Nodes of one set with the nearest of another: pairs (pair, 2) of numbers, and how far they are apart.
 
     alone, other_alone: nodes of either set that have no partner.
@@ -116,8 +114,7 @@ def nearest_partners(
     ]
 
 
-@dataclass(frozen=True)
-class Plane:
+class Plane(Frozen):
     """A plane through points: a unit normal and two directions in it at right angles, all (3,).
 
     off: how far a point is from it at most [length]; size: the extent of the points along it.

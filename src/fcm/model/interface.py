@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.mesh.pairing import Plane
 
 FloatArray = npt.NDArray[np.float64]
@@ -16,8 +17,7 @@ def _none() -> FloatArray:
     return np.zeros((0, 3))
 
 
-@dataclass(frozen=True)
-class Interface:
+class Interface(Frozen):
     """The pairs of a contact: coordinates of both nodes (pair, 3), and of those without a partner.
 
     sets: names of the two sides; one where they touch the ground, none of a file of pairs. nodes: of each

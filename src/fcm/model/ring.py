@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import gcd
 
 import numpy as np
 import numpy.typing as npt
+
+from fcm.frozen import Frozen
 
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -15,8 +17,7 @@ ComplexArray = npt.NDArray[np.complex128]
 NEXT = "next."  # how the names of the next sector's degrees of freedom begin
 
 
-@dataclass(frozen=True)
-class Ring:
+class Ring(Frozen):
     """Sectors that do the same one after the other: x of sector k at t is x of sector 0 at t + k phi / omega.
 
     With phi = 2 pi engine_order / sectors: the forces on sector k have the phase k phi, and harmonic h of the

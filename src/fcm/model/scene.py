@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Protocol
@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.contact_law import ContactLaw
+from fcm.frozen import Frozen
 from fcm.model.ring import Ring, with_own
 
 if TYPE_CHECKING:
@@ -25,8 +26,7 @@ Address = tuple[str | int, ...]  # of a number of a scene, or of a vector whose 
 NO_RANGE = (np.nan, np.nan)  # of a scene with nothing to trace
 
 
-@dataclass(frozen=True)
-class Modal:
+class Modal(Frozen):
     """Modes of the structure without contacts: m_i (q_i'' + 2 zeta_i w_i q_i' + w_i^2 q_i) = Phi_i^T F."""
 
     dofs: tuple[str, ...]
@@ -43,8 +43,7 @@ class Modal:
         return replace(self, dofs=dofs, shapes=self.shapes[:, used])
 
 
-@dataclass(frozen=True)
-class Contact:
+class Contact(Frozen):
     """A contact; its relative displacements are ``u = tangential @ x`` and ``v = normal @ x``.
 
     In a plane it slides along ``second @ x``, too.
@@ -73,8 +72,7 @@ class Contact:
         return replace(self, tangential=self.tangential[used], second=second, normal=self.normal[used])
 
 
-@dataclass(frozen=True)
-class Force:
+class Force(Frozen):
     """External force amplitude * omega^power * sin(harmonic omega t + phase) on ``direction @ x``."""
 
     direction: FloatArray  # (dof,)
@@ -84,24 +82,21 @@ class Force:
     harmonic: int = 1
 
 
-@dataclass(frozen=True)
-class Load:
+class Load(Frozen):
     """External static force on ``direction @ x``."""
 
     direction: FloatArray  # (dof,)
     force: float
 
 
-@dataclass(frozen=True)
-class Phase:
+class Phase(Frozen):
     """One phase of a time simulation."""
 
     frequency: float  # [rad/s]
     cycles: float
 
 
-@dataclass(frozen=True)
-class Start:
+class Start(Frozen):
     """The state that a time simulation starts from."""
 
     displacement: FloatArray  # (mode,) modal
@@ -110,8 +105,7 @@ class Start:
     angle: float  # omega t of the external forces [rad]
 
 
-@dataclass(frozen=True)
-class Held:
+class Held(Frozen):
     """A contact that is not computed, as it always sticks, or always is open."""
 
     place: int  # among all contacts of the scene
@@ -120,16 +114,14 @@ class Held:
     rest: float = 0.0  # its slip motion w, if it sticks
 
 
-@dataclass(frozen=True)
-class Aim:
+class Aim(Frozen):
     """What is to be least: the peak of a degree of freedom, or its greatest amplitude at the ends as well."""
 
     dof: str
     ends: bool = False
 
 
-@dataclass(frozen=True)
-class Optimum:
+class Optimum(Frozen):
     """Numbers that are to be chosen so that the greatest of the aims is least."""
 
     vary: tuple[str, ...]
@@ -137,8 +129,7 @@ class Optimum:
     minimise: tuple[Aim, ...]
 
 
-@dataclass(frozen=True)
-class Measured:
+class Measured(Frozen):
     """Measured points that numbers are fitted to: of a response, or of a backbone if it has damping.
 
     Errors are relative, None where nothing is said of them; see `fcm.fit.options`.
@@ -175,8 +166,7 @@ class Measured:
         return self.points * (self.components if self.damping is not None else self.components - 1)
 
 
-@dataclass(frozen=True)
-class Fit:
+class Fit(Frozen):
     """Numbers that are fitted to measured data."""
 
     vary: tuple[str, ...]
@@ -214,8 +204,7 @@ class Source(Protocol):
         """The same at some of the degrees of freedom."""
 
 
-@dataclass(frozen=True)
-class Scene:
+class Scene(Frozen):
     """Everything that a calculation needs, in angular frequencies [rad/s]; immutable."""
 
     title: str

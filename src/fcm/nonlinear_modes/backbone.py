@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy.typing as npt
 from fcm.continuation import FollowOptions, Path
 from fcm.continuation.corrector import Newton
 from fcm.continuation.follow import Progress
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.response_quantities import contact_loads_along
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
@@ -24,8 +25,7 @@ class ModeError(ValueError):
     """There is no such mode; the message says which there are."""
 
 
-@dataclass(frozen=True)
-class Mode:
+class Mode(Frozen):
     """Points of a nonlinear mode: modal amplitude, frequency, damping ratio, and the modes' motion over a."""
 
     system: System

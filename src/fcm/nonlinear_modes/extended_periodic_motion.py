@@ -19,7 +19,7 @@ motion may come to have no receptance there; their Q are unknowns beside the dis
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import exp
 from typing import Any
 
@@ -28,6 +28,7 @@ import numpy.typing as npt
 
 from fcm.continuation import Problem
 from fcm.continuation.options import NewtonOptions
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.contact_law import kind_of
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
@@ -39,8 +40,7 @@ ComplexArray = npt.NDArray[np.complex128]
 AMPLITUDE_UNIT = float(np.log(10.0))  # unit of the parameter
 
 
-@dataclass(frozen=True)
-class Guess:
+class Guess(Frozen):
     """Where a mode is sought: modal amplitudes (mode,), frequency, damping, modes that it may come near."""
 
     Q: FloatArray
@@ -49,8 +49,7 @@ class Guess:
     kept: npt.NDArray[np.intp]
 
 
-@dataclass(frozen=True)
-class Motion:
+class Motion(Frozen):
     """Of a point: a, omega, D, modal amplitudes over a: from rest (mode,), harmonics (harmonic, mode)."""
 
     amplitude: float

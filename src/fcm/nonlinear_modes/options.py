@@ -6,11 +6,12 @@ takes those with which it was followed.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
+
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class LinearModeOptions:
+class LinearModeOptions(Frozen):
     """Where a mode begins.
 
     Attributes
@@ -28,8 +29,7 @@ class LinearModeOptions:
     frequency_ratio: float = 1.25
 
 
-@dataclass(frozen=True)
-class ModeUnitOptions:
+class ModeUnitOptions(Frozen):
     """Units of the unknowns, in which lengths along a mode are measured.
 
     Attributes
@@ -52,8 +52,7 @@ class ModeUnitOptions:
     max_log_amplitude: float = 300.0
 
 
-@dataclass(frozen=True)
-class ManyContactsOptions:
+class ManyContactsOptions(Frozen):
     """How a mode of many contacts is followed: by steps of nearly ln a, past the corners of single contacts.
 
     Each contact that begins to slip turns its mean displacement like a root. Most of them turn frequency and
@@ -71,8 +70,7 @@ class ManyContactsOptions:
     unit_factor: float = 100.0
 
 
-@dataclass(frozen=True)
-class RestartOptions:
+class RestartOptions(Frozen):
     """How a mode is taken up again beyond a corner where its steps lead nowhere.
 
     Attributes
@@ -97,8 +95,7 @@ class RestartOptions:
     max_distance_ratio: float = 30.0
 
 
-@dataclass(frozen=True)
-class RoundingOptions:
+class RoundingOptions(Frozen):
     """What of the damping is rounding.
 
     Attributes
@@ -110,8 +107,7 @@ class RoundingOptions:
     last_digits: float = 100.0
 
 
-@dataclass(frozen=True)
-class TruncationOptions:
+class TruncationOptions(Frozen):
     """At which points of a mode the error by the harmonics left out is told.
 
     Attributes
@@ -133,8 +129,7 @@ class TruncationOptions:
     damping_floor: float = 1e-6
 
 
-@dataclass(frozen=True)
-class NonlinearModeOptions:
+class NonlinearModeOptions(Frozen):
     """How a nonlinear mode is found, followed and judged.
 
     Attributes

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from fcm.frozen import Frozen
 from fcm.plot.errors import PlotError
 from fcm.plot.options import READ
 from fcm.plot.read import opened, read
@@ -48,8 +48,7 @@ class Mark(NamedTuple):
     complete: bool
 
 
-@dataclass(frozen=True)
-class Panel:
+class Panel(Frozen):
     """Runs against one reference: of each method its marks, from long steps to short ones."""
 
     reference: str
@@ -58,8 +57,7 @@ class Panel:
     lines: Mapping[tuple[str, bool], list[Mark]]  # by the method and whether its points are corrected
 
 
-@dataclass(frozen=True)
-class Accuracy:
+class Accuracy(Frozen):
     """What a picture shows."""
 
     title: str

@@ -7,12 +7,12 @@ lines of all engine orders run up and down between the diameters 0 and half of t
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.plot.labels import frequency_label
 from fcm.plot.style import LAYOUT, house_style, new_figure, sequence_colours
 
@@ -25,8 +25,7 @@ FloatArray = npt.NDArray[np.float64]
 _NUMBER = (0.12, 0.01, 0.045)  # of diameters beside one, and of the axis below and above its foot: its room
 
 
-@dataclass(frozen=True)
-class Ring:
+class Ring(Frozen):
     """What is drawn, in the scene's unit of frequency."""
 
     title: str
@@ -39,8 +38,7 @@ class Ring:
     stuck: tuple[FloatArray, ...]
 
 
-@dataclass(frozen=True)
-class Bar:
+class Bar(Frozen):
     """A harmonic of an engine order, over the range of the excitation."""
 
     order: int

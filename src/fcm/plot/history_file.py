@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
@@ -19,8 +20,7 @@ _PHASES = ("schedule_frequency", "schedule_cycles", "schedule_start")
 _NEEDED = ("displacement", "time", "cycles", "dof", *_CYCLES, *_PHASES)
 
 
-@dataclass(frozen=True)
-class DrawnMotion:
+class DrawnMotion(Frozen):
     """The motion of one curve in one degree of freedom, as far as it was simulated."""
 
     parameters: dict[str, float]
@@ -32,8 +32,7 @@ class DrawnMotion:
     displacement: FloatArray  # (instant,)
 
 
-@dataclass(frozen=True)
-class DrawnHistory:
+class DrawnHistory(Frozen):
     """The motion of each curve through a schedule; positions are in cycles, or times in s."""
 
     axis: str

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.mesh.pairing import PAIRING
 from fcm.plot.dof import asked_for, greatest_column
 from fcm.plot.errors import PlotError
@@ -43,8 +44,7 @@ _ROW = "contact"  # the axis of contacts without places
 NONE = ("#808080", "x")  # colour and mark of a contact whose value is none
 
 
-@dataclass(frozen=True)
-class InterfaceFile:
+class InterfaceFile(Frozen):
     """What a response file has on its contacts."""
 
     path: Path
@@ -66,8 +66,7 @@ class InterfaceFile:
     steady: FloatArray | None = None  # (curve, point) 0 where a nonlinear mode has no steady state
 
 
-@dataclass(frozen=True)
-class InterfacePoint:
+class InterfacePoint(Frozen):
     """All contacts at one point of a curve; state (contact,) numbers `sticks`, `slips`, `slips and opens`,
     `open`."""
 

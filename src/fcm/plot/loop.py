@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from fcm.contact.loop import Loop
 from fcm.contact.periodic.loop import PeriodicLoop
 from fcm.contact.sampled import Part, parts, shown_degrees, transitions
+from fcm.frozen import Frozen
 from fcm.plot.labels import power_to_label
 from fcm.plot.loop_marks import name_marks
 from fcm.plot.read import FloatArray
@@ -32,8 +32,7 @@ _LOOP_HEIGHT, _TIME_HEIGHT = 1.75, 1.05  # [inch] of the two panels of a loop
 _LABELS, _LEGEND, _TITLE = 0.35, 0.75, 0.2  # [inch] of what is around them
 
 
-@dataclass(frozen=True)
-class DrawnLoop:
+class DrawnLoop(Frozen):
     """A loop with its title; displacement and force of its axes are multiples of these."""
 
     loop: Loop | PeriodicLoop
@@ -46,8 +45,7 @@ class DrawnLoop:
         return self.amplitude * part.displacement, self.force * part.force
 
 
-@dataclass(frozen=True)
-class LoopAxes:
+class LoopAxes(Frozen):
     """What the axes are called, and where their angle begins."""
 
     displacement: str = "Displacement $u/a$ (–)"

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.plot.dof import greatest_column
 from fcm.plot.errors import PlotError
 from fcm.plot.options import READ
@@ -36,8 +36,7 @@ _MOTION = (
 _PARTS = ("n0_bar", "b_bar", "phi", "tangential_amplitude", "spring_force")
 
 
-@dataclass(frozen=True)
-class PlanePoint:
+class PlanePoint(Frozen):
     """What `fcm.planar_loop` takes of a contact that slides in a plane, and how its directions are named."""
 
     motion: npt.NDArray[np.complex128]  # (direction, harmonic), the mean first
@@ -45,8 +44,7 @@ class PlanePoint:
     directions: tuple[str, str]
 
 
-@dataclass(frozen=True)
-class LinePoint:
+class LinePoint(Frozen):
     """What `fcm.periodic_loop` takes of a contact on a line; u counts from its mean.
 
     Angles count from where its fundamental is a sine.
@@ -56,8 +54,7 @@ class LinePoint:
     law: tuple[float, float, float, float]  # mu, k_u, k_v, n_0
 
 
-@dataclass(frozen=True)
-class MotionFile:
+class MotionFile(Frozen):
     """What a response file has on the motions across contacts, in a plane or in several harmonics."""
 
     mean: FloatArray  # (curve, point, contact, direction)
@@ -88,8 +85,7 @@ class MotionFile:
         return LinePoint(motion[[0, -1]] * turned, (mu, k_u, k_v, n_0))
 
 
-@dataclass(frozen=True)
-class LoopPoint:
+class LoopPoint(Frozen):
     """One contact at one point of a curve."""
 
     curve: int
@@ -114,8 +110,7 @@ class LoopPoint:
     modal_amplitude: float | None = None  # of a nonlinear mode
 
 
-@dataclass(frozen=True)
-class LoopFile:
+class LoopFile(Frozen):
     """What a response file has on the loops of its contacts."""
 
     path: Path

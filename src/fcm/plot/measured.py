@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.plot.errors import PlotError
 from fcm.plot.options import READ
 from fcm.plot.style import LAYOUT
@@ -29,8 +29,7 @@ SIZE, NEUTRAL = 4.0, "#404040"
 WORD = "measured"
 
 
-@dataclass(frozen=True)
-class DrawnMeasured:
+class DrawnMeasured(Frozen):
     """Points of one measurement: frequencies in the unit of the curves, displacements."""
 
     dof: str  # empty: of whichever is drawn
@@ -39,8 +38,7 @@ class DrawnMeasured:
     level: FloatArray | None = None  # of the forces; None where it is not known
 
 
-@dataclass(frozen=True)
-class MeasuredBackbone:
+class MeasuredBackbone(Frozen):
     """Points (point,) of a backbone: modal amplitude, frequency in the unit of the modes, damping ratio."""
 
     amplitude: FloatArray
@@ -48,8 +46,7 @@ class MeasuredBackbone:
     damping: FloatArray
 
 
-@dataclass(frozen=True)
-class FittedNumber:
+class FittedNumber(Frozen):
     """A number of the scene that a fit found, and its standard error; NaN where that is not told.
 
     >>> print(FittedNumber("contact.lap.mu", 0.30123, 0.0042))

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.plot.curve_names import name_at_side, write_beside
 from fcm.plot.error_panel import RANGE
 from fcm.plot.errors import PlotError
@@ -41,8 +42,7 @@ _PERCENT = 100.0
 _NOTHING: FloatArray = np.zeros(0)
 
 
-@dataclass(frozen=True)
-class DrawnMode:
+class DrawnMode(Frozen):
     """One curve without its padding."""
 
     parameters: dict[str, float]
@@ -89,8 +89,7 @@ def _places(count: int) -> FloatArray:
     return np.arange((count - 1) * LAYOUT.line_places + 1) / LAYOUT.line_places
 
 
-@dataclass(frozen=True)
-class DrawnModes:
+class DrawnModes(Frozen):
     title: str
     frequency_unit: str
     modes: tuple[DrawnMode, ...]

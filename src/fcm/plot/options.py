@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class ReadOptions:
+class ReadOptions(Frozen):
     """Limits of files that are read, and of messages about them."""
 
     dofs_named: int = 12  # degrees of freedom in a message

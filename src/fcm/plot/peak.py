@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.plot.dof import asked_for, leading_column
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, staying, symbols, with_unit
@@ -32,8 +33,7 @@ _MARK = "#c03020"
 _WHOLE = ("cyclic.engine_order",)  # whole numbers, between which there is nothing
 
 
-@dataclass(frozen=True)
-class Peaks:
+class Peaks(Frozen):
     """The greatest amplitudes of the curves of a sweep; a curve that is not complete may have a greater."""
 
     dofs: tuple[str, ...]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy.typing as npt
 
 from fcm.at_rest import RestOptions, at_rest
 from fcm.contact.plane.loop import PlanarLoop
+from fcm.frozen import Frozen
 from fcm.plot.labels import power_to_label
 from fcm.plot.loop import STATES
 from fcm.plot.loop_marks import name_marks
@@ -25,8 +25,7 @@ DISC = "0.75"
 LIMIT = "0.45"
 
 
-@dataclass(frozen=True)
-class DrawnPlanarLoop:
+class DrawnPlanarLoop(Frozen):
     """A loop with its title, the names of its directions, and units of length and force where known.
 
     dimensionless: its displacements are parts of an amplitude a, and its forces of k_u a.
@@ -40,8 +39,7 @@ class DrawnPlanarLoop:
     dimensionless: bool = False
 
 
-@dataclass(frozen=True)
-class Path:
+class Path(Frozen):
     """A cycle sampled: theta, disc's radius, states (sample,); displacement u, slider w, force f (sample, 2).
 
     Without tangential stiffness nothing drags the slider: it is where u is, and there is no disc.

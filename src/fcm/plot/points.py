@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label
@@ -28,8 +28,7 @@ NEUTRAL = "#404040"  # of what stands for the markers of several curves
 SIZE, SMALL = 4.0, 3.0  # [point] of a marker; of several curves' markers
 
 
-@dataclass(frozen=True)
-class DrawnPoints:
+class DrawnPoints(Frozen):
     """A response of exact motions, and for each of its curves the sweep of every point."""
 
     response: DrawnResponse

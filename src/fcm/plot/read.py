@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.files import NETCDF, no_file
+from fcm.frozen import Frozen
 from fcm.plot.dof import asked_for, leading_column
 from fcm.plot.errors import PlotError
 from fcm.plot.layout import check_layout, is_text
@@ -38,8 +39,7 @@ NO_NETCDF = "Unknown file format"  # what the library says of other files
 UNREAD = (OSError, RuntimeError, ValueError)  # what the library raises at reading, and what is refused here
 
 
-@dataclass(frozen=True)
-class DrawnCurve:
+class DrawnCurve(Frozen):
     """One curve without its padding; ``stable`` is None where the file does not know.
 
     Separate branches follow one another, with a point of NaN between them.
@@ -55,8 +55,7 @@ class DrawnCurve:
     truncation_error: FloatArray | None = None  # (point,) relative
 
 
-@dataclass(frozen=True)
-class DrawnResponse:
+class DrawnResponse(Frozen):
     dofs: tuple[str, ...]
     frequency_unit: str
     curves: tuple[DrawnCurve, ...]

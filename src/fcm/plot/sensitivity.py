@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import staying, with_mode
@@ -29,8 +29,7 @@ _RISE, _FALL = "#2b6a99", "#c03020"
 _REMARKS = {"corner": "peak at a corner", "end of range": "peak at an end of the range"}
 
 
-@dataclass(frozen=True)
-class DrawnSensitivity:
+class DrawnSensitivity(Frozen):
     """Relative derivatives; NaN where they are not known."""
 
     dofs: tuple[str, ...]

@@ -6,13 +6,14 @@ import logging
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
+
+from fcm.frozen import Frozen
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,8 +24,7 @@ if TYPE_CHECKING:
 DOTS = (0.0, (1.0, 1.0))  # of the lines of what is not known, or does not stay
 
 
-@dataclass(frozen=True)
-class Layout:
+class Layout(Frozen):
     """Sizes of pictures, and how much is drawn in one."""
 
     width: float = 5.5  # [inch] 140 mm, one and a half columns

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label, staying, symbols, with_unit
@@ -36,8 +36,7 @@ _OPTIMUM = ("optimum_number", "optimum_peak", "optimum_frequency", "optimum_stab
 _MARK, _SHADE = "#c03020", "#c0d4ea"
 
 
-@dataclass(frozen=True)
-class DrawnTrack:
+class DrawnTrack(Frozen):
     """One curve without its padding."""
 
     what: str
@@ -49,8 +48,7 @@ class DrawnTrack:
     stable: FloatArray  # (point,) 1 where the motion is, 0 where not, NaN where that is not told
 
 
-@dataclass(frozen=True)
-class DrawnTracking:
+class DrawnTracking(Frozen):
     """All curves of a file, and the optimum if there is one."""
 
     key: str

@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 import textwrap
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.plot.style import LAYOUT
 
 if TYPE_CHECKING:
@@ -21,8 +21,7 @@ COLOUR = "#c03020"
 _NO_SPAN = (np.nan, np.nan)
 
 
-@dataclass(frozen=True)
-class Unfinished:
+class Unfinished(Frozen):
     """Of the curves of a file, in their order."""
 
     reasons: tuple[str, ...] = ()  # (curve,) empty where a curve is whole

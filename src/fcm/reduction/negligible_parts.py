@@ -7,11 +7,12 @@ is measured afterwards with all modes, and if it is more than the tolerance they
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from fcm.contact.limits import BoolArray, FloatArray
+from fcm.frozen import Frozen
 from fcm.model.scene import Contact, Modal, Scene
 from fcm.reduction.options import REDUCTION, ReductionOptions
 from fcm.reduction.sentences import has_friction, named
@@ -19,8 +20,7 @@ from fcm.reduction.static_modes import with_static_modes
 from fcm.scene.errors import counted
 
 
-@dataclass(frozen=True)
-class ReducedScenes:
+class ReducedScenes(Frozen):
     """The scenes of a sweep without what they do not need."""
 
     full: tuple[Scene, ...]

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class ReductionOptions:
+class ReductionOptions(Frozen):
     """Which modes are replaced by static ones, and how that is checked."""
 
     load_margin: float = 0.3  # of its limit, or of its gap, that a contact is foreseen to keep

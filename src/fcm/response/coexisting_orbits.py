@@ -9,10 +9,11 @@ in which contacts stick as the scene starts, and the one from rest.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.options import COEXISTING
 from fcm.response.resumable_branches import CurveTimeLimit
@@ -32,8 +33,7 @@ from fcm.time_domain.state import State
 from fcm.time_domain.system import System
 
 
-@dataclass(frozen=True)
-class CoexistingOrbits:
+class CoexistingOrbits(Frozen):
     """What was found at one frequency."""
 
     frequency: float  # [rad/s]

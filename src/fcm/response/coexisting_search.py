@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.response.resumable_branches import TimeOver
 from fcm.results.orbits import Stuck
@@ -14,8 +13,7 @@ from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic_orbit import Poll, never_interrupt
 
 
-@dataclass(frozen=True)
-class CoexistingMotions:
+class CoexistingMotions(Frozen):
     """What is found at one frequency: of its points the extent over residual friction; and what is beside."""
 
     frequency: float

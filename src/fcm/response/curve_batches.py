@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from fcm.branches.shared_levels import clear
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.contact_motions import ContactMotions
 from fcm.model.scene import Scene
 from fcm.response.request import Request
@@ -59,8 +60,7 @@ _BY_POINT = (
 )
 
 
-@dataclass(frozen=True)
-class Work:
+class Work(Frozen):
     """What all groups are traced with."""
 
     request: Request

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.model.scene import Scene
 from fcm.reduction.constant_state_contacts import on_contacts
 from fcm.reduction.mode_effect import effect, expected_effect
@@ -93,8 +94,7 @@ def trace_exact(
     return response
 
 
-@dataclass(frozen=True)
-class _SweepRun:
+class _SweepRun(Frozen):
     """One after the other the sweeps of a run, the second with all modes where they turn out to be needed."""
 
     work: ExactWork

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import partial
 
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.stiff_contacts import too_stiff
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Held, Scene
@@ -37,8 +38,7 @@ Expected = Callable[[Scene, Callable[[], None]], tuple[Held, ...]]
 AT_END = f"{INTERRUPTED} at its end, while other motions beside its points were sought"
 
 
-@dataclass(frozen=True)
-class ExactWork:
+class ExactWork(Frozen):
     """How each curve is made: traced, or visited at frequencies."""
 
     at: tuple[float, ...] | None  # [rad/s]
@@ -84,8 +84,7 @@ class ExactWork:
         return followed.with_held_contacts(scene, self.expected(scene, clock.poll))
 
 
-@dataclass(frozen=True)
-class _CurveFollower:
+class _CurveFollower(Frozen):
     """Curves that are followed in the range of a scene."""
 
     report: Report

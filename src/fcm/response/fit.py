@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from fcm.fit.forced import errors_of
 from fcm.fit.options import FIT
 from fcm.fit.parameters import FitError, Parameters, parameters_of
 from fcm.fit.solve import Searches, SearchResult, Solved, solved
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Measured, Scene
 from fcm.nonlinear_modes.backbone import ModeError
@@ -119,8 +120,7 @@ def _fit(scene: Scene, method: str | Table, request: Request, execution: Executi
     return response
 
 
-@dataclass(frozen=True)
-class _Round:
+class _Round(Frozen):
     """The numbers found with some harmonics."""
 
     parameters: Parameters

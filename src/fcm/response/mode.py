@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -13,6 +13,7 @@ import numpy.typing as npt
 from fcm.accuracy.contact_load_errors import relative
 from fcm.accuracy.options import PAIR
 from fcm.continuation import Mark, Status
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.contact_motions import contact_motions
 from fcm.harmonic_balance.cost_model import with_twice_as_many
 from fcm.harmonic_balance.response_quantities import cycles, loops
@@ -117,8 +118,7 @@ def check_free(scene: Scene) -> None:
     refuse_other_harmonics(scene, "what a nonlinear mode predicts")
 
 
-@dataclass(frozen=True)
-class ModeRequest:
+class ModeRequest(Frozen):
     """A nonlinear mode by its number, over a span of modal amplitudes; the levels of the forces at which its
     resonances are wanted, and the modal amplitudes at which its motions are."""
 

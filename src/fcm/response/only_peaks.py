@@ -7,11 +7,12 @@ and the rest of it left out.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
 from fcm.continuation import Mark
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray, Scene
 from fcm.reduction.restore import unknowns
 from fcm.response.coexisting_search import Search
@@ -34,8 +35,7 @@ from fcm.shooting.work_budget import UncertainFrequencies
 from fcm.time_domain.errors import SimulationError
 
 
-@dataclass(frozen=True)
-class PeaksOnly:
+class PeaksOnly(Frozen):
     """The peaks, folds and jumps of a scene, by frequency, and what it took to find them."""
 
     points: list[OrbitRecord]

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from fcm.accuracy.options import REFINEMENT, RefinementOptions
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.options import HARMONIC_BALANCE, HarmonicBalanceOptions
 from fcm.reduction.options import REDUCTION, ReductionOptions
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.tracking.options import SEARCH, SearchOptions
 
 
-@dataclass(frozen=True)
-class InputLimits:
+class InputLimits(Frozen):
     """What is asked for and is more likely a mistake than meant.
 
     Attributes
@@ -42,8 +42,7 @@ class InputLimits:
 INPUT_LIMITS = InputLimits()
 
 
-@dataclass(frozen=True)
-class SentenceOptions:
+class SentenceOptions(Frozen):
     """How many things one sentence names.
 
     Attributes
@@ -69,8 +68,7 @@ class SentenceOptions:
 SENTENCES = SentenceOptions()
 
 
-@dataclass(frozen=True)
-class SweepOptions:
+class SweepOptions(Frozen):
     """How the curves of a sweep are traced.
 
     Attributes
@@ -100,8 +98,7 @@ class SweepOptions:
 SWEEP = SweepOptions()
 
 
-@dataclass(frozen=True)
-class InterruptedOptions:
+class InterruptedOptions(Frozen):
     """What is calculated of a curve once it is interrupted, which is to take a second or so.
 
     Attributes
@@ -130,8 +127,7 @@ class InterruptedOptions:
 INTERRUPTED_CURVES = InterruptedOptions()
 
 
-@dataclass(frozen=True)
-class SteppedOptions:
+class SteppedOptions(Frozen):
     """How a sweep by steps of the frequency follows one motion.
 
     Attributes
@@ -168,8 +164,7 @@ class SteppedOptions:
 STEPPED = SteppedOptions()
 
 
-@dataclass(frozen=True)
-class ExactOptions:
+class ExactOptions(Frozen):
     """How exact curves are calculated.
 
     Attributes
@@ -202,8 +197,7 @@ class ExactOptions:
 EXACT_CURVES = ExactOptions()
 
 
-@dataclass(frozen=True)
-class ResumableOptions:
+class ResumableOptions(Frozen):
     """How often a curve is saved while it is followed.
 
     Attributes
@@ -224,8 +218,7 @@ class ResumableOptions:
 RESUMABLE = ResumableOptions()
 
 
-@dataclass(frozen=True)
-class CoexistingOptions:
+class CoexistingOptions(Frozen):
     """Which motions at one frequency are the same.
 
     Attributes
@@ -246,8 +239,7 @@ class CoexistingOptions:
 COEXISTING = CoexistingOptions()
 
 
-@dataclass(frozen=True)
-class ContactChangeOptions:
+class ContactChangeOptions(Frozen):
     """Which changes at a contact are rounding.
 
     Attributes
@@ -265,8 +257,7 @@ class ContactChangeOptions:
 CONTACT_CHANGES = ContactChangeOptions()
 
 
-@dataclass(frozen=True)
-class FittedResponseOptions:
+class FittedResponseOptions(Frozen):
     """How the response of a fit is traced.
 
     Attributes
@@ -290,8 +281,7 @@ class FittedResponseOptions:
 FITTED_RESPONSE = FittedResponseOptions()
 
 
-@dataclass(frozen=True)
-class OptimumOptions:
+class OptimumOptions(Frozen):
     """How the least peak is found, and the curves of peaks on which it is.
 
     Attributes
@@ -321,8 +311,7 @@ class OptimumOptions:
 OPTIMUM = OptimumOptions()
 
 
-@dataclass(frozen=True)
-class ResponseOptions:
+class ResponseOptions(Frozen):
     """Tolerances and limits of a response, for `fcm.respond` and for what traces, follows and optimises.
 
     Attributes

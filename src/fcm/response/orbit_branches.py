@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 from fcm.continuation import Path
+from fcm.frozen import Frozen
 from fcm.shooting.jump_landings import with_landings
 from fcm.shooting.orbit_record import OrbitRecord, samples
 from fcm.shooting.period_doubling import DoubledPeriodProblem, to_flips
 from fcm.shooting.problem import OrbitProblem
 
 
-@dataclass(frozen=True)
-class OrbitBranches:
+class OrbitBranches(Frozen):
     """The paths of a problem; of doubled periods those of half of them, at whose flips they end."""
 
     problem: OrbitProblem

@@ -7,7 +7,7 @@ not followed by. Each tells which harmonics it lacks; with these all is traced a
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +18,7 @@ from fcm.accuracy.refinement import OnTraced, RefinedResponse, enlarged, retrace
 from fcm.accuracy.stability_limits import StabilityLimit, distances_from, stability_limits
 from fcm.accuracy.stability_validity import on_other_branch, without_neighbour
 from fcm.branches.search import symmetry_loss, with_further_branches
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.response_quantities import ContactRecord
 from fcm.model.scene import FloatArray, Scene
@@ -30,8 +31,7 @@ Rows = npt.NDArray[np.intp]
 Harmonics = tuple[int, ...]
 
 
-@dataclass(frozen=True)
-class Refined:
+class Refined(Frozen):
     """A response, its events, and whether each of its points is stable.
 
     Attributes

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from numbers import Integral, Real
 from typing import Any
 
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Scene
 from fcm.response.options import INPUT_LIMITS, RESPONSE, ResponseOptions
@@ -20,8 +20,7 @@ class ResponseError(ValueError):
     """The calculation cannot be begun; the message says why."""
 
 
-@dataclass(frozen=True)
-class Request:
+class Request(Frozen):
     """How a curve is traced: with given harmonics, or with as many as an accuracy takes.
 
     With one harmonic and a table it is told how far the table's own solutions are from the points, which are

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy as np
 from fcm.continuation import Checkpoint, Events, FollowOptions, Path, Status, follow
 from fcm.continuation.options import PATH
 from fcm.continuation.problem import Points, Stored
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.response.options import RESUMABLE
 from fcm.run import Report
@@ -21,8 +22,7 @@ from fcm.shooting.periodic_orbit import never_interrupt
 from fcm.shooting.problem import OrbitProblem
 
 
-@dataclass(frozen=True)
-class SavedPath:
+class SavedPath(Frozen):
     """A curve from one start in one direction: whole, or as far as it has come."""
 
     number: int  # in the order in which they are followed

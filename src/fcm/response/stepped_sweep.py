@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from itertools import takewhile
 from typing import Any
 
 import numpy as np
 
 from fcm.continuation.corrector import Newton
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.options import SENTENCES, STEPPED
 from fcm.results.jumps import Jump
@@ -33,8 +33,7 @@ from fcm.time_domain.state import State
 from fcm.time_domain.system import System
 
 
-@dataclass(frozen=True)
-class StepRecord:
+class StepRecord(Frozen):
     """What there was at one frequency, and what the next one goes on from."""
 
     number: int  # in the order of the sweeps, from 0

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import partial
 from typing import TypeVar
 
@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.options import VALIDITY, ValidityOptions
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.response_quantities import cycles, loops
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
@@ -44,8 +45,7 @@ STOPPED = f"{INTERRUPTED}, so that curves and errors may be missing"
 T = TypeVar("T")
 
 
-@dataclass(frozen=True)
-class TrackedScene:
+class TrackedScene(Frozen):
     """What there is of one scene."""
 
     curves: list[TrackedCurve]
@@ -66,8 +66,7 @@ STATES = (
 )  # and what is saved of steps
 
 
-@dataclass(frozen=True)
-class TrackedWork:
+class TrackedWork(Frozen):
     """What is followed in each scene."""
 
     number: Number

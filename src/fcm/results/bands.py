@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.results.options import RESULTS
 
@@ -29,8 +29,7 @@ class ReadCurve(Protocol):
     def stable(self) -> npt.NDArray[np.bool_] | None: ...
 
 
-@dataclass(frozen=True)
-class Band:
+class Band(Frozen):
     """Of the curves that differ in drawn numbers alone; NaN where none of them reaches."""
 
     parameters: dict[str, float]  # the swept values that are not drawn

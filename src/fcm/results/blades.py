@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -11,14 +10,14 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.frozen import Frozen
 from fcm.results.padded_arrays import Field, by_point
 from fcm.results.result import Curve, Response
 from fcm.results.scatter import PERCENTS, groups, percentiles
 from fcm.units import CF_UNIT, in_unit
 
 
-@dataclass(frozen=True)
-class Worst:
+class Worst(Frozen):
     """The greatest peak over the sectors of a degree of freedom; frequencies in rad/s. All (curve, dof)."""
 
     amplitude: FloatArray

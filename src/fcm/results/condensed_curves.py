@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.frozen import Frozen
 from fcm.results.jumps import FrequencySweep
 from fcm.results.local_maxima import lower_peaks, rise_beside
 from fcm.stability.unstable_ranges import Stretch, unstable_stretches
@@ -19,8 +20,7 @@ if TYPE_CHECKING:
 NO_ENDS = (np.nan, np.nan)
 
 
-@dataclass(frozen=True)
-class CondensedCurve:
+class CondensedCurve(Frozen):
     """Numbers of a curve for which all its points are needed."""
 
     points: int

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fcm.contact.limits import FloatArray
+from fcm.frozen import Frozen
 
 if TYPE_CHECKING:
     from fcm.results.result import Curve
 
 
-@dataclass(frozen=True)
-class Greatest:
+class Greatest(Frozen):
     """All (contact, 4): of the greatest normal and friction force of a cycle, slip and energy in it.
 
     value; frequency [rad/s]; error, estimated, relative, NaN where it is not known; stable, 1 where small

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray, Measured
 from fcm.units import in_unit
 
@@ -31,8 +32,7 @@ def misfit(data: Measured, residual: FloatArray, error: FloatArray) -> float:
     return float(np.sqrt((square * (error[:, 0] / size) ** 2).mean()))
 
 
-@dataclass(frozen=True)
-class FittedData:
+class FittedData(Frozen):
     """A set of measured points beside the fitted model.
 
     residual (point, component): model less measured, at the nearest point, in units of the errors; error
@@ -106,8 +106,7 @@ class FittedData:
         }
 
 
-@dataclass(frozen=True)
-class FittedStart:
+class FittedStart(Frozen):
     """Where a search began and where it came to."""
 
     begin: FloatArray

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.results.options import RESULTS, JumpOptions
 from fcm.unknown_stability import unknown_stability
@@ -15,8 +16,7 @@ BoolArray = npt.NDArray[np.bool_]
 UNKNOWN = 0.5  # between unstable, 0, and stable, 1
 
 
-@dataclass(frozen=True)
-class Jump:
+class Jump(Frozen):
     """Where a slow sweep leaves one stable part of a curve, and what it finds on the next."""
 
     sweep: str  # 'up' or 'down'
@@ -25,8 +25,7 @@ class Jump:
     after: FloatArray  # (dof,) amplitude; NaN where the curve has no stable part to land on
 
 
-@dataclass(frozen=True)
-class UnknownStability:
+class UnknownStability(Frozen):
     """A way of a slow sweep on which it is not known whether the motion is stable: it may jump already."""
 
     sweep: str  # 'up' or 'down'
@@ -35,8 +34,7 @@ class UnknownStability:
     before: FloatArray  # (dof,) amplitude at the start
 
 
-@dataclass(frozen=True)
-class FrequencySweep:
+class FrequencySweep(Frozen):
     """What a slow upward, then a slow downward sweep meets."""
 
     jumps: list[Jump]

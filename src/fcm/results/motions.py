@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.frozen import Frozen
 from fcm.results.padded_arrays import Field
 from fcm.units import CF_UNIT, in_unit
 
@@ -18,8 +18,7 @@ ON = "force of a contact, which acts on the structure against its direction"
 SINE = "amplitude * sin(harmonic omega t + phase)"
 
 
-@dataclass(frozen=True)
-class Motion:
+class Motion(Frozen):
     """A steady motion, x = mean + Im(sum_h X_h exp(i h omega t)); arrays begin with the mean, which is real.
 
     The forces of a contact are those of `fcm.periodic_forces` along its directions, friction before normal:
@@ -45,8 +44,7 @@ class Motion:
         )
 
 
-@dataclass(frozen=True)
-class Motions:
+class Motions(Frozen):
     """Motions of a response, and what of them its netCDF file is to have."""
 
     motions: tuple[Motion, ...]

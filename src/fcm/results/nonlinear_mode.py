@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.frozen import Frozen
 from fcm.units import in_unit
 
 
@@ -23,8 +24,7 @@ class Resonance(NamedTuple):
     damping: float  # ratio
 
 
-@dataclass(frozen=True)
-class MotionOfMode:
+class MotionOfMode(Frozen):
     """The motion at a point of a nonlinear mode."""
 
     amplitude: float  # modal

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
+
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class JumpOptions:
+class JumpOptions(Frozen):
     """When points of a curve are one, and what is no jump.
 
     Attributes
@@ -25,8 +26,7 @@ class JumpOptions:
     flip_tolerance: float = 0.01
 
 
-@dataclass(frozen=True)
-class DrawOptions:
+class DrawOptions(Frozen):
     """What is told of random draws.
 
     Attributes
@@ -42,8 +42,7 @@ class DrawOptions:
     frequency_tolerance: float = 1e-2
 
 
-@dataclass(frozen=True)
-class FileOptions:
+class FileOptions(Frozen):
     """How variables are laid out in a netCDF file.
 
     Attributes
@@ -58,8 +57,7 @@ class FileOptions:
     contiguous: int = 1 << 16
 
 
-@dataclass(frozen=True)
-class PeakOptions:
+class PeakOptions(Frozen):
     """Which local maxima of a curve are peaks that are told beside the highest.
 
     Attributes
@@ -74,8 +72,7 @@ class PeakOptions:
     least_prominence: float = 0.01
 
 
-@dataclass(frozen=True)
-class ResultOptions:
+class ResultOptions(Frozen):
     """What is told of curves.
 
     Attributes

@@ -8,11 +8,11 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.frozen import Frozen
 from fcm.results.jumps import FrequencySweep
 
 
-@dataclass(frozen=True)
-class Stuck:
+class Stuck(Frozen):
     """A motion that no point is of, in which contacts stick all through the period."""
 
     frequency: float  # [rad/s]

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.frozen import Frozen
 from fcm.model.ring import of_sector
 from fcm.model.scene import InTime, Scene, in_time
 from fcm.results.cause import Cause
@@ -137,8 +138,7 @@ def _shared(value: Any) -> Any:
     return value
 
 
-@dataclass(frozen=True)
-class Blades:
+class Blades(Frozen):
     """What is known of the sectors of a mistuned ring beside its curves; frequencies in rad/s."""
 
     names: tuple[str, ...]  # degrees of freedom of a sector

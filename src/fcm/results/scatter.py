@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.results.condensed_curves import condense
 from fcm.results.options import RESULTS
@@ -21,8 +21,7 @@ SWEEPS = ("up", "down")  # directions of a slow sweep of the frequency
 NONE = np.inf  # the frequency of a jump that does not occur
 
 
-@dataclass(frozen=True)
-class Scatter:
+class Scatter(Frozen):
     """Of the curves that differ in drawn numbers alone; incomplete curves do not count.
 
     Frequencies in rad/s. Of a jump, the first that a slow sweep in the direction meets, over those curves

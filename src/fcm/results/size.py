@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import ceil
 
+from fcm.frozen import Frozen
 from fcm.model.scene import Scene
 
 NUMBER = 8  # bytes
 
 
-@dataclass(frozen=True)
-class SizeOptions:
+class SizeOptions(Frozen):
     """What is counted."""
 
     of_curve: int = 3000  # bytes of a curve without points: its names, peaks and arrays

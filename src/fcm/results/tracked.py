@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.units import in_unit
 
 
-@dataclass(frozen=True)
-class TrackedError:
+class TrackedError(Frozen):
     """What the harmonics left out would change at a point of a curve, estimated; NaN where it cannot be told.
 
     relative is of the amplitude of a peak, else of the frequency; number, at a turn alone, is by how much
@@ -26,8 +26,7 @@ class TrackedError:
     number: float = np.nan
 
 
-@dataclass(frozen=True)
-class TrackedCurve:
+class TrackedCurve(Frozen):
     """One curve, points in the order along it; frequencies in rad/s."""
 
     parameters: dict[str, float]  # swept values of the curve of the scene that it belongs to
@@ -95,8 +94,7 @@ class TrackedCurve:
         return {name: found for name, found in out.items() if found}
 
 
-@dataclass(frozen=True)
-class Optimal:
+class Optimal(Frozen):
     """The least of the greatest of some peaks."""
 
     parameters: dict[str, float]

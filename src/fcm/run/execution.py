@@ -5,17 +5,17 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
+from fcm.frozen import Frozen
 from fcm.run.checkpoint import Checkpoint
 from fcm.run.places import Factory
 from fcm.run.progress import part
 from fcm.run.work import Progress
 
 
-@dataclass(frozen=True)
-class Execution:
+class Execution(Frozen):
     """No result depends on it.
 
     Attributes

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class RunOptions:
+class RunOptions(Frozen):
     """Waiting times and sizes of a sweep in several processes."""
 
     answer_interval: float = 0.05  # [s] between two looks at whether there is an answer

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import traceback
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
+from fcm.frozen import Frozen
 from fcm.signals import interrupted
 
 Progress = Callable[[float, str], None]  # finished fraction and a text
@@ -58,16 +58,14 @@ class Interrupted(KeyboardInterrupt):
         self.results = results
 
 
-@dataclass(frozen=True)
-class Lost:
+class Lost(Frozen):
     """In the place of a result: why there is none."""
 
     reason: str
     defect: str = ""  # the traceback, if the reason is a defect of the program
 
 
-@dataclass(frozen=True)
-class Attempt:
+class Attempt(Frozen):
     """What came of a batch."""
 
     results: list[Any]

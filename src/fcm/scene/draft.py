@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.model.ring import Ring
 from fcm.model.scene import Address, Force, Modal, Scene
 from fcm.scene.address import LEVEL, Addresses, overlap, replaced
@@ -23,8 +24,7 @@ from fcm.scene.section import Parts
 from fcm.scene.sweep import SweptKey, combinations, field_of
 
 
-@dataclass(frozen=True)
-class Draft:
+class Draft(Frozen):
     """The parts of a scene as read, and its swept keys; the same for all of its curves."""
 
     parts: Parts
@@ -91,8 +91,7 @@ class Draft:
         return Draft(parts, self.swept)
 
 
-@dataclass(frozen=True)
-class Number:
+class Number(Frozen):
     """A number of a scene under its key path, "contact.shroud.n_0"; with a * in it, or a group, several.
 
     The level of the forces is one, too: what stands at each address is then the level times a weight.

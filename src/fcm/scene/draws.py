@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
 from zlib import crc32
@@ -17,6 +16,7 @@ from zlib import crc32
 import numpy as np
 
 from fcm import resources
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.scene.errors import counted, kind, quoted
 from fcm.scene.keys import names
@@ -30,8 +30,7 @@ FORMS = ("normal", "uniform", "distribution")
 Quantile = Callable[[FloatArray], FloatArray]  # of probabilities
 
 
-@dataclass(frozen=True)
-class Draws:
+class Draws(Frozen):
     """How a key is drawn."""
 
     key: str
@@ -163,8 +162,7 @@ def _distribution(table: Section) -> Quantile | None:
     return quantile
 
 
-@dataclass(frozen=True)
-class Correlation:
+class Correlation(Frozen):
     """Which keys are correlated, and the factor L of their matrix, L L^T."""
 
     keys: tuple[str, ...]

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import field
 from errno import EACCES, EIO
 from pathlib import Path
 
 from fcm.files import no_file
+from fcm.frozen import Frozen
 from fcm.model.interface import Interface
 from fcm.scene.errors import quoted
 from fcm.scene.options import FILES, MESSAGES
@@ -41,8 +42,7 @@ def reason_of(error: Exception, ending: str) -> str:
     return f"it is damaged, or no {ending} file"
 
 
-@dataclass(frozen=True)
-class Files:
+class Files(Frozen):
     """The files beside a scene."""
 
     folder: Path = Path()

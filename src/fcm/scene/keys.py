@@ -6,15 +6,13 @@ what is here.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from fcm.frozen import Frozen
 from fcm.scene.rules import FRACTION, POSITIVE, RULES, Rule
 
 REQUIRED = "required"
 
 
-@dataclass(frozen=True)
-class Key:
+class Key(Frozen):
     """One key of a table."""
 
     meaning: str

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
+from fcm.frozen import Frozen
 from fcm.model.interface import Interface
 from fcm.scene.cyclic import read_cyclic
 from fcm.scene.errors import Mistakes
@@ -18,8 +18,7 @@ from fcm.scene.section import Section
 from fcm.scene.toml import read_toml
 
 
-@dataclass(frozen=True)
-class Pairs:
+class Pairs(Frozen):
     """Where the pairs of each contact are, what is to be said of them, and the scene's unit of length."""
 
     interfaces: tuple[Interface, ...]

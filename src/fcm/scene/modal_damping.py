@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.scene.options import MESSAGES
 from fcm.scene.structure_table import Matrices
@@ -23,8 +22,7 @@ from fcm.structure.reduced import Reduced
 _AT_ONE = "{ stiffness = LOSS_FACTOR / OMEGA } has it right at one frequency OMEGA in rad/s"
 
 
-@dataclass(frozen=True)
-class Damping:
+class Damping(Frozen):
     """Ratios of modes (mode,), and what is to be said of what they leave out.
 
     lost bounds the error of a receptance by the damping of rigid-body modes: of what it is at rest, of

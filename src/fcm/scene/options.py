@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import pi
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class TomlOptions:
+class TomlOptions(Frozen):
     """Limits of the text of a scene, and of what is looked for in a faulty one."""
 
     patience: float = 2.0  # [s] without a byte from a pipe before that is said
@@ -22,8 +20,7 @@ class TomlOptions:
     lines_before: int = 3  # lines before the one where reading ends, on which a bracket may be missing
 
 
-@dataclass(frozen=True)
-class MessageOptions:
+class MessageOptions(Frozen):
     """How much messages about a scene show."""
 
     mistakes: int = 30  # listed one by one; the rest are counted
@@ -49,8 +46,7 @@ class MessageOptions:
     range_near: float = 2.0  # times the range's ends: a mode within that is near it
 
 
-@dataclass(frozen=True)
-class LimitOptions:
+class LimitOptions(Frozen):
     """What a scene may ask for, and what a number of it may be."""
 
     largest: float = 1e100  # magnitudes beyond this overflow when three of them are multiplied
@@ -76,7 +72,6 @@ class LimitOptions:
         0.2  # of every mode: from here on no resonance is seen, and a percentage may be meant
     )
     damping_ratio: float = 1.0  # from here on a mode does not vibrate, and more likely a percentage is meant
-    angle: float = 2.001 * pi  # [rad] a whole turn, and what "6.2832" is more
     reported: int = 50  # degrees of freedom of which all are in the results, where no others are asked for
     # bytes at each row of matrices that the flexibility along a direction takes, measured
     bytes_of_direction: float = 8 * 14
@@ -85,8 +80,7 @@ class LimitOptions:
     mesh_rows: int = 100  # from which a structure is a mesh, whose highest modes are above any range
 
 
-@dataclass(frozen=True)
-class FileOptions:
+class FileOptions(Frozen):
     """Limits of files beside a scene, and of the process that reads them."""
 
     # bytes of a file beside a scene, unpacked: what fits in any machine's memory twice
@@ -95,8 +89,7 @@ class FileOptions:
     copies: int = 3  # of the arrays, while they are read, converted and written
 
 
-@dataclass(frozen=True)
-class ToleranceOptions:
+class ToleranceOptions(Frozen):
     """Relative differences of a scene's numbers that are taken for none."""
 
     # of a correlation matrix: an eigenvalue that is less below zero is one of zero

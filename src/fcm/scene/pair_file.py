@@ -5,11 +5,12 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.model.interface import FloatArray, Interface
 from fcm.scene.errors import choices, quoted
 from fcm.scene.files import DataFileError
@@ -23,8 +24,7 @@ NUMBERS = ("area", "mu", "k_u", "k_v", "n_0", "gap")
 COORDINATES = ("x", "y", "z")
 
 
-@dataclass(frozen=True)
-class PairTable:
+class PairTable(Frozen):
     """Pairs of nodes, and what a file says of each.
 
     numbers: by column, (pair,); unused: names of columns that nothing is read from; places: coordinates

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.model.ring import ComplexArray, FloatArray
 from fcm.scene.errors import counted
 from fcm.scene.modal_damping import Damping, damping_of
@@ -17,8 +18,7 @@ from fcm.structure.eigen import StructureError
 from fcm.structure.reduced import ModeSelection, Reduced, reduced
 
 
-@dataclass(frozen=True)
-class Diameter:
+class Diameter(Frozen):
     """The modes of one nodal diameter."""
 
     number: int
@@ -26,8 +26,7 @@ class Diameter:
     damping: Damping
 
 
-@dataclass(frozen=True)
-class LoadedRing:
+class LoadedRing(Frozen):
     """The matrices of a ring's sector, and what acts on it."""
 
     matrices: Matrices

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from math import ceil, inf, isfinite
 from numbers import Real
@@ -11,6 +10,7 @@ from numbers import Real
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray, Scene
 from fcm.scene.errors import shown
 from fcm.scene.options import LIMITS
@@ -18,8 +18,7 @@ from fcm.scene.options import LIMITS
 IndexArray = npt.NDArray[np.intp]
 
 
-@dataclass(frozen=True)
-class Rule:
+class Rule(Frozen):
     """The interval that a number must lie in, and how a message says so.
 
     >>> POSITIVE.fault(0.0)

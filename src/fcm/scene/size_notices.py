@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from fcm import resources
+from fcm.frozen import Frozen
 from fcm.scene.options import MESSAGES, MessageOptions
 
 if TYPE_CHECKING:
@@ -17,8 +17,7 @@ def _ignored(*_: object) -> None:
     """Nobody hears of it."""
 
 
-@dataclass(frozen=True)
-class Told:
+class Told(Frozen):
     """What hears of a scene while it is read.
 
     Attributes

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import scipy.sparse
 
+from fcm.frozen import Frozen
 from fcm.scene.entries import check_numbers, check_symmetric, symmetric
 from fcm.scene.errors import choices, counted, kind, quoted, shown
 from fcm.scene.excitation import TRANSLATIONS, along_axis
@@ -23,8 +23,7 @@ from fcm.scene.section import Section, written_as
 from fcm.structure.eigen import StructureError, system_of
 
 
-@dataclass(frozen=True)
-class Matrices:
+class Matrices(Frozen):
     """What a [structure] table says."""
 
     dofs: Names
@@ -40,8 +39,7 @@ class Matrices:
     coupling: Coupling | None = None  # to the next sector of a ring
 
 
-@dataclass(frozen=True)
-class Coupling:
+class Coupling(Frozen):
     """Blocks of a ring's matrices: this sector's rows, the next one's columns."""
 
     K: Any

@@ -18,7 +18,7 @@ one [[sweep.paired]] table go in step, and must have as many values each.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
 from math import prod
 from typing import Any
@@ -26,6 +26,7 @@ from typing import Any
 import numpy as np
 
 from fcm import resources
+from fcm.frozen import Frozen
 from fcm.model.scene import Address
 from fcm.scene.address import Addresses, overlap
 from fcm.scene.draws import FORMS as DRAWN
@@ -42,8 +43,7 @@ FORMS = (
 )
 
 
-@dataclass(frozen=True)
-class SweptKey:
+class SweptKey(Frozen):
     """One key of a sweep; keys of one group go in step."""
 
     key: str

@@ -10,9 +10,10 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import pi
 
+from fcm.frozen import Frozen
 from fcm.scene.errors import quoted
 from fcm.scene.keys import LISTS
 from fcm.scene.names import at_node
@@ -48,8 +49,7 @@ _NUMBER = re.compile(r"[-+]?\d[\d_]*(?:\.\d+)?(?:[eE][-+]?\d+)?")
 Remedy = Callable[[str], str]  # of a line: the line as it ought to be, or the same
 
 
-@dataclass(frozen=True)
-class _Fault:
+class _Fault(Frozen):
     """Where reading ends, and why."""
 
     line: int | None  # from 0; None at the end of the document
@@ -80,8 +80,7 @@ def slips(text: str) -> list[str]:
     return said
 
 
-@dataclass(frozen=True)
-class _Slip:
+class _Slip(Frozen):
     """A line, from 0, as it is and as it ought to be."""
 
     line: int

@@ -11,7 +11,6 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from itertools import combinations
 from math import ceil, pi
 from pathlib import Path
@@ -20,6 +19,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.scene.errors import choices, counted, quoted
 from fcm.scene.files import DataFileError
 from fcm.scene.number_text import NUMBER, fault_of_number, number_in
@@ -42,8 +42,7 @@ _PLACES = {"55": (0, 1, 2, 3), "2414": (1, 3, 4, 5)}
 _REALS_2414 = 12  # on two lines
 
 
-@dataclass(frozen=True)
-class _Mode:
+class _Mode(Frozen):
     hertz: float
     mass: float
     damping: float

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
 from fcm.continuation import Path
 from fcm.continuation.segment import Segment
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.reported_quantities import ReportedQuantities, reported_at
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
@@ -17,8 +16,7 @@ from fcm.model.scene import FloatArray
 Indices = npt.NDArray[np.intp]
 
 
-@dataclass(frozen=True)
-class InterpolationOptions:
+class InterpolationOptions(Frozen):
     """How a peak between two points of a path is found, by polynomials through solutions of the balance.
 
     Attributes

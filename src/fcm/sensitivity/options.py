@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class SensitivityOptions:
+class SensitivityOptions(Frozen):
     """How derivatives of peaks are found. Lengths are along the curve, in the scale of its unknowns.
 
     Attributes

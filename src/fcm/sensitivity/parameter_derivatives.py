@@ -13,12 +13,12 @@ exact where they are linear, to some 1e-12 elsewhere.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.contact_law import Law
 from fcm.harmonic_balance.dense_jacobian import unknown_positions
 from fcm.harmonic_balance.residual import Balance
@@ -35,8 +35,7 @@ STENCIL = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))  # of the first derivative, o
 ARRAYS = ("natural", "damping", "ports", "dofs", "force", "square", "load", "flexibility", "counted")
 
 
-@dataclass(frozen=True)
-class Rates:
+class Rates(Frozen):
     """Rates of a number's system: of mu, k_u, k_v, n_0 (contact, 4), and of the structure's arrays."""
 
     contact: FloatArray

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import Enum
 
 import numpy as np
 from scipy.optimize import brentq
 
 from fcm.continuation.corrector import Newton
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.dense_jacobian import jacobian_of
 from fcm.harmonic_balance.residual import Balance
 from fcm.harmonic_balance.system import System
@@ -30,8 +31,7 @@ class Kind(Enum):
     UNKNOWN = "unknown"
 
 
-@dataclass(frozen=True)
-class ParameterStencil:
+class ParameterStencil(Frozen):
     """The balance with other values of a number: weights of a derivative, with the balances."""
 
     terms: list[tuple[float, Newton]]

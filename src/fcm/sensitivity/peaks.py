@@ -13,11 +13,12 @@ delta: its derivatives are differences of the fourth order, and hold as long as 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.scene.address import Addresses
@@ -27,8 +28,7 @@ from fcm.sensitivity.parameter_derivatives import rates_of
 from fcm.sensitivity.peak import Kind, Peak, moved_by
 
 
-@dataclass(frozen=True)
-class Sensitivities:
+class Sensitivities(Frozen):
     """Of the peaks of one curve; NaN where they cannot be told."""
 
     numbers: tuple[str, ...]  # key paths

@@ -10,7 +10,6 @@ Where it turns back below 1 the window of several motions may be at other freque
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +17,7 @@ import numpy as np
 from fcm.continuation import Checkpoint, Events, FollowOptions, Path, Status, all_branches, follow
 from fcm.continuation.all_branches import Follow, Following
 from fcm.continuation.corrector import Newton
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.linear_orbits import about_rest
 from fcm.shooting.options import SHOOTING, ShootingOptions
@@ -82,8 +82,7 @@ Known = Callable[[float], Sequence[FloatArray]]
 Find = Callable[..., "LevelMotions"]
 
 
-@dataclass(frozen=True)
-class LevelMotions:
+class LevelMotions(Frozen):
     """The motions (unknown + 1,) that the level leads to from a frequency [rad/s], the frequency last, and
     whether it was followed to its end; if not, whether because the time for that was over."""
 
@@ -177,8 +176,7 @@ def _followed(
     return curves.status is Status.COMPLETE
 
 
-@dataclass(frozen=True)
-class _InterruptibleFollow:
+class _InterruptibleFollow(Frozen):
     """As follow; passes is told of the path also where poll raises `WorkLimitError`."""
 
     poll: Poll

@@ -9,12 +9,13 @@ slipping and opening, and the open ones open, is a linear programme.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.wave_extremes import greatest
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.options import SHOOTING, ShootingOptions
@@ -26,8 +27,7 @@ from fcm.time_domain.state import State
 from fcm.time_domain.system import System
 
 
-@dataclass(frozen=True)
-class LinearOrbit:
+class LinearOrbit(Frozen):
     """A motion in which no contact changes its state."""
 
     states: tuple[str, ...]  # of each contact: E sticks, or is closed without friction; S is open

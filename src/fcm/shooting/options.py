@@ -5,14 +5,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from fcm.continuation.options import SIGN_CHANGE, SignChangeOptions
+from fcm.frozen import Frozen
 from fcm.stability.options import STABILITY, StabilityOptions
 
 
-@dataclass(frozen=True)
-class ClosureOptions:
+class ClosureOptions(Frozen):
     """Newton's method on the closure of a period.
 
     Attributes
@@ -34,8 +32,7 @@ class ClosureOptions:
     rank_tolerance: float = 1e-10
 
 
-@dataclass(frozen=True)
-class ApproachOptions:
+class ApproachOptions(Frozen):
     """A simulation from rest towards a periodic motion.
 
     Attributes
@@ -53,8 +50,7 @@ class ApproachOptions:
     settled_fraction: float = 0.01
 
 
-@dataclass(frozen=True)
-class SteadyOptions:
+class SteadyOptions(Frozen):
     """A simulation until the motion is steady.
 
     Attributes
@@ -84,8 +80,7 @@ class SteadyOptions:
     distinct_distance: float = 1.0
 
 
-@dataclass(frozen=True)
-class PeriodDoublingOptions:
+class PeriodDoublingOptions(Frozen):
     """Motions of twice the periods of others.
 
     Attributes
@@ -106,8 +101,7 @@ class PeriodDoublingOptions:
     closure_tolerance: float = 1e-6
 
 
-@dataclass(frozen=True)
-class OrbitOptions:
+class OrbitOptions(Frozen):
     """The points of a curve.
 
     Attributes
@@ -125,8 +119,7 @@ class OrbitOptions:
     min_amplitude: float = 1e-9
 
 
-@dataclass(frozen=True)
-class StartOptions:
+class StartOptions(Frozen):
     """Motions from which curves are followed.
 
     Attributes
@@ -157,8 +150,7 @@ class StartOptions:
     distinct_distance: float = 1e-6
 
 
-@dataclass(frozen=True)
-class BalanceOptions:
+class BalanceOptions(Frozen):
     """The harmonic balance that exact motions begin near.
 
     Attributes
@@ -192,8 +184,7 @@ class BalanceOptions:
     others: tuple[object, ...] = ()
 
 
-@dataclass(frozen=True)
-class DampingHomotopyOptions:
+class DampingHomotopyOptions(Frozen):
     """A motion that is reached from one with more damping.
 
     Attributes
@@ -212,8 +203,7 @@ class DampingHomotopyOptions:
     max_factor: float = 0.999
 
 
-@dataclass(frozen=True)
-class ForceLevelOptions:
+class ForceLevelOptions(Frozen):
     """The level of the forces as the parameter.
 
     Attributes
@@ -234,8 +224,7 @@ class ForceLevelOptions:
     level_floor: float = 0.1
 
 
-@dataclass(frozen=True)
-class LinearOrbitOptions:
+class LinearOrbitOptions(Frozen):
     """Motions in which no contact changes its state.
 
     Attributes
@@ -253,8 +242,7 @@ class LinearOrbitOptions:
     min_limit_distance: float = 1e-6
 
 
-@dataclass(frozen=True)
-class PartlyStickingOptions:
+class PartlyStickingOptions(Frozen):
     """Motions in which some contacts always stick.
 
     Attributes
@@ -281,8 +269,7 @@ class PartlyStickingOptions:
     cycles: tuple[int, ...] = (10, 40)
 
 
-@dataclass(frozen=True)
-class PeakOptions:
+class PeakOptions(Frozen):
     """Peaks and folds that are located alone, from guesses.
 
     Attributes
@@ -303,8 +290,7 @@ class PeakOptions:
     peak_tolerance: float = 1e-7
 
 
-@dataclass(frozen=True)
-class ResidualFrictionOptions:
+class ResidualFrictionOptions(Frozen):
     """The friction force of a contact that always sticks.
 
     margin: distance from its limit, relative to the forces. rounding: part of that; a contact this near to
@@ -315,8 +301,7 @@ class ResidualFrictionOptions:
     rounding: float = 1e-3
 
 
-@dataclass(frozen=True)
-class FamilyOptions:
+class FamilyOptions(Frozen):
     """Families of motions over the residual friction of contacts that always stick.
 
     Attributes
@@ -365,8 +350,7 @@ class FamilyOptions:
     max_motions: int = 500
 
 
-@dataclass(frozen=True)
-class StabilityChangeOptions:
+class StabilityChangeOptions(Frozen):
     """Where stability changes along a curve.
 
     Attributes
@@ -395,8 +379,7 @@ class StabilityChangeOptions:
     sign_change: SignChangeOptions = SIGN_CHANGE
 
 
-@dataclass(frozen=True)
-class BranchSearchOptions:
+class BranchSearchOptions(Frozen):
     """The search for all branches.
 
     Attributes
@@ -418,8 +401,7 @@ class BranchSearchOptions:
     rounding_frequency: float = 1e3
 
 
-@dataclass(frozen=True)
-class ShootingOptions:
+class ShootingOptions(Frozen):
     """All of the package, by what they are for: see the class of each field.
 
     Examples

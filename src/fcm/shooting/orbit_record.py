@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Mark, Path
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic_orbit import within_unit_circle
@@ -24,8 +25,7 @@ from fcm.time_domain.state import State
 from fcm.units import spoken
 
 
-@dataclass(frozen=True)
-class OrbitRecord:
+class OrbitRecord(Frozen):
     """A periodic solution, and where on its curve it is."""
 
     frequency: float  # [rad/s]

@@ -8,11 +8,11 @@ stuck, slid without friction or were open; with it held, the others are simulate
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import combinations, product
 
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray, Held, Scene
 from fcm.shooting.linear_orbits import linear_answer, sticking
 from fcm.shooting.options import SHOOTING, ShootingOptions
@@ -37,8 +37,7 @@ from fcm.time_domain.system import System
 Choices = list[FloatArray]
 
 
-@dataclass(frozen=True)
-class PartlyStickingOrbit:
+class PartlyStickingOrbit(Frozen):
     """A stable motion in which some contacts stick all through, and its family over residual friction."""
 
     states: tuple[str, ...]  # of each contact over the period

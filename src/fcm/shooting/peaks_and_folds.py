@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import FollowOptions, Mark, Path, follow
 from fcm.continuation.corrector import Newton
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.orbit_record import OrbitRecord, recorded_point
@@ -19,8 +20,7 @@ from fcm.time_domain.state import State
 PeakDofs = npt.NDArray[np.bool_]  # (dof,)
 
 
-@dataclass(frozen=True)
-class Guess:
+class Guess(Frozen):
     """Somewhere near a peak or a fold, with the direction of the curve there as a second state nearby."""
 
     frequency: float  # [rad/s]

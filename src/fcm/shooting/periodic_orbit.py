@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.residual import Shot
@@ -29,8 +29,7 @@ def never_interrupt() -> None:
     """A `Poll` that lets the search take as long as it does."""
 
 
-@dataclass(frozen=True)
-class Orbit:
+class Orbit(Frozen):
     """A periodic solution, one period from the instant at which the forces' angle is 0."""
 
     scene: Scene

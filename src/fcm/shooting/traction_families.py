@@ -10,12 +10,12 @@ Of a stable motion the extent is that of the stable members, which a structure s
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise, product
 
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray, Scene
 from fcm.shooting.options import SHOOTING, ShootingOptions
 from fcm.shooting.periodic_orbit import Poll, converged, never_interrupt, within_unit_circle
@@ -34,8 +34,7 @@ from fcm.time_domain.system import System
 from fcm.units import spoken
 
 
-@dataclass(frozen=True)
-class Family:
+class Family(Frozen):
     """The extent of the periodic motions at one frequency."""
 
     contacts: tuple[int, ...]  # that always stick

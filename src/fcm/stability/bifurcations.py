@@ -11,13 +11,13 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Path
 from fcm.continuation.events import SignChange
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.consecutive_points import runs
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
@@ -33,8 +33,7 @@ IntArray = npt.NDArray[np.intp]
 __all__ = ["Bifurcation", "InsertedPoint", "MultiplierCrossing", "Stability", "stability", "with_points"]
 
 
-@dataclass(frozen=True)
-class Stability:
+class Stability(Frozen):
     """stable (point,): 1 where small disturbances die out, 0 where one grows, nan where it cannot be told."""
 
     stable: FloatArray

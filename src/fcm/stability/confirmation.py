@@ -14,11 +14,11 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.consecutive_points import runs
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
@@ -32,8 +32,7 @@ from fcm.stability.spaced_points import SpacedPoints
 Mask = npt.NDArray[np.bool_]
 
 
-@dataclass(frozen=True)
-class Confirmation:
+class Confirmation(Frozen):
     """stable (point,): what has a stable motion with further harmonics near it. limited: whether there would
     have been more to look at than the most points of many contacts."""
 

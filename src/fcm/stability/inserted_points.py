@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from fcm.continuation import Mark, Path
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.stability.classification import Bifurcation
 
 
-@dataclass(frozen=True)
-class InsertedPoint:
+class InsertedPoint(Frozen):
     """A point of the curve between two of the path, within a window in which stability is another."""
 
     place: float  # the point of the path that it follows, and the part of the way to the next
@@ -39,7 +39,6 @@ class InsertedPoint:
         return float(self.z[-1])
 
 
-@dataclass(frozen=True)
 class MultiplierCrossing(InsertedPoint):
     """A point of the curve at which stability changes without a fold, of which it is not told: a disturbance
     neither grows nor dies out there, but by what more harmonics make of that."""

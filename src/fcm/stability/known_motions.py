@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
 
-@dataclass(frozen=True)
-class KnownMotions:
+class KnownMotions(Frozen):
     """Pieces (motion, unknown + 1) of the curve of a balance with some harmonics, in order along it."""
 
     harmonics: tuple[int, ...]

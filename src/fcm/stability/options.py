@@ -5,13 +5,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from fcm.continuation.options import SIGN_CHANGE, SignChangeOptions
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class ClassificationOptions:
+class ClassificationOptions(Frozen):
     """What multipliers say of one solution.
 
     Attributes
@@ -38,8 +36,7 @@ class ClassificationOptions:
     neutral_tolerance: float = 1e-5
 
 
-@dataclass(frozen=True)
-class StructureOptions:
+class StructureOptions(Frozen):
     """The structure whose disturbances are followed.
 
     Attributes
@@ -74,8 +71,7 @@ class StructureOptions:
     max_disturbances: int = 600
 
 
-@dataclass(frozen=True)
-class ConfirmationOptions:
+class ConfirmationOptions(Frozen):
     """Whether further harmonics may change a classification.
 
     Attributes
@@ -136,8 +132,7 @@ class ConfirmationOptions:
     max_addition: float = 0.05
 
 
-@dataclass(frozen=True)
-class WindowOptions:
+class WindowOptions(Frozen):
     """Windows of stability that are hidden between two points.
 
     Attributes
@@ -175,8 +170,7 @@ class WindowOptions:
     angle_margin: float = 0.4
 
 
-@dataclass(frozen=True)
-class SamplingOptions:
+class SamplingOptions(Frozen):
     """Which points of a path are looked at, and where stability changes between them.
 
     Attributes
@@ -222,8 +216,7 @@ class SamplingOptions:
     sign_change: SignChangeOptions = SIGN_CHANGE
 
 
-@dataclass(frozen=True)
-class HillOptions:
+class HillOptions(Frozen):
     """Hill's method, of contacts with laws of one's own.
 
     Attributes
@@ -238,8 +231,7 @@ class HillOptions:
     multiplier_tolerance: float = 1e-9
 
 
-@dataclass(frozen=True)
-class PlanarStabilityOptions:
+class PlanarStabilityOptions(Frozen):
     """How disturbances of contacts in a plane are followed.
 
     stages, stages_of_many: Radau's points of a step, of few and of many contacts. tolerance: of the
@@ -277,8 +269,7 @@ class PlanarStabilityOptions:
     min_gap: float = 1e-6
 
 
-@dataclass(frozen=True)
-class PropagationOptions:
+class PropagationOptions(Frozen):
     """How disturbances of contacts on a line are carried through a state of the contacts.
 
     Attributes
@@ -313,8 +304,7 @@ class PropagationOptions:
     squared_radians: float = 0.25
 
 
-@dataclass(frozen=True)
-class StabilityOptions:
+class StabilityOptions(Frozen):
     """All of the package, by what they are for: see the class of each field."""
 
     classification: ClassificationOptions = ClassificationOptions()

@@ -9,11 +9,11 @@ of travelling waves, another one breaks up the wave, even where it is a real mul
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.residual_spectrum import EnrichedMotion, enriched_harmonics
 from fcm.harmonic_balance.system import System
 from fcm.model.ring import Ring
@@ -48,8 +48,7 @@ def stability_unknown(system: System, highest: float, options: StabilityOptions 
     return ""
 
 
-@dataclass(frozen=True)
-class RingModes:
+class RingModes(Frozen):
     """The modes of n sectors, of mass 1, and how they look from j sectors behind."""
 
     natural: FloatArray  # (mode,)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.structure.eigen import FloatArray, Matrix, Modes, StructureError
 from fcm.structure.options import DAMPING
 
@@ -48,8 +47,7 @@ def check_dissipates(coefficients: FloatArray) -> None:
         raise StructureError(f"the damping of mode {mode} is negative, {least:.3g} for a modal mass of 1")
 
 
-@dataclass(frozen=True)
-class DampedModes:
+class DampedModes(Frozen):
     """Modes of mass 1 with damping between them."""
 
     stiffness: FloatArray  # (mode,)

@@ -16,7 +16,7 @@ remains is the rounding of the shapes, of second order.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -25,6 +25,7 @@ import scipy.linalg
 import scipy.sparse
 from scipy.sparse.linalg import LinearOperator, eigsh
 
+from fcm.frozen import Frozen
 from fcm.structure.digits import digits_of
 from fcm.structure.factor import NotPositiveError, Solve, TooLargeError, solver
 
@@ -32,8 +33,7 @@ FloatArray = npt.NDArray[np.float64]
 Matrix = Any  # scipy sparse array or matrix
 
 
-@dataclass(frozen=True)
-class EigenOptions:
+class EigenOptions(Frozen):
     """Tolerances of the modes."""
 
     dense_size: int = 600  # rows up to which all modes are computed at once
@@ -57,8 +57,7 @@ class StructureError(ValueError):
     """Matrices that are no stiffness and mass of a structure."""
 
 
-@dataclass(frozen=True)
-class Modes:
+class Modes(Frozen):
     """Normal modes in ascending order, of modal mass 1."""
 
     stiffness: FloatArray  # (mode,) squares of the angular frequencies; rigid-body modes within rounding of 0
@@ -69,8 +68,7 @@ class Modes:
         return self.stiffness.size
 
 
-@dataclass(frozen=True)
-class System:
+class System(Frozen):
     """Stiffness and mass of a structure, and the answer of K - s M to loads."""
 
     K: Matrix  # (row, row)

@@ -11,19 +11,19 @@ factorization, SIAM J. Matrix Anal. Appl. 11 (1990) 134.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
+from fcm.frozen import Frozen
+
 IntArray = npt.NDArray[np.intp]
 Matrix = Any  # scipy sparse array or matrix
 
 
-@dataclass(frozen=True)
-class FrontOptions:
+class FrontOptions(Frozen):
     """Which fronts are taken together: fewer and larger ones, which hold some zeros."""
 
     max_zeros: float = 0.1  # share of a front's entries that may be zeros
@@ -31,8 +31,7 @@ class FrontOptions:
     max_zeros_of_few: float = 0.4  # then
 
 
-@dataclass(frozen=True)
-class Tree:
+class Tree(Frozen):
     """The order of the rows, and the fronts, each after those that it waits for.
 
     Front i has the columns begin[i] to begin[i + 1] of the ordered matrix, and the rows below[i] under them.

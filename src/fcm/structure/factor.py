@@ -8,7 +8,7 @@ SuperLU keeps both triangles, and its pivots can be had only by a copy of them.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import partial
 from threading import Thread
 from typing import Any
@@ -18,6 +18,7 @@ import numpy.typing as npt
 import scipy.sparse
 from scipy.sparse.linalg import splu
 
+from fcm.frozen import Frozen
 from fcm.structure.elimination_tree import FrontOptions, Tree, tree_of
 from fcm.structure.multifrontal import Factor, SingularError
 
@@ -26,8 +27,7 @@ Matrix = Any  # scipy sparse array or matrix
 Solve = Callable[[FloatArray], FloatArray]  # loads (row,) or (row, load) to displacements
 
 
-@dataclass(frozen=True)
-class FactorOptions:
+class FactorOptions(Frozen):
     """How matrices are factorised."""
 
     package: str = ""  # "CHOLMOD", "fronts" or "SuperLU"; by the number of rows where it is empty

@@ -30,17 +30,17 @@ at w_far, and answers at w by (w / w_far)^2 too much.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import scipy.linalg
 
+from fcm.frozen import Frozen
 from fcm.structure.eigen import OPTIONS, FloatArray, Modes, System, energy_of, shifted, unit_columns
 from fcm.structure.options import FLEXIBILITY, FlexibilityOptions
 
 
-@dataclass(frozen=True)
-class Flexibility:
+class Flexibility(Frozen):
     """Modes that stand for those left out, and how far their answer is off."""
 
     modes: Modes
@@ -48,8 +48,7 @@ class Flexibility:
     damping: float  # bound of the error of a resonance's damping, relative, where all modes have one ratio
 
 
-@dataclass(frozen=True)
-class Truncation:
+class Truncation(Frozen):
     """A structure of which the lowest modes are kept: up to which frequency, and what is left out."""
 
     system: System

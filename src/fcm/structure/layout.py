@@ -12,18 +12,18 @@ The last direction of a contact is its normal. A port is a direction of a contac
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
+
 IntArray = npt.NDArray[np.intp]
 FloatArray = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Layout:
+class Layout(Frozen):
     """Of contacts with so many directions each, and so many harmonics.
 
     >>> Layout(2, 2, 1).mean_at.tolist(), Layout(2, 2, 1).wave_at.tolist()

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import threading
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray, Scene
 from fcm.structure.loads import loads_of
 from fcm.structure.options import DAMPING, REDUCTION
@@ -19,8 +20,7 @@ ComplexArray = npt.NDArray[np.complex128]
 FROM_SINE = np.exp(-0.5j * np.pi)  # from Im(X exp(i omega t)) to Re
 
 
-@dataclass(frozen=True)
-class Linear:
+class Linear(Frozen):
     """The structure without its contacts; ports are the directions of each, the last of them its normal."""
 
     natural: FloatArray  # (mode,) [rad/s]

@@ -16,19 +16,17 @@ Turbines and Power 123, 2001): good while the mistuned modes are combinations of
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 from scipy.linalg.lapack import dgejsv
 
+from fcm.frozen import Frozen
 from fcm.structure.eigen import FloatArray, StructureError
 
 ComplexArray = npt.NDArray[np.complex128]
 
 
-@dataclass(frozen=True)
-class MistunedOptions:
+class MistunedOptions(Frozen):
     """Tolerances of what is computed of a mistuned ring."""
 
     rigid_tolerance: float = 1e-9  # of the lowest w^2 of the tuned ring that is not 0: a w^2 below it is 0
@@ -39,8 +37,7 @@ class MistunedOptions:
 OPTIONS = MistunedOptions()
 
 
-@dataclass(frozen=True)
-class Basis:
+class Basis(Frozen):
     """The real coordinates of a ring: on sector k the shape of one is r_k Re P + i_k Im P of a mode's P."""
 
     mode: npt.NDArray[np.intp]  # (coordinate,) the sector's mode that it belongs to

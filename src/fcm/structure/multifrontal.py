@@ -12,7 +12,6 @@ Algebra Appl. 1 (1968) 73.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -21,6 +20,7 @@ import numpy.typing as npt
 import scipy.sparse
 from scipy.linalg import get_blas_funcs, get_lapack_funcs
 
+from fcm.frozen import Frozen
 from fcm.structure.elimination_tree import Tree, tree_of
 
 IntArray = npt.NDArray[np.intp]
@@ -107,8 +107,7 @@ class Factor:
                 waiting.setdefault(self._tree.parent[number], []).append((below, left))
 
 
-@dataclass(frozen=True)
-class _Front:
+class _Front(Frozen):
     """What is kept of a front of pivots F = L S L^H and rows B below them."""
 
     pivots: Array  # L; or its inverse where signs are given

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class FlexibilityOptions:
+class FlexibilityOptions(Frozen):
     """Modes that stand for those left out of a structure."""
 
     tolerance: float = 1e-6  # relative error of the receptance: no more blocks are taken
@@ -18,8 +17,7 @@ class FlexibilityOptions:
     massless_ratio: float = 1e3
 
 
-@dataclass(frozen=True)
-class DampingOptions:
+class DampingOptions(Frozen):
     """The effect of damping that a structure's modes leave out."""
 
     max_resonances: int = 60  # at and beside which two responses are compared
@@ -33,16 +31,14 @@ class DampingOptions:
     min_ratio: float = 1e-9  # of an undamped mode at its own frequency, relative
 
 
-@dataclass(frozen=True)
-class ReceptanceOptions:
+class ReceptanceOptions(Frozen):
     """How sums over the modes are made: they decide how fast, not what comes out."""
 
     blas_products: int = 4000  # of a sum, from which on BLAS is faster
     many_ports: int = 4  # from which on the sums of all their pairs go on side by side
 
 
-@dataclass(frozen=True)
-class RetainedModeOptions:
+class RetainedModeOptions(Frozen):
     """Which modes of a structure are kept, and what is told of them."""
 
     min_modes: int = 10  # modes that are kept at least, where none are asked for
@@ -64,8 +60,7 @@ class RetainedModeOptions:
     max_combination: float = 10.0  # times a shape, of those that it is combined from
 
 
-@dataclass(frozen=True)
-class RigidBodyOptions:
+class RigidBodyOptions(Frozen):
     """What tells rigid-body modes from elastic ones."""
 
     # of the next frequency: so low are rigid-body modes that come out of an eigensolver

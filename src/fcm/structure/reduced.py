@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.structure.digits import digits_of
 from fcm.structure.eigen import (
     OPTIONS,
@@ -28,8 +29,7 @@ from fcm.structure.rigid_body import may_be_rigid, rigid_by_energy, unclear_belo
 from fcm.structure.rounding import of_frequencies, of_receptances
 
 
-@dataclass(frozen=True)
-class ModeSelection:
+class ModeSelection(Frozen):
     """What is kept of a structure."""
 
     count: int | None = None  # modes; None for all up to some times the highest frequency of interest
@@ -37,8 +37,7 @@ class ModeSelection:
     other_rows: Sequence[int] = ()  # whose displacement is asked for, though no load acts there
 
 
-@dataclass(frozen=True)
-class Reduced:
+class Reduced(Frozen):
     """A structure as modes of mass 1; the first `kept` are its own, the others stand for what is left out."""
 
     modes: Modes

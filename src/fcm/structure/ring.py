@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray, Scene
 from fcm.structure.linear import FROM_SINE, Linear, amplitudes, attached_to, with_springs
@@ -17,8 +17,7 @@ from fcm.structure.receptance import Receptance, TravellingReceptance
 ComplexArray = npt.NDArray[np.complex128]
 
 
-@dataclass(frozen=True)
-class Wave:
+class Wave(Frozen):
     """The structure as one harmonic meets it."""
 
     natural: FloatArray  # (mode,) [rad/s]
@@ -31,7 +30,6 @@ class Wave:
         return with_springs(self.natural, self.ports, springs)
 
 
-@dataclass(frozen=True)
 class RingLinear(Linear):
     """The structure of a sector; the fields of `Linear` are what the mean meets, of nodal diameter 0."""
 
@@ -85,8 +83,7 @@ class RingLinear(Linear):
         return self.wave(harmonic).stiffened(springs)
 
 
-@dataclass(frozen=True)
-class Diameter:
+class Diameter(Frozen):
     """Natural frequencies [rad/s] in ascending order, (mode,) each."""
 
     number: int

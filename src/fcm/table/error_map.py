@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
 from fcm.contact.fourier import fourier_coefficients
 from fcm.contact.surface import CELLS, COEFFICIENTS, Edges, Plane, boundaries, edges
+from fcm.frozen import Frozen
 from fcm.table.atlas import FloatArray
 from fcm.table.error import Interpolant
 from fcm.table.options import MAP_OPTIONS
@@ -16,8 +16,7 @@ from fcm.table.options import MAP_OPTIONS
 CORNER = np.geomspace(1e-4, 0.1, 25)  # and more of them, at so much from b_bar = 1
 
 
-@dataclass(frozen=True)
-class ErrorMap:
+class ErrorMap(Frozen):
     """Absolute difference of one coefficient from its closed form, in the middle of each cell of a plane."""
 
     coefficient: str

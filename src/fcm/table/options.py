@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class ErrorOptions:
+class ErrorOptions(Frozen):
     """How the error of a table is measured and checked."""
 
     points: int = 1_000_000  # random points at which a table is compared with the closed form
@@ -16,8 +15,7 @@ class ErrorOptions:
     max_change: float = 1e-3  # relative difference that other arithmetic may make at the same points
 
 
-@dataclass(frozen=True)
-class ErrorMapOptions:
+class ErrorMapOptions(Frozen):
     """Where the greatest error of a table is looked for."""
 
     zooms: int = 4  # times that the worst point is looked for on a finer grid around it
@@ -28,8 +26,7 @@ class ErrorMapOptions:
     points_of_cell: int = 8  # points to a cell, along each axis, at which charts are compared where they meet
 
 
-@dataclass(frozen=True)
-class NodeOptions:
+class NodeOptions(Frozen):
     """The nodes of a table, and how splines are evaluated between them."""
 
     max_nodes: int = 20_000_000  # nodes of a table; 20 times the default, half a gigabyte
@@ -45,8 +42,7 @@ class NodeOptions:
     serial_multiplications: int = 200_000
 
 
-@dataclass(frozen=True)
-class StudyOptions:
+class StudyOptions(Frozen):
     """The layouts of nodes that are compared with one another."""
 
     box: float = 3.0  # |n0_bar| and b_bar are at most this on a rectilinear grid; phi is in [0, pi]

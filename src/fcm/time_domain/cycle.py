@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.time_domain.segments import Segments, sample
 from fcm.time_domain.system import LETTERS, System
 
 
-@dataclass(frozen=True)
-class Cycle:
+class Cycle(Frozen):
     """The motion over one period of the force, or over the part of one that ends a phase."""
 
     system: System

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.measures import Scan
@@ -14,8 +14,7 @@ from fcm.time_domain.segments import Segments
 from fcm.time_domain.system import System
 
 
-@dataclass(frozen=True)
-class Measure:
+class Measure(Frozen):
     """One cycle of each degree of freedom; lengths in the scene's unit."""
 
     amplitude: FloatArray  # (dof,) half the peak-to-peak

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, Protocol
 
 import numpy as np
 
 from fcm.at_rest import at_rest
+from fcm.frozen import Frozen
 from fcm.model.scene import Scene
 from fcm.time_domain.errors import SimulationError
 from fcm.time_domain.options import TIME, TimeOptions
@@ -18,8 +19,7 @@ from fcm.time_domain.schedule_record import CompletedPhase, Record, record, unfi
 from fcm.time_domain.simulation import Progress
 
 
-@dataclass(frozen=True)
-class Histories:
+class Histories(Frozen):
     """A schedule simulated for each curve of a scene."""
 
     scene: Scene

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class SimulationOptions:
+class SimulationOptions(Frozen):
     """The exact motion.
 
     max_transitions: of contacts in one cycle, at most; with more they chatter.
@@ -15,8 +14,7 @@ class SimulationOptions:
     max_transitions: int = 200_000
 
 
-@dataclass(frozen=True)
-class SettlingOptions:
+class SettlingOptions(Frozen):
     """Whether a transient has settled.
 
     cycles: whose amplitudes are compared with those of as many before. min_change: relative change that is
@@ -30,8 +28,7 @@ class SettlingOptions:
     tolerance: float = 1e-3
 
 
-@dataclass(frozen=True)
-class HistoryOptions:
+class HistoryOptions(Frozen):
     """What is kept of a schedule.
 
     max_samples, min_samples: of a cycle, at most and at least. max_displacements: that are sampled, of all
@@ -46,8 +43,7 @@ class HistoryOptions:
     max_letters: int = 40
 
 
-@dataclass(frozen=True)
-class TransitionOptions:
+class TransitionOptions(Frozen):
     """How the transitions of contacts are found in a motion.
 
     rounding: of a state after a step, relative to its terms. depth: an exit that is passed by less, relative
@@ -71,8 +67,7 @@ class TransitionOptions:
     max_order: int = 7
 
 
-@dataclass(frozen=True)
-class FlowOptions:
+class FlowOptions(Frozen):
     """The flows of a scene, each of one combination of contact states.
 
     min_count: that are kept at least. max_bytes: memory of those that are kept otherwise. dense_size:
@@ -90,8 +85,7 @@ class FlowOptions:
     transitions: TransitionOptions = TransitionOptions()
 
 
-@dataclass(frozen=True)
-class TimeOptions:
+class TimeOptions(Frozen):
     """All of the package, by what they are for: see the class of each field."""
 
     simulation: SimulationOptions = SimulationOptions()

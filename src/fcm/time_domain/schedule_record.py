@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray, Phase, Scene
 from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.cycle_measures import measure
@@ -29,8 +30,7 @@ NOT_BEGUN = "interrupted before it was simulated"
 ByteArray = npt.NDArray[np.int8]
 
 
-@dataclass(frozen=True)
-class PhaseResult:
+class PhaseResult(Frozen):
     """What one phase of a schedule came to; displacements are of its last whole cycle."""
 
     frequency: float  # [rad/s]
@@ -84,8 +84,7 @@ class Record:
         return total([phase.energy for phase in self.phases])
 
 
-@dataclass(frozen=True)
-class CompletedPhase:
+class CompletedPhase(Frozen):
     """What is reported of a whole phase, and the state at its end: the schedule can go on from there."""
 
     measures: FloatArray  # (4, cycle, dof) amplitude, mean, greatest and least displacement

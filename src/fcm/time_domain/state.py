@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.static_equilibrium import RestError, rest_of
 from fcm.model.scene import FloatArray, Scene
 from fcm.scene.errors import counted
@@ -15,8 +14,7 @@ from fcm.time_domain.integrator import March
 from fcm.time_domain.system import System
 
 
-@dataclass(frozen=True)
-class State:
+class State(Frozen):
     """Everything that the motion from an instant on depends on.
 
     The slip motion of each contact is w = u - friction / k_u (2); its normal load follows from the

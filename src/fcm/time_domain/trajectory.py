@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray, Scene
 from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.cycle_measures import Measure, measure
@@ -34,8 +34,7 @@ class History(NamedTuple):
     states: npt.NDArray[np.str_]  # (time, contact) letters E, P, N, S
 
 
-@dataclass(frozen=True)
-class Motion:
+class Motion(Frozen):
     """The exact motion of a scene; time starts at 0 with the motion."""
 
     scene: Scene

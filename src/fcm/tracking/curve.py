@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.tracking.extended_system import Condition, ExtendedSystem, Kind
 from fcm.tracking.nonsmooth_continuation import follow_special_point
@@ -17,8 +18,7 @@ from fcm.tracking.tracked_point import Ending, TrackedPoint, TrackingSetup
 BoolArray = npt.NDArray[np.bool_]
 
 
-@dataclass(frozen=True)
-class SpecialPointCurve:
+class SpecialPointCurve(Frozen):
     """One curve: points in the order along it."""
 
     condition: Condition

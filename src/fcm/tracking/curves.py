@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from typing import Protocol, TypeVar
 
 import numpy as np
 
 from fcm.continuation.follow import Progress
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.tracking.curve import SpecialPointCurve, both_ways
 from fcm.tracking.extended_system import Condition, Kind
@@ -33,8 +33,7 @@ def uncached(step: Callable[[], T], /) -> T:
     return step()
 
 
-@dataclass(frozen=True)
-class TrackedCurves:
+class TrackedCurves(Frozen):
     """All curves, and what could not be followed."""
 
     curves: tuple[SpecialPointCurve, ...]

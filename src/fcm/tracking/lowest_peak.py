@@ -19,6 +19,7 @@ import numpy as np
 
 from fcm.at_rest import at_rest
 from fcm.continuation.follow import Progress
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.tracking.curve import SpecialPointCurve, both_ways
@@ -45,8 +46,7 @@ T = TypeVar("T")
 MIN_HEIGHT = PieceHeight(0.0, 0.0, np.zeros(0), -1)
 
 
-@dataclass(frozen=True)
-class LowestPeak:
+class LowestPeak(Frozen):
     """The least peak, None where there is none; what was followed; whether it is known to be least."""
 
     best: EnvelopeMinimum | None

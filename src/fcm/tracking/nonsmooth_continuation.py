@@ -8,11 +8,12 @@ becomes the greatest. `CornerCrossing` finds the way on from there, as `corner` 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from fcm.continuation import End, Events, FollowOptions, Mark, Path, Status, follow
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.tracking.corner_crossing import CornerCrossing
 from fcm.tracking.extended_system import Condition
@@ -32,8 +33,7 @@ def land(setup: TrackingSetup, condition: Condition, z: FloatArray) -> TrackedPo
     return Pieces(setup, condition).land(z)
 
 
-@dataclass(frozen=True)
-class _End:
+class _End(Frozen):
     """What may end a piece: a function of z, not negative as long as the equations hold, and what follows."""
 
     holds: End

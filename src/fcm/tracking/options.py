@@ -5,16 +5,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from fcm.continuation.options import StepOptions
+from fcm.frozen import Frozen
 from fcm.stability.options import STABILITY, StabilityOptions
 
 PIECE_STEPS = StepOptions(initial_step=1e-3, min_step=1e-7, max_steps=3000, retreats=())
 
 
-@dataclass(frozen=True)
-class PieceOptions:
+class PieceOptions(Frozen):
     """Of the smooth pieces of a tracked curve, and how they are joined. Lengths are in the problem's scale.
 
     Attributes
@@ -72,8 +70,7 @@ class PieceOptions:
     min_radial_cosine: float = 0.7
 
 
-@dataclass(frozen=True)
-class SpecialPointOptions:
+class SpecialPointOptions(Frozen):
     """The equations of a special point of a response.
 
     Attributes
@@ -97,8 +94,7 @@ class SpecialPointOptions:
     max_tangent: float = 1e3
 
 
-@dataclass(frozen=True)
-class CornerOptions:
+class CornerOptions(Frozen):
     """Special points that are corners of a response. Lengths are in the problem's scale.
 
     Attributes
@@ -122,8 +118,7 @@ class CornerOptions:
     side_distance: float = 1e-13
 
 
-@dataclass(frozen=True)
-class KinkOptions:
+class KinkOptions(Frozen):
     """The way on from a kink, on a circle about it.
 
     Attributes
@@ -148,8 +143,7 @@ class KinkOptions:
     jump_fraction: float = 1e-3
 
 
-@dataclass(frozen=True)
-class OnsetOptions:
+class OnsetOptions(Frozen):
     """The extremes within a cycle of what a contact does.
 
     Attributes
@@ -164,8 +158,7 @@ class OnsetOptions:
     max_iterations: int = 4
 
 
-@dataclass(frozen=True)
-class CurveOptions:
+class CurveOptions(Frozen):
     """All curves over a range of the number.
 
     Attributes
@@ -193,8 +186,7 @@ class CurveOptions:
     cusp_tolerance: float = 1e-3
 
 
-@dataclass(frozen=True)
-class KnownCurveOptions:
+class KnownCurveOptions(Frozen):
     """Whether a curve passes a point that was found otherwise.
 
     Attributes
@@ -213,8 +205,7 @@ class KnownCurveOptions:
     nearest_chords: int = 4
 
 
-@dataclass(frozen=True)
-class TurnErrorOptions:
+class TurnErrorOptions(Frozen):
     """The error at a turn of the number.
 
     Attributes
@@ -232,8 +223,7 @@ class TurnErrorOptions:
     before_end: float = 0.05
 
 
-@dataclass(frozen=True)
-class EnvelopeOptions:
+class EnvelopeOptions(Frozen):
     """The greatest of several peaks over the number, and its least value.
 
     Attributes
@@ -273,8 +263,7 @@ class EnvelopeOptions:
     min_flat: float = 1e-3
 
 
-@dataclass(frozen=True)
-class TrackedStabilityOptions:
+class TrackedStabilityOptions(Frozen):
     """Where stability changes along a tracked curve.
 
     Attributes
@@ -289,8 +278,7 @@ class TrackedStabilityOptions:
     halvings: int = 14
 
 
-@dataclass(frozen=True)
-class TrialOptions:
+class TrialOptions(Frozen):
     """The least peak by trials.
 
     Attributes
@@ -315,8 +303,7 @@ class TrialOptions:
     min_flat: float = 0.2
 
 
-@dataclass(frozen=True)
-class TrackingOptions:
+class TrackingOptions(Frozen):
     """All of tracked curves, by what they are for: see the class of each field."""
 
     pieces: PieceOptions = PieceOptions()
@@ -333,8 +320,7 @@ class TrackingOptions:
     floquet: StabilityOptions = STABILITY
 
 
-@dataclass(frozen=True)
-class SearchOptions:
+class SearchOptions(Frozen):
     """Over the range of one number, see `fcm.tracking.lowest_peak`.
 
     Attributes
@@ -355,8 +341,7 @@ class SearchOptions:
     tracking: TrackingOptions = TrackingOptions()
 
 
-@dataclass(frozen=True)
-class DescentOptions:
+class DescentOptions(Frozen):
     """Over two or three numbers, see `fcm.tracking.minimax`.
 
     Attributes

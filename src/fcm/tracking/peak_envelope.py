@@ -8,13 +8,14 @@ where a piece turns, where two pieces cross, or at an end of one.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from fcm.continuation.corrector import Newton
+from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.tracking.curve import SpecialPointCurve
 from fcm.tracking.extended_system import Condition, ExtendedSystem, Kind
@@ -39,8 +40,7 @@ class PieceHeight(NamedTuple):
     dof: int
 
 
-@dataclass(frozen=True)
-class EnvelopeMinimum:
+class EnvelopeMinimum(Frozen):
     """The optimum on a line: the value of s, the greatest amplitude there, and which pieces have it."""
 
     s: float

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
 
+from fcm.frozen import Frozen
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 from fcm.tracking.extended_system import Condition, ExtendedSystem
@@ -33,8 +33,7 @@ class Ending(Enum):
         return self not in (Ending.CORNER, Ending.STALLED, Ending.LONG)
 
 
-@dataclass(frozen=True)
-class TrackedPoint:
+class TrackedPoint(Frozen):
     """A point of a tracked curve: z = (x, omega, s), its direction in units of z, and what it is."""
 
     z: FloatArray
@@ -45,8 +44,7 @@ class TrackedPoint:
     switch: bool = False  # a corner begins or ends to be what is special
 
 
-@dataclass(frozen=True)
-class TrackingSetup:
+class TrackingSetup(Frozen):
     """What all curves of one run share."""
 
     system: System

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 import numpy.typing as npt
@@ -13,12 +13,12 @@ from fcm.contact.periodic.coefficients import one_motion
 from fcm.contact.periodic.cycle import LineCycle
 from fcm.contact.periodic.margins import Measures
 from fcm.contact.pieces import LoadedPieces, friction, waves_at
+from fcm.frozen import Frozen
 
 LETTERS = {-1: "N", 0: "E", 1: "P", 2: "S"}  # by the kernel's states
 
 
-@dataclass(frozen=True)
-class PeriodicLoop(LoadedPieces):
+class PeriodicLoop(Frozen, LoadedPieces):
     """One steady cycle of a contact under x(theta) = Re sum_h X_h exp(i h theta).
 
     Attributes

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -13,12 +13,12 @@ from fcm.contact.plane.coefficients import one_motion
 from fcm.contact.plane.forces import PlanarContact
 from fcm.contact.plane.options import FINEST, LOOP
 from fcm.contact.plane.radau import STAGES, radau
+from fcm.frozen import Frozen
 
 LETTERS = "EPS"  # by the kernel's states
 
 
-@dataclass(frozen=True)
-class PlanarLoop(LoadedPieces):
+class PlanarLoop(Frozen, LoadedPieces):
     """One steady cycle of a contact in its plane under x(theta) = Re sum_h X_h exp(i h theta).
 
     Attributes

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+
+from fcm.frozen import Frozen
 
 
-@dataclass(frozen=True)
-class PlanarOptions:
+class PlanarOptions(Frozen):
     """Tolerances and limits of the kernel of contacts in a plane; angles in radians.
 
     Of the panels by which slip is followed
@@ -104,8 +105,7 @@ class PlanarOptions:
     min_motion: float = 1e-150
 
 
-@dataclass(frozen=True)
-class LoopOptions:
+class LoopOptions(Frozen):
     """How a loop is read from a cycle.
 
     recorded_panels : of slip that are recorded at first.

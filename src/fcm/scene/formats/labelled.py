@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
+from fcm.frozen import Frozen
 from fcm.scene.files import UnreadableError
 
 Integers = npt.NDArray[np.int64]
@@ -17,8 +17,7 @@ Floats = npt.NDArray[np.float64]
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")  # numbered from 1 by CalculiX, Abaqus and Nastran
 
 
-@dataclass(frozen=True)
-class Labelled:
+class Labelled(Frozen):
     """A sparse matrix (row, row); rows are the names of its degrees of freedom, empty where none are."""
 
     matrix: Any
