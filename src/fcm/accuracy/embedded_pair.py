@@ -99,36 +99,21 @@ def errors_along(
     """
     quantities = quantities or reported_quantities(system, path)
     contacts = ContactRecord.at(system, path.z)
-    reported = ReportedPath(path, quantities, _flat(contacts.contact_loads))
-    tops, d = quantities.amplitude.argmax(axis=0), np.arange(quantities.amplitude.shape[1])
-    folds, size = path.where(Mark.FOLD), quantities.amplitude.max(axis=0)
+    size, folds, tops = (
+        quantities.amplitude.max(axis=0),
+        path.where(Mark.FOLD),
+        quantities.amplitude.argmax(axis=0),
+    )
     special = np.unique(np.concatenate((folds, path.where(Mark.PEAK), tops)))
     share, met = _spectrum(system, path, quantities, special, size, options)
     more = reference_harmonics(system.harmonics, share, system.layout.ports, options)
     nothing = not share.any() and max(system.harmonics) < LIMITS.harmonics  # beyond that it is not looked at
-    if quantities.linear.all() or nothing or more == system.harmonics:
-        none = np.full_like(quantities.amplitude, 0.0 if quantities.linear.all() or nothing else np.nan)
-        of_folds = np.full(len(folds), none[0, 0])
-        contact_loads = np.full((len(path.z), len(system.scene.contacts), 4), none[0, 0])
-        known: Mask = np.isfinite(none[:, 0])  # then the reference's curve is this one
-        own = (piece_of(reported),) if known.all() and len(path.z) > 1 else ()
-        more = system.harmonics
-        values = (
-            none,
-            none[:, 0],
-            known,
-            np.zeros_like(known),
-            none[0],
-            size,
-            of_folds,
-            share,
-            more,
-            contact_loads,
-            contact_loads[0],
-        )
-        return Errors(*values, contacts, own)
-    seconds = budget or Budget(options.max_seconds)
-    reference = ReferenceCurve(system, reported, more, options, seconds)
+    reported = ReportedPath(path, quantities, _flat(contacts.contact_loads))
+    if quantities.linear.all() or nothing:
+        return _same_error(system, reported, contacts, share, 0.0)
+    if more == system.harmonics:
+        return _same_error(system, reported, contacts, share, np.nan)
+    reference = ReferenceCurve(system, reported, more, options, budget or Budget(options.max_seconds))
     elsewhere = more
     if not reference.is_same_curve():
         elsewhere = affordable_reference(system, path, share, options)
@@ -136,46 +121,26 @@ def errors_along(
         reference.stretches.budget = Budget(0.0)
     change = reference.displacements(np.concatenate((reference.distinct_points(special), folds, met)))
     followed = reference.follow_stretches(change)
-    compared, dofs = reference.compared_quantities(change), quantities.amplitude.shape[1]
+    compared = reference.compared_quantities(change)
     shift = reference.shifts(compared, followed)
     contact_loads, greatest = contact_load_errors(reference, compared, shift, followed, folds)
-    shift = shift[:, :dofs]
+    shift = shift[:, : len(size)]
     error = with_reference_errors(reference, _of_points(reference, shift, change))
     error[folds] = np.nan  # the reference has two amplitudes at that frequency, or none
-    unit = reference.unit
-    inside = (tops > 0) & (tops < len(path.z) - 1)
-    at_ends = quantities.amplitude[tops, d] + unit[tops, d] * shift[tops, d]
-    for end in {0, len(path.z) - 1}.intersection(
-        tops.tolist()
-    ):  # which the reference is known beyond, or not
-        there = reference.amplitude_at_frequency(end)
-        at_ends = at_ends if there is None else np.where(tops == end, there, at_ends)
-    height = np.where(inside, heights(reference, change[:, 1:], followed, tops, met), at_ends)
-    rise = rise_between_points(reference, np.zeros_like(unit), tops)  # no error
-    now = quantities.amplitude[tops, d] + np.where(inside, rise, 0.0)
-    settles = inside | ~reference.linear[tops]
-    determined = settles & np.isfinite(height)
-    every = np.unique(tops[determined])
-    further, beyond = reference.errors_at_peaks(
-        every, np.array([inside[tops == top][0] for top in every], dtype=bool)
-    )
-    which = np.searchsorted(every, tops[determined])
-    height[determined] += further[which, d[determined]]
-    at_tops = (np.abs(height - now) / unit[tops, d])[determined]
-    left = np.abs(beyond[which, d[determined]]) / unit[tops[determined], d[determined]]
-    error[tops[determined], d[determined]] = np.maximum(at_tops, left)
-    at_rest = quantities.amplitude <= np.finfo(float).eps * unit  # but for rounding
-    error *= unit / np.where(at_rest, unit, quantities.amplitude)
+    height, told = _set_errors_of_peaks(reference, error, shift, change, followed, met)
+    unit, amplitude = reference.unit, quantities.amplitude
+    at_rest = amplitude <= np.finfo(float).eps * unit  # but for rounding
+    error *= unit / np.where(at_rest, unit, amplitude)
     comes: Mask = ~np.any(np.isnan(error), axis=1)
     system.work.add(reference.seconds())
     of_folds = _of_folds(reference, folds, change, followed)
     reference.release()
     return Errors(
         amplitude=error,
-        truncation=_truncation(error, quantities.amplitude),
+        truncation=_truncation(error, amplitude),
         is_same_curve=comes,
         ends_before=reference.ends_before,
-        peak=np.where(determined | ~settles, error[tops, d], np.nan),
+        peak=np.where(told, error[tops, np.arange(len(size))], np.nan),
         height=height,
         fold=of_folds,
         share=share,
@@ -185,6 +150,30 @@ def errors_along(
         contacts=contacts,
         pieces=reference.pieces(compared, followed),
         motions=reference.motions(followed),
+    )
+
+
+def _same_error(
+    system: System, reported: ReportedPath, contacts: ContactRecord, share: FloatArray, error: float
+) -> Errors:
+    """Of a path of which everything has one error: none, where the reference's curve is this one, or NaN."""
+    path, amplitude = reported.path, reported.quantities.amplitude
+    every, exact = np.full_like(amplitude, error), not np.isnan(error)
+    contact_loads = np.full((len(path.z), len(system.scene.contacts), 4), error)
+    return Errors(
+        amplitude=every,
+        truncation=every[:, 0],
+        is_same_curve=np.full(len(every), exact),
+        ends_before=np.zeros(len(every), dtype=np.bool_),
+        peak=every[0],
+        height=amplitude.max(axis=0),
+        fold=np.full(len(path.where(Mark.FOLD)), error),
+        share=share,
+        reference=system.harmonics,
+        contact_loads=contact_loads,
+        greatest=contact_loads[0],
+        contacts=contacts,
+        pieces=(piece_of(reported),) if exact and len(path.z) > 1 else (),
     )
 
 
@@ -318,6 +307,46 @@ def _of_points(reference: ReferenceCurve, shift: FloatArray, change: FloatArray)
     moved[np.isnan(moved).any(axis=1)] = 0.0  # where it was followed the shifts alone tell
     every: FloatArray = np.maximum(error, reference.options.reference_error * moved)
     return every
+
+
+def _set_errors_of_peaks(
+    reference: ReferenceCurve,
+    error: FloatArray,
+    shift: FloatArray,
+    change: FloatArray,
+    followed: list[FollowedStretch],
+    met: Indices,
+) -> tuple[FloatArray, Mask]:
+    """Greatest amplitudes (dof,) of the reference, and whether their errors are told.
+
+    error (point, dof), in units of the reference's curve, has then at the greatest amplitudes by how much
+    these differ: of a peak in height, at an end of the path at the same frequency. What a reference with
+    still more harmonics differs by counts, too.
+    """
+    path, amplitude, unit = reference.path, reference.quantities.amplitude, reference.unit
+    tops, d = amplitude.argmax(axis=0), np.arange(amplitude.shape[1])
+    inside = (tops > 0) & (tops < len(path.z) - 1)
+    at_ends = amplitude[tops, d] + unit[tops, d] * shift[tops, d]
+    for end in {0, len(path.z) - 1}.intersection(
+        tops.tolist()
+    ):  # which the reference is known beyond, or not
+        there = reference.amplitude_at_frequency(end)
+        at_ends = at_ends if there is None else np.where(tops == end, there, at_ends)
+    height = np.where(inside, heights(reference, change[:, 1:], followed, tops, met), at_ends)
+    rise = rise_between_points(reference, np.zeros_like(unit), tops)  # no error
+    now = amplitude[tops, d] + np.where(inside, rise, 0.0)
+    settles = inside | ~reference.linear[tops]
+    determined = settles & np.isfinite(height)
+    every = np.unique(tops[determined])
+    further, beyond = reference.errors_at_peaks(
+        every, np.array([inside[tops == top][0] for top in every], dtype=bool)
+    )
+    which = np.searchsorted(every, tops[determined])
+    height[determined] += further[which, d[determined]]
+    at_tops = (np.abs(height - now) / unit[tops, d])[determined]
+    left = np.abs(beyond[which, d[determined]]) / unit[tops[determined], d[determined]]
+    error[tops[determined], d[determined]] = np.maximum(at_tops, left)
+    return height, determined | ~settles
 
 
 def _of_folds(
