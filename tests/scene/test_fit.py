@@ -126,7 +126,7 @@ def test_names_that_are_accepted_are_said(written):
     in_mm = "frequency,amplitude u [mm]\n1,1\n2,3\n"
     metres = oscillator(RANGE) + '[units]\nlength = "m"\nforce = "N"\n'
     said = mistakes(written(FIT, in_mm, scene=metres))
-    assert "its amplitude is in mm, lengths of the scene are in m" in said
+    assert "its amplitude is in mm, and here it has to be in m" in said
     (one,) = load_scene(written(FIT, in_mm.replace("mm", "m"), scene=metres)).fit.data
     assert one.amplitude.tolist() == [1.0, 3.0]
 

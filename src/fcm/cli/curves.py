@@ -414,7 +414,7 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
                 of_peaks = short(max(peaks)).replace(BEYOND, "more than 100 %")
                 beside = " (beside folds)" if harmonic > 1.0 else ""
                 of_any = short(harmonic).replace(BEYOND, "more than 100 %")
-                of_any += f" of the greatest amplitude at any point{beside}"
+                of_any += f" of the greatest amplitude at any point{beside}{_where(summary, harmonic)}"
                 below = max(peaks) < harmonic
                 of_all = f"{of_peaks} of peaks and {of_any}" if below else of_peaks
             but = ", and of some peaks unknown" if untold else ""
@@ -423,6 +423,12 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
         f"{count}, {points} points in {summary['seconds']:.2f} s\n"
         f"largest relative error: {'; '.join(errors) or 'not known'}"
     )
+
+
+def _where(summary: Mapping[str, Any], error: float) -> str:
+    """At which frequency an error of a curve is as large; empty where that is not told."""
+    at = [one.get("truncation_error_at") for one in summary["curves"] if one.get("truncation_error") == error]
+    return f", most at {at[0]:.6g} {summary['frequency_unit']}" if at and at[0] is not None else ""
 
 
 def incomplete(summary: Mapping[str, Any]) -> str:

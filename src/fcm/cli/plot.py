@@ -123,7 +123,7 @@ def response(
     read = read_response(file)
     marked = None
     if points is not None and points.suffix.lower() in MEASURED:
-        own = read_measured_points(points, read.frequency_unit)
+        own = read_measured_points(points, read.frequency_unit, read.length)
         read = replace(read, measured=(*read.measured, own))
     elif points is not None:
         marked = read_points(points)

@@ -179,7 +179,20 @@ def _optimum(one: Mapping[str, Any], curve: Mapping[str, Any], unit: str) -> str
         f"least {' and '.join(map(plain, one['minimise']))}: {one['value']:.6g}{_stays(one, curve)} "
         f"({_error(one)}{_ranges(one)})"
     )
-    return f"{least} with {where}{kind}{_flat(one)}{_higher(one)}\n{at}{f'; {swept}' if swept else ''}{said}"
+    where = f"{least} with {where}{kind}{_flat(one)}{_higher(one)}"
+    return f"{where}\n{at}{f'; {swept}' if swept else ''}{said}{_nearly(one)}"
+
+
+def _nearly(one: Mapping[str, Any]) -> str:
+    """With which numbers the peak is hardly greater: how sharp the optimum is."""
+    if (near := one.get("nearly_least")) is None or one["kind"] == "unfinished":
+        return ""
+    low, high = (
+        f"{near[end]:.5g}{'' if near[f'{end}_known'] else ', where it was followed to,'}"
+        for end in ("low", "high")
+    )
+    key = plain(next(iter(one["values"])))
+    return f"\nat most {100.0 * near['share']:g} % more with {key} from {low} to {high}".rstrip(",")
 
 
 def _end(one: Mapping[str, Any]) -> str:

@@ -102,8 +102,9 @@ def measured_of(variables: Any) -> tuple[DrawnMeasured, ...]:
     )
 
 
-def read_measured_points(path: Path, unit: str) -> DrawnMeasured:
-    """Points of a file of measurements, as of [fit]: frequencies in a unit, displacements.
+def read_measured_points(path: Path, unit: str, length: str = "") -> DrawnMeasured:
+    """Points of a file of measurements, as of [fit]: frequencies in a unit, displacements in that of length,
+    if it is known.
 
     What a universal file says to be velocities or accelerations is divided by the frequency.
 
@@ -116,7 +117,7 @@ def read_measured_points(path: Path, unit: str) -> DrawnMeasured:
     from fcm.scene.measured_file import read_measured
 
     try:
-        found = read_measured(path.name, Files(path.parent), ("frequency", "amplitude"), ())
+        found = read_measured(path.name, Files(path.parent), ("frequency", "amplitude"), (), length=length)
     except DataFileError as error:
         raise PlotError(f"{path}: {error}") from None
     if "angular_frequency" in found:

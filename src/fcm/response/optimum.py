@@ -12,6 +12,7 @@ import numpy as np
 
 from fcm.model.scene import Optimum, Scene
 from fcm.response.least_peak import Found, PeakTask, with_values
+from fcm.response.nearly_least import nearly_least
 from fcm.response.options import OPTIMUM, ResponseOptions
 from fcm.response.request import ResponseError, request_of
 from fcm.response.ring_limits import check_no_ring, refuse_own_laws
@@ -82,7 +83,11 @@ def optimise(
     for one, curve in zip(tracking.optima, response.curves, strict=True):
         _check_moves(one, curve)
     tracking.optima = [
-        replace(_with_error(one, curve), higher=_missed_peak(one, curve))
+        replace(
+            _with_error(one, curve),
+            higher=_missed_peak(one, curve),
+            nearly=nearly_least(one, tracking.curves, list(curve.peaks), OPTIMUM.nearly),
+        )
         for one, curve in zip(tracking.optima, response.curves, strict=True)
     ]
     tracking.problems += [

@@ -296,6 +296,8 @@ class OptimumOptions(Frozen):
         Relative difference of frequencies at which a peak was tracked and traced.
     max_dofs : int
         Degrees of freedom, up to which a curve is followed by all: their peaks are points of it.
+    nearly : float
+        Share above the least peak, up to which it is told for which numbers.
     search : SearchOptions
         How the least over a range of one number is found.
     """
@@ -305,6 +307,7 @@ class OptimumOptions(Frozen):
     search_share: float = 0.8
     frequency_tolerance: float = 1e-6
     max_dofs: int = 50
+    nearly: float = 0.01
     search: SearchOptions = SEARCH
 
 

@@ -30,6 +30,7 @@ class CondensedCurve(Frozen):
     swept: FrequencySweep  # of a slow upward and a slow downward sweep
     table_error: float | None  # the largest that is known
     truncation_error: float | None
+    truncation_error_at: float  # [rad/s] where it is the largest; NaN where it is not known
     # (dof, 3): amplitude, frequency [rad/s] and error of the greatest motion that is stable; NaN without one
     stable_peaks: FloatArray
     linear: str  # how the response is that of a linear structure; empty if it is not
@@ -56,6 +57,7 @@ def condense(curve: Curve) -> CondensedCurve:
         swept=curve.swept(),
         table_error=worst(curve.table_error),
         truncation_error=worst(curve.truncation_error),
+        truncation_error_at=_at_worst(curve),
         stable_peaks=_stable_peaks(curve),
         linear=_linear(curve),
         lower_peaks=_lower_peaks(curve),
@@ -76,6 +78,14 @@ def worst(errors: FloatArray) -> float | None:
     """The largest error that is known."""
     known = errors[np.isfinite(errors)]
     return float(known.max()) if known.size else None
+
+
+def _at_worst(curve: Curve) -> float:
+    """The frequency [rad/s] of the largest truncation error of a curve over the frequency."""
+    known = np.isfinite(curve.truncation_error)
+    if not known.any() or curve.level is not None or curve.mode is not None:
+        return float("nan")
+    return float(curve.frequency[np.where(known, curve.truncation_error, -np.inf).argmax()])
 
 
 def _ends(curve: Curve, known: FloatArray) -> tuple[float, float]:

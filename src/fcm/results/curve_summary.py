@@ -81,6 +81,8 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
     if swept.untold and not _unjudged(curve):
         out["stability_untold"] = [_untold(one, dofs, unit) for one in swept.untold]
     out |= {name: getattr(condensed, name) for name in ("stable", "table_error", "truncation_error")}
+    if np.isfinite(condensed.truncation_error_at):
+        out["truncation_error_at"] = float(in_unit(condensed.truncation_error_at, unit))
     if curve.orbits is not None:
         out |= _of_orbits(curve, curve.orbits, unit)
     if curve.mode is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
@@ -94,6 +94,19 @@ class TrackedCurve(Frozen):
         return {name: found for name, found in out.items() if found}
 
 
+class NearlyLeast(Frozen):
+    """Values of a number with which the greatest peak is at most a share above the least.
+
+    low_known, high_known : whether it is more beyond; else the peaks were not followed further.
+    """
+
+    share: float
+    low: float
+    high: float
+    low_known: bool
+    high_known: bool
+
+
 class Optimal(Frozen):
     """The least of the greatest of some peaks."""
 
@@ -119,6 +132,7 @@ class Optimal(Frozen):
         0.0  # of the number at which a higher peak ends, estimated, relative; 0 where none does
     )
     beside: dict[str, float] = field(default_factory=dict)  # the number where that peak still is
+    nearly: NearlyLeast | None = None  # the numbers around it with which the peak is hardly greater
 
     def summary(self, unit: str) -> dict[str, Any]:
         """For JSON."""
@@ -143,6 +157,7 @@ class Optimal(Frozen):
             "error": self.error,
             "between": None if self.between is None else list(self.between),
             "flat": {key: list(ends) for key, ends in self.flat.items()},
+            "nearly_least": None if self.nearly is None else asdict(self.nearly),
             "end_error": self.end_error,
             "higher": None if self.higher is None else dict(zip(("what", "value"), self.higher, strict=True)),
         }

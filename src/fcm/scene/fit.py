@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from fcm.model.scene import Fit, FloatArray, Measured
+from fcm.rotational_dofs import unit_of
 from fcm.scene.address import LEVEL
 from fcm.scene.draft import Draft, Number
 from fcm.scene.errors import choices, counted, kind, quoted, shown
@@ -24,6 +25,7 @@ from fcm.units import QUANTITIES, in_unit
 
 RESPONSE_KEYS = ("dof", "level", "quantity", "amplitude_error", "frequency_error")
 BACKBONE_KEYS = ("dof", "mode", "frequency_error", "damping_error")
+_PER_TIME = {"velocity": "/s", "acceleration": "/s^2"}  # behind the unit of a displacement
 MODE = Rule("a whole number of at least 1", low=1.0, whole=True)
 STARTS = Rule("a whole number from 1 to 100", low=1.0, high=100.0, whole=True)
 NOT_POSITIVE: Callable[[FloatArray], Any] = lambda values: ~(values > 0.0)  # noqa: E731
@@ -181,7 +183,10 @@ def _columns(
     wanted = ["frequency", "amplitude", *(["damping"] if backbone else []), *([level] if level else [])]
     try:
         optional = ("weight",) if backbone else ("phase", "weight")
-        found = read_measured(name, files, wanted, optional, others, length)
+        dof, quantity = section.data.get("dof"), section.data.get("quantity", "displacement")
+        own = unit_of(dof, length) if isinstance(dof, str) else length
+        own += _PER_TIME.get(quantity, "") if own and isinstance(quantity, str) else ""
+        found = read_measured(name, files, wanted, optional, others, own)
     except DataFileError as error:
         for fault in error.faults:
             section.wrong(key, fault)

@@ -192,10 +192,8 @@ def _in_units(
         elif unit:
             raise DataFileError(f"{quoted(file)}: its {key} is in {quoted(unit)}; known are {choices(known)}")
     _, unit = heads.get("amplitude", ("", ""))
-    if unit and length and unit != length:
-        raise DataFileError(
-            f"{quoted(file)}: its amplitude is in {unit}, lengths of the scene are in {length}"
-        )
+    if unit and length and unit.replace("²", "^2") != length:
+        raise DataFileError(f"{quoted(file)}: its amplitude is in {unit}, and here it has to be in {length}")
     return found
 
 

@@ -1,0 +1,71 @@
+"""How sharp an optimum is: the numbers around it with which the peak is hardly greater."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fcm.response import trace
+from fcm.response.nearly_least import nearly_least
+from fcm.response.optimum import optimise
+from fcm.results.tracked import Optimal, TrackedCurve
+from fcm.scene import scene_from_dict
+
+BLADE = {
+    "modal": {"dofs": ["u", "v"], "frequency": [1.0, 10.0], "damping": [0.01, 0.01],
+              "shapes": [[0.707, 0.707], [1.0, -0.5]]},
+    "contact": [{"name": "c", "tangential": "u", "normal": "v", "mu": 0.4, "k_u": 1.0, "k_v": 1.0,
+                 "n_0": 5.0}],
+    "force": [{"dof": "u", "amplitude": 1.0}],
+    "response": {"frequency": [0.7, 1.7], "harmonics": 1},
+}  # fmt: skip
+AIM = {"vary": "contact.c.n_0", "bounds": [1, 50], "minimise": "peak.u"}
+
+
+def peak(n_0):
+    contact = [BLADE["contact"][0] | {"n_0": float(n_0)}]
+    return trace(scene_from_dict(BLADE | {"contact": contact})).curves[0].peaks["u"].amplitude
+
+
+@pytest.mark.slow
+def test_responses_at_the_ends_have_peaks_greater_by_that_share():
+    (found,) = optimise(scene_from_dict(BLADE | {"optimum": AIM})).tracking.optima
+    near = found.nearly
+    assert near.low_known and near.high_known and near.low < found.values["contact.c.n_0"] < near.high
+    for end in (near.low, near.high):
+        assert peak(end) / found.value == pytest.approx(1.0 + near.share, abs=5e-4)
+
+
+def tracked(number, height, what="peak of u"):
+    none = np.zeros(number.size)
+    flags = none.astype(bool)
+    corner = np.full(number.size, "")
+    return TrackedCurve({}, what, number, none, height[:, None], corner, flags, flags, none, (), True, "")
+
+
+OPTIMAL = Optimal({}, {"n": 2.0}, ("peak.u",), 1.0, (("u", 1.0),), "kink", (1,))
+
+
+@pytest.mark.parametrize("share", [0.01, 0.1])
+def test_of_two_peaks_the_steeper_is_the_end_on_its_side(share):
+    number = np.linspace(1.0, 3.0, 21)
+    falling, rising = 1.0 - 0.5 * (number - 2.0), 1.0 + 2.0 * (number - 2.0)
+    near = nearly_least(OPTIMAL, [tracked(number, falling), tracked(number, rising)], ["u"], share)
+    assert (near.low, near.high) == pytest.approx((2.0 - 2.0 * share, 2.0 + 0.5 * share), rel=1e-9)
+    other = tracked(number, 9.0 + 0.0 * number, "peak of v")
+    again = nearly_least(OPTIMAL, [tracked(number, falling), tracked(number, rising), other], ["u"], share)
+    assert again == near
+
+
+def test_where_the_peaks_are_not_greater_up_to_an_end_that_is_said():
+    number = np.linspace(1.0, 3.0, 21)
+    near = nearly_least(OPTIMAL, [tracked(number, 1.0 + (number - 2.0).clip(0.0))], ["u"], 0.01)
+    assert (near.low, near.low_known) == (1.0, False) and near.high_known
+    assert near.high == pytest.approx(2.01)
+
+
+@pytest.mark.parametrize("kind", ["end", "trials", "flat", "unfinished"])
+def test_of_peaks_that_are_no_curves_around_it_nothing_is_told(kind):
+    number = np.linspace(1.0, 3.0, 21)
+    one = replace(OPTIMAL, kind=kind)
+    assert nearly_least(one, [tracked(number, 1.0 + abs(number - 2.0))], ["u"], 0.01) is None
