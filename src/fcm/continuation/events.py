@@ -10,7 +10,6 @@ that no point away from them tells of (`Landing`).
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import cython
@@ -22,6 +21,7 @@ from fcm.continuation.options import SIGN_CHANGE, EventOptions, SignChangeOption
 from fcm.continuation.path import FloatArray, Mark
 from fcm.continuation.problem import Point
 from fcm.continuation.step_control import Stepper
+from fcm.frozen import Frozen
 
 if cython.compiled:
     from cython.cimports.fcm.continuation.predictor import dot
@@ -161,8 +161,7 @@ class End(NamedTuple):
     within: float = 0.0
 
 
-@dataclass(frozen=True)
-class Events:
+class Events(Frozen):
     """What a curve is to have points at, besides its folds, corners, peaks, branch points and ends.
 
     Attributes

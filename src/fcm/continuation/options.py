@@ -11,6 +11,8 @@ from typing import Any
 
 import cython
 
+from fcm.frozen import Frozen
+
 if not cython.compiled:
     from dataclasses import dataclass
 else:
@@ -39,8 +41,7 @@ class Options:
         return type(self), self._values()
 
 
-@dataclasses.dataclass(frozen=True)  # taken by a kernel when it is made
-class SolverOptions:
+class SolverOptions(Frozen):  # taken by a kernel when it is made
     """How a dense system is solved; see `dense_solver`. They decide how fast, not what comes out.
 
     Attributes
@@ -55,8 +56,7 @@ class SolverOptions:
     blocked_rows: int = 40
 
 
-@dataclasses.dataclass(frozen=True)  # taken by a kernel when it is made
-class ProblemOptions:
+class ProblemOptions(Frozen):  # taken by a kernel when it is made
     """What holds for any problem that is followed; see `Problem`.
 
     Attributes
@@ -324,8 +324,7 @@ class SwitchingOptions(Options):
     many_unknowns: cython.int = 64
 
 
-@dataclasses.dataclass(frozen=True)  # taken by a kernel when it begins
-class SignChangeOptions:
+class SignChangeOptions(Frozen):  # taken by a kernel when it begins
     """How a change of sign of an event is bracketed; see `events`.
 
     Attributes
@@ -346,8 +345,7 @@ class SignChangeOptions:
 SIGN_CHANGE = SignChangeOptions()
 
 
-@dataclasses.dataclass(frozen=True)  # of no kernel
-class LabelOptions:
+class LabelOptions(Frozen):  # of no kernel
     """Steps where switching functions are labels, which tell no distance; see `labelled_switching`.
 
     Attributes
@@ -448,8 +446,7 @@ class FollowOptions(Options):
     labels: LabelOptions = field(default_factory=LabelOptions)
 
 
-@dataclasses.dataclass(frozen=True)  # of no kernel
-class PathOptions:
+class PathOptions(Frozen):  # of no kernel
     """When a solution lies on a path that was followed; see `all_branches` and `segment`.
 
     Attributes
