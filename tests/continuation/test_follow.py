@@ -1,5 +1,7 @@
 """Following curves that are known exactly, whatever the longest step."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -544,6 +546,34 @@ def test_all_branches_once_each():
     line, loop = found.paths
     assert line.z[:, 0] == pytest.approx(8.0, abs=1e-9) and np.all(np.diff(line.parameter) > 0.0)
     assert np.hypot(loop.z[:, 0] - 3.0, loop.parameter - 2.0) == pytest.approx(2.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.3])
+def test_a_way_forth_and_back_is_there_once(aside):
+    """A path that goes a part of a line, around what meets it in a point, and back, comes before the line."""
+
+    def f(x, p):
+        return x - 8.0, 1.0, 0.0
+
+    line = follow(Planar(f), start(8.0, -1.0), (-1.0, 5.0), options=FollowOptions(0.05))
+    forth = line.part(np.flatnonzero(line.parameter < 2.0))
+    end, last = forth.z[-1], len(forth.z) - 1
+    around = end + aside * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.1], [2.0, 0.0, 0.0], [1.0, 0.0, -0.1]])
+    loop = replace(forth.part(np.full(4, last)), z=around)
+    there = replace(forth.then(loop).then(forth.backwards()), status=Status.RETURNED)
+
+    def first_around(problem, z, *_, **__):
+        return line.backwards() if z[-1] == 5.0 else there
+
+    starts, span = [start(8.0, -1.0), start(8.0, 5.0)], (-1.0, 5.0)
+    found = all_branches(lambda: Planar(f), starts, span, Following(follow=first_around))
+    whole, *rest = found.paths
+    assert found.status is Status.COMPLETE and np.array_equal(whole.z, line.z)
+    assert len(rest) == (aside > 0.0)
+    for path in rest:
+        assert np.array_equal(path.z[:-1], around)
+    alone = all_branches(lambda: Planar(f), starts[:1], span, Following(follow=first_around))
+    assert len(alone.paths) == 1 and alone.paths[0] is there
 
 
 def test_a_start_inside_the_range_is_followed_both_ways():
