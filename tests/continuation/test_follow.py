@@ -548,8 +548,9 @@ def test_all_branches_once_each():
     assert np.hypot(loop.z[:, 0] - 3.0, loop.parameter - 2.0) == pytest.approx(2.0, abs=1e-9)
 
 
+@pytest.mark.parametrize("inside", [False, True])  # where the path begins
 @pytest.mark.parametrize("aside", [0.0, 0.3])
-def test_a_way_forth_and_back_is_there_once(aside):
+def test_a_way_forth_and_back_is_there_once(aside, inside):
     """A path that goes a part of a line, around what meets it in a point, and back, comes before the line."""
 
     def f(x, p):
@@ -560,12 +561,16 @@ def test_a_way_forth_and_back_is_there_once(aside):
     end, last = forth.z[-1], len(forth.z) - 1
     around = end + aside * np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.1], [2.0, 0.0, 0.0], [1.0, 0.0, -0.1]])
     loop = replace(forth.part(np.full(4, last)), z=around)
-    there = replace(forth.then(loop).then(forth.backwards()), status=Status.RETURNED)
+    status = Status.COMPLETE if inside else Status.RETURNED
+    there = replace(forth.then(loop).then(forth.backwards()), status=status)
 
-    def first_around(problem, z, *_, **__):
-        return line.backwards() if z[-1] == 5.0 else there
+    begin = len(forth.z) // 2 if inside else 0
+    back, on = there.part(np.arange(begin, -1, -1)), there.part(np.arange(begin, len(there.z)))
 
-    starts, span = [start(8.0, -1.0), start(8.0, 5.0)], (-1.0, 5.0)
+    def first_around(problem, z, *_, forward, **__):
+        return line.backwards() if z[-1] == 5.0 else on if forward else back
+
+    starts, span = [forth.z[begin], start(8.0, 5.0)], (-1.0, 5.0)
     found = all_branches(lambda: Planar(f), starts, span, Following(follow=first_around))
     whole, *rest = found.paths
     assert found.status is Status.COMPLETE and np.array_equal(whole.z, line.z)
@@ -573,7 +578,7 @@ def test_a_way_forth_and_back_is_there_once(aside):
     for path in rest:
         assert np.array_equal(path.z[:-1], around)
     alone = all_branches(lambda: Planar(f), starts[:1], span, Following(follow=first_around))
-    assert len(alone.paths) == 1 and alone.paths[0] is there
+    assert len(alone.paths) == 1 and np.array_equal(alone.paths[0].z, there.z)
 
 
 def test_a_start_inside_the_range_is_followed_both_ways():

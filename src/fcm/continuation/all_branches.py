@@ -111,14 +111,20 @@ def all_branches(
         last = (stopped.path,) if isinstance(stopped, PathInterrupted) else ()
         raise BranchesInterrupted(Branches((*paths, *last))) from None
     new = paths[len(known) :]
-    if any(path.status is Status.RETURNED for path in new):
+    if any(_may_end_where_it_began(path) for path in new):
         new = _each_way_once(known, new, new_problem())
     return Branches((*known, *new), tuple(lost))
 
 
+def _may_end_where_it_began(path: Path) -> bool:
+    """Whether both ends of a path are at the same end of the span; its start may have been between."""
+    whole = path.status in (Status.RETURNED, Status.COMPLETE)
+    return whole and bool(path.parameter[0] == path.parameter[-1])
+
+
 def _ends_where_it_began(path: Path, problem: Problem) -> bool:
     """Whether a path came back along the way that it had gone: to the same solution at an end of the span."""
-    if path.status is not Status.RETURNED:
+    if not _may_end_where_it_began(path):
         return False
     problem.measure(path.z[0])
     off = (path.z[-1] - path.z[0]) / np.asarray(problem.scale)
