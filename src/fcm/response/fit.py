@@ -89,8 +89,10 @@ def _fit(scene: Scene, method: str | Table, request: Request, execution: Executi
     response = Response.without_curves(plain)
     while True:
         near = [_ends(one) for one in rounds[-1:]]
+        last = request.harmonics is not None or len(rounds) == FITTED_RESPONSE.max_rounds - 1
+        begin, found, end = _shares(len(rounds), last)
         try:
-            stage = execution.stage(0.0, FITTED_RESPONSE.fit_share)
+            stage = execution.stage(begin, found)
             rounds.append(_Round(*_fitted_parameters(plain, scene, chosen, *near, execution=stage), chosen))
         except KeyboardInterrupt:
             if not rounds:
@@ -98,8 +100,7 @@ def _fit(scene: Scene, method: str | Table, request: Request, execution: Executi
             rounds[-1].solved.interrupted = True
         if rounds[-1].solved.interrupted:
             break
-        last = request.harmonics is not None or len(rounds) == FITTED_RESPONSE.max_rounds
-        stage = execution.stage(FITTED_RESPONSE.fit_share, 1.0)
+        stage = execution.stage(found, end)
         accuracy = None if last else _accuracy(rounds[-1].solved, request)
         try:
             response = _model_response(rounds[-1], data, accuracy, method, request, stage)
@@ -126,6 +127,16 @@ class _Round(Frozen):
     parameters: Parameters
     solved: Solved
     harmonics: tuple[int, ...]
+
+
+def _shares(rounds: int, last: bool) -> tuple[float, float, float]:
+    """Of the progress, after so many rounds: where one begins, has its numbers, and ends.
+
+    Each takes half of what is left, as nobody knows whether another follows; the last takes all.
+    """
+    begin = 1.0 - 0.5**rounds
+    end = 1.0 if last else 1.0 - 0.5 ** (rounds + 1)
+    return begin, begin + FITTED_RESPONSE.fit_share * (end - begin), end
 
 
 def _ends(one: _Round) -> list[FloatArray]:
