@@ -94,13 +94,14 @@ def curve_with(stable, tail=()):
     kept = trace(fcm.load_scene("yang1998-n5"), "closed-form").curves[0]
     peaks = {"u": kept.peaks["u"]}
     told = np.concatenate((np.array(stable, dtype=float), more[:, 2]))
-    states = kept.regime[: frequency.size]  # of no matter
+    states, error = kept.regime[: frequency.size], kept.truncation_error[: frequency.size]  # of no matter
     return replace(
         kept,
         frequency=frequency,
         amplitude=amplitude,
         stable=told,
         regime=states,
+        truncation_error=error,
         peaks=peaks,
         condensed=None,
     )
