@@ -447,6 +447,17 @@ def test_the_greatest_error_of_a_peak_stands_beside_the_greatest_of_any_point():
     )
 
 
+def test_an_error_of_a_lower_peak_above_those_of_the_greatest_is_said():
+    peak = {"u": {"amplitude": 1.0, "error": 0.01}}
+    several = {"u": [{"amplitude": 1.0, "error": 0.01}, {"amplitude": 0.1, "error": 0.75}]}
+    curve = {"points": 3, "harmonics": [1], "truncation_error": 0.2, "peak": peak, "peaks": several}
+    said = cost_and_error({"curves": [curve], "seconds": 1.0, "method": "table"})
+    assert "1.0e-02 of the greatest peaks, 7.5e-01 of lower ones and 2.0e-01 of the greatest" in said
+    several["u"][1]["error"] = 0.005
+    said = cost_and_error({"curves": [curve], "seconds": 1.0, "method": "table"})
+    assert "1.0e-02 of peaks and 2.0e-01 of the greatest" in said
+
+
 def test_the_error_of_what_hardly_moves_is_not_that_of_the_response():
     """Across a plane of symmetry the motion is rounding, and half a million times off with more harmonics."""
     peak = {"u": {"amplitude": 1.0, "error": 0.02}} | {

@@ -401,28 +401,38 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
     if harmonic is not None:
         untold = any(_untold(curve, dof) for curve in curves for dof in curve["peak"])
         shown = shown_dofs(summary)  # of which the table has the peaks
-        peaks, others = [], []
+        peaks, lower, others = [], [0.0], []
         for curve in curves:
             told = {dof: one for dof, one in curve["peak"].items() if one and one.get("error")}
             greatest = max((one["amplitude"] for one in told.values()), default=0.0) or 1.0
             peaks += [one["error"] for dof, one in told.items() if dof in shown]
+            several = (one for dof in shown for one in curve.get("peaks", {}).get(dof, ()))
+            lower += [one["error"] for one in several if one.get("error")]
             others += [one["error"] * one["amplitude"] / greatest for one in told.values()]
         harmonic = max([harmonic, *others])  # also where what lies around is not told
         if harmonic > 0.0 or not untold:  # the 0 of a motion at rest tells nothing of peaks
             of_all = f"{harmonic:.1e}"
             if peaks:
-                of_peaks = short(max(peaks)).replace(BEYOND, "more than 100 %")
+                alone = _amount(max(peaks))
+                of_peaks = f"{alone} of peaks"
+                if max(lower) > max(peaks):
+                    of_peaks = alone = f"{alone} of the greatest peaks, {_amount(max(lower))} of lower ones"
                 beside = " (beside folds)" if harmonic > 1.0 else ""
-                of_any = short(harmonic).replace(BEYOND, "more than 100 %")
-                of_any += f" of the greatest amplitude at any point{beside}{_where(summary, harmonic)}"
-                below = max(peaks) < harmonic
-                of_all = f"{of_peaks} of peaks and {of_any}" if below else of_peaks
+                of_any = f"{_amount(harmonic)} of the greatest amplitude at any point{beside}"
+                of_all = alone
+                if max(peaks) < harmonic:
+                    of_all = f"{of_peaks} and {of_any}{_where(summary, harmonic)}"
             but = ", and of some peaks unknown" if untold else ""
             errors.append(f"{of_all}, by the harmonics left out{but}")
     return (
         f"{count}, {points} points in {summary['seconds']:.2f} s\n"
         f"largest relative error: {'; '.join(errors) or 'not known'}"
     )
+
+
+def _amount(error: float) -> str:
+    """An error as a sentence says it."""
+    return short(error).replace(BEYOND, "more than 100 %")
 
 
 def _where(summary: Mapping[str, Any], error: float) -> str:
