@@ -5,7 +5,18 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from fcm.frozen import Frozen
+
 FloatArray = npt.NDArray[np.float64]
+
+
+class AngleOptions(Frozen):
+    """When an angle without a unit is asked about."""
+
+    largest: float = 2.001 * np.pi  # [rad] a whole turn, and what "6.2832" is more
+
+
+ANGLES = AngleOptions()
 
 UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}  # one unit of frequency in rad/s
 CF_UNIT = {"rad/s": "rad s-1", "Hz": "Hz"}  # as the conventions for netCDF files write them
@@ -13,7 +24,6 @@ EXCITATION = "excitation.frequency"  # key of where a curve over the level of th
 QUANTITIES = {"displacement": 0, "velocity": 1, "acceleration": 2}  # powers of i omega, over a displacement
 EXCITED = "excitation.level"  # key of the level of the forces of a curve, where several were measured
 NATURAL = "modal.frequency"  # key of the frequencies of all modes; with its number of one
-TURN = 2.001 * np.pi  # [rad] a whole one, and what "6.2832" is more
 DIGITS = 15  # that every number of so many has again after it was a binary one
 
 

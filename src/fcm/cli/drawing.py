@@ -52,12 +52,12 @@ def is_page(output: Path) -> bool:
 
 def angles(ctx: click.Context, param: click.Parameter, texts: tuple[str, ...]) -> tuple[float, ...]:
     """Callback of an option for angles [rad]; more than a turn without a unit is asked about."""
-    from fcm.units import TURN  # which takes numpy
+    from fcm.units import ANGLES  # which takes numpy
 
     found = tuple(map(angle, texts))
     for text, radians in zip(texts, found, strict=True):
-        if abs(radians) >= TURN and not text.endswith("deg"):
-            ctx.ensure_object(Messages).info(
+        if abs(radians) >= ANGLES.largest and not text.endswith("deg"):
+            ctx.ensure_object(Messages).warning(
                 f"{param.opts[0]} {text}: is it right? {text} rad are {abs(radians) / (2.0 * math.pi):.3g} "
                 f"turns; if degrees are meant, write {text}deg"
             )

@@ -13,7 +13,7 @@ from fcm.scene.options import LIMITS
 from fcm.scene.rules import as_float
 from fcm.scene.section import Parts, Section
 from fcm.scene.sweep import SweptKey
-from fcm.units import TURN
+from fcm.units import ANGLES
 
 CRITICAL = "critical damping"
 
@@ -110,7 +110,7 @@ def _of_friction(key: str, values: Iterable[float]) -> str:
 
 def _of_angle(key: str, values: Iterable[float]) -> str:
     value = max(values, default=0.0, key=abs)
-    if abs(value) < TURN:
+    if abs(value) < ANGLES.largest:
         return ""
     swept = key.startswith("sweep.")
     meant = "write it in rad" if swept else f'write "{shown(value)}deg"'
