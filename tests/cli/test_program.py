@@ -14,6 +14,7 @@ from fcm.cli.commands import INSTEAD
 from fcm.cli.guard import guarded
 from fcm.cli.messages import Messages
 from fcm.continuation import dense_solver
+from fcm.model.doubt import Doubt
 from fcm.scene.keys import TABLES
 
 from ..program import AS_A_MODULE, called, python, shell
@@ -157,6 +158,23 @@ def test_a_warning_is_one_line_on_standard_error(capsys):
     with click.Context(click.Command("x"), obj=Messages()) as ctx:
         guarded(run, ctx)
     assert capsys.readouterr().err == "fcm: warning: mind the gap\n"
+
+
+@pytest.mark.parametrize(
+    ("note", "said"),
+    [
+        (Doubt("mu: is 40 right?"), "fcm: warning: mu: is 40 right?\n"),
+        ("read: is it.mtx?", "read: is it.mtx?\n"),
+    ],
+)
+def test_a_note_on_a_scene_is_a_warning_where_it_doubts(capsys, note, said):
+    Messages().note(note)
+    assert capsys.readouterr().err == said
+
+
+def test_what_a_scene_hardly_means_is_a_warning(fcm, scene):
+    scene.write_text(scene.read_text().replace("damping = 0.05", "damping = 1.5"))
+    assert re.findall("warning: (.*): is", fcm("plot", "modes", scene).err) == ["modal.damping"]
 
 
 def test_names_that_the_terminal_cannot_show_are_escaped(scene):

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import click
 
 from fcm.cli.settings import SETTINGS, Settings
+from fcm.model.doubt import Doubt
 from fcm.resources import duration
 
 
@@ -33,8 +34,8 @@ class Messages:
             self._say(f"fcm: warning: {text}")
 
     def note(self, text: str) -> None:
-        """What is to be known of how a scene was read; a question is of what is hardly meant, a warning."""
-        if "?" in text:
+        """What is to be known of how a scene was read; what is hardly meant as a warning."""
+        if isinstance(text, Doubt):
             self.warning(text)
         else:
             self.info(text)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fcm.model.doubt import Doubt
 from fcm.model.scene import Fit, FloatArray, Measured
 from fcm.rotational_dofs import unit_of
 from fcm.scene.address import LEVEL
@@ -74,7 +75,7 @@ def read_fit(top: Section, files: Files, draft: Draft, reported: Sequence[str], 
 def notes_of_data(fit: Fit | None, ends: tuple[float, float], unit: str) -> list[str]:
     """A question for each file of a response whose frequencies are all outside the range of the scene
     [rad/s]."""
-    said = []
+    said = list[str]()
     for one in fit.data if fit is not None else ():
         low, high = float(one.frequency.min()), float(one.frequency.max())
         if one.damping is None and not (low <= ends[1] and high >= ends[0]) and np.isfinite(ends).all():
@@ -83,8 +84,10 @@ def notes_of_data(fit: Fit | None, ends: tuple[float, float], unit: str) -> list
                 for both in ((low, high), ends)
             )
             said.append(
-                f"fit: {one.file} has frequencies from {own} {unit}, none within the range, {whole} {unit}. "
-                "Is its unit that of the scene?"
+                Doubt(
+                    f"fit: {one.file} has frequencies from {own} {unit}, none within the range, "
+                    f"{whole} {unit}. Is its unit that of the scene?"
+                )
             )
     return said
 

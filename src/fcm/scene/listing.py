@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from fcm.model.doubt import Doubt
 from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray, Force, Scene
 from fcm.scene.errors import counted
@@ -167,9 +168,11 @@ def notes_of_modes(scene: Scene) -> list[str]:
     ]
     if scene.of_matrices and ratio.min(initial=np.inf) >= LIMITS.damping_ratio:
         said.append(
-            f"structure.damping: is it right? It damps each of these more than critically, {ratio.min():.3g} "
-            "times at least, so that no resonance is seen. Is it in the units of the stiffness, and the "
-            "frequency in rad/s?"
+            Doubt(
+                "structure.damping: is it right? It damps each of these more than critically, "
+                f"{ratio.min():.3g} times at least, so that no resonance is seen. Is it in the units of the "
+                "stiffness, and the frequency in rad/s?"
+            )
         )
     return said
 

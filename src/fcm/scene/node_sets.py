@@ -21,6 +21,7 @@ from fcm.mesh.pairing import (
     side,
     turned,
 )
+from fcm.model.doubt import Doubt
 from fcm.model.interface import Interface
 from fcm.scene.errors import choices, counted, quoted
 from fcm.scene.files import DataFileError, Files
@@ -81,8 +82,10 @@ def pairs_of_sets(section: Section, files: Files) -> PairTable:
     along = _vector(section.data.get("normal"))
     if along is not None and side(mesh, pairing.pairs, along) < 0.0:
         said.append(
-            f"contact {quoted(interface.name)}: its normal points from {other} to {one}, so that it presses "
-            "where they part: is it meant? The other way it would be the opposite"
+            Doubt(
+                f"contact {quoted(interface.name)}: its normal points from {other} to {one}, so that it "
+                "presses where they part: is it meant? The other way it would be the opposite"
+            )
         )
     return PairTable([tuple(map(str, pair)) for pair in pairing.pairs], interface=interface, said=tuple(said))
 
@@ -125,8 +128,8 @@ def with_places(section: Section, found: Section, table: PairTable, files: Files
     if others:
         (one, other), near = others[0]
         many = "1 pair is" if len(others) == 1 else f"{len(others)} pairs are"
-        text += (
-            f". {many} not of nearest nodes: {near} is nearer to {one} than its partner {other}. "
+        text = Doubt(
+            f"{text}. {many} not of nearest nodes: {near} is nearer to {one} than its partner {other}. "
             "Is a column of the file shifted?"
         )
     return replace(table, interface=interface, said=(text, *said))

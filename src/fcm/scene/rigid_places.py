@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fcm.model.doubt import Doubt
 from fcm.model.interface import Interface
 from fcm.model.scene import FloatArray
 from fcm.scene.errors import quoted
@@ -36,7 +37,7 @@ def _of(interface: Interface, rigid: FloatArray, dofs: Names) -> Iterator[str]:
         ]
         if (worst := _off(there, rigid, dofs)) is not None:
             node, share = worst
-            yield (
+            yield Doubt(
                 f"contact {quoted(interface.name)}: its {SIDES[side]} move as no rigid body does at their "
                 f"places: node {node} is off most, by {share:.0%} of the motion. Is a column of the file "
                 "shifted, or a coordinate wrong?"
