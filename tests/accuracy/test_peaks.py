@@ -1,14 +1,19 @@
 """Estimated errors of peaks at the ends of a range, and between points, beside the exact motion."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from fcm.accuracy.displaced_peaks import peak_errors
+from fcm.accuracy.options import PAIR
 from fcm.accuracy.refinement import with_estimated_errors
 from fcm.harmonic_balance.system import System
+from fcm.response import trace
 from fcm.response.exact import trace_exact
-from fcm.scene import scene_from_dict
+from fcm.results.local_maxima import lower_peaks
+from fcm.scene import load_scene, scene_from_dict
 from fcm.shooting.problem import OrbitProblem
 
 from ..harmonic_balance.scenes import up_to
@@ -185,3 +190,47 @@ def test_a_peak_of_the_reference_that_its_points_miss_is_not_told_too_low(seed, 
     found = with_estimated_errors(System(one, harmonics), 0.0)
     true = abs(found.quantities[0].amplitude[:, 2].max() / height(found, OrbitProblem(one), [], 0, 2) - 1.0)
     assert true > 1e-3 and true / 3.0 < found.peak[2] < 2.0 * true
+
+
+@pytest.mark.parametrize("harmonics", [(1,), (1, 2), (1, 2, 3)])
+def test_the_error_of_the_frequency_of_a_peak_is_that_beside_the_exact_motion(harmonics):
+    scene = load_scene("yang1998-n5")
+    (exact,) = trace_exact(scene).curves
+    (found,) = trace(replace(scene, harmonics=harmonics)).curves
+    for dof, peak in found.peaks.items():
+        off = abs(peak.frequency / exact.peaks[dof].frequency - 1.0)
+        assert off > 1e-5 and peak.frequency_error == pytest.approx(off, rel=0.1)
+
+
+@pytest.mark.slow
+def test_a_lower_peak_has_the_error_of_its_height_not_that_at_its_frequency():
+    scene = load_scene("two-contacts")
+    (exact,) = trace_exact(scene).curves
+    (found,) = trace(replace(scene, harmonics=(1, 2))).curves
+    true = lower_peaks(exact.amplitude)
+    compared = 0
+    for d, k in lower_peaks(found.amplitude):
+        if found.error[k, d] > 3e-3:  # by a third of that the tops of the exact motion are between its points
+            places = true[true[:, 0] == d, 1]
+            nearest = places[np.abs(exact.frequency[places] - found.frequency[k]).argmin()]
+            off = abs(exact.amplitude[nearest, d] / found.amplitude[k, d] - 1.0)
+            assert found.error[k, d] == pytest.approx(off, rel=0.15)
+            compared += 1
+    assert compared >= 4
+
+
+def test_peaks_that_are_displaced_are_tops_of_parabolas_between_minima():
+    """One peak a(s) = 2 - (s - 1)^2, of the reference 2.5 - (s - 1.2)^2, whose frequency is 10 % more."""
+    place = np.linspace(0.0, 2.0, 9)
+    curve, there = 2.0 - (place - 1.0) ** 2, 2.5 - (place - 1.2) ** 2
+    path = SimpleNamespace(parameter=1.0 + place)
+    reference = SimpleNamespace(
+        amplitude=curve[:, None], place=place, path=path, unit=np.ones((9, 1)), options=PAIR
+    )
+    change = np.transpose((np.full(9, 0.1), there - curve))
+    found = peak_errors(reference, change, [])
+    assert found.point.tolist() == [4] and found.dof.tolist() == [0]
+    assert found.height == pytest.approx([0.5])
+    assert found.frequency == pytest.approx([1.1 * 2.2 / 2.0 - 1.0])
+    assert found.frequency_at(np.array([4])) == pytest.approx(found.frequency)
+    assert np.isnan(found.frequency_at(np.array([8]))).all()

@@ -97,6 +97,7 @@ def test_a_number_that_does_not_exist_is_null(fcm, scene):
         "amplitude": None,
         "frequency": None,
         "error": None,
+        "frequency_error": None,
         "stable": None,
         "at_edge": False,
         "residual_change": None,

@@ -19,6 +19,7 @@ import numpy.typing as npt
 
 from fcm.accuracy.budget import Budget
 from fcm.accuracy.contact_load_errors import contact_load_errors, relative
+from fcm.accuracy.displaced_peaks import PeakErrors, peak_errors
 from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.peaks import heights, rise_between_points
 from fcm.accuracy.reference_branches import affordable_reference, further_reference_pieces
@@ -47,8 +48,9 @@ class Errors(Frozen):
     is_same_curve (point,): whether the reference's own branch comes to that frequency. Where it does not, as
     beside a fold that it has elsewhere, errors are the distance to the nearest motion that the reference has
     there. ends_before (point,): where the reference has fewer motions of the branch than the curve, as it
-    turns back before. peak (dof,): of the height of the greatest amplitude. height (dof,): the greatest
-    amplitude of the reference, as an amplitude. fold (fold,): of the frequencies of the folds, in their
+    turns back before. peak (dof,): of the height of the greatest amplitude; peak_frequency (dof,): of the
+    frequency of that peak. height (dof,): the greatest amplitude of the reference, as an amplitude.
+    fold (fold,): of the frequencies of the folds, in their
     order. share (harmonic,), from the first to the greatest that can be asked for: what each harmonic left
     out would have without feedback, at peaks and folds, of the greatest amplitude of the degree of freedom to
     which it matters most. reference: the harmonics with which it is followed elsewhere. contact_loads (point,
@@ -63,6 +65,7 @@ class Errors(Frozen):
     is_same_curve: Mask
     ends_before: Mask
     peak: FloatArray
+    peak_frequency: FloatArray
     height: FloatArray
     fold: FloatArray
     share: FloatArray
@@ -125,7 +128,8 @@ def errors_along(
     shift = reference.shifts(compared, followed)
     contact_loads, greatest = contact_load_errors(reference, compared, shift, followed, folds)
     shift = shift[:, : len(size)]
-    error = with_reference_errors(reference, _of_points(reference, shift, change))
+    of_peaks = peak_errors(reference, change, followed)
+    error = with_reference_errors(reference, _of_points(reference, shift, change, of_peaks))
     error[folds] = np.nan  # the reference has two amplitudes at that frequency, or none
     height, told = _set_errors_of_peaks(reference, error, shift, change, followed, met)
     unit, amplitude = reference.unit, quantities.amplitude
@@ -141,6 +145,7 @@ def errors_along(
         is_same_curve=comes,
         ends_before=reference.ends_before,
         peak=np.where(told, error[tops, np.arange(len(size))], np.nan),
+        peak_frequency=of_peaks.frequency_at(tops),
         height=height,
         fold=of_folds,
         share=share,
@@ -166,6 +171,7 @@ def _same_error(
         is_same_curve=np.full(len(every), exact),
         ends_before=np.zeros(len(every), dtype=np.bool_),
         peak=every[0],
+        peak_frequency=every[0],
         height=amplitude.max(axis=0),
         fold=np.full(len(path.where(Mark.FOLD)), error),
         share=share,
@@ -185,7 +191,7 @@ def unknown_errors(system: System, path: Path, quantities: ReportedQuantities) -
     dofs, folds = np.full(none.shape[1], nan), np.full(len(path.where(Mark.FOLD)), nan)
     share = np.zeros(max(system.harmonics))
     return Errors(
-        none, none[:, 0], unseen, unseen, dofs, dofs, folds, share, system.harmonics, contact_loads,
+        none, none[:, 0], unseen, unseen, dofs, dofs, dofs, folds, share, system.harmonics, contact_loads,
         np.full(contact_loads.shape[1:], nan), contacts,
     )  # fmt: skip
 
@@ -299,13 +305,18 @@ def _spectrum(
     return share[: LIMITS.harmonics], met
 
 
-def _of_points(reference: ReferenceCurve, shift: FloatArray, change: FloatArray) -> FloatArray:
-    """Errors (point, dof) at the same frequency, in units of the reference's curve."""
+def _of_points(
+    reference: ReferenceCurve, shift: FloatArray, change: FloatArray, of_peaks: PeakErrors
+) -> FloatArray:
+    """Errors (point, dof) at the same frequency, of peaks those of their heights, in units of the
+    reference's curve."""
     error = np.where(reference.linear[:, None], 0.0, np.abs(shift))
     # displacements may cancel at a frequency, but not what the reference itself is off by
     moved = reference.weight[:, None] * np.abs(change[:, :1]) + np.abs(change[:, 1:])
     moved[np.isnan(moved).any(axis=1)] = 0.0  # where it was followed the shifts alone tell
     every: FloatArray = np.maximum(error, reference.options.reference_error * moved)
+    at = of_peaks.point, of_peaks.dof
+    every[at] = of_peaks.height / reference.unit[at]
     return every
 
 

@@ -131,6 +131,8 @@ class PairOptions(Frozen):
         Balances that are kept for the next curve.
     batch : int
         Places that are compared with all points of a curve.
+    least_peak : float
+        Part of the greatest amplitude of a degree of freedom, from which on a local maximum is a peak.
     peak_neighbours : int
         Points to either side of the highest that may be higher where they are only interpolated.
     rounding : float
@@ -205,6 +207,7 @@ class PairOptions(Frozen):
     newton_tolerance: float = 0.01
     max_kept: int = 24
     batch: int = 256
+    least_peak: float = 1e-3
     peak_neighbours: int = 8
     rounding: float = 1e-9
     distance: CurveDistanceOptions = CURVE_DISTANCE

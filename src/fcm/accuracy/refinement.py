@@ -48,6 +48,16 @@ class RefinedResponse(UncheckedResponse):
         return self.max_error <= self.accuracy
 
     @property
+    def peak_frequency(self) -> FloatArray:
+        """Relative errors (dof,) of the frequencies of the greatest amplitudes; NaN where they are unknown
+        or no peaks."""
+        which = np.array([one.amplitude.max(axis=0) for one in self.quantities]).argmax(axis=0)
+        found: FloatArray = np.array([one.peak_frequency for one in self.errors])[
+            which, np.arange(len(which))
+        ]
+        return np.where(np.isnan(self.peak), np.nan, found)
+
+    @property
     def folds(self) -> FloatArray:
         """Errors of all folds, branch after branch."""
         return np.concatenate([np.empty(0), *(one.fold for one in self.errors)])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from fcm.cli.columns import (
@@ -424,10 +424,17 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
                     of_all = f"{of_peaks} and {of_any}{_where(summary, harmonic)}"
             but = ", and of some peaks unknown" if untold else ""
             errors.append(f"{of_all}, by the harmonics left out{but}")
+        if places := [at for one in _peaks_of(curves, shown) if (at := one.get("frequency_error"))]:
+            errors.append(f"{max(places):.1e} of the frequencies of the greatest peaks")
     return (
         f"{count}, {points} points in {summary['seconds']:.2f} s\n"
         f"largest relative error: {'; '.join(errors) or 'not known'}"
     )
+
+
+def _peaks_of(curves: Sequence[Curve], dofs: Collection[str]) -> list[dict[str, Any]]:
+    """The greatest peaks of some degrees of freedom, where they are known."""
+    return [one for curve in curves for dof, one in curve["peak"].items() if one and dof in dofs]
 
 
 def _amount(error: float) -> str:

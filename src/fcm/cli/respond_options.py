@@ -96,7 +96,7 @@ OPTIONS: list[Callable[[Any], Any]] = [  # in the order of the help
     ),
     click.option(
         "--accuracy", metavar="E", callback=balance.accuracy,
-        help="As many harmonics as it takes for peaks and folds that are right to this, relative.  "
+        help="As many harmonics as it takes for greatest peaks and folds that are right to this, relative.  "
         "[default: the scene's, or 0.01]",
     ),
     click.option(

@@ -206,7 +206,9 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
         ended = np.concatenate([one.ends_before for one in found.errors])
         stable[np.isnan(stable) & ended] = 0.0
     stable[hold_unknown(system, points.z, points.force) & (stable == 1.0)] = np.nan
-    peak = np.full_like(found.peak, np.nan) if response.exceeded else found.peak
+    peak = np.array((found.peak, found.peak_frequency))
+    if response.exceeded:
+        peak[:] = np.nan
     error = np.maximum(np.concatenate([one.amplitude for one in found.errors]), rounding)
     open_to_past = undetermined(scene, words)
     residual = residual_changes(system, points.z, points.amplitude, words, open_to_past, quick)
@@ -284,13 +286,15 @@ def _peaks(
     stable: FloatArray,
     residual: FloatArray,
 ) -> dict[str, Peak]:
-    """Where each degree of freedom is greatest: at a point, for every peak is one."""
+    """Where each degree of freedom is greatest: at a point, for every peak is one; its errors in amplitude
+    and frequency (2, dof)."""
     highest, amplitude = points.amplitude.argmax(axis=0), points.amplitude
     at_top = stability_at_top(amplitude, stable).tolist()
     found = {}
     for d, (dof, i) in enumerate(zip(dofs, highest, strict=True)):
-        off = float(max(error[d], rounding[i, d]))
-        found[dof] = Peak(float(amplitude[i, d]), float(points.z[i, -1]), off, at_top[d], float(residual[d]))
+        height, omega = float(amplitude[i, d]), float(points.z[i, -1])
+        off, off_frequency = float(max(error[0, d], rounding[i, d])), float(error[1, d])
+        found[dof] = Peak(height, omega, off, at_top[d], float(residual[d]), off_frequency)
     return found
 
 

@@ -84,7 +84,7 @@ def curve_fields(response: Response) -> dict[str, Field]:
     """One value or row for each curve: peaks, folds, whether it is complete."""
     curves, unit = response.curves, response.frequency_unit
     cf_unit = CF_UNIT[unit]
-    peaks = np.array([[c.peaks[d] for d in response.dofs] for c in curves]).reshape(-1, len(response.dofs), 5)
+    peaks = np.array([[c.peaks[d] for d in response.dofs] for c in curves]).reshape(-1, len(response.dofs), 6)
     folds = by_fold(curves, lambda c: in_unit(c.folds, unit))
     complete = np.array([c.complete for c in curves], dtype=np.int8)
     by_dof, at_end = ("curve", "dof"), _peaks_at_end(curves)
@@ -99,6 +99,11 @@ def curve_fields(response: Response) -> dict[str, Field]:
             by_dof,
             peaks[..., 2],
             {"long_name": "estimated error of the greatest amplitude, relative", "units": "1"},
+        ),
+        "peak_frequency_error": Field(
+            by_dof,
+            peaks[..., 5],
+            {"long_name": "estimated error of peak_frequency, relative", "units": "1"},
         ),
         "peak_stable": Field(
             by_dof,

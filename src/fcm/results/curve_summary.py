@@ -122,6 +122,7 @@ def _peak(curve: Curve, peak: Peak, condensed: CondensedCurve, unit: str) -> dic
         "amplitude": peak.amplitude,
         "frequency": float(in_unit(peak.frequency, unit)),
         "error": peak.error,
+        "frequency_error": peak.frequency_error,
         "stable": None if np.isnan(peak.stable) else bool(peak.stable),
         "at_edge": at_edge(curve, peak, condensed),
         "residual_change": peak.residual,

@@ -20,6 +20,7 @@ class Peak(NamedTuple):
     residual: float = (
         np.nan
     )  # greatest change, relative, by the residual friction of contacts that always stick; NaN: not known
+    frequency_error: float = np.nan  # estimated, relative, of the frequency; NaN where it is not known
 
 
 def stability_at_top(amplitude: FloatArray, stable: FloatArray) -> FloatArray:

@@ -1,0 +1,143 @@
+r"""Peaks of a curve beside those of its reference: by how much they differ in height and in frequency.
+
+A peak of a degree of freedom is a local maximum of its amplitude a(s) along the curve. The reference's is
+that of a(s) + e(s), e what points are displaced by, between the same two minima. Both are the tops of
+parabolas through three points.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from fcm.accuracy.reference_curve import FollowedStretch, Indices, ReferenceCurve
+from fcm.accuracy.reference_pieces import lengths
+from fcm.accuracy.reference_stretch import ReferencePiece
+from fcm.frozen import Frozen
+from fcm.model.scene import FloatArray
+
+
+class PeakErrors(Frozen):
+    """Of the peaks (peak,) along a path: their points and degrees of freedom; by how much the heights of the
+    reference's differ, as amplitudes, and the frequencies, relative. Those that the reference has not beside
+    them are not among them.
+    """
+
+    point: Indices
+    dof: Indices
+    height: FloatArray
+    frequency: FloatArray
+
+    def frequency_at(self, tops: Indices) -> FloatArray:
+        """That of the frequency of the peaks at some points (dof,); NaN where there is none."""
+        found = np.full(len(tops), np.nan)
+        at_top = self.point == tops[self.dof]
+        found[self.dof[at_top]] = self.frequency[at_top]
+        return found
+
+
+class _Tops(NamedTuple):
+    """Tops (peak,) of parabolas through three points: how high, and at which frequency."""
+
+    height: FloatArray
+    frequency: FloatArray
+
+
+def peak_errors(reference: ReferenceCurve, change: FloatArray, followed: list[FollowedStretch]) -> PeakErrors:
+    """Of all peaks of a curve whose displacements (point, 1 + dof) are known, or that the reference was
+    followed along."""
+    curve, place = reference.amplitude, reference.place
+    parameter = reference.path.parameter
+    of_reference = curve + reference.unit * change[:, 1:]
+    frequency = parameter * (1.0 + change[:, 0])
+    rows = list[tuple[int, int, int]]()  # point, dof, point that is displaced to the reference's
+    beside = list[tuple[int, int, float, float]]()  # point, dof, height and frequency of the reference's
+    for d, (own, moved) in enumerate(zip(curve.T, of_reference.T, strict=True)):
+        for i, low, high in _between_minima(own, reference.options.least_peak):
+            top = _displaced_top(moved, i, low, high)
+            if top is not None:
+                rows.append((i, d, top))
+            elif (found := _followed_top(reference, followed, d, i)) is not None:
+                beside.append((i, d, *found))
+    point, dof, to = np.array(rows, dtype=np.intp).reshape(-1, 3).T
+    further = np.array(beside, dtype=np.float64).reshape(-1, 4).T
+    there = _tops(to, dof, place, of_reference, frequency)
+    point, dof = np.concatenate(((point, dof), further[:2].astype(np.intp)), axis=1)
+    here = _tops(point, dof, place, curve, parameter)
+    height, omega = np.concatenate((there, further[2:]), axis=1)
+    return PeakErrors(point, dof, np.abs(height - here.height), np.abs(omega / here.frequency - 1.0))
+
+
+def _between_minima(amplitude: FloatArray, least: float) -> list[tuple[int, int, int]]:
+    """Local maxima of at least a part of the greatest, each with the minima before and behind it.
+
+    >>> _between_minima(np.array([1.0, 3.0, 2.0, 4.0, 0.0]), 0.1)
+    [(1, 0, 2), (3, 2, 4)]
+    """
+    inner = amplitude[1:-1]
+    rises = (inner > amplitude[:-2]) & (inner >= amplitude[2:]) & (inner > least * amplitude.max(initial=0.0))
+    tops = (1 + np.flatnonzero(rises)).tolist()
+    minima = [i + int(amplitude[i : j + 1].argmin()) for i, j in pairwise((0, *tops, len(amplitude) - 1))]
+    return list(zip(tops, minima, minima[1:], strict=False))
+
+
+def _displaced_top(moved: FloatArray, i: int, low: int, high: int) -> int | None:
+    """The highest of amplitudes between two places, if it lies inside and all up to it are known."""
+    inside = moved[low : high + 1]
+    if np.isnan(moved[i]) or np.isnan(inside).all():
+        return None
+    top = low + int(np.nanargmax(inside))
+    around = moved[min(i, top - 1) : max(i, top + 1) + 1]
+    return top if low < top < high and not np.isnan(around).any() else None
+
+
+def _followed_top(
+    reference: ReferenceCurve, followed: list[FollowedStretch], d: int, i: int
+) -> tuple[float, float] | None:
+    """Along a stretch that the reference was followed along its nearest peak: within
+    `PairOptions.end_tolerance` in both height and frequency, as with more it is another."""
+    here = np.array((reference.amplitude[i, d], reference.path.parameter[i]))
+    found = [
+        top
+        for one in followed
+        if one.first <= i < one.end
+        for piece in one.pieces
+        for top in _tops_of(piece, d)
+    ]
+    off = np.abs(np.array(found).reshape(-1, 2) / here - 1.0).max(axis=1)
+    near = off.min(initial=np.inf) < reference.options.end_tolerance
+    return found[int(off.argmin())] if near else None
+
+
+def _tops_of(piece: ReferencePiece, d: int) -> list[tuple[float, float]]:
+    """Heights and frequencies of the peaks of a degree of freedom along a piece."""
+    amplitude = piece.quantities.amplitude
+    k = np.array([top for top, _, _ in _between_minima(amplitude[:, d], 0.0)], dtype=np.intp)
+    tops = _tops(k, np.full_like(k, d), lengths(piece.path), amplitude, piece.path.parameter)
+    return list(zip(tops.height.tolist(), tops.frequency.tolist(), strict=True))
+
+
+def _tops(k: Indices, d: Indices, place: FloatArray, amplitude: FloatArray, frequency: FloatArray) -> _Tops:
+    """Tops of parabolas through the amplitudes (point, dof) of d (peak,) at points k (peak,) and beside
+    them."""
+    before, behind = place[k] - place[k - 1], place[k + 1] - place[k]
+    apart = (before > 0.0) & (behind > 0.0)
+    before, behind = np.where(apart, before, 1.0), np.where(apart, behind, 1.0)
+    slope, bend = _parabola(before, behind, *(amplitude[k + step, d] for step in (-1, 0, 1)))
+    turns = apart & (bend < 0.0)
+    way = np.where(turns, np.clip(-slope / np.where(turns, 2.0 * bend, 1.0), -before, behind), 0.0)
+    height = amplitude[k, d] + way * (slope + way * bend)
+    slope, bend = _parabola(before, behind, *(frequency[k + step] for step in (-1, 0, 1)))
+    return _Tops(height, frequency[k] + way * (slope + way * bend))
+
+
+def _parabola(
+    before: FloatArray, behind: FloatArray, one: FloatArray, middle: FloatArray, other: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Slope and half the second derivative in the middle of parabolas through three values each."""
+    first, second = (middle - one) / before, (other - middle) / behind
+    slope: FloatArray = (first * behind + second * before) / (before + behind)
+    bend: FloatArray = (second - first) / (before + behind)
+    return slope, bend
