@@ -175,6 +175,7 @@ def test_work_that_no_search_can_have_left_is_passed_over(measured, tmp_path):
         SearchResult(np.array([0.5]), 1.0),
         SearchResult(np.array([0.5, np.nan]), 1.0),
         SearchResult("x", 1.0),
+        SearchResult(np.array([0.5, 0.02]), 1.0, "yes"),
     ]
     assert not any(is_search_result(2, [one]) for one in [*wrong, good.x, None]) and not is_search_result(
         2, good

@@ -88,3 +88,8 @@ def test_points_off_by_chance_are_no_systematic_misfit_and_those_of_a_wave_are()
     one = replace(fitted(0.0), data=[wave])
     (said,) = one.problems()
     assert said.startswith("a.csv: neighbouring points are off to the same side. Of the misfit, 0.7")
+
+
+def test_a_search_that_stopped_early_is_said():
+    assert any("before a minimum" in one for one in replace(fitted(0.0), settled=False).problems())
+    assert not any("before a minimum" in one for one in fitted(0.0).problems())

@@ -76,8 +76,16 @@ def as_table(result: Mapping[str, Any]) -> str:
         "misfit: root mean square distance of the points from the curve, as a share of the greatest "
         "amplitude. Of a backbone it is a share of the frequencies"
     )
+    if scales := [_scale(one) for one in found["data"] if one["error_estimated"]]:
+        note += f"\nerrors of the points, estimated, as such a share: {', '.join(dict.fromkeys(scales))}"
     said = f"harmonics of the fit: {ranges(found['harmonics'])}"
     return f"{aligned(rows, left=1)}\n\n{aligned(data, left=1)}\n{note}\n\n{_searches(found)}\n{said}"
+
+
+def _scale(data: Mapping[str, Any]) -> str:
+    """Errors of the points of a response, or of a backbone's frequencies, in percent."""
+    low, high = (f"{100.0 * end:.2g} %" for end in data["error"])
+    return low if low == high else f"{low} to {high}"
 
 
 def _searches(found: Mapping[str, Any]) -> str:
@@ -89,7 +97,11 @@ def _searches(found: Mapping[str, Any]) -> str:
         ends = [f"{value:.6g}" for value in one["end"]]
         points = "all" if one["finished"] else "some"
         rows.append([str(k), points, f"{one['cost']:.3g}", *ends, ranges(one["harmonics"])])
-    return aligned(rows, left=1)
+    note = (
+        "cost: half the sum of the squares of the distances in units of the errors; of all points, with the "
+        "errors at the numbers told"
+    )
+    return f"{aligned(rows, left=1)}\n{note}"
 
 
 def caveats(result: Mapping[str, Any]) -> list[str]:

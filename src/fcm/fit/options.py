@@ -32,7 +32,8 @@ class FitOptions(Frozen):
         correlated with.
     poor_misfit : misfit of data, relative, from which the model does not meet them.
     confidence : of the intervals.
-    reweightings : times that errors which are not stated are estimated, and the fit is made again.
+    reweightings : times at most that errors which are not stated are estimated, and the fit is made again.
+    settled_move : of the numbers by this, in standard errors, below which they rest.
     min_error : of a measured value, relative to the greatest: what is below is rounding.
     rank_tolerance : of the greatest singular value, below which a combination of numbers is not seen at all.
     lost_residual : where the model has no response, in units of the errors.
@@ -62,7 +63,8 @@ class FitOptions(Frozen):
     sure_standard_error: float = 0.05
     poor_misfit: float = 0.1
     confidence: float = 0.95
-    reweightings: int = 2
+    reweightings: int = 30
+    settled_move: float = 1e-3
     min_error: float = 1e-8
     rank_tolerance: float = 1e-10
     lost_residual: float = 1e6

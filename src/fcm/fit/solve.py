@@ -1,5 +1,9 @@
 """Least squares from several starts: blurred first, which finds the way, then with the errors as stated.
 
+Where errors are not stated, those estimated and the numbers depend on one another. They are found by turns,
+so that the likelihood grows, until the numbers rest beside their standard errors. This is begun with a floor
+of errors and with a share of the amplitudes, as it may rest with either; the likeliest end is told.
+
 A fit is a series of searches, each by its number in that series. What a search has come to is kept, where
 there is a place for it: a fit that goes on does not make those again that are finished, and begins the one
 that was interrupted where it was best.
@@ -25,13 +29,18 @@ from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray, Measured
 
 Tell = Callable[[float, str], None]
+_PARTS = 0.0, 0.6, 0.8, 1.0  # of a finalist's share of the bar: a search, and two with errors estimated
 
 
 class SearchResult(Frozen):
-    """Unknowns that a search has come to, and their cost; None where there is no response at its start."""
+    """Unknowns that a search has come to, and their cost; None where there is no response at its start.
+
+    settled : whether it ended at a minimum, and not for the number of its evaluations.
+    """
 
     x: FloatArray | None
     cost: float
+    settled: bool = False
 
 
 class SavedSearches(Protocol):
@@ -49,10 +58,10 @@ class SavedSearches(Protocol):
 
 @dataclass
 class Start:
-    """Numbers that were tried: where they began, and where they came to, with the cost by the errors stated.
+    """Numbers that were tried: where they began, and where they came to, with the cost there.
 
-    cost is that of a start while it is sought, of a finalist that of all points, before errors of theirs are
-    estimated; effect: (number,) whether the data change with a number there.
+    cost is that of a start while it is sought, of a finalist that of all points, with the errors of the best;
+    effect: (number,) whether the data change with a number there.
     """
 
     begin: FloatArray
@@ -71,6 +80,7 @@ class Solved:
     data: list[Measured]
     starts: list[Start]
     interrupted: bool = False
+    settled: bool = True  # whether the search for these numbers ended at a minimum
 
     @property
     def rows(self) -> Rows:
@@ -151,7 +161,17 @@ class Problem:
         found = least_squares(
             residual, inside, self.jacobian, bounds=(low, high), x_scale="jac", max_nfev=evaluations
         )
-        return SearchResult(found.x, float(found.cost))
+        return SearchResult(found.x, float(found.cost), bool(found.status > 0))
+
+    def apart(self, x: FloatArray, other: FloatArray) -> float:
+        """How far unknowns are from others, in standard errors of the combination in which they differ.
+
+        With the rates J at x, |J (other - x)| over the spread of the residuals.
+        """
+        moved, residual = self.jacobian(x) @ (other - x), self.residual(x)
+        freedom = max(sum(part.independent for part in self.parts(x) or []) - x.size, 1)
+        spread = float(np.sqrt(residual @ residual / freedom))
+        return float(np.linalg.norm(moved)) / max(spread, 1e-300)
 
     def note(self, found: SearchResult) -> None:
         """Unknowns that were evaluated, now or in an earlier run."""
@@ -223,9 +243,7 @@ def solved(
     few = [_thinned(one, options.few_points) for one in data]
     rough = Problem(parameters, few, harmonics, True, options)
     fine = Problem(parameters, data, harmonics, False, options)
-    searches, starts = searches or Searches(), list[Start]()
-    best: SearchResult | None = None
-    chosen: Start | None = None
+    searches, starts, ends = searches or Searches(), list[Start](), list[_End]()
     try:
         begins = [parameters.unknowns(one) for one in begin]
         nearest = sorted(begins, key=rough.cost)[: options.finalists]
@@ -233,23 +251,30 @@ def solved(
         finalists = _by_cost(starts, options)[: options.finalists] if starts else []
         for k, one in enumerate(finalists):
             begun = options.search_share
-            share = tuple(begun + (1.0 - begun) * (k + i) / (len(finalists) + 1) for i in (0, 1))
+            shares = [begun + (1.0 - begun) * (k + part) / len(finalists) for part in _PARTS]
             what = f"all points, from the best starts ({k + 1} of {len(finalists)})"
             found = searches.least(
-                fine, parameters.unknowns(one.end), options.finalist_evaluations, (share[0], share[1]), what
+                fine, parameters.unknowns(one.end), options.finalist_evaluations, (shares[0], shares[1]), what
             )
             if found.x is None:
                 continue
-            one.end, one.cost, one.finished = parameters.values(found.x), found.cost, True
-            if best is None or found.cost < best.cost * (1.0 - options.cost_tolerance):
-                best, chosen = found, one
+            same = next((end for end in ends if fine.apart(end.before, found.x) < options.settled_move), None)
+            if same is not None:
+                ends += [replace(end, start=one) for end in ends if end.start is same.start]
+                continue
+            for i in (0, 1) if _unstated(data) else (0,):
+                of_bar = shares[1 + i], shares[2 + i]
+                ends.append(_weighed(fine, found, i == 1, one, options, searches, of_bar))
+                if ends[-1].interrupted:
+                    raise KeyboardInterrupt
+        interrupted = False
     except KeyboardInterrupt:
-        return _so_far(fine, rough, starts)
-    if best is None or best.x is None or chosen is None:
+        if not ends:
+            return _so_far(fine, rough, starts)
+        interrupted = True
+    if not ends:
         raise FitError("fit: the model has no response in the range of the data, from any start")
-    weighed = _weighed(fine, best.x, starts, options, searches)
-    chosen.end = weighed.values
-    return weighed
+    return _likeliest(ends, starts, options, interrupted)
 
 
 def _so_far(fine: Problem, rough: Problem, starts: list[Start]) -> Solved:
@@ -266,30 +291,79 @@ def _so_far(fine: Problem, rough: Problem, starts: list[Start]) -> Solved:
     return _with_rows(fine if fine.parts(best.x) is not None else rough, best.x, starts, True)
 
 
+@dataclass
+class _End:
+    """Where a finalist has come to: the residuals with the errors there, and how unlikely they are.
+
+    before : unknowns of the least cost with the errors that all finalists begin with.
+    """
+
+    start: Start
+    before: FloatArray
+    problem: Problem
+    x: FloatArray
+    unlikely: float
+    settled: bool
+    interrupted: bool = False
+
+
 def _weighed(
-    fine: Problem, x: FloatArray, starts: list[Start], options: FitOptions, searches: Searches
-) -> Solved:
-    """The fit made again with the errors that its residuals tell, where none are stated."""
-    again = fine
+    fine: Problem,
+    found: SearchResult,
+    share: bool,
+    start: Start,
+    options: FitOptions,
+    searches: Searches,
+    of_bar: tuple[float, float],
+) -> _End:
+    """The errors that residuals tell, where none are stated, and the numbers with them, until they rest.
+
+    share : whether it is begun with errors that are a share of the amplitudes; of_bar : share of the bar.
+    """
+    assert found.x is not None
+    end = _End(start, found.x, fine, found.x, np.inf, found.settled)
     try:
-        for _ in range(options.reweightings):
-            parts = fine.parts(x)
+        for k in range(options.reweightings + 1):
+            parts = end.problem.parts(end.x)
             assert parts is not None
-            data = reweighted(fine.data, parts, options)
+            data, end.unlikely = reweighted(end.problem.data, parts, options, share and k == 0)
             if all(one.estimated is None for one in data):
                 break
-            again = replace(fine, data=data, known=(b"", None), best=None)
-            found = searches.least(
-                again, x, options.finalist_evaluations, (0.97, 1.0), "errors of the points estimated"
-            )
-            if found.x is None:
+            if k == options.reweightings:
+                end.settled = False
                 break
-            fine, x = again, found.x
+            again = replace(end.problem, data=data, known=(b"", None), best=None)
+            further = searches.least(
+                again, end.x, options.finalist_evaluations, of_bar, "errors of the points estimated"
+            )
+            if further.x is None:
+                end.settled = False
+                break
+            rests = k > 0 and again.apart(end.x, further.x) < options.settled_move
+            end.problem, end.x, end.settled = again, further.x, further.settled
+            if rests:
+                break
     except KeyboardInterrupt:
-        if again is not fine and again.best is not None and again.best.x is not None:
-            fine, x = again, again.best.x
-        return _with_rows(fine, x, starts, True)
-    return _with_rows(fine, x, starts, False)
+        end.interrupted = True
+    return end
+
+
+def _unstated(data: Sequence[Measured]) -> bool:
+    """Whether there are responses nothing is said of whose errors."""
+    return any(one.damping is None and one.amplitude_error is None for one in data)
+
+
+def _likeliest(ends: Sequence[_End], starts: list[Start], options: FitOptions, interrupted: bool) -> Solved:
+    """The numbers of the likeliest end, and the costs of all finalists with its errors."""
+    best = ends[0]
+    for end in ends[1:]:
+        if end.unlikely < best.unlikely - options.cost_tolerance:
+            best = end
+    for end in sorted(ends, key=lambda end: -end.unlikely):
+        end.start.end, end.start.finished = best.problem.parameters.values(end.x), True
+        end.start.cost = best.problem.cost(end.x)
+    best.start.end, best.start.cost = best.problem.parameters.values(best.x), best.problem.cost(best.x)
+    return replace(_with_rows(best.problem, best.x, starts, interrupted), settled=best.settled)
 
 
 def _tried(

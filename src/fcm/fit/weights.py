@@ -24,60 +24,78 @@ from fcm.fit.options import FitOptions
 from fcm.model.scene import FloatArray, Measured
 
 
-def reweighted(data: Sequence[Measured], parts: Sequence[Rows], options: FitOptions) -> list[Measured]:
-    """The same points with errors estimated, unless they are stated; responses of a quantity share them."""
-    found = list(data)
+def reweighted(
+    data: Sequence[Measured], parts: Sequence[Rows], options: FitOptions, share: bool = False
+) -> tuple[list[Measured], float]:
+    """The same points with errors estimated, unless they are stated, and how unlikely the distances are then.
+
+    Responses of a quantity have them in common; share: whether they are taken as a share of the amplitudes,
+    though others be likelier. Unlikely: the sum of ln sigma^2 + r^2 / sigma^2 over all
+    components, with sigma = 1 where r is in units of errors that are stated.
+    """
+    found, unlikely = list(data), 0.0
     alike: dict[str, list[int]] = {}
     for i, (one, rows) in enumerate(zip(data, parts, strict=True)):
-        if one.damping is not None:
-            found[i] = _of_backbone(one, rows, options)
-        elif one.amplitude_error is None:
+        if one.damping is not None and one.frequency_error is None and one.damping_error is None:
+            found[i], more = _of_backbone(one, rows, options)
+            unlikely += more
+        elif one.damping is None and one.amplitude_error is None:
             alike.setdefault(one.quantity, []).append(i)
+        else:
+            unlikely += 2.0 * rows.cost
     for numbers in alike.values():
         amplitude = np.concatenate([data[i].amplitude for i in numbers])
         square = np.concatenate([_squares(data[i], parts[i], options) for i in numbers])
-        sigma = np.split(
-            _errors(amplitude, square, options.min_error), np.cumsum([data[i].points for i in numbers])[:-1]
-        )
-        for i, own in zip(numbers, sigma, strict=True):
+        components = np.concatenate([np.full(data[i].points, data[i].components - 1.0) for i in numbers])
+        more, sigma = _errors(amplitude, square, components, options.min_error, share)
+        unlikely += more
+        ends = np.cumsum([data[i].points for i in numbers])[:-1]
+        for i, own in zip(numbers, np.split(sigma, ends), strict=True):
             found[i] = replace(data[i], estimated=(own / np.sqrt(data[i].weight))[:, None])
-    return found
+    return found, unlikely
 
 
-def _of_backbone(data: Measured, rows: Rows, options: FitOptions) -> Measured:
-    """With one error of the frequencies and one of the damping ratios."""
-    if data.frequency_error is not None or data.damping_error is not None:
-        return data
+def _of_backbone(data: Measured, rows: Rows, options: FitOptions) -> tuple[Measured, float]:
+    """With one error of the frequencies and one of the damping ratios, and how unlikely its distances are."""
     assert data.damping is not None
     distance = rows.residual[:, :2] * backbone_errors(data, options)
-    size = np.sqrt((data.weight[:, None] * distance**2).mean(axis=0))
-    size = np.maximum(size, options.min_error * np.array([data.frequency.max(), data.damping.max()]))
-    return replace(data, estimated=size / np.sqrt(data.weight[:, None]))
+    square = (data.weight[:, None] * distance**2).mean(axis=0)
+    size = np.maximum(
+        np.sqrt(square), options.min_error * np.array([data.frequency.max(), data.damping.max()])
+    )
+    unlikely = data.points * float((np.log(size**2) + square / size**2).sum())
+    return replace(data, estimated=size / np.sqrt(data.weight[:, None])), unlikely
 
 
 def _squares(data: Measured, rows: Rows, options: FitOptions) -> FloatArray:
     """Of the distances of a response's points, for each of their independent components, by their weights."""
-    unit, components = errors_of(data, False, options).amplitude, 1 if data.phase is None else 2
+    unit, components = errors_of(data, False, options).amplitude, data.components - 1
     distance: FloatArray = (rows.residual[:, : components + 1] ** 2).sum(axis=1) * unit**2
     return distance * data.weight / components
 
 
-def _errors(amplitude: FloatArray, square: FloatArray, least: float) -> FloatArray:
-    """sigma (point,) of amplitudes whose distances have these squares: of the likeliest model of errors.
+def _errors(
+    amplitude: FloatArray, square: FloatArray, components: FloatArray, least: float, share: bool
+) -> tuple[float, FloatArray]:
+    """How unlikely the distances are, and sigma (point,) with which they have these squares.
 
-    A floor alone, a share alone, or both; a further number must earn its place (Schwarz's criterion).
+    components : (point,) of each, that are independent; share: whether a share alone is
+    looked at. A floor alone, a share alone, or both; a further number must earn its place (Schwarz's
+    criterion).
     """
     top = float(amplitude.max())
     typical = max(float(np.sqrt(square.mean())), least * top)
 
     def told(size: FloatArray, numbers: int) -> tuple[float, FloatArray]:
         size = size + (least * top) ** 2
-        unlikely = float((np.log(size) + square / size).sum())
-        return unlikely + numbers * np.log(amplitude.size), np.sqrt(size)
+        unlikely = float((components * (np.log(size) + square / size)).sum())
+        return unlikely + numbers * np.log(components.sum()), np.sqrt(size)
 
     # of one number the likeliest is known: the mean of the squares over the shape
     shapes = (np.ones(amplitude.size), (amplitude / top) ** 2)
-    found = [told(shape * (square / shape).mean(), 1) for shape in shapes]
+    found = [told(shape * np.average(square / shape, weights=components), 1) for shape in shapes]
+    if share:
+        return found[1]
 
     def both(x: FloatArray) -> FloatArray:
         floor, share = np.exp(np.clip(2.0 * x, -80.0, 80.0)) * typical**2
@@ -88,4 +106,4 @@ def _errors(amplitude: FloatArray, square: FloatArray, least: float) -> FloatArr
         minimize(lambda x: told(both(x), 2)[0], x, method="Nelder-Mead") for x in (np.zeros(2), -np.ones(2))
     ]
     found += [told(both(one.x), 2) for one in tried]
-    return min(found, key=lambda one: one[0])[1]
+    return min(found, key=lambda one: one[0])

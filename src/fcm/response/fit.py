@@ -239,7 +239,9 @@ def is_search_result(count: int, results: Any) -> bool:
     """Whether what was read from a file can be what a search of so many numbers came to."""
     if not (isinstance(results, list) and len(results) == 1 and isinstance(results[0], SearchResult)):
         return False
-    x, cost = results[0].x, results[0].cost
+    x, cost, settled = results[0].x, results[0].cost, results[0].settled
+    if not isinstance(settled, bool):
+        return False
     if x is None:
         return isinstance(cost, float)
     right = isinstance(x, np.ndarray) and x.shape == (count,) and x.dtype == np.float64
@@ -289,6 +291,7 @@ def _fitted(rounds: Sequence[_Round], *, advise: bool, untraced: bool = False) -
         harmonics=harmonics,
         advice=_advice(parameters, found, told, harmonics) if advise else [],
         final=not found.interrupted,
+        settled=found.settled,
         interrupted=found.interrupted or untraced,
     )
 

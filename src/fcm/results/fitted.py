@@ -90,8 +90,9 @@ class FittedData(Frozen):
         return float((r**2).sum()), float((np.diff(r, axis=0) ** 2).sum())
 
     def summary(self) -> dict[str, Any]:
-        """For JSON."""
+        """For JSON; error: the least and the greatest of the points, relative as the misfit."""
         one = self.measured
+        size = float((one.amplitude if one.damping is None else one.frequency).max())
         return {
             "file": one.file,
             "dof": one.dof or None,
@@ -99,6 +100,8 @@ class FittedData(Frozen):
             "level": [float(one.level.min()), float(one.level.max())],
             "points": one.points,
             "misfit": self.misfit,
+            "error": [float(self.error[:, 0].min() / size), float(self.error[:, 0].max() / size)],
+            "error_estimated": one.estimated is not None,
             "damping_misfit": self.damping_misfit,
             "scatter": self.scatter,
             "systematic": bool(self.systematic),
@@ -112,7 +115,7 @@ class FittedStart(Frozen):
     begin: FloatArray
     end: FloatArray
     cost: float
-    finished: bool  # whether it was fitted to all points with the errors stated
+    finished: bool  # whether it was fitted to all points
     harmonics: tuple[int, ...]
 
 
@@ -138,6 +141,7 @@ class Fitted:
     advice: list[str] = field(default_factory=list)  # measurements that would tell more
     many: float = 10.0  # times a number: a standard error beyond is not told in percent
     final: bool = True  # whether the search for the numbers is at its end
+    settled: bool = True  # whether it ended at a minimum
     interrupted: bool = False
 
     def problems(self) -> list[str]:
@@ -145,6 +149,11 @@ class Fitted:
         said = []
         if not self.final:
             said.append("the numbers are the best so far: their standard errors are not those of a minimum")
+        elif not self.settled:
+            said.append(
+                "the search for the numbers stopped before a minimum: others may be nearer to the data, and "
+                "the standard errors are not those of a minimum. Begin with these numbers"
+            )
         for k, key in enumerate(self.keys):
             if self.without_effect[k]:
                 said.append(f"{key} has no effect on these data: its value means nothing")
@@ -219,6 +228,7 @@ class Fitted:
             "problems": self.problems(),
             "advice": self.advice,
             "final": self.final,
+            "settled": self.settled,
             "interrupted": self.interrupted,
         }
 
