@@ -183,3 +183,9 @@ def test_an_optimum_says_for_which_numbers_no_peak_lies_within_the_frequencies(r
     text = peaks_not_followed({"tracked": tracked})
     assert text.startswith(said) if said else text == ""
     assert peaks_not_followed({"tracked": tracked | {"what": "peaks"}}) == ""
+    higher = {
+        "what": "peak of v",
+        "parameters": {},
+        "number": [0.1, 30.0],
+    }  # beside which no lower one matters
+    assert peaks_not_followed({"tracked": tracked | {"curves": [*curves, higher]}}) == ""

@@ -155,15 +155,20 @@ def tracked_uncertain(summary: Mapping[str, Any]) -> str:
 
 
 def peaks_not_followed(summary: Mapping[str, Any]) -> str:
-    """Towards which end of its range an optimum's number has no peak that was followed; empty if none."""
+    """Towards which end of its range an optimum's number has no peak that was followed; empty if none.
+
+    A peak that is lower than another to be minimised need not be followed.
+    """
     tracked = summary.get("tracked", {})
     if tracked.get("what") != "optimum" or not tracked["over"]:  # of several numbers there is no one range
         return ""
-    reach: dict[tuple[str, str], list[float]] = {}
+    reach: dict[str, tuple[list[str], list[float]]] = {}
     for one in tracked["curves"]:
-        reach.setdefault((one["what"], _given(one)), []).extend(one["number"])
+        whats, numbers = reach.setdefault(_given(one), ([], []))
+        whats.append(one["what"])
+        numbers += one["number"]
     (low, high), key = tracked["span"], tracked["over"]
-    for (what, given), numbers in reach.items():
+    for given, (whats, numbers) in reach.items():
         beyond = (
             [f"below {min(numbers):.6g}"] if min(numbers) > low and not isclose(min(numbers), low) else []
         )
@@ -171,7 +176,7 @@ def peaks_not_followed(summary: Mapping[str, Any]) -> str:
             [f"above {max(numbers):.6g}"] if max(numbers) < high and not isclose(max(numbers), high) else []
         )
         if beyond:
-            swept = f" ({given})" if given else ""
+            swept, what = f" ({given})" if given else "", " or ".join(dict.fromkeys(whats))
             return (
                 f"no {what} was followed with {key} {' and '.join(beyond)}{swept}. Within the range of "
                 "frequencies there is none, or it was lost: a wider [response] frequency may have it"

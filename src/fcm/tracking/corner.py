@@ -85,9 +85,15 @@ class Corner:
 
     def normal(self, z: FloatArray) -> FloatArray:
         """Unit vector in the problem's scale along which the onset's function rises, (unknown + 1,)."""
+        slope = self.rise(z)[:-1]
+        unit: FloatArray = slope / np.linalg.norm(slope)
+        return unit
+
+    def rise(self, z: FloatArray) -> FloatArray:
+        """Rates of the onset's function in the problem's scale, (unknown + 2,)."""
         self.problem.evaluate(z)
-        slope = np.array(self.problem.jacobian)[-1, :-1] * np.asarray(self.problem.scale)[:-1]
-        return slope / np.linalg.norm(slope)  # type: ignore[no-any-return]
+        rates: FloatArray = np.array(self.problem.jacobian)[-1] * np.asarray(self.problem.scale)
+        return rates
 
 
 def nearest_onsets(

@@ -216,6 +216,8 @@ class CornerCrossing:
             row = (there - z) / np.asarray(self.newton.scale)
             if self.solve(there, row / np.linalg.norm(row)) and self.newton.moved < self.options.max_move:
                 self.accept()
+                if sign * (corner.rise(self.z) @ self.t) < 0.0:  # two peaks lie together there: the chord
+                    self.t = -self.t  # between them is not the way that leads on
                 self.first = leap
                 turn = bool(before * self.t[-1] < 0.0)
                 self.points += [TrackedPoint(z, came, None, turn, switch=True), self.point_at(self.z, self.t)]
@@ -225,13 +227,20 @@ class CornerCrossing:
         return False
 
     def _leave_along_smooth(self) -> bool | Ending:
-        """The corner is no more what is tracked: go on with the smooth curve on the side that has it."""
+        """The corner is no more what is tracked ahead: go on with the smooth curve on the side that has it.
+
+        Where its other side has it, behind, it has been come to.
+        """
         assert self.corner is not None
         z, before = self.z, float(self.t[-1])
         came = self.t * np.asarray(self.newton.scale)
-        for side in np.argsort(np.abs(self.corner.sides(z))):
-            there = self.corner.special_root(z, int(side))
-            if there is not None and self._beyond(there, came, before, 2 * int(side) - 1):
+        scale, found = np.array(self.newton.scale), list[tuple[float, int, FloatArray]]()
+        for side in (0, 1):
+            if (there := self.corner.special_root(z, side)) is not None:
+                found.append((float((there - z) / scale @ self.t), side, there))
+        here = 0.1 * min(self.options.departure_lengths)
+        for _, side, there in sorted(found, key=lambda one: (one[0] < here, abs(one[0]))):
+            if self._beyond(there, came, before, 2 * side - 1):
                 return True
         return Ending.STALLED
 
