@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import pi
 
+import numpy as np
 import pytest
 
 from fcm.scene import scene_from_dict
@@ -177,3 +178,22 @@ def test_contacts_of_another_unit_than_the_structure(stiffness, said):
     assert len(found) == len(said) and all(words in one for words, one in zip(said, found, strict=True))
     swept = data | {"sweep": {"contact.a.k_u": [1.0, 1e5]}}
     assert not any("in its units" in one for one in scene_from_dict(swept).notes)
+
+
+@pytest.mark.parametrize(("factor", "asked"), [(1.0, 0), (1e3, 1), (10.0, 0)])
+def test_a_first_resonance_far_below_the_range_is_asked_about(factor, asked):
+    """A mass in another unit: higher modes are near the range then, and no name tells of it."""
+    count = 8
+    mass, stiffness = (factor * np.eye(count)).tolist(), np.diag(np.geomspace(1e5, 1e9, count)).tolist()
+    first = np.sqrt(1e5)
+    dofs = [f"A{i}q" for i in range(count)]
+    contact = {"name": "a", "tangential": dofs[3], "normal": dofs[5], "mu": 0.3, "n_0": 1.0}
+    data = {
+        "structure": {"dofs": dofs, "mass": mass, "stiffness": stiffness, "damping": 0.01},
+        "contact": [contact | {"k_u": 1e4, "k_v": 1e4}],
+        "force": [{"dof": dofs[1], "amplitude": 1.0}],
+        "response": {"frequency": [0.9 * first, 1.2 * first]},
+    }  # fmt: skip
+    scene = scene_from_dict(data)
+    assert resonance_doubt(scene) == ""
+    assert len([one for one in scene.notes if "are the units those meant?" in one]) == asked

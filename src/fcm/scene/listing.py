@@ -174,7 +174,31 @@ def notes_of_modes(scene: Scene) -> list[str]:
                 "stiffness, and the frequency in rad/s?"
             )
         )
+    if scene.of_matrices and (doubt := _first_far_below(scene)):
+        said.append(Doubt(doubt))
     return said
+
+
+def _first_far_below(scene: Scene) -> str:
+    """That the first resonance is far below the range, which a slip of units would put into it; else ''.
+
+    Higher modes are in the range then, so that it is not said that none is.
+    """
+    if not scene.has_range:
+        return ""
+    opened, stuck = _modes_open_and_stuck(scene)
+    (low, high), unit = scene.frequency_range, scene.frequency_unit
+    if not stuck.size or stuck[0] > low / MESSAGES.far_below:
+        return ""
+    if not _resonance_within(
+        METRE_AND_MILLIMETRE * opened[:1], METRE_AND_MILLIMETRE * stuck[:1], (low, high)
+    ):
+        return ""
+    return (
+        f"structure: are the units those meant? The first resonance, {stuck[0] / UNIT[unit]:.5g} {unit} "
+        "while all contacts stick, is far below the range of frequencies. 31.6 times as high it would be "
+        "within, as where a mass in kg is in t, or one in t in kg and the stiffness in N/mm"
+    )
 
 
 def _listed(values: FloatArray, digits: int = 5) -> str:

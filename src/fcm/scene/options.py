@@ -43,6 +43,7 @@ class MessageOptions(Frozen):
     soft_contact: float = 1e-4
     # of the range, logarithmic: where a slip of units would put a mode it is so far from the ends
     range_margin: float = 0.05
+    far_below: float = 10.0  # times: a first resonance so far below the range is asked about
     range_near: float = 2.0  # times the range's ends: a mode within that is near it
 
 
