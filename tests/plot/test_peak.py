@@ -228,7 +228,9 @@ def test_a_mode_without_resonances_is_said_to_have_none(tmp_path):
 
 def test_a_least_peak_at_an_end_of_the_sweep_is_no_minimum():
     said = title(draw_peak(peaks(n_0=[10, 20, 50])).axes[0])
-    assert said.splitlines()[1] == "an end of the sweep of $n_{0}$: beyond it may be less; sweep further"
+    assert (
+        said.splitlines()[1] == "an end of the sweep of $n_{0}$: less may be beyond, or before the next value"
+    )
     assert "end of the sweep" not in title(draw_peak(peaks(n_0=[0, 10, 20])).axes[0])
 
 

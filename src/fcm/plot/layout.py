@@ -42,7 +42,7 @@ _LAYOUT = {
         ("tracked_number", "tracked_frequency", "tracked_turn", "tracked_trough", "tracked_stable"), _TRACKED
     ),
     "optimum_number": ("optimum", "varied"),
-    **dict.fromkeys(("optimum_peak", "optimum_higher_peak"), ("optimum",)),
+    **dict.fromkeys(("optimum_peak", "optimum_higher_peak", "optimum_kind"), ("optimum",)),
     **dict.fromkeys(("optimum_frequency", "optimum_stable"), ("optimum", "equal")),
 }
 _TEXTS = {
@@ -53,6 +53,7 @@ _TEXTS = {
     "sweep",
     "peak_kind",
     "track_what",
+    "optimum_kind",
     "data_dof",
 }
 

@@ -234,7 +234,7 @@ def _mark_least(panels: Sequence[Axes], peaks: Peaks, key: str, column: int, kno
     """A ring around the least peak of all, a thin line down to its frequency, and its values above.
 
     What is greatest at an end of the range of frequencies is no peak. At an end of what was swept it is no
-    minimum: a lower one may lie beyond.
+    minimum: a lower one may lie beyond, or between it and the next value.
     """
     at_end = np.zeros_like(known) if peaks.at_end is None else peaks.at_end[:, column]
     found = least_peak(peaks.amplitude[:, column], peaks.parameters[key], known, at_end)
@@ -251,7 +251,7 @@ def _mark_least(panels: Sequence[Axes], peaks: Peaks, key: str, column: int, kno
     said = f"least {what} {height}{stays} at {where}"
     if key not in (*_WHOLE, EXCITED) and found.at_end_of_sweep:
         (symbol,) = symbols([key])
-        said += f"\nan end of the sweep of {symbol}: beyond it may be less; sweep further"
+        said += f"\nan end of the sweep of {symbol}: less may be beyond, or before the next value"
     panels[0].set_title(said, loc="right", fontsize=8, color=_MARK)
 
 

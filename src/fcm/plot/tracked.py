@@ -32,7 +32,14 @@ if TYPE_CHECKING:
 
 _NEEDED = ("tracked_number", "tracked_frequency", "tracked_amplitude", "tracked_turn", "track_what", "dof")
 _ALSO = ("tracked_trough", "tracked_stable")
-_OPTIMUM = ("optimum_number", "optimum_peak", "optimum_frequency", "optimum_stable", "optimum_higher_peak")
+_OPTIMUM = (
+    "optimum_number",
+    "optimum_peak",
+    "optimum_frequency",
+    "optimum_stable",
+    "optimum_higher_peak",
+    "optimum_kind",
+)
 _MARK, _SHADE = "#c03020", "#c0d4ea"
 
 
@@ -59,6 +66,7 @@ class DrawnTracking(Frozen):
     stays: str = ""  # what is to be said of the stability of that
     length: str = ""
     unit: str = ""  # of the number
+    at_bound: bool = False  # whether the optimum is at an end of the range of the number
 
 
 @apart
@@ -87,6 +95,7 @@ def read_tracked(path: Path) -> DrawnTracking | None:
             if "optimum_higher_peak" in variables:
                 higher = float(floats(variables["optimum_higher_peak"])[0])
                 stays += f" (and one of {higher:.4g} that was not followed)"
+        kind = np.atleast_1d(variables["optimum_kind"][:]).tolist() if "optimum_kind" in variables else []
         return DrawnTracking(
             str(getattr(variables["tracked_number"], "key", "")),
             tuple(str(name) for name in np.atleast_1d(variables["dof"][:])),
@@ -96,6 +105,7 @@ def read_tracked(path: Path) -> DrawnTracking | None:
             stays,
             str(getattr(variables["tracked_amplitude"], "units", "")),
             str(getattr(variables["tracked_number"], "units", "")),
+            kind == ["bound"],
         )
 
 
@@ -226,4 +236,6 @@ def _mark_optimum(upper: Axes, lower: Axes, drawn: DrawnTracking) -> None:
     ring_at(upper, lower, x, y, _MARK)
     (symbol,) = symbols([drawn.key])
     at, least = f"{symbol} = {x:.5g} {drawn.unit}".rstrip(), f"{y:.5g} {drawn.length}".rstrip()
-    upper.set_title(f"least peak {least}{drawn.stays} at {at}", loc="right", fontsize=8, color=_MARK)
+    bound = ", a bound: beyond it there may be less" if drawn.at_bound else ""
+    said = f"least peak {least}{drawn.stays} at {at}{bound}"
+    upper.set_title(said, loc="right", fontsize=8, color=_MARK)

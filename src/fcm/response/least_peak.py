@@ -20,6 +20,8 @@ from fcm.run import Progress
 from fcm.run.progress import part
 from fcm.scene.draft import Number
 from fcm.scene.errors import counted
+from fcm.tracking.added_values import reaching
+from fcm.tracking.added_values import with_values as with_values_told
 from fcm.tracking.ending_peak import EndingPeak, ending_peak
 from fcm.tracking.kept_steps import KeptSteps
 from fcm.tracking.lowest_peak import LowestPeak, LowestPeakSearch
@@ -191,7 +193,10 @@ def _on_line(task: PeakTask, found: LowestPeak, harmonics: tuple[int, ...]) -> F
     if found.best is None:
         raise ResponseError(_no_peak(task))
     setup = _search(task, harmonics).setup
-    curves = [as_curve(task.scene, setup, *stability_along(setup, one)) for one in found.curves]
+    best, limit = found.best.s, (1.0 + task.options.optimum.nearly) * found.best.value
+    told = [best, *reaching(setup, found.curves, task.targets, limit)]
+    followed = [with_values_told(setup, one, told) for one in found.curves]
+    curves = [as_curve(task.scene, setup, *stability_along(setup, one)) for one in followed]
     optimal = _optimal(task, np.array([found.best.s]), found.best, harmonics)
     if found.best.kind != "end":
         return optimal, curves

@@ -11,7 +11,8 @@ from fcm.model.scene import FloatArray
 
 
 class LeastPeak(NamedTuple):
-    """Of which curve it is, and whether at an end of what was swept: a lower one may lie beyond."""
+    """Of which curve it is, and whether at an end of what was swept: a lower one may lie beyond, or
+    between it and the next value."""
 
     curve: int
     at_end_of_sweep: bool

@@ -19,7 +19,7 @@ from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
 from fcm.tracking.curve import SpecialPointCurve
 from fcm.tracking.extended_system import Condition, ExtendedSystem, Kind
-from fcm.tracking.tracked_point import TrackingSetup
+from fcm.tracking.tracked_point import TrackedPoint, TrackingSetup
 
 INCOMPLETE = "unfinished"  # what the least so far is of, where it was still sought
 
@@ -75,23 +75,39 @@ class MonotonePiece:
 
     def at(self, s: float) -> PieceHeight:
         """Exactly, or by the chord where Newton's method does not come to it."""
+        guess, i, part, _ = self._guess(s)
+        if (solved := self._solved(s)) is not None:
+            return self._height(*solved)
+        slope = (self.height[i + 1] - self.height[i]) / max(self.s[i + 1] - self.s[i], 1e-300)
+        return PieceHeight(
+            float(self.height[i] + part * (self.height[i + 1] - self.height[i])), slope, guess, self.dof
+        )
+
+    def point(self, s: float, rising: float) -> TrackedPoint | None:
+        """That of the curve, along which s rises (1) or falls (-1); None where it is not come to."""
+        if (solved := self._solved(s)) is None:
+            return None
+        _, newton = solved
+        z, t = np.array(newton.z), np.asarray(newton.tangent) * np.asarray(newton.scale)
+        return TrackedPoint(z, t if t[-1] * rising > 0.0 else -t, self._guess(s)[3])
+
+    def _guess(self, s: float) -> tuple[FloatArray, int, float, Condition | None]:
+        """By the chord: z, which chord, which part of it, and the corner that is tracked there."""
         i = int(np.clip(np.searchsorted(self.s, s) - 1, 0, len(self.s) - 2))
         one, other = self.tracked_points[i], self.tracked_points[i + 1]
         part = (s - self.s[i]) / max(self.s[i + 1] - self.s[i], 1e-300)
         guess = one.z + part * (other.z - one.z)
         guess[-1] = s
-        corner = other.corner if one.switch else one.corner
+        return guess, i, part, other.corner if one.switch else one.corner
+
+    def _solved(self, s: float) -> tuple[ExtendedSystem, Newton] | None:
+        guess, _, _, corner = self._guess(s)
         problem = self._problem(corner)
         problem.measure(guess)
         newton = Newton(problem)
         newton.scale[:], newton.z[:] = problem.scale, guess
         newton.row[:] = np.eye(guess.size)[-1]
-        if not newton.correct(1e-3):
-            slope = (self.height[i + 1] - self.height[i]) / max(self.s[i + 1] - self.s[i], 1e-300)
-            return PieceHeight(
-                float(self.height[i] + part * (self.height[i + 1] - self.height[i])), slope, guess, self.dof
-            )
-        return self._height(problem, newton)
+        return (problem, newton) if newton.correct(1e-3) else None
 
     def _problem(self, corner: Condition | None) -> ExtendedSystem:
         if corner not in self._problems:
