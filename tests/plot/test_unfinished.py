@@ -1,5 +1,6 @@
 """Curves that stopped early say so in their pictures, and where they end."""
 
+import json
 from dataclasses import replace
 
 import netCDF4
@@ -45,6 +46,19 @@ def test_a_curve_of_several_that_is_cut_off_is_counted():
     assert crosses(axes) == []  # both come to the end of the range
     said = axes.get_title(loc="left")
     assert said == "NOT COMPLETE: 2 of 3 curves; the first: interrupted before its stability was known"
+
+
+def test_a_fit_that_was_interrupted_is_said_over_whole_curves(tmp_path, fcm):
+    """Its picture looked like that of the best numbers."""
+    (tmp_path / "scene.toml").write_text(SCENE)
+    assert fcm("respond", "scene.toml", "-o", "a.nc").code == 0
+    titles = []
+    for fitted in ({"final": False, "interrupted": True}, {"final": True, "interrupted": False}):
+        with netCDF4.Dataset("a.nc", "a") as data:
+            data.summary = json.dumps(json.loads(data.summary) | {"fitted": fitted})
+        axes, *_ = draw_response(read_response(tmp_path / "a.nc")).axes
+        titles.append(axes.get_title(loc="left").replace("\n", " "))
+    assert titles == ["FIT NOT COMPLETE: interrupted: the numbers are the best so far", ""]
 
 
 def test_whole_curves_have_neither():

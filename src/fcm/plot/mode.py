@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -28,7 +28,7 @@ from fcm.plot.options import READ
 from fcm.plot.read import BoolArray, FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
 from fcm.plot.style import DOTS, LAYOUT, house_style, new_figure, sequence_colours, split
-from fcm.plot.unfinished import Unfinished, mark_unfinished, say_unfinished, unfinished_of
+from fcm.plot.unfinished import NO_SPAN, Unfinished, mark_unfinished, say_unfinished, unfinished_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -133,7 +133,7 @@ def read_modes(path: Path) -> DrawnModes:
             tuple(found),
             swept_units(data.variables, swept),
             backbones_of(data.variables),
-            Unfinished(unfinished_of(data).reasons),  # the range is of frequencies
+            replace(unfinished_of(data), span=NO_SPAN),  # the range is of frequencies
             fitted_of(data),
         )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import field
+from dataclasses import field, replace
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +22,7 @@ from fcm.plot.measured import DrawnMeasured, FittedNumber, fitted_of, measured_o
 from fcm.plot.options import READ
 from fcm.plot.reader_process import apart
 from fcm.plot.style import LAYOUT
-from fcm.plot.unfinished import Unfinished, unfinished_of
+from fcm.plot.unfinished import NO_SPAN, Unfinished, unfinished_of
 from fcm.units import CF_UNIT
 from fcm.unknown_stability import unknown_stability
 
@@ -220,7 +220,7 @@ def _response(dataset: Any) -> DrawnResponse:
     units, asked = swept_units(variables, swept), asked_for(getattr(dataset, "output", ""), dofs)
     unfinished = unfinished_of(dataset)
     if level is not None or free:  # the range is of frequencies
-        unfinished = Unfinished(unfinished.reasons)
+        unfinished = replace(unfinished, span=NO_SPAN)
     return DrawnResponse(
         dofs, unit, curves, length, drawn, units, measured, asked, unfinished, fitted_of(dataset)
     )

@@ -18,14 +18,15 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 COLOUR = "#c03020"
-_NO_SPAN = (np.nan, np.nan)
+NO_SPAN = (np.nan, np.nan)
 
 
 class Unfinished(Frozen):
     """Of the curves of a file, in their order."""
 
     reasons: tuple[str, ...] = ()  # (curve,) empty where a curve is whole
-    span: tuple[float, float] = _NO_SPAN  # sought, in the file's unit; NaN where the file does not say it
+    span: tuple[float, float] = NO_SPAN  # sought, in the file's unit; NaN where the file does not say it
+    fit: str = ""  # why the numbers of a fit are not final; empty if they are, or there are none
 
     def reason(self, number: int) -> str:
         """Why a curve ends early; empty if it does not."""
@@ -33,22 +34,37 @@ class Unfinished(Frozen):
 
 
 def unfinished_of(data: Any) -> Unfinished:
-    """What an open file says of its curves; of one without `complete` nothing."""
+    """What an open file says of its curves, and of a fit; of one without `complete` nothing."""
     if "complete" not in data.variables:
         return Unfinished()
     whole = np.atleast_1d(np.ma.filled(np.ma.asarray(data.variables["complete"][:], dtype=float), 1.0)) == 1.0
-    if whole.all():
-        return Unfinished(("",) * whole.size)
     found = _summary(data)
+    fit = _of_fit(found.get("fitted"))
+    if whole.all():
+        return Unfinished(("",) * whole.size, fit=fit)
     curves = found.get("curves") or [{}] * whole.size
     if not isinstance(curves, list) or not all(isinstance(one, dict) for one in curves):
         raise ValueError("its attribute summary is not of curves")
     reasons = [str(one.get("reason") or "stopped early") for one in curves] + [""] * whole.size
-    span = found.get("range") or _NO_SPAN
+    span = found.get("range") or NO_SPAN
     return Unfinished(
         tuple("" if done else reason for done, reason in zip(whole.tolist(), reasons, strict=False)),
         (float(span[0]), float(span[1])),
+        fit,
     )
+
+
+def _of_fit(fitted: Any) -> str:
+    """Why the numbers of a fit are not final.
+
+    >>> _of_fit({"final": False}), _of_fit({"final": True, "settled": False}), _of_fit(None)
+    ('interrupted: the numbers are the best so far', 'its search stopped before a minimum', '')
+    """
+    if not isinstance(fitted, dict):
+        return ""
+    if not fitted.get("final", True):
+        return "interrupted: the numbers are the best so far"
+    return "" if fitted.get("settled", True) else "its search stopped before a minimum"
 
 
 def _summary(data: Any) -> dict[str, Any]:
@@ -117,7 +133,7 @@ def say_unfinished(axes: Axes, told: Unfinished) -> None:
 
 
 def sentence(told: Unfinished) -> str:
-    """That curves are unfinished, and why the first is; empty where all are whole.
+    """That curves are unfinished, and why the first is, or a fit; empty where all are whole.
 
     >>> sentence(Unfinished(("", "")))
     ''
@@ -125,10 +141,12 @@ def sentence(told: Unfinished) -> str:
     'NOT COMPLETE: stopped at 1.2 Hz: no further point could be found'
     >>> sentence(Unfinished(("", "interrupted before it was traced", "")))
     'NOT COMPLETE: 1 of 3 curves; the first: interrupted before it was traced'
+    >>> sentence(Unfinished(("",), fit="its search stopped before a minimum"))
+    'FIT NOT COMPLETE: its search stopped before a minimum'
     """
-    reasons = [one for one in told.reasons if one]
-    if not reasons:
-        return ""
-    count = len(told.reasons)
-    which = "" if count == 1 else f"{len(reasons)} of {count} curves; the first: "
-    return f"NOT COMPLETE: {which}{reasons[0]}"
+    reasons, count = [one for one in told.reasons if one], len(told.reasons)
+    said = [f"FIT NOT COMPLETE: {told.fit}"] if told.fit else []
+    if reasons:
+        which = "" if count == 1 else f"{len(reasons)} of {count} curves; the first: "
+        said.append(f"NOT COMPLETE: {which}{reasons[0]}")
+    return ". ".join(said)
