@@ -212,7 +212,7 @@ def test_curves_of_a_sweep_say_of_which_values_they_are(fcm, scene):
         (["--over", "contact.shroud.n_0"], "--over needs --track"),
         (["--track", "folds"], "--track needs --over and --from and --to"),
         (["--track", "peaks", *FOLDS, "4", "--to", "5"], "--track is given 2 times (peaks, folds)"),
-        ([*FOLDS, "5", "--to", "4"], "--from 5 --to 4: contact.shroud.n_0 must rise"),
+        ([*FOLDS, "5", "--to", "4"], "--from 5 --to 4: contact.shroud.n_0 must rise; swap them: 4 to 5"),
         ([*FOLDS, "5", "--to", "5.0000000000001"], "too narrow"),
         (
             [*FOLDS, "4", "--to", "5", "--over", "level"],

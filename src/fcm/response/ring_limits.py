@@ -12,7 +12,8 @@ from fcm.structure.loads import driven_harmonics
 
 PLANE = (
     "is computed of contacts on a line alone, between whose events the structure is linear. While one slips "
-    "in a plane its direction turns with the motion. More harmonics (--harmonics, --accuracy) come as near"
+    "in a plane its direction turns with the motion. More harmonics (--harmonics, --accuracy) come as "
+    "near to it as is asked for"
 )
 
 

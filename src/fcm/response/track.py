@@ -196,7 +196,8 @@ def _check(scene: Scene, number: Number, span: tuple[float, float]) -> None:
             raise SpanError({which: end}, f"{number.key} {fault}")
     both = dict(enumerate(span))
     if not low < high:
-        raise SpanError(both, f"{number.key} must rise")
+        swapped = f"; swap them: {high:.6g} to {low:.6g}" if high < low else ""
+        raise SpanError(both, f"{number.key} must rise{swapped}")
     if high - low < INPUT_LIMITS.min_relative_width * max(abs(low), abs(high)):
         raise SpanError(both, "too narrow to follow anything in", digits=17)
     if number.key == LEVEL and low <= 0.0:
