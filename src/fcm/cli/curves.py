@@ -395,7 +395,7 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
     if summary.get("method") == "exact":
         harmonic = None
         if (closure := _worst(curves, "closure_error")) is not None:
-            errors.append(f"{closure:.1e} by which a period does not close")
+            errors.append(f"{closure:.1e} by which a period does not close{_of_lower_peaks(summary)}")
     if summary.get("method") == "table" and table and not summary.get("directions"):
         errors.append(f"{table:.1e} of the table, not of the points")
     if harmonic is not None:
@@ -437,6 +437,18 @@ def _peaks_of(curves: Sequence[Curve], dofs: Collection[str]) -> list[dict[str, 
     return [one for curve in curves for dof, one in curve["peak"].items() if one and dof in dofs]
 
 
+def _of_lower_peaks(summary: Mapping[str, Any]) -> str:
+    """That lower peaks of exact curves are points of these, and not sought between them; empty without any.
+
+    >>> _of_lower_peaks({"curves": [{"peak": {"u": {}}, "peaks": {"u": [{}, {}]}}], "output": ["u"]})
+    ', at the points; lower peaks are the highest of these, and how much lies between them is not told'
+    """
+    shown = shown_dofs(summary)
+    if not any(len(curve.get("peaks", {}).get(dof, ())) > 1 for curve in summary["curves"] for dof in shown):
+        return ""
+    return ", at the points; lower peaks are the highest of these, and how much lies between them is not told"
+
+
 def _amount(error: float) -> str:
     """An error as a sentence says it."""
     return short(error).replace(BEYOND, "more than 100 %")
@@ -449,9 +461,21 @@ def _where(summary: Mapping[str, Any], error: float) -> str:
 
 
 def incomplete(summary: Mapping[str, Any]) -> str:
-    """How many curves stopped early; empty if none."""
+    """How many curves stopped early, and how many were not begun; empty if none.
+
+    >>> incomplete({"curves": [{"complete": False, "points": 8}] + 2 * [{"complete": False, "points": 0}]})
+    '1 of 3 curves stopped early; 2 were not begun'
+    >>> incomplete({"curves": [{"complete": True}, {"complete": False, "points": 0}]})
+    '1 of 2 curves was not begun'
+    """
     curves = summary["curves"]
-    return stopped_early(sum(not curve["complete"] for curve in curves), len(curves))
+    stopped = [curve for curve in curves if not curve["complete"]]
+    none = sum(curve.get("points") == 0 for curve in stopped)
+    begun = stopped_early(len(stopped) - none, len(curves))
+    if not none or len(curves) == 1:
+        return begun or stopped_early(none, len(curves))
+    never = f"{'was' if none == 1 else 'were'} not begun"
+    return f"{begun}; {none} {never}" if begun else f"{none} of {len(curves)} curves {never}"
 
 
 def all_lost_to_defects(summary: Mapping[str, Any]) -> bool:

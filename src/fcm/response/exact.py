@@ -29,7 +29,10 @@ from fcm.run import IN_THIS_PROCESS, Execution, Progress, fingerprint
 from fcm.units import UNIT
 
 METHOD = "exact"
-ONLY_PEAKS = "of the exact curves all points but their peaks, folds and jumps"
+ONLY_PEAKS = (
+    "of the exact curves all points but the greatest peak of each degree of freedom, folds and jumps: lower "
+    "peaks, too"
+)
 
 
 def trace_exact(
