@@ -197,7 +197,7 @@ def _first_far_below(scene: Scene) -> str:
     return (
         f"structure: are the units those meant? The first resonance, {stuck[0] / UNIT[unit]:.5g} {unit} "
         "while all contacts stick, is far below the range of frequencies. 31.6 times as high it would be "
-        "within, as where a mass in kg is in t, or one in t in kg and the stiffness in N/mm"
+        "within. So it is of a mass in kg with a stiffness in N/mm, or of one in g with N/m"
     )
 
 
