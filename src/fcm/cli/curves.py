@@ -463,14 +463,18 @@ def _where(summary: Mapping[str, Any], error: float) -> str:
 def incomplete(summary: Mapping[str, Any]) -> str:
     """How many curves stopped early, and how many were not begun; empty if none.
 
-    >>> incomplete({"curves": [{"complete": False, "points": 8}] + 2 * [{"complete": False, "points": 0}]})
+    >>> none = {"complete": False, "points": 0, "cause": "interrupted"}
+    >>> incomplete({"curves": [{"complete": False, "points": 8}, none, none]})
     '1 of 3 curves stopped early; 2 were not begun'
-    >>> incomplete({"curves": [{"complete": True}, {"complete": False, "points": 0}]})
+    >>> incomplete({"curves": [{"complete": True}, none]})
     '1 of 2 curves was not begun'
     """
+    from fcm.results.cause import Cause
+
     curves = summary["curves"]
     stopped = [curve for curve in curves if not curve["complete"]]
-    none = sum(curve.get("points") == 0 for curve in stopped)
+    interrupted = Cause.INTERRUPTED.name.lower()
+    none = sum(curve.get("points") == 0 and curve.get("cause") == interrupted for curve in stopped)
     begun = stopped_early(len(stopped) - none, len(curves))
     if not none or len(curves) == 1:
         return begun or stopped_early(none, len(curves))

@@ -151,8 +151,8 @@ class Fitted:
             said.append("the numbers are the best so far: their standard errors are not those of a minimum")
         elif not self.settled:
             said.append(
-                "the search for the numbers stopped before a minimum: others may be nearer to the data, and "
-                "the standard errors are not those of a minimum. Begin with these numbers"
+                "the search for the numbers stopped before a minimum, so that others may be nearer to the "
+                "data. The standard errors are not those of a minimum. Begin with these numbers"
             )
         for k, key in enumerate(self.keys):
             if self.without_effect[k]:
