@@ -57,19 +57,18 @@ def test_a_curve_that_leaves_to_where_it_came_from(pull: float) -> None:
 class MirroredRoots(Problem):
     """Two roots as of `Root`, of unknowns x_1, y_1, x_2, y_2: what is unlike in both acts on their squares.
 
-    Both squares vanish at once. The unlike motion has its own determinant, which changes its sign where a
-    root is half of `unlike`, and back in the corner.
+    Both squares vanish at once, or the second a shift apart. Where both roots are the same, what is unlike
+    has its own determinant, which changes its sign in the corner and where a root is half of `unlike`.
     """
 
-    def __init__(self, pull: float, unlike: float) -> None:
+    def __init__(self, unlike: float, shift: float) -> None:
         Problem.__init__(self, 4, 2, 0)
-        self.rooted, self.pull, self.unlike = True, pull, unlike
-        self.kind[:] = np.arange(2)
+        self.rooted, self.pull, self.unlike, self.shift = True, 0.01, unlike, shift
 
     def square(self, kind: int, z: FloatArray) -> float:
         x, y, other, p = z[2 * kind], z[2 * kind + 1], z[2 - 2 * kind], z[4]
         apart = 0.5 * (self.unlike - self.pull)
-        return float(p + self.pull * x + apart * (x - other) - 0.3 * y + 0.5 * x * y)
+        return float(p + self.pull * x + apart * (x - other) - 0.3 * y + 0.5 * x * y + kind * self.shift)
 
     def bound(self, z: FloatArray) -> int:
         for kind in range(2):
@@ -93,14 +92,23 @@ class MirroredRoots(Problem):
         return 0
 
 
-@pytest.mark.parametrize("unlike", [0.03, 0.003, 0.0003, 0.00003])
-def test_mirrored_corners_change_the_orientation_and_are_crossed(unlike: float) -> None:
-    problem = MirroredRoots(0.01, unlike)
+@pytest.mark.parametrize("shift", [0.0, 1e-12, 1e-9, 1e-6])
+@pytest.mark.parametrize("unlike", [0.3, 0.03, 0.0003, -0.03, -0.00003])
+def test_mirrored_corners_are_crossed_one_at_a_time(unlike: float, shift: float) -> None:
+    """Two branches on which both roots are the same meet two others; a shift joins one of these to each.
+
+    Without a shift they are joined, too. A curve that changed its orientation would go around for ever.
+    """
+    problem = MirroredRoots(unlike, shift)
     start = np.array([0.0, 1.0, 0.0, 1.0, 1.0])
     path = follow(problem, start, (-1.0, 1.0), forward=False)
-    assert path.status is Status.COMPLETE
+    assert path.status is Status.COMPLETE and path.z[-1, 4] == -1.0
+    assert path.z[-1, :2] == pytest.approx(path.z[-1, 2:4], abs=10.0 * shift + 1e-12)
     corners = np.flatnonzero(path.mark & Mark.CORNER)
     sides = np.sign([[problem.square(kind, z) for z in path.z] for kind in range(2)])
     assert (sides[:, : corners[0]] == 1.0).all()
     assert (sides[:, corners[-1] + 1 :] == -1.0).all()
-    assert path.z[:, 0] == pytest.approx(path.z[:, 2], abs=MET)
+    between = sides[:, corners[0] + 1 : corners[-1]]
+    assert (between[0] != between[1]).any()
+    changes = np.count_nonzero(np.diff(path.orientation))
+    assert changes == (0 if shift else path.where(Mark.BRANCH).size)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -110,55 +109,7 @@ def all_branches(
     except KeyboardInterrupt as stopped:
         last = (stopped.path,) if isinstance(stopped, PathInterrupted) else ()
         raise BranchesInterrupted(Branches((*paths, *last))) from None
-    new = paths[len(known) :]
-    if any(_may_end_where_it_began(path) for path in new):
-        new = _each_way_once(known, new, new_problem())
-    return Branches((*known, *new), tuple(lost))
-
-
-def _may_end_where_it_began(path: Path) -> bool:
-    """Whether both ends of a path are at the same end of the span; its start may have been between."""
-    whole = path.status in (Status.RETURNED, Status.COMPLETE)
-    return whole and bool(path.parameter[0] == path.parameter[-1])
-
-
-def _ends_where_it_began(path: Path, problem: Problem) -> bool:
-    """Whether a path came back along the way that it had gone: to the same solution at an end of the span."""
-    if not _may_end_where_it_began(path):
-        return False
-    problem.measure(path.z[0])
-    off = (path.z[-1] - path.z[0]) / np.asarray(problem.scale)
-    return bool(np.linalg.norm(off) < PATH.solution_tolerance)
-
-
-def _each_way_once(known: Sequence[Path], new: Sequence[Path], problem: Problem) -> list[Path]:
-    """New paths; of those that went a way forth and back without that, where another has it.
-
-    Where several curves meet in a point, one that is followed around others comes back to it, and along the
-    way to there. What it has beside that way stays, unless that is known, too.
-    """
-    twice = [_ends_where_it_began(path, problem) for path in new]
-    kept = [path for path, both in zip(new, twice, strict=True) if not both]
-    for path in (path for path, both in zip(new, twice, strict=True) if both):
-        others = [*known, *kept]
-        way = next((one for one in others if contains(one, path.z[0], problem)), None)
-        if way is None:
-            kept.append(path)
-            continue
-        forth = _shared(way, path.z, problem)
-        back = len(path.z) - 1 - _shared(way, path.z[::-1], problem)
-        if forth < back and not any(contains(one, path.z[(forth + back) // 2], problem) for one in others):
-            kept.append(replace(path.part(np.arange(forth, back + 1)), status=Status.COMPLETE))
-    return kept
-
-
-def _shared(way: Path, z: FloatArray, problem: Problem) -> int:
-    """The last of points (point, n + 1), of which the first is on a way, up to which they are on it."""
-    on, off = 0, len(z)
-    while off - on > 1:
-        middle = (on + off) // 2
-        on, off = (middle, off) if contains(way, z[middle], problem) else (on, middle)
-    return on
+    return Branches(tuple(paths), tuple(lost))
 
 
 def _known(path: Path, paths: Sequence[Path], problem: Problem) -> bool:

@@ -16,12 +16,11 @@ cdef class BorderedSystem:
     cdef public object poll
     cdef double[::1] guess
     cdef double[::1] delta
-    cdef double[::1] weights
     cdef bint factor(self) except -1
     cdef int solve(self) except -1
     cdef double step(self) except -1
     cdef bint compute_tangent(self) except -1
-    cdef double rounding(self, NewtonOptions options) except -1
+    cdef bint is_solved(self, double errors) except -1
 
 cdef class Newton(BorderedSystem):
     cdef public NewtonOptions options

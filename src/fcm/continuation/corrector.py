@@ -1,8 +1,8 @@
 """Newton's method for a point of a curve: the corrector, and the bordered system that it solves.
 
 The n equations for the n + 1 numbers z and the row make a square matrix, the bordered one, in coordinates
-made dimensionless by the problem's scale. Its solutions are the step of Newton's method, the direction of the
-curve, and the step that rounding makes; the sign of its determinant is the curve's orientation.
+made dimensionless by the problem's scale. Its solutions are the step of Newton's method and the direction of
+the curve; the sign of its determinant is the curve's orientation.
 
 The point is sought in the plane through the guess whose normal is the row that closes the equations. A row
 along the curve gives the next point; a row along the parameter holds that. One step across a path tells how
@@ -38,7 +38,7 @@ class BorderedSystem:
         size = problem.unknowns + 1
         self.problem = problem
         self.solver = Solver(0 if problem.rank else size)
-        self.delta, self.weights = np.zeros(size), np.zeros(size)
+        self.delta = np.zeros(size)
         self.z, self.guess = np.zeros(size), np.zeros(size)
         self.scale, self.row, self.tangent = np.ones(size), np.zeros(size), np.zeros(size)
         self.orientation, self.sign, self.moved = 0.0, 0.0, 0.0
@@ -128,35 +128,24 @@ class BorderedSystem:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def rounding(self, options: NewtonOptions) -> cython.double:
-        """Length of the Newton step that a relative error of EPS in every number makes, after Skeel.
+    def is_solved(self, errors: cython.double) -> cython.bint:
+        """Whether no equation is off by more than what so many relative errors of EPS in every number make.
 
-        Less than that, but more than the last step, where errors of chosen signs already make such a step.
+        That is the backward error of each (Oettli, Prager, 1964). Next to the onset of a root a step may be
+        no longer than that of rounding elsewhere, and the equation is off by far more. A number that is 0
+        comes of others as large as its unit.
         """
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         n: cython.Py_ssize_t = self.problem.unknowns
-        least: cython.double = 0.0
-        step: cython.double = 0.0
-        error: cython.double[::1] = self.weights
-        if self.problem.rank:
-            return options.rounding_multiple * EPS * sqrt(n + 1)
-        for i in range(n + 1):
-            unit: cython.double = EPS / self.scale[i] if i < n else EPS
-            error[i] = 0.0
+        error: cython.double
+        for i in range(n):
+            error = 0.0
             for j in range(n + 1):
-                if i < n:
-                    error[i] += unit * fabs(self.problem.jacobian[i, j] * self.z[j])
-                else:
-                    error[i] += unit * fabs(self.row[j] * self.z[j] / self.scale[j])
-            self.solver.right[i] = error[i] if i % 2 == 0 else -error[i]
-        self.solver.solve()
-        for i in range(n + 1):
-            least += self.solver.right[i] * self.solver.right[i]
-            step += self.delta[i] * self.delta[i]
-        if sqrt(step) < options.rounding_multiple * sqrt(least):
-            return sqrt(least)
-        return float(np.linalg.norm(np.abs(self.solver.inverse()) @ np.asarray(error)))
+                error += fabs(self.problem.jacobian[i, j]) * max(fabs(self.z[j]), self.scale[j])
+            if not fabs(self.problem.residual[i]) <= errors * EPS * error:
+                return False
+        return True
 
 
 @cython.cclass
@@ -246,6 +235,9 @@ class Newton(BorderedSystem):
             worse: cython.double = self.options.divergence_ratio if hasten else 2.0
             if not step < self.options.max_step or (count > 2 and step > worse * before and not noise):
                 return False
+            if noise:
+                self.rounding_step = step
+                return self.compute_tangent()
             _move(self)
             ratio = step / before
             # the first step says nothing of the convergence yet; that to a corner that is not seen never
@@ -255,9 +247,6 @@ class Newton(BorderedSystem):
                 before = step
                 continue
             if (count > 0 and step * ratio * sqrt(ratio) < self.tolerance) or step < self.options.final_step:
-                return self.compute_tangent()
-            if noise:
-                self.rounding_step = step
                 return self.compute_tangent()
             # the Jacobian hardly changes along a step that is shorter than the square of the one before
             steady: cython.bint = count > 0 and (self.problem.costly or step < before * before)
@@ -284,15 +273,19 @@ class Newton(BorderedSystem):
     def is_rounding(self, step: cython.double, count: cython.int) -> cython.bint:
         """Whether a step that has not shrunk is one that rounding makes.
 
-        Of what the equations lose to cancellation within them their derivatives know nothing.
+        Equations may lose digits to cancellation within them, of which their derivatives know nothing: a step
+        that stalls is rounding, too, but where they begin as a root. Of those that are condensed the
+        derivatives are not known, and the length of the step tells.
         """
         if self.problem.labelled:
             return False
-        if count > 2 and step < self.options.stalled_rounding:
+        most: cython.double = self.options.rounding_multiple
+        stalled: cython.bint = count > 2 and step < self.options.stalled_rounding
+        if stalled and (self.problem.rank or not self.problem.rooted):
             return True
-        return step < self.options.max_rounding and step < self.options.rounding_multiple * self.rounding(
-            self.options
-        )
+        if self.problem.rank:
+            return step < most * most * EPS * sqrt(self.problem.unknowns + 1)
+        return step < self.options.max_rounding and self.is_solved(most)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)

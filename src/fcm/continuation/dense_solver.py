@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import cython
 import numpy as np
-import numpy.typing as npt
 from cython.cimports.libc.math import fabs
 
 from fcm.continuation.options import SOLVER, SolverOptions
@@ -67,25 +66,6 @@ class Solver:
         right = np.asarray(self.right)
         right[:] = lapack.dgetrs(*self.factors, right, trans=1)[0]
         return 0
-
-    def inverse(self) -> npt.NDArray[np.float64]:
-        """Of the matrix that was factored; right is lost."""
-        if self.size >= self.lapack_size:
-            from scipy.linalg import lapack
-
-            # all columns at once, which is far faster than one after the other
-            return np.asarray(lapack.dgetrs(*self.factors, np.eye(self.size), trans=1)[0])
-        made = np.empty((self.size, self.size))
-        columns: cython.double[:, ::1] = made
-        i: cython.Py_ssize_t
-        j: cython.Py_ssize_t
-        for i in range(self.size):
-            self.right[:] = 0.0
-            self.right[i] = 1.0
-            self.solve()
-            for j in range(self.size):
-                columns[j, i] = self.right[j]
-        return made
 
 
 @cython.cfunc

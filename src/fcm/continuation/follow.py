@@ -318,7 +318,8 @@ class Follower:
         at: cython.double = before_corner(stepper)
         if at < 0.0:
             return Status.STALLED
-        if self.recorder.keep_events(stepper.step):
+        # a corner may be here: on the way to it nothing happens
+        if stepper.step > 0.0 and self.recorder.keep_events(stepper.step):
             return self.recorder.end_status()
         point: Point = stepper.between if stepper.find_between(at, True, True) else stepper.there
         return self.leave_corner(point, at)

@@ -7,7 +7,7 @@ cdef class NewtonOptions(Options):
     cdef readonly double small_second_step, max_rounding, rounding_multiple
 
 cdef class StepOptions(Options):
-    cdef readonly double initial_step, min_step, min_cosine, min_cubic_cosine, any_turn_step, max_miss, target_turn, target_miss, target_output_error, max_output_error_ratio, min_factor, max_factor
+    cdef readonly double initial_step, min_step, min_cosine, min_cubic_cosine, any_turn_step, max_branch_step, max_miss, target_turn, target_miss, target_output_error, max_output_error_ratio, min_factor, max_factor
     cdef readonly double max_factor_hasty, safety, step_after_corner, resumed_fraction, retry_fraction
     cdef readonly int max_steps
     cdef readonly tuple retreats
@@ -18,7 +18,7 @@ cdef class EventOptions(Options):
 
 cdef class SwitchingOptions(Options):
     cdef readonly int max_predictions, departure_tries, max_pieces, many_unknowns
-    cdef readonly double distance_tolerance, label_tolerance, overshoot, crossing_factor, root_fraction, reached_distance_root, root_distance, root_difference, max_root_margin, smooth_fraction, reached_distance, approach_distance, approach_fraction, departure_length, max_deviation
+    cdef readonly double distance_tolerance, label_tolerance, overshoot, crossing_factor, root_fraction, reached_distance_root, root_distance, root_difference, root_separation, max_root_margin, smooth_fraction, reached_distance, approach_distance, approach_fraction, departure_length, max_deviation
 
 cdef class FollowOptions(Options):
     cdef readonly double max_step

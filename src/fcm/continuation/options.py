@@ -117,7 +117,7 @@ class NewtonOptions(Options):
     max_rounding : float
         A longer step is none that rounding makes.
     rounding_multiple : float
-        A step no longer than so many of rounding may be one.
+        Equations off by no more than so many relative errors of rounding are solved to rounding.
     """
 
     max_iterations: cython.int = 8
@@ -157,6 +157,8 @@ class StepOptions(Options):
         Of the angle by which it turned in a step, beyond which that is no cubic any more.
     any_turn_step : float
         A shorter step may turn by any angle below a right angle: there is a corner that nothing tells of.
+    max_branch_step : float
+        A longer step keeps the orientation of the curve: one that changes it leads across a branch point.
     max_miss : float
         Part of its length, by which a step may miss the curve.
     target_turn : float
@@ -186,6 +188,7 @@ class StepOptions(Options):
     min_cosine: cython.double = 0.94
     min_cubic_cosine: cython.double = 0.1
     any_turn_step: cython.double = 1e-4
+    max_branch_step: cython.double = 2e-6
     max_miss: cython.double = 0.5
     target_turn: cython.double = 0.2
     target_miss: cython.double = 0.03
@@ -287,6 +290,8 @@ class SwitchingOptions(Options):
         far on the other side; see `root_corner`.
     root_difference : float
         Length over which the square of such a root has its slopes.
+    root_separation : float
+        Of several such corners the nearest is left first if its distance is less than this part of the next.
     max_root_margin : float
         A root that is larger is not at its corner.
     approach_distance, approach_fraction : float
@@ -314,6 +319,7 @@ class SwitchingOptions(Options):
     reached_distance_root: cython.double = 1e-4
     root_distance: cython.double = 1e-9
     root_difference: cython.double = 1e-6
+    root_separation: cython.double = 1e-2
     max_root_margin: cython.double = 1e-2
     approach_distance: cython.double = 1e-4
     approach_fraction: cython.double = 0.9

@@ -6,18 +6,19 @@ curve lies in the surface where the square vanishes. On either side there is one
 direction that it came from, a cusp, so that nothing is found ahead. Where the square keeps a small value of
 the other sign its root hardly changes, and there Newton's method finds the curve from the corner itself.
 
-Contacts that mirror one another come to their corners at once. What both do against one another may then
-change the orientation of the curve, in the corner or so near that it is nothing else: that the curve leads
-across both surfaces tells its direction beyond.
+Contacts that mirror one another come to their corners at once. Four parts of curves may meet there: two on
+which both do the same, two on which they do not. They are joined as if the corners were a little apart: one
+surface is crossed, the same by all of them, and the orientation is kept. So no curve comes back as another.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
+from fcm.continuation.options import SwitchingOptions
 from fcm.continuation.path import FloatArray
 from fcm.continuation.problem import Point
 from fcm.continuation.step_control import Stepper
@@ -50,7 +51,7 @@ def land(stepper: Stepper) -> None:
     newton, options = stepper.newton, stepper.options.switching
     z, scale = np.array(stepper.here.z), np.array(newton.scale)
     for one in _corners_ahead(stepper, options.reached_distance_root):
-        found = _solve(stepper, one, 0.5 * one.side * options.root_distance)
+        found = _solve(stepper, one, 0.5 * one.side * options.root_distance, z)
         if found is not None and np.linalg.norm((found - z) / scale) < options.reached_distance_root:
             stepper.here.z[:] = found
             return
@@ -59,30 +60,57 @@ def land(stepper: Stepper) -> None:
 def find_beyond(stepper: Stepper, before: Point) -> float:
     """Take the corrector to the curve beyond a corner that is here, to which `before` led; how far that is.
 
-    0 where there is no such corner, or no curve with the orientation of here, or across several at once.
+    0 where there is no such corner, or no curve with the orientation of here.
     """
-    newton, distance = stepper.newton, stepper.options.switching.root_distance
-    z, scale = np.array(stepper.here.z), np.array(newton.scale)
-    corners = list(_corners_near(stepper, before, distance))
-    for one in corners:
-        found = _solve(stepper, one, -one.side * distance)
-        if found is None:
-            return 0.0
-        across = len(corners) > 1 and all(_is_beyond(stepper, other, found) for other in corners)
-        if newton.take_tangent() and (across or newton.orientation == stepper.here.orientation):
+    newton, z, scale = stepper.newton, np.array(stepper.here.z), np.array(stepper.newton.scale)
+    corners = list(_corners_near(stepper, before, stepper.options.switching.root_distance))
+    for crossed, length in _crossings(corners, stepper.options.switching):
+        sides = np.array([-one.side if i in crossed else one.side for i, one in enumerate(corners)])
+        one = corners[crossed[0]]
+        found = _solve(stepper, one, -one.side * length, _beside(stepper, corners, sides * length))
+        if found is None or any(
+            _side(stepper, one, found) != side for one, side in zip(corners, sides, strict=True)
+        ):
+            continue
+        if newton.take_tangent() and newton.orientation == stepper.here.orientation:
             return float(np.linalg.norm((found - z) / scale))
     return 0.0
 
 
-def _is_beyond(stepper: Stepper, corner: RootCorner, z: FloatArray) -> bool:
-    """Whether a point lies beyond the surface of a corner."""
-    return bool(stepper.problem.square(corner.kind, z) * corner.side < 0.0)
+def _crossings(corners: Sequence[RootCorner], options: SwitchingOptions) -> Iterator[tuple[list[int], float]]:
+    """The surfaces of corners, by their numbers, beyond which the curve is looked for in turn, and how far.
+
+    That which is clearly the nearest; then each alone, those of lower kinds first, as if they were a little
+    apart; then all.
+    """
+    near = sorted(range(len(corners)), key=lambda i: abs(corners[i].off))
+    if len(corners) > 1:
+        first, second = (abs(corners[i].off) for i in near[:2])
+        if first < options.root_separation * second:
+            yield near[:1], float(np.sqrt(first * second))
+    in_turn = sorted(range(len(corners)), key=lambda i: corners[i].kind)
+    yield from (([i], options.root_distance) for i in in_turn)
+    if len(corners) > 1:
+        yield in_turn, options.root_distance
 
 
-def _solve(stepper: Stepper, corner: RootCorner, wanted: float) -> FloatArray | None:
+def _side(stepper: Stepper, corner: RootCorner, z: FloatArray) -> float:
+    """On which side of the surface of a corner a point lies."""
+    return float(np.sign(stepper.problem.square(corner.kind, z)))
+
+
+def _beside(stepper: Stepper, corners: Sequence[RootCorner], lengths: FloatArray) -> FloatArray:
+    """The point nearest to here at those lengths from the surfaces of corners."""
+    normals = np.array([one.normal for one in corners])
+    off = np.array([one.off for one in corners])
+    step = np.linalg.lstsq(normals, lengths - off, rcond=None)[0]
+    return np.asarray(stepper.here.z + np.asarray(stepper.newton.scale) * step)
+
+
+def _solve(stepper: Stepper, corner: RootCorner, wanted: float, at: FloatArray) -> FloatArray | None:
     """Take the corrector to the curve at a length from the surface of a corner, along its normal."""
     newton, problem, options = stepper.newton, stepper.problem, stepper.options.newton
-    scale, at = np.array(newton.scale), np.array(stepper.here.z)
+    scale = np.array(newton.scale)
     newton.row[:] = np.sign(wanted) * corner.normal
     for _ in range(options.max_iterations):
         off = problem.square(corner.kind, at) / corner.slope

@@ -13,7 +13,7 @@ cdef class Stepper:
     cdef public Point between
     cdef public double step
     cdef public double cosine
-    cdef public double miss, parameter_miss
+    cdef public double miss, parameter_miss, rounding
     cdef public int next_margin
     cdef public double[::1] offset
     cdef double[::1] guess

@@ -45,6 +45,7 @@ class Stepper:
         self.here, self.there, self.between = Point(problem), Point(problem), Point(problem)
         self.guess = np.zeros(problem.unknowns + 1)
         self.step, self.cosine, self.miss, self.parameter_miss = 0.0, 1.0, 0.0, 0.0
+        self.rounding = 0.0  # length, scaled, by which rounding may have moved the point there
         self.next_margin = -1  # the margin of which a change of sign was found last ahead of here
         self.reset(options)  # close: to the curve, where a step ends
         self.known_length = 0.0  # up to here the margins beyond a corner are taken as known
@@ -101,6 +102,7 @@ class Stepper:
             missed += ((self.newton.z[i] - self.guess[i]) / self.newton.scale[i]) ** 2
         # shorter steps would miss the curve by as much where rounding made the miss
         rounding: cython.double = self.options.newton.rounding_multiple * self.newton.rounding_step
+        self.rounding = rounding
         strayed: cython.double = fabs(self.newton.z[n] - self.guess[n]) / self.newton.scale[n]
         self.step, self.miss = step, max(sqrt(missed) - rounding, 0.0) / step
         self.parameter_miss = max(strayed - rounding, 0.0) / step
@@ -325,7 +327,7 @@ def hidden_reversal(stepper: Stepper, greatest: cython.double[::1]) -> cython.do
     """Length at which the parameter, or an output, may go the other way than here and there; 0 if none does.
 
     There are two folds, or a peak and the least value after it, between then. As far as the cubics through
-    both ends tell; of outputs those near their greatest.
+    both ends tell; of outputs those near their greatest, and what rounding changes of them is none.
     """
     k: cython.Py_ssize_t
     size: cython.double
@@ -341,7 +343,7 @@ def hidden_reversal(stepper: Stepper, greatest: cython.double[::1]) -> cython.do
                 stepper.there.output[k] - stepper.here.output[k],
                 stepper.here.growth[k] * step,
                 stepper.there.growth[k] * along,
-                stepper.options.events.min_growth * size * step,
+                size * (stepper.options.events.min_growth * step + 1.5 * stepper.rounding),
                 stepper.options.events.doubtful_slope,
             )
     return at * step
@@ -545,10 +547,12 @@ def acceptable(stepper: Stepper) -> cython.bint:
     """Whether the curve was where it was predicted, and went on as it did."""
     options: StepOptions = stepper.options.step
     if stepper.step <= options.any_turn_step:
+        changed: cython.bint = not keeps_orientation(stepper)
+        # where branches only nearly meet, each turns away, and a longer step would lead to the other
+        if changed and stepper.step > options.max_branch_step and not stepper.problem.labelled:
+            return False
         # beyond a corner that turns by more than a right angle the way back is as near
-        back: cython.bint = (
-            stepper.problem.rooted and not keeps_orientation(stepper) and stepper.cosine < options.min_cosine
-        )
+        back: cython.bint = stepper.problem.rooted and changed and stepper.cosine < options.min_cosine
         # of labelled curves `LabelledSwitching` tells what a short step may miss
         near: cython.bint = stepper.problem.labelled or within_turn(stepper)
         return stepper.cosine > 0.0 and not back and near
