@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from fcm.accuracy.displaced_peaks import peak_errors
 from fcm.accuracy.options import PAIR
+from fcm.accuracy.peak_errors import peak_errors
 from fcm.accuracy.refinement import with_estimated_errors
 from fcm.harmonic_balance.system import System
 from fcm.response import trace

@@ -14,7 +14,7 @@ from fcm.cli.commands import INSTEAD
 from fcm.cli.guard import guarded
 from fcm.cli.messages import Messages
 from fcm.continuation import dense_solver
-from fcm.model.doubt import Doubt
+from fcm.model.question import Question
 from fcm.scene.keys import TABLES
 
 from ..program import AS_A_MODULE, called, python, shell
@@ -163,11 +163,11 @@ def test_a_warning_is_one_line_on_standard_error(capsys):
 @pytest.mark.parametrize(
     ("note", "said"),
     [
-        (Doubt("mu: is 40 right?"), "fcm: warning: mu: is 40 right?\n"),
+        (Question("mu: is 40 right?"), "fcm: warning: mu: is 40 right?\n"),
         ("read: is it.mtx?", "read: is it.mtx?\n"),
     ],
 )
-def test_a_note_on_a_scene_is_a_warning_where_it_doubts(capsys, note, said):
+def test_a_note_on_a_scene_is_a_warning_where_it_asks(capsys, note, said):
     Messages().note(note)
     assert capsys.readouterr().err == said
 

@@ -19,8 +19,8 @@ import numpy.typing as npt
 
 from fcm.accuracy.budget import Budget
 from fcm.accuracy.contact_load_errors import contact_load_errors, relative
-from fcm.accuracy.displaced_peaks import PeakErrors, peak_errors
 from fcm.accuracy.options import PAIR, PairOptions
+from fcm.accuracy.peak_errors import PeakErrors, peak_errors
 from fcm.accuracy.peaks import heights, rise_between_points
 from fcm.accuracy.reference_branches import affordable_reference, further_reference_pieces
 from fcm.accuracy.reference_curve import FollowedStretch, Indices, ReferenceCurve

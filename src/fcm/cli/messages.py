@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import click
 
 from fcm.cli.settings import SETTINGS, Settings
-from fcm.model.doubt import Doubt
+from fcm.model.question import Question
 from fcm.resources import duration
 
 
@@ -35,7 +35,7 @@ class Messages:
 
     def note(self, text: str) -> None:
         """What is to be known of how a scene was read; what is hardly meant as a warning."""
-        if isinstance(text, Doubt):
+        if isinstance(text, Question):
             self.warning(text)
         else:
             self.info(text)

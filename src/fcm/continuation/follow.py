@@ -319,7 +319,7 @@ class Follower:
         if at < 0.0:
             return Status.STALLED
         # a corner may be here: on the way to it nothing happens
-        if stepper.step > 0.0 and self.recorder.keep_events(stepper.step):
+        if self.recorder.keep_events(stepper.step):
             return self.recorder.end_status()
         point: Point = stepper.between if stepper.find_between(at, True, True) else stepper.there
         return self.leave_corner(point, at)

@@ -343,6 +343,7 @@ def hidden_reversal(stepper: Stepper, greatest: cython.double[::1]) -> cython.do
                 stepper.there.output[k] - stepper.here.output[k],
                 stepper.here.growth[k] * step,
                 stepper.there.growth[k] * along,
+                # between two values a cubic is 1.5 times as steep as the chord
                 size * (stepper.options.events.min_growth * step + 1.5 * stepper.rounding),
                 stepper.options.events.doubtful_slope,
             )

@@ -15,6 +15,8 @@ class FitOptions(Frozen):
     search_error : errors of both while a start is sought, relative to the extent of the data.
     starts : how many are tried, the numbers of the scene first.
     search_share : share of the work that is done when the starts are.
+    weighing_shares : of that of a finalist, what is done after its search, and after each of two with errors
+        estimated.
     agreeing_starts : starts that lead to the same numbers, after which no further one is tried.
     number_tolerance : relative difference of numbers that are the same.
     cost_tolerance : relative difference of costs that are the same.
@@ -46,6 +48,7 @@ class FitOptions(Frozen):
     search_error: float = 0.02
     starts: int = 8
     search_share: float = 0.7
+    weighing_shares: tuple[float, float, float] = (0.6, 0.8, 1.0)
     agreeing_starts: int = 2
     number_tolerance: float = 1e-2
     cost_tolerance: float = 1e-6

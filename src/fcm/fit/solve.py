@@ -29,7 +29,6 @@ from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray, Measured
 
 Tell = Callable[[float, str], None]
-_PARTS = 0.0, 0.6, 0.8, 1.0  # of a finalist's share of the bar: a search, and two with errors estimated
 
 
 class SearchResult(Frozen):
@@ -251,7 +250,10 @@ def solved(
         finalists = _by_cost(starts, options)[: options.finalists] if starts else []
         for k, one in enumerate(finalists):
             begun = options.search_share
-            shares = [begun + (1.0 - begun) * (k + part) / len(finalists) for part in _PARTS]
+            shares = [
+                begun + (1.0 - begun) * (k + part) / len(finalists)
+                for part in (0.0, *options.weighing_shares)
+            ]
             what = f"all points, from the best starts ({k + 1} of {len(finalists)})"
             found = searches.least(
                 fine, parameters.unknowns(one.end), options.finalist_evaluations, (shares[0], shares[1]), what
@@ -264,7 +266,8 @@ def solved(
                 continue
             for i in (0, 1) if _unstated(data) else (0,):
                 of_bar = shares[1 + i], shares[2 + i]
-                ends.append(_weighed(fine, found, i == 1, one, options, searches, of_bar))
+                end = _End(one, found.x, fine, found.x, np.inf, found.settled)
+                ends.append(_weighed(end, i == 1, options, searches, of_bar))
                 if ends[-1].interrupted:
                     raise KeyboardInterrupt
         interrupted = False
@@ -308,20 +311,12 @@ class _End:
 
 
 def _weighed(
-    fine: Problem,
-    found: SearchResult,
-    share: bool,
-    start: Start,
-    options: FitOptions,
-    searches: Searches,
-    of_bar: tuple[float, float],
+    end: _End, share: bool, options: FitOptions, searches: Searches, of_bar: tuple[float, float]
 ) -> _End:
     """The errors that residuals tell, where none are stated, and the numbers with them, until they rest.
 
     share : whether it is begun with errors that are a share of the amplitudes; of_bar : share of the bar.
     """
-    assert found.x is not None
-    end = _End(start, found.x, fine, found.x, np.inf, found.settled)
     try:
         for k in range(options.reweightings + 1):
             parts = end.problem.parts(end.x)

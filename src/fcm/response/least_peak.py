@@ -20,8 +20,6 @@ from fcm.run import Progress
 from fcm.run.progress import part
 from fcm.scene.draft import Number
 from fcm.scene.errors import counted
-from fcm.tracking.added_values import reaching
-from fcm.tracking.added_values import with_values as with_values_told
 from fcm.tracking.ending_peak import EndingPeak, ending_peak
 from fcm.tracking.kept_steps import KeptSteps
 from fcm.tracking.lowest_peak import LowestPeak, LowestPeakSearch
@@ -30,6 +28,7 @@ from fcm.tracking.parameter_line import along
 from fcm.tracking.peak_envelope import INCOMPLETE, EnvelopeMinimum, Target
 from fcm.tracking.stability import stability_along
 from fcm.tracking.trials import by_trials
+from fcm.tracking.user_points import values_at_height, with_user_points
 
 Found = tuple[Optimal, list[TrackedCurve]]  # an optimum, and the curves of peaks on which it is
 
@@ -194,8 +193,8 @@ def _on_line(task: PeakTask, found: LowestPeak, harmonics: tuple[int, ...]) -> F
         raise ResponseError(_no_peak(task))
     setup = _search(task, harmonics).setup
     best, limit = found.best.s, (1.0 + task.options.optimum.nearly) * found.best.value
-    told = [best, *reaching(setup, found.curves, task.targets, limit)]
-    followed = [with_values_told(setup, one, told) for one in found.curves]
+    told = [best, *values_at_height(setup, found.curves, task.targets, limit)]
+    followed = [with_user_points(setup, one, told) for one in found.curves]
     curves = [as_curve(task.scene, setup, *stability_along(setup, one)) for one in followed]
     optimal = _optimal(task, np.array([found.best.s]), found.best, harmonics)
     if found.best.kind != "end":

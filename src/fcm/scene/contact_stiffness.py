@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fcm.model.doubt import Doubt
+from fcm.model.question import Question
 from fcm.model.scene import FloatArray, Scene
 from fcm.scene.errors import several
 from fcm.scene.options import MESSAGES
@@ -27,7 +27,7 @@ def notes_of_stiffness(scene: Scene) -> list[str]:
         names = several([scene.contacts[i].name for i in stiff])
         contacts, at_most = ("contacts", " at most") if stiff.size > 1 else ("contact", "")
         return [
-            Doubt(
+            Question(
                 f"{contacts} {names}: {ratio.max():.1e} times as stiff as the structure there{at_most}. "
                 "Are k_u and k_v in its units? Beyond some hundred times little changes, and it takes long"
             )
@@ -35,7 +35,7 @@ def notes_of_stiffness(scene: Scene) -> list[str]:
     if not 0.0 < ratio.max() < MESSAGES.soft_contact or not scene.modal.frequency.all():
         return []
     return [
-        Doubt(
+        Question(
             f"the contacts are soft beside the structure: {ratio.max():.1e} times its stiffness at most, "
             "so that they change little. Are k_u and k_v in its units?"
         )

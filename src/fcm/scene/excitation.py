@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.model.doubt import Doubt
+from fcm.model.question import Question
 from fcm.model.scene import FloatArray, Force, Load
 from fcm.scene.errors import bare, kind, quoted
 from fcm.scene.files import DataFileError, Files
@@ -168,7 +168,7 @@ def note_of_mass(masses: Mapping[str, float], length: str, force: str, floats: b
     least, most = min(masses.values()), max(masses.values())
     if floats and least < (1.0 - TOLERANCES.floating_mass) * most:
         said.append(
-            Doubt(
+            Question(
                 f"structure: it floats, but its mass differs by {100 * (1 - least / most):.2g} % along the "
                 "axes. Do dofs name the rows in their order?"
             )

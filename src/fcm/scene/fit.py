@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.model.doubt import Doubt
+from fcm.model.question import Question
 from fcm.model.scene import Fit, FloatArray, Measured
 from fcm.rotational_dofs import unit_of
 from fcm.scene.address import LEVEL
@@ -84,7 +84,7 @@ def notes_of_data(fit: Fit | None, ends: tuple[float, float], unit: str) -> list
                 for both in ((low, high), ends)
             )
             said.append(
-                Doubt(
+                Question(
                     f"fit: {one.file} has frequencies from {own} {unit}, none within the range, "
                     f"{whole} {unit}. Is its unit that of the scene?"
                 )

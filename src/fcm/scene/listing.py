@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.model.doubt import Doubt
+from fcm.model.question import Question
 from fcm.model.ring import Ring
 from fcm.model.scene import FloatArray, Force, Scene
 from fcm.scene.errors import counted
@@ -168,14 +168,14 @@ def notes_of_modes(scene: Scene) -> list[str]:
     ]
     if scene.of_matrices and ratio.min(initial=np.inf) >= LIMITS.damping_ratio:
         said.append(
-            Doubt(
+            Question(
                 "structure.damping: is it right? It damps each of these more than critically, "
                 f"{ratio.min():.3g} times at least, so that no resonance is seen. Is it in the units of the "
                 "stiffness, and the frequency in rad/s?"
             )
         )
-    if scene.of_matrices and (doubt := _first_far_below(scene)):
-        said.append(Doubt(doubt))
+    if scene.of_matrices and (slip := _first_far_below(scene)):
+        said.append(Question(slip))
     return said
 
 

@@ -21,8 +21,8 @@ from fcm.mesh.pairing import (
     side,
     turned,
 )
-from fcm.model.doubt import Doubt
 from fcm.model.interface import Interface
+from fcm.model.question import Question
 from fcm.scene.errors import choices, counted, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
@@ -82,7 +82,7 @@ def pairs_of_sets(section: Section, files: Files) -> PairTable:
     along = _vector(section.data.get("normal"))
     if along is not None and side(mesh, pairing.pairs, along) < 0.0:
         said.append(
-            Doubt(
+            Question(
                 f"contact {quoted(interface.name)}: its normal points from {other} to {one}, so that it "
                 "presses where they part: is it meant? The other way it would be the opposite"
             )
@@ -128,7 +128,7 @@ def with_places(section: Section, found: Section, table: PairTable, files: Files
     if others:
         (one, other), near = others[0]
         many = "1 pair is" if len(others) == 1 else f"{len(others)} pairs are"
-        text = Doubt(
+        text = Question(
             f"{text}. {many} not of nearest nodes: {near} is nearer to {one} than its partner {other}. "
             "Is a column of the file shifted?"
         )

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.model.doubt import Doubt
+from fcm.model.question import Question
 from fcm.scene.errors import bare, shown
 from fcm.scene.options import LIMITS
 from fcm.scene.rules import as_float
@@ -30,7 +30,7 @@ def questions(top: Section, parts: Parts, swept: Sequence[SweptKey]) -> list[str
     found += [_of_nothing(*one) for one in _ratios(top, parts, swept)]
     found += [_of_friction(*one) for one in _frictions(top, swept)]
     found += [_of_angle(*one) for one in _angles(top, swept)]
-    return [Doubt(one) for one in found if one]
+    return [Question(one) for one in found if one]
 
 
 def _ratios(

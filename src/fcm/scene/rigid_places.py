@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from fcm.model.doubt import Doubt
 from fcm.model.interface import Interface
+from fcm.model.question import Question
 from fcm.model.scene import FloatArray
 from fcm.scene.errors import quoted
 from fcm.scene.names import Names
@@ -37,7 +37,7 @@ def _of(interface: Interface, rigid: FloatArray, dofs: Names) -> Iterator[str]:
         ]
         if (worst := _off(there, rigid, dofs)) is not None:
             node, share = worst
-            yield Doubt(
+            yield Question(
                 f"contact {quoted(interface.name)}: its {SIDES[side]} move as no rigid body does at their "
                 f"places: node {node} is off most, by {share:.0%} of the motion. Is a column of the file "
                 "shifted, or a coordinate wrong?"

@@ -238,7 +238,7 @@ class CornerCrossing:
         for side in (0, 1):
             if (there := self.corner.special_root(z, side)) is not None:
                 found.append((float((there - z) / scale @ self.t), side, there))
-        here = 0.1 * min(self.options.departure_lengths)
+        here = self.options.least_departure
         for _, side, there in sorted(found, key=lambda one: (one[0] < here, abs(one[0]))):
             if self._beyond(there, came, before, 2 * side - 1):
                 return True

@@ -35,6 +35,8 @@ class PieceOptions(Frozen):
         A corner further away does not end a piece.
     departure_lengths : tuple of float
         Beyond a corner at which what is tracked is looked for again.
+    least_departure : float
+        Along the curve; what is less far ahead of a corner is looked at last.
     max_jump : float
         Of what is special; less is no jump at a corner.
     min_cosine_ahead : float
@@ -61,6 +63,7 @@ class PieceOptions(Frozen):
     reached_distance: float = 1e-5
     corner_distance: float = 1e-2
     departure_lengths: tuple[float, ...] = (1e-5, 1e-4, 1e-6, 1e-3)
+    least_departure: float = 1e-7
     max_jump: float = 1e-4
     min_cosine_ahead: float = 0.5
     max_move: float = 1e-6

@@ -1,12 +1,12 @@
-"""A note on what a scene says and hardly means."""
+"""A note that asks about what a scene says and hardly means."""
 
 from __future__ import annotations
 
 
-class Doubt(str):
+class Question(str):
     """A note that asks whether what a scene says is meant; commands tell it as a warning.
 
-    >>> Doubt("modal.damping: is 2 right?").startswith("modal")
+    >>> Question("modal.damping: is 2 right?").startswith("modal")
     True
     """
 

@@ -13,7 +13,9 @@ from fcm.tracking.peak_envelope import MonotonePiece, Target, pieces_of
 from fcm.tracking.tracked_point import TrackedPoint, TrackingSetup
 
 
-def with_values(setup: TrackingSetup, track: SpecialPointCurve, values: Sequence[float]) -> SpecialPointCurve:
+def with_user_points(
+    setup: TrackingSetup, track: SpecialPointCurve, values: Sequence[float]
+) -> SpecialPointCurve:
     """A curve with points at values of s where it passes them, by Newton's method from the chord."""
     points = list[TrackedPoint]()
     for i, point in enumerate(track.points):
@@ -29,7 +31,7 @@ def with_values(setup: TrackingSetup, track: SpecialPointCurve, values: Sequence
     return with_points(setup, track, points) if len(points) > len(track.points) else track
 
 
-def reaching(
+def values_at_height(
     setup: TrackingSetup, tracks: Sequence[SpecialPointCurve], targets: Sequence[Target], limit: float
 ) -> list[float]:
     """Values of s at which a peak of a target has a height, exactly."""
