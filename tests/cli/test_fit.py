@@ -152,6 +152,8 @@ def test_numbers_found_are_told_where_their_response_is_interrupted(measured, tm
     assert done.code == 3 and "before the response with the numbers found was traced" in done.err
     first = json.loads(done.out)["fitted"]
     assert first["final"] and first["interrupted"]
+    drawn = called("plot", "response", out, "-o", tmp_path / "out.png")
+    assert drawn.code == 2 and "its fit was interrupted, before a response was traced" in drawn.err
     evaluations = Evaluations()
     again, count = evaluations.of(path, "-o", out, "--resume")
     assert again.code == 0 and count < 10  # of one each where the searches have come to

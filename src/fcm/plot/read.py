@@ -173,7 +173,7 @@ def read(path: Path, otherwise: str, of: Failures = UNREAD) -> Iterator[None]:
 
 
 def _hint(dataset: Any) -> str:
-    """Which command draws the file, if one does; why none does where an optimum is all it has."""
+    """Which command draws the file, if one does; why none does where an optimum, or a fit, is all it has."""
     kinds = (
         ("history", {"displacement", "time"}),
         ("response", {"amplitude", "frequency"}),
@@ -184,6 +184,8 @@ def _hint(dataset: Any) -> str:
     found = next((what for what, names in kinds if held >= names), "")
     if not found and "optimum_number" in held:
         return "; the search for its optimum was interrupted, before a response was traced"
+    if not found and "fitted_value" in held:
+        return "; its fit was interrupted, before a response was traced. fcm respond SCENE --resume goes on"
     alone = "; of curves it has the peaks alone, as by --peaks-only" if "peak_amplitude" in held else ""
     return f"{alone if found == 'peak' else ''}; try fcm plot {found}" if found else ""
 
