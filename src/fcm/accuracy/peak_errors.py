@@ -13,7 +13,6 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.accuracy.reference_curve import FollowedStretch, Indices, ReferenceCurve
-from fcm.accuracy.reference_pieces import lengths
 from fcm.accuracy.reference_stretch import ReferencePiece
 from fcm.frozen import Frozen
 from fcm.model.scene import FloatArray
@@ -115,7 +114,7 @@ def _tops_of(piece: ReferencePiece, d: int) -> list[tuple[float, float]]:
     """Heights and frequencies of the peaks of a degree of freedom along a piece."""
     amplitude = piece.quantities.amplitude
     k = np.array([top for top, _, _ in _between_minima(amplitude[:, d], 0.0)], dtype=np.intp)
-    tops = _tops(k, np.full_like(k, d), lengths(piece.path), amplitude, piece.path.parameter)
+    tops = _tops(k, np.full_like(k, d), piece.place, amplitude, piece.path.parameter)
     return list(zip(tops.height.tolist(), tops.frequency.tolist(), strict=True))
 
 

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
 from fcm.accuracy.budget import Budget
 from fcm.accuracy.options import PairOptions
+from fcm.accuracy.reference_pieces import lengths
 from fcm.branches.force_level import solutions
 from fcm.branches.options import LEVEL_CURVE
 from fcm.continuation import Events, Mark, Path, Status
@@ -41,6 +43,11 @@ class ReferencePiece(Frozen):
     def whole(self) -> bool:
         """Whether it ends where the reference does, or the stretch."""
         return self.path.status not in (Status.INTERRUPTED, Status.STALLED)
+
+    @cached_property
+    def place(self) -> FloatArray:
+        """Lengths along it (point,)."""
+        return lengths(self.path)
 
     def passes(self, frequency: FloatArray) -> bool:
         """Whether it has any of the frequencies between the least and the greatest of some; what has none

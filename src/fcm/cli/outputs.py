@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -67,8 +68,10 @@ class Outputs:
 
     def write(self, response: Response, to_json: bool) -> dict[str, Any]:
         """Write all files and print the summary; the curves are then no longer kept."""
+        from fcm.results.condensed_curves import with_condensed
         from fcm.results.output import summary
 
+        response = replace(response, curves=[with_condensed(curve) for curve in response.curves])
         result = summary(response)
         try:
             for path, write in self._files(response):

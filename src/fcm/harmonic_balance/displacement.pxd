@@ -38,6 +38,10 @@ cdef class Displacements(Extremes):
     cdef public double[:, ::1] static
     cdef public double[:, ::1] attached
     cdef public int[::1] without_modes
+    cdef bint by_modes
+    cdef double[::1] shares
+    cdef int[::1] share_ports
+    cdef int[::1] share_end
     cdef double[:, ::1] of_modes
     cdef double q_re, q_im, r_re, r_im
     cdef public double[::1] mean

@@ -191,7 +191,8 @@ class Extremes:
 @cython.cclass
 class Displacements(Extremes):
     """`Extremes` whose parts `at` fills: sums of the shapes (mode, dof) times the parts of each mode,
-    of_modes (4 * harmonic, mode). mean (dof,); rest (dof,): the answer to static loads alone.
+    of_modes (4 * harmonic, mode); of combinations of ports sums of shares (share,) of the ports share_ports
+    (share,), up to share_end (dof,) of each. mean (dof,); rest (dof,): the answer to static loads alone.
     """
 
     def __init__(
@@ -204,6 +205,10 @@ class Displacements(Extremes):
         self.of_modes = np.zeros((4 * count, receptance.modes))
         self.mean, self.rest = np.zeros(dofs), np.zeros(dofs)
         self.attached, self.without_modes = linear.attached
+        self.by_modes = bool(np.any(self.without_modes))
+        combined, port = np.nonzero(np.where(self.without_modes, 0.0, self.attached).T)
+        self.shares, self.share_ports = np.asarray(self.attached)[port, combined], port.astype(np.intc)
+        self.share_end = np.cumsum(np.bincount(combined, minlength=dofs)).astype(np.intc)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -224,13 +229,16 @@ class Displacements(Extremes):
         d: cython.Py_ssize_t
         p: cython.Py_ssize_t
         for d in range(self.dofs):
+            if not self.without_modes[d]:
+                continue
             total: cython.double = self.rest[d]
             for p in range(self.receptance.ports):
                 total -= self.static[d, p] * force[self.receptance.mean_at[p]]
             self.mean[d] = total
-        for j in range(self.receptance.count):
-            self.harmonic(j, load, force, d_force, direction[direction.shape[0] - 1])
-        self.sum_modes()
+        if self.by_modes:
+            for j in range(self.receptance.count):
+                self.harmonic(j, load, force, d_force, direction[direction.shape[0] - 1])
+            self.sum_modes()
         for d in range(self.dofs):
             if not self.without_modes[d]:
                 self.from_ports(d, z, direction)
@@ -318,22 +326,23 @@ class Displacements(Extremes):
         self, d: cython.Py_ssize_t, z: cython.double[::1], direction: cython.double[::1]
     ) -> cython.void:
         """A combination of the contacts' displacements."""
+        i: cython.Py_ssize_t
         j: cython.int
         p: cython.Py_ssize_t
         k: cython.Py_ssize_t
         self.mean[d] = 0.0
         for j in range(self.receptance.count):
             self.re[j, d] = self.im[j, d] = self.d_re[j, d] = self.d_im[j, d] = 0.0
-        for p in range(self.receptance.ports):
-            share: cython.double = self.attached[p, d]
-            if share != 0.0:
-                self.mean[d] += share * z[self.receptance.mean_at[p]]
-                for j in range(self.receptance.count):
-                    k = self.receptance.wave_at[p] + self.receptance.stride * j
-                    self.re[j, d] += share * z[k]
-                    self.im[j, d] += share * z[k + 1]
-                    self.d_re[j, d] += share * direction[k]
-                    self.d_im[j, d] += share * direction[k + 1]
+        for i in range(self.share_end[d - 1] if d > 0 else 0, self.share_end[d]):
+            p = self.share_ports[i]
+            share: cython.double = self.shares[i]
+            self.mean[d] += share * z[self.receptance.mean_at[p]]
+            for j in range(self.receptance.count):
+                k = self.receptance.wave_at[p] + self.receptance.stride * j
+                self.re[j, d] += share * z[k]
+                self.im[j, d] += share * z[k + 1]
+                self.d_re[j, d] += share * direction[k]
+                self.d_im[j, d] += share * direction[k + 1]
 
 
 @cython.cclass

@@ -64,6 +64,11 @@ def condense(curve: Curve) -> CondensedCurve:
     )
 
 
+def with_condensed(curve: Curve) -> Curve:
+    """A curve that is to be told of several times, with what is condensed of it."""
+    return curve if curve.condensed is not None else replace(curve, condensed=condense(curve))
+
+
 def without_points(curve: Curve, most: int = 0) -> Curve:
     """A curve with what is condensed of it, and so many of its points: where displacements are greatest."""
     at = np.flatnonzero(np.isfinite(curve.frequency))

@@ -34,11 +34,12 @@ def lower_peaks(amplitude: FloatArray, options: PeakOptions = RESULTS.peaks) -> 
     several |= ~rises.any(axis=0) | (
         np.where(rises, inner, 0.0).max(axis=0) < top
     )  # the highest is at an end
+    highest = np.where(np.isnan(amplitude), -np.inf, amplitude).argmax(axis=0)
     found = [
         (d, k + 1)
         for d, k in zip(dofs.tolist(), points.tolist(), strict=True)
         if several[d]
-        and k + 1 != np.nanargmax(amplitude[:, d])
+        and k + 1 != highest[d]
         and _prominence(amplitude[:, d], k + 1) > options.least_prominence * amplitude[k + 1, d]
     ]
     return np.array(sorted(found), dtype=np.intp).reshape(-1, 2)

@@ -85,7 +85,7 @@ class Curve:
         0  # points at which a contact never slips and another may feel it, if that is not told
     )
     condensed: CondensedCurve | None = (
-        None  # in the place of most points, where only peaks and folds were asked for
+        None  # if that is known; in the place of most points, where only peaks and folds were asked for
     )
     mode: NonlinearMode | None = None
     digits: bool = False  # whether displacements far below the greatest have digits, as contacts are stiff

@@ -113,8 +113,14 @@ class Linear(Frozen):
 def attached_to(ports: FloatArray, dofs: FloatArray) -> tuple[FloatArray, npt.NDArray[np.intc]]:
     """Which combination of ports (port, dof) each degree of freedom is, and whether it is none (dof,).
 
-    Shapes on both, (mode, port) and (mode, dof). A combination of several ports is one only where they do not
-    nearly cancel.
+    Shapes on both, (mode, port) and (mode, dof). One port is enough where it moves as the degree of freedom:
+    of fewer modes than ports all could be combined to that. A combination of several ports is one only where
+    they do not nearly cancel.
+
+    >>> ports = np.array([[1.0, 2.0, 1.0], [1.0, -1.0, 0.0]])
+    >>> shares, apart = attached_to(ports, 2.0 * ports[:, 1:2])
+    >>> shares.T.tolist(), apart.tolist()
+    ([[0.0, 2.0, 0.0]], [0])
     """
     return _attached(ports.tobytes(), ports.shape, dofs.tobytes(), dofs.shape)
 
@@ -126,15 +132,32 @@ def _attached(
     """The same of their numbers."""
     ports = np.frombuffer(of_ports).reshape(ports_shape)
     dofs = np.frombuffer(of_dofs).reshape(dofs_shape)
-    shares: FloatArray = np.zeros((ports.shape[1], dofs.shape[1]))
-    if ports.size:
-        shares = np.asarray(np.linalg.lstsq(ports, dofs, rcond=1e-10)[0], dtype=np.float64)
-    shares[np.abs(shares) < REDUCTION.shape_tolerance * np.abs(shares).max(axis=0, initial=1e-300)] = 0.0
     size = np.abs(dofs).max(axis=0, initial=0.0)
+    shares = _single_shares(ports, dofs)
+    combined = np.abs(ports @ shares - dofs).max(axis=0, initial=0.0) > REDUCTION.shape_tolerance * size
+    if ports.size and combined.any():
+        shares[:, combined] = np.linalg.lstsq(ports, dofs[:, combined], rcond=1e-10)[0]
+    shares[np.abs(shares) < REDUCTION.shape_tolerance * np.abs(shares).max(axis=0, initial=1e-300)] = 0.0
     off = np.abs(ports @ shares - dofs).max(axis=0, initial=0.0)
     large = np.abs(ports).max(axis=0, initial=0.0) @ np.abs(shares) > REDUCTION.max_combination * size
     apart = (off > REDUCTION.shape_tolerance * size) | large | (size == 0.0)
     return np.ascontiguousarray(shares), apart.astype(np.intc)
+
+
+def _single_shares(ports: FloatArray, dofs: FloatArray) -> FloatArray:
+    """Shares (port, dof) of the one port each whose shape is most nearly that of the degree of freedom.
+
+    >>> _single_shares(np.array([[1.0, 2.0], [0.0, 4.0]]), np.array([[1.0], [2.0]])).tolist()
+    [[0.0], [0.5]]
+    """
+    shares: FloatArray = np.zeros((ports.shape[1], dofs.shape[1]))
+    if not shares.size:
+        return shares
+    squares = np.square(ports).sum(axis=0)
+    common, squares = ports.T @ dofs, np.where(squares > 0.0, squares, np.inf)
+    nearest, d = (common**2 / squares[:, None]).argmax(axis=0), np.arange(dofs.shape[1])
+    shares[nearest, d] = common[nearest, d] / squares[nearest]
+    return shares
 
 
 def with_springs(natural: FloatArray, ports: FloatArray | ComplexArray, springs: FloatArray) -> FloatArray:
