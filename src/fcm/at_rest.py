@@ -13,8 +13,8 @@ class RestOptions(Frozen):
 
     displacement : part of the greatest amplitude of a curve, up to which an amplitude is rounding. A sum over
         modes is off by some hundred units of the last of its sixteen digits.
-    uncertain : relative error of a peak from which nothing of it is known, where contacts are so stiff that
-        smaller displacements have digits as well.
+    uncertain : relative rounding of an amplitude from which nothing of it is known. It decides where contacts
+        are so stiff that smaller displacements have digits, and larger ones may have none.
     """
 
     displacement: float = 1e-13

@@ -53,6 +53,10 @@ SCENES = {  # text, what moves, what does not
     "linear": (
         with_contact(STRUCTURE + force("tip_x", 1.0), '"x"', '"y"', 1e9), ("x", "tip_x"), ("y", "tip_y")
     ),
+    "stiff": (  # displacements far below the greatest have digits there, but not more than the shapes
+        with_contact(STRUCTURE + force("tip_x", 1e5), '"x"', '"y"', 1e9).replace("= 1e4", "= 1e9"),
+        ("x", "tip_x"), ("y", "tip_y"),
+    ),
     "opposite": (
         with_contact(
             SUM_AND_DIFFERENCE + force("left", 0.1) + force("left", 0.2) + force("right", 0.3),

@@ -20,6 +20,7 @@ from fcm.accuracy.refinement import (
 )
 from fcm.accuracy.stability_validity import unreliable_points
 from fcm.accuracy.unchecked_response import ResponseInterrupted, UncheckedResponse, points_of
+from fcm.at_rest import RestOptions
 from fcm.branches.options import FOLDS
 from fcm.contact.contact_law import ContactLawError
 from fcm.continuation import Mark
@@ -229,7 +230,7 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
         truncation_error=pick(np.concatenate(truncations), rows),
         complete=not reason,
         reason=reason,
-        peaks=_peaks(scene.modal.dofs, points, peak, rounding, stable, residual),
+        peaks=_peaks(scene, points, peak, rounding, stable, residual),
         folds=points.z[folds, -1].tolist(),
         bifurcations=response.bifurcations,
         seconds=0.0,
@@ -242,7 +243,6 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
         folds_uncertain_at=list(found.traced.folds_lost),
         symmetry_lost=list(found.traced.symmetry_lost),
         levels=[one.omega for one in found.traced.found],
-        digits=bool(rounding.any()),
         folds_between=(FOLDS.min_level, FOLDS.max_level) if scene.contacts else None,
         mirrored=len(found.traced.mirrored),
         not_confirmed=not_confirmed,
@@ -279,7 +279,7 @@ def _of_greatest(found: RefinedResponse, path: Rows, contact_loads: FloatArray) 
 
 
 def _peaks(
-    dofs: tuple[str, ...],
+    scene: Scene,
     points: PointRecord,
     error: FloatArray,
     rounding: FloatArray,
@@ -290,11 +290,29 @@ def _peaks(
     and frequency (2, dof)."""
     highest, amplitude = points.amplitude.argmax(axis=0), points.amplitude
     at_top = stability_at_top(amplitude, stable).tolist()
+    digits = _rounding_of_peaks(points, rounding, scene.of_matrices)
     found = {}
-    for d, (dof, i) in enumerate(zip(dofs, highest, strict=True)):
+    for d, (dof, i) in enumerate(zip(scene.modal.dofs, highest, strict=True)):
         height, omega = float(amplitude[i, d]), float(points.z[i, -1])
         off, off_frequency = float(max(error[0, d], rounding[i, d])), float(error[1, d])
-        found[dof] = Peak(height, omega, off, at_top[d], float(residual[d]), off_frequency)
+        found[dof] = Peak(height, omega, off, at_top[d], float(residual[d]), off_frequency, float(digits[d]))
+    return found
+
+
+def _rounding_of_peaks(points: PointRecord, rounding: FloatArray, computed: bool) -> FloatArray:
+    """Relative rounding (dof,) of the greatest amplitudes; NaN where no contact is stiff, and none was told.
+
+    computed: the shapes are an eigensolver's, with rounding of their own. Then a displacement that is as far
+    below the greatest as that has no digits.
+    """
+    highest, dofs = points.amplitude.argmax(axis=0), np.arange(points.amplitude.shape[1])
+    if not rounding.any():
+        return np.full(dofs.size, np.nan)
+    size: FloatArray = points.amplitude[highest, dofs]
+    found: FloatArray = rounding[highest, dofs]
+    if computed:
+        of_shapes = RestOptions().displacement * size.max(initial=0.0)
+        found = np.fmax(found, np.divide(of_shapes, size, out=np.zeros_like(size), where=size > 0.0))
     return found
 
 

@@ -53,10 +53,9 @@ def _at_rest(curve: Curve, options: RestOptions) -> BoolArray:
     peaks = curve.peaks.values()  # between points they may be higher, and a nonlinear mode has none
     size = np.fmax.reduce(curve.amplitude, axis=0, initial=np.nan)
     size = np.fmax(size, [peak.amplitude for peak in peaks])
-    rest = at_rest(size, options)
-    if curve.digits:
-        rest &= (size == 0.0) | [peak.error >= options.uncertain for peak in peaks]
-    return rest
+    rounding = np.array([peak.rounding for peak in peaks])
+    told = (size == 0.0) | (rounding >= options.uncertain)
+    return np.where(np.isnan(rounding), at_rest(size, options), told)
 
 
 def _condensed(condensed: CondensedCurve, rest: BoolArray) -> CondensedCurve:

@@ -11,6 +11,7 @@ from fcm.results.condensed_curves import CondensedCurve, condense
 from fcm.results.contact_maxima import Greatest
 from fcm.results.curve_summary import at_edge
 from fcm.results.padded_arrays import Field, by_fold
+from fcm.results.peak import Peak
 from fcm.results.result import Curve, Response
 from fcm.results.scatter import PERCENTS, SWEEPS, Scatter
 from fcm.results.variable_meanings import CYCLE
@@ -84,7 +85,8 @@ def curve_fields(response: Response) -> dict[str, Field]:
     """One value or row for each curve: peaks, folds, whether it is complete."""
     curves, unit = response.curves, response.frequency_unit
     cf_unit = CF_UNIT[unit]
-    peaks = np.array([[c.peaks[d] for d in response.dofs] for c in curves]).reshape(-1, len(response.dofs), 6)
+    shape = (-1, len(response.dofs), len(Peak._fields))
+    peaks = np.array([[c.peaks[d] for d in response.dofs] for c in curves]).reshape(shape)
     folds = by_fold(curves, lambda c: in_unit(c.folds, unit))
     complete = np.array([c.complete for c in curves], dtype=np.int8)
     by_dof, at_end = ("curve", "dof"), _peaks_at_end(curves)

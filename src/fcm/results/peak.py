@@ -21,6 +21,9 @@ class Peak(NamedTuple):
         np.nan
     )  # greatest change, relative, by the residual friction of contacts that always stick; NaN: not known
     frequency_error: float = np.nan  # estimated, relative, of the frequency; NaN where it is not known
+    rounding: float = (
+        np.nan
+    )  # of the amplitude, relative; NaN where no contact is so stiff that it is looked at
 
 
 def stability_at_top(amplitude: FloatArray, stable: FloatArray) -> FloatArray:

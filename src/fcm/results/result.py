@@ -88,7 +88,6 @@ class Curve:
         None  # if that is known; in the place of most points, where only peaks and folds were asked for
     )
     mode: NonlinearMode | None = None
-    digits: bool = False  # whether displacements far below the greatest have digits, as contacts are stiff
     sensitivity: Sensitivities | None = None  # of the peaks
     across: ContactMotions | None = None  # motions of the contacts, in a plane or in several harmonics
     cause: Cause = Cause.CALCULATION  # why it is not complete, if it is not
