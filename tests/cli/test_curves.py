@@ -9,7 +9,7 @@ import netCDF4
 import pytest
 
 from fcm.cli.balance import harmonics
-from fcm.cli.caveats import maybe_not_unique, residual_friction
+from fcm.cli.caveats import kept_friction, maybe_not_unique, residual_friction
 from fcm.cli.columns import ranges
 from fcm.cli.curves import as_table, cost_and_error
 from fcm.model.scene import InTime
@@ -189,6 +189,39 @@ def test_what_is_said_of_residual_friction_agrees_with_its_column():
     assert not residual_friction(run | {"curves": [cut_off]}) and not maybe_not_unique(
         run | {"curves": [cut_off]}
     )
+
+
+def test_what_friction_keeps_is_said_once_of_peaks_and_of_other_points():
+    known, unknown = (curve({"u": 1.0}) | {"may_not_be_unique": 3} for _ in range(2))
+    known["peak"]["u"]["residual_change"], unknown["peak"]["u"]["residual_change"] = 0.0, None
+    run = {"method": "exact", "exact_motion": InTime.COMPUTED.value}
+    both, one, other = (
+        kept_friction({"curves": ones} | run) for ones in ([known, unknown], [known], [unknown])
+    )
+    assert "it changes no peak. At 3 points the motion may be one of many" in both
+    assert one == residual_friction({"curves": [known]} | run)
+    assert other.endswith(maybe_not_unique({"curves": [unknown]} | run))
+    assert all(text.count("a contact that never slips") == 1 for text in (both, one, other))
+
+
+def test_what_does_not_move_has_no_column_of_jumps():
+    one = curve({"u": 1.0, "still": 0.0})
+    one["jumps"] = [{"sweep": "up", "frequency": 1.0, "before": {"u": 1.0, "still": 0.0},
+                     "after": {"u": 2.0, "still": 0.0}}]  # fmt: skip
+    told = as_table({"curves": [one]}, "Hz")
+    assert "u before" in told and "still before" not in told and "0 the degree of freedom" in told
+
+
+@pytest.mark.parametrize("interrupted", [True, False])
+def test_stability_that_an_interruption_left_unknown_asks_for_no_harmonics(interrupted):
+    one = curve({"u": 1.0})
+    one["peak"]["u"]["stable"] = None
+    if interrupted:
+        one |= {"cause": "interrupted", "complete": False, "reason": "interrupted"}
+    told = as_table({"curves": [one]}, "Hz")
+    assert ("more harmonics may tell" in told) != interrupted and (
+        "interrupted before" in told
+    ) == interrupted
 
 
 def test_residual_friction_is_told_of_the_peaks_that_are_shown():

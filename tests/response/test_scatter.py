@@ -169,7 +169,7 @@ def test_peaks_that_no_motion_stays_at_are_said_to_be_unstable(scatter_of, respo
     (line,) = [row for row in as_table(printed, "rad/s").splitlines() if row.split()[:2] == ["peak", "u"]][
         -1:
     ]
-    assert line.endswith("25% unstable, 25% of unknown stability")
+    assert line.endswith("25 % unstable, 25 % of unknown stability")
     numbers = [{"contact.c.n_0": float(i)} for i, _ in enumerate(curves)]
     own = [replace(curve, parameters=by) for curve, by in zip(curves, numbers, strict=True)]
     fields = scatter_fields(scatter(replace(response, curves=own, dofs=("u",))), "rad/s")
@@ -186,7 +186,7 @@ def test_what_is_not_known_is_printed_and_written(scatter_of, response):
     one = scatter_of(curves)
     printed = summary(response) | {"scatter": [one | {"peak": dict.fromkeys("uv", one["peak"]["u"])}]}
     text = as_table(printed, "rad/s")
-    assert "of 0% of the curves, unknown of 50%" in text
+    assert "of 0 % of the curves, unknown of 50 %" in text
     assert text.endswith("unknown: stability is not known, and a sweep may jump")
     own = [replace(c, parameters={"contact.c.n_0": float(i)}) for i, c in enumerate(curves)]
     fields = scatter_fields(scatter(replace(response, curves=own, dofs=("u",))), "rad/s")

@@ -124,6 +124,18 @@ def test_a_sector_keeps_its_own_degree_of_freedom_of_a_next_one_that_is_used():
         assert (again.ring.damping != curve.ring.damping).sum() == 1
 
 
+@pytest.mark.parametrize(
+    ("coupled", "contact", "asked"), [(True, False, 0), (False, True, 0), (False, False, 1)]
+)
+def test_sectors_that_nothing_joins_are_asked_about(coupled, contact, asked):
+    alone = rings.SHROUD | {"tangential": "tip", "normal": "blade"}
+    data = rings.sector(5, 1, contacts=[rings.SHROUD if contact else alone], harmonics=1)
+    if not coupled:
+        del data["structure"]["coupling"]
+    notes = scene_from_dict(data).notes
+    assert sum("Nothing joins the sectors" in one for one in notes) == asked
+
+
 def test_campbell_in_numbers():
     code, out, err = called("plot", "campbell", "bladed-disk", "--json")
     found = json.loads(out)

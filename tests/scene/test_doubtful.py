@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fcm.scene import scene_from_dict
-from fcm.scene.listing import resonance_doubt
+from fcm.scene.listing import listing, resonance_doubt
 
 from ..program import called
 
@@ -151,6 +151,21 @@ def test_a_range_without_a_resonance_says_so_with_the_nearest_modes(change, word
     if words:
         assert "no resonance is near the range of frequencies: the nearest mode is at" in said
         assert "without contacts" in said and "while all stick" in said
+
+
+@pytest.mark.parametrize(("harmonics", "asked"), [((1,), True), ((4,), False), ((1, 4), False), ((9,), True)])
+def test_a_force_of_a_higher_harmonic_meets_resonances_above_the_range(harmonics, asked):
+    """One mode at 200 rad/s, and a range about 50: its fourth harmonic meets it."""
+    data = {
+        "modal": {"dofs": ["u"], "frequency": [200.0], "damping": 0.01, "shapes": [[1.0]]},
+        "force": [{"dof": "u", "amplitude": 1.0, "harmonic": h} for h in harmonics],
+        "response": {"frequency": [45.0, 55.0]},
+    }
+    scene = scene_from_dict(data)
+    said = resonance_doubt(scene)
+    assert bool(said) == asked
+    assert ("forces act from 405 to 495 rad/s" in said) == (harmonics == (9,))
+    assert any("no resonance is within" in one for one in listing(scene)["warnings"]) == asked
 
 
 @pytest.mark.parametrize(

@@ -43,6 +43,14 @@ def test_two_directions_of_one_place_are_told_what_to_write(other):
     assert not any(SAID in one for one in scene({"tangential": written}).notes)
 
 
+def test_contacts_in_planes_are_not_told_to_be_one():
+    """The first directions are the same, so that there were no two to write: a traceback."""
+    planes = [{"tangential": [{"ax": 1.0, "bx": -1.0}, {one: 1.0, other: -1.0}]}
+              for one, other in (("ay", "by"), ("az", "bz"))]  # fmt: skip
+    (note,) = (one for one in scene(*planes).notes if SAID in one)
+    assert note.endswith("as those of several contacts side by side")
+
+
 def test_two_directions_of_pairs_of_nodes_are_axes():
     dofs = [f"{node}{axis}" for node in (1, 2) for axis in "xyz"]
     structure = {

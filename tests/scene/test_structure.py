@@ -594,6 +594,21 @@ def test_stiffness_and_mass_of_a_mesh_in_each_others_place(swapped):
     assert "in each other's place" in said and f"which is {first:.6g} rad/s" in said
 
 
+@pytest.mark.parametrize("count", [8, 120])
+def test_matrices_in_each_others_place_beside_a_contact(count):
+    """Eight rows were a traceback: none of their modes counted as elastic while the contact sticks."""
+    chain = 1e9 * (2.0 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1))
+    contact = {"name": "c", "tangential": "1x", "normal": "2x", "mu": 0.3, "k_u": 1.0, "k_v": 1.0, "n_0": 1.0}
+    first = 2.0 * np.sqrt(1e9 / 1e-3) * np.sin(pi / 2.0 / (count + 1))
+    said = refused(
+        top={"response": {"frequency": [0.5 * first, 2.0 * first]}, "contact": [contact]},
+        dofs=[f"{i + 1}x" for i in range(count)],
+        stiffness=(1e-3 * np.eye(count)).tolist(),
+        mass=chain.tolist(),
+    )
+    assert "in each other's place" in said
+
+
 @pytest.mark.parametrize("ending", [".npy", ".txt", ".csv"])
 def test_what_numpy_writes_otherwise_is_told_how_it_is_made_an_archive(ending, tmp_path, monkeypatch):
     """By doing what the message says."""
@@ -629,9 +644,9 @@ def test_the_mass_of_a_structure_that_floats_is_the_same_along_all_axes(names_in
     assert len(asked) == (not names_in_order)
 
 
-def test_stiffness_and_mass_of_a_mesh_that_are_the_same():
+@pytest.mark.parametrize("count", [3, 120])
+def test_stiffness_and_mass_that_are_the_same(count):
     """Every mode had 1 rad/s, and of a blade the curve stopped after half a minute."""
-    count = 120
     chain = (2.0 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1)).tolist()
     names = [f"{i + 1}x" for i in range(count)]
     said = refused(top={"response": {"frequency": [0.5, 2.0]}}, dofs=names, stiffness=chain, mass=chain)

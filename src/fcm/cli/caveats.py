@@ -13,7 +13,7 @@ from fcm.cli.limits import SENTENCES
 
 _LINEAR = {  # keys of curves on which no contact changes its state: what is said, and what helps
     "all_stick": ("no contact slips or opens {}", "less preload or more force"),
-    "all_open": ("no contact touches {}", "a smaller gap or more force"),
+    "all_open": ("no contact touches {}", "a smaller gap (a higher n_0) or more force"),
     "all_stick_or_open": (
         "each contact sticks, or is open, and none slips {}",
         "another preload or more force",
@@ -114,7 +114,7 @@ def not_confirmed(summary: Mapping[str, Any]) -> str:
         return ""
     from fcm.stability.options import STABILITY  # numerics, which the help does not import
 
-    most = f"{STABILITY.confirmation.max_fraction_of_many:.0%}"
+    most = f"{100.0 * STABILITY.confirmation.max_fraction_of_many:.0f} %"
     return (
         f"at {count} points stability is unknown. Of many contacts a motion with more harmonics takes long, "
         f"and was looked for at {most} of the points at most. With more --harmonics, or a narrower range, "
@@ -232,6 +232,14 @@ def _not_searched(curve: Mapping[str, Any]) -> str:
     return f" No branch was looked for {where}."
 
 
+def kept_friction(summary: Mapping[str, Any]) -> str:
+    """What friction does that contacts keep which never slip: to peaks, elsewhere; empty if nothing."""
+    of_peaks, elsewhere = residual_friction(summary), maybe_not_unique(summary)
+    if of_peaks and elsewhere:
+        return f"{of_peaks}. {elsewhere[:1].upper()}{elsewhere[1:]}"
+    return of_peaks or (f"{_KEEPS}: {elsewhere}" if elsewhere else "")
+
+
 def maybe_not_unique(summary: Mapping[str, Any]) -> str:
     """Where the motion may be one of many, and how to learn of the others; empty if nowhere."""
     followed = [*_completed(summary), *summary.get("tracked", {}).get("curves", ())]
@@ -249,7 +257,7 @@ def maybe_not_unique(summary: Mapping[str, Any]) -> str:
         tells += f": {how}{', at the level 1,' if of_levels else ''} tells how far the motions range"
     elif any("mode" in curve for curve in summary["curves"]):
         tells += ": the response, without --mode, tells it of its peaks"
-    return f"{_KEEPS}: at {points} the motion may be one of many. {tells}"
+    return f"at {points} the motion may be one of many. {tells}"
 
 
 def _completed(summary: Mapping[str, Any]) -> list[Mapping[str, Any]]:

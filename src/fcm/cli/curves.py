@@ -10,6 +10,7 @@ from fcm.cli.columns import (
     BEYOND,
     DOES_NOT_STAY,
     NOT_COMPLETE,
+    STABILITY_NOT_YET_KNOWN,
     STABILITY_UNKNOWN,
     UNKNOWN,
     UNSTABLE,
@@ -70,10 +71,11 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
     parts = [_curves(summary, names, dofs, unit, length, shown)]
     parts += filter(None, [_every_peak(curves, names, dofs, unit, length)])
     parts += [_blades(curves, names, unit, length)] if "blades" in curves[0] else []
+    moving = [dof for dof in dofs if not all(_at_rest(curve, dof) for curve in curves)]
     tables = [
-        stable_table(curves, names, dofs, unit),
-        jump_table(curves, names, dofs, unit, resolution_of(summary)),
-        untold_table(curves, names, dofs, unit),
+        stable_table(curves, names, moving, unit),
+        jump_table(curves, names, moving, unit, resolution_of(summary)),
+        untold_table(curves, names, moving, unit),
     ]
     parts += filter(None, tables)
     parts += [_scatter(one, dofs, unit) for one in summary.get("scatter", ())]
@@ -165,13 +167,13 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
 def _of_stable(peak: Mapping[str, Any]) -> str:
     """How many of the peaks are unstable, or may be."""
     shares = ((peak["unstable"], "unstable"), (peak["untold"], "of unknown stability"))
-    return ", ".join(f"{share:.0%} {what}" for share, what in shares if share)
+    return ", ".join(f"{100.0 * share:.0f} % {what}" for share, what in shares if share)
 
 
 def _of_how_many(jump: Mapping[str, Any]) -> str:
     """Of how many curves the percentiles of a jump are, and of how many it is not known."""
-    untold = f", unknown of {jump['untold']:.0%}" if jump["untold"] else ""
-    return f"of {jump['share']:.0%} of the curves{untold}"
+    untold = f", unknown of {100.0 * jump['untold']:.0f} %" if jump["untold"] else ""
+    return f"of {100.0 * jump['share']:.0f} % of the curves{untold}"
 
 
 def _minimised(summary: Mapping[str, Any]) -> list[str]:
@@ -251,7 +253,8 @@ def _curves(
             "there"
         )
     if UNKNOWN in marks:
-        lines.append(f"{UNKNOWN} {STABILITY_UNKNOWN}")
+        looked = any(UNKNOWN == _stability(curve, dof) for curve in judged for dof in dofs)
+        lines.append(f"{UNKNOWN} {STABILITY_UNKNOWN if looked else STABILITY_NOT_YET_KNOWN}")
     if ranges_of:
         unknown = any(_residual(curve, dof) == "-" for curve in curves for dof in ranges_of)
         lines.append(_OF_RESIDUAL + (", - unknown" if unknown else ""))

@@ -156,8 +156,8 @@ def _not_unique(found: Sequence[Orbits]) -> Iterator[str]:
     spread = max(map(_spread, families))
     yield (
         f"points that are not unique: {count}. A contact never slips there, and its residual friction "
-        f"changes an amplitude by up to {spread:.0%} (family_least to family_greatest). [start] friction "
-        "chooses one"
+        f"changes an amplitude by up to {100.0 * spread:.0f} % (family_least to family_greatest). [start] "
+        "friction chooses one"
     )
     partly = sum(int((one.family_complete == 0.0).sum()) - _untold(one) for one in families)
     if partly:

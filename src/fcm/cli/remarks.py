@@ -10,13 +10,12 @@ from fcm.cli import fit, nonlinear_mode, schedule, track
 from fcm.cli.caveats import (
     branches_uncertain,
     folds_uncertain,
+    kept_friction,
     linear,
-    maybe_not_unique,
     mirrored,
     not_confirmed,
     nothing_stable,
     peaks_not_followed,
-    residual_friction,
     searched_levels,
     short_of_accuracy,
     symmetry_lost,
@@ -108,10 +107,8 @@ def close(
         messages.info(stuck)
     if images := mirrored(result):
         messages.info(images)
-    if ranging := residual_friction(result):
-        messages.info(ranging)
-    if many := maybe_not_unique(result):
-        messages.info(many)
+    if kept := kept_friction(result):
+        messages.info(kept)
     if nothing := nothing_stable(result):
         messages.info(nothing)
     if few := not_confirmed(result):

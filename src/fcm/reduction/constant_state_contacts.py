@@ -166,6 +166,7 @@ def on_contacts(curves: Sequence[Curve], contacts: Sequence[Contact]) -> list[st
             does = one if len(places) == 1 else many
             said.append(
                 f"the transitions of {named(contacts, places)}, which {does} all over the range{where}: "
-                f"{instead}. At every point found at least {least:.0%} of the {limit} is left (no effect)"
+                f"{instead}. At every point found at least {100.0 * least:.0f} % of the {limit} is left "
+                "(no effect)"
             )
     return said

@@ -7,12 +7,14 @@ from functools import cached_property
 
 import numpy as np
 
+from fcm.model.question import Question
 from fcm.model.ring import NEXT, Ring
 from fcm.model.scene import Modal, Scene
 from fcm.scene.errors import Mistakes, quoted
 from fcm.scene.keys import names
 from fcm.scene.mistuning import read_mistuning
 from fcm.scene.names import Names
+from fcm.scene.options import TOLERANCES
 from fcm.scene.rules import RULES
 from fcm.scene.section import Part, Section
 
@@ -148,11 +150,33 @@ def note_of_stability(scene: Scene) -> list[str]:
     if not rings:
         return []
     periods = sorted({ring.period for ring in rings.values()})
-    each = ", ".join(map(str, periods))
+    each = f"{', '.join(map(str, periods))} sector{'s' * (periods != [1])}"
     return [
         "cyclic: stability is that of disturbances of the same travelling wave, which repeat as it does, "
-        f"after {each} sectors"
-        + (": all that there are" if periods == [next(iter(rings.values())).sectors] else "")
+        f"after {each}" + (": all that there are" if periods == [next(iter(rings.values())).sectors] else "")
+    ]
+
+
+def question_of_joints(scene: Scene) -> list[str]:
+    """A question where nothing joins the sectors: the modes of all diameters are one sector's, and no contact
+    reaches the next."""
+    ring = scene.ring
+    if ring is None:
+        return []
+    own = len(scene.modal.dofs) // 2
+    reaches_next = any(one[own:].any() for contact in scene.contacts for one in contact.directions)
+    families = [np.sort(ring.frequency[ring.diameter == n]) for n in np.unique(ring.diameter)]
+    alike = len({one.size for one in families}) == 1 and bool(
+        (np.ptp(families, axis=0) <= TOLERANCES.same_modes * families[0]).all()
+    )
+    if reaches_next or len(families) == 1 or not alike:
+        return []
+    return [
+        Question(
+            "cyclic: is something missing? Nothing joins the sectors: the structure has no coupling to the "
+            'next one, and no contact names its "next." degrees of freedom. So each moves alone, as one '
+            "without [cyclic]"
+        )
     ]
 
 

@@ -64,14 +64,14 @@ def resonance_doubt(scene: Scene) -> str:
     """
     if not scene.has_range:
         return ""
-    ends, room = scene.frequency_range, MESSAGES.range_near
-    near, alone = (ends[0] / room, ends[1] * room), _modes_alone(scene)
-    if _resonance_within(alone, alone, near):  # the contacts need not be asked
+    ranges, room = _ranges_of_forces(scene), MESSAGES.range_near
+    near, alone = [(low / room, high * room) for low, high in ranges], _modes_alone(scene)
+    if _resonance_within(alone, alone, *near):  # the contacts need not be asked
         return ""
     opened, stuck = _modes_open_and_stuck(scene)
-    if not opened.size or _resonance_within(opened, stuck, near):
+    if not opened.size or _resonance_within(opened, stuck, *near):
         return ""
-    unit = scene.frequency_unit
+    ends, unit = ranges[0], scene.frequency_unit
     places = f"the nearest mode is at {_nearest(opened, ends) / UNIT[unit]:.6g} {unit}"
     if scene.contacts:
         places += f" without contacts, at {_nearest(stuck, ends) / UNIT[unit]:.6g} {unit} while all stick"
@@ -79,7 +79,16 @@ def resonance_doubt(scene: Scene) -> str:
     slip = _slip_of_units(opened[:1], stuck[:1], (ends[0] * margin, ends[1] / margin), unit)
     if not slip:
         slip = "are the units of the structure, of the contacts' stiffness and of the range those meant?"
-    return f"no resonance is near the range of frequencies: {places}; {slip}"
+    low, high = (f"{end / UNIT[unit]:.6g}" for end in ends)
+    of = f", in which forces act from {low} to {high} {unit}" if ends != scene.frequency_range else ""
+    return f"no resonance is near the range of frequencies{of}: {places}; {slip}"
+
+
+def _ranges_of_forces(scene: Scene) -> list[tuple[float, float]]:
+    """Over which frequencies [rad/s] forces act: the range, times each harmonic that a force has."""
+    low, high = scene.frequency_range
+    driven = sorted({force.harmonic for force in scene.forces}) or [1]
+    return [(h * low, h * high) for h in driven]
 
 
 def _modes_alone(scene: Scene) -> FloatArray:
@@ -102,8 +111,9 @@ def _modes_open_and_stuck(scene: Scene) -> tuple[FloatArray, FloatArray]:
     return opened[elastic], stuck[elastic]
 
 
-def _resonance_within(opened: FloatArray, stuck: FloatArray, ends: tuple[float, float]) -> bool:
-    return bool(((opened <= ends[1]) & (stuck >= ends[0])).any())
+def _resonance_within(opened: FloatArray, stuck: FloatArray, *ranges: tuple[float, float]) -> bool:
+    """Whether a resonance between two modes, open and stuck, may be within one of the ranges."""
+    return any(bool(((opened <= high) & (stuck >= low)).any()) for low, high in ranges)
 
 
 def _nearest(frequency: FloatArray, ends: tuple[float, float]) -> float:
@@ -166,7 +176,7 @@ def notes_of_modes(scene: Scene) -> list[str]:
         f"structure: first resonances with all contacts open: {of_open}; with all stuck: {of_stuck}{damped}. "
         f"The main peak of a mode lies between the two{among}"
     ]
-    if scene.of_matrices and ratio.min(initial=np.inf) >= LIMITS.damping_ratio:
+    if scene.of_matrices and ratio.size and ratio.min() >= LIMITS.damping_ratio:
         said.append(
             Question(
                 "structure.damping: is it right? It damps each of these more than critically, "
@@ -187,7 +197,7 @@ def _first_far_below(scene: Scene) -> str:
     if not scene.has_range:
         return ""
     opened, stuck = _modes_open_and_stuck(scene)
-    (low, high), unit = scene.frequency_range, scene.frequency_unit
+    (low, high), unit = _ranges_of_forces(scene)[0], scene.frequency_unit
     if not stuck.size or stuck[0] > low / MESSAGES.far_below:
         return ""
     if not _resonance_within(
@@ -339,16 +349,21 @@ def _warnings(scene: Scene, directions: dict[str, FloatArray], motion: dict[str,
 def _of_range(scene: Scene) -> list[str]:
     """Warnings that concern the range of frequencies."""
     said, modal, unit = [], scene.modal, scene.frequency_unit
-    low, high = scene.frequency_range
-    inside = (modal.frequency > low) & (modal.frequency < high)
-    if not _resonance_within(*_modes_open_and_stuck(scene), (low, high)):
+    ranges = _ranges_of_forces(scene)
+    inside = np.any([(modal.frequency > low) & (modal.frequency < high) for low, high in ranges], axis=0)
+    if not _resonance_within(*_modes_open_and_stuck(scene), *ranges):
         said.append("no resonance is within the range, with contacts open, stuck, or between")
     undamped = np.flatnonzero(inside & (modal.damping == 0.0)) + 1
     if undamped.size:
         said.append(f"within the range, without damping: mode {', '.join(map(str, undamped[:10]))}")
     highest = modal.frequency.max()
     lacking = not (modal.added or modal.complete)
-    if lacking and highest < MESSAGES.range_above * high and modal.frequency.size > 1 and scene.contacts:
+    if (
+        lacking
+        and highest < MESSAGES.range_above * ranges[-1][1]
+        and modal.frequency.size > 1
+        and scene.contacts
+    ):
         where = f"{highest / UNIT[unit]:.6g} {unit}"
         said.append(f"the highest mode is at {where}: a contact lacks the flexibility of all modes above")
     return said

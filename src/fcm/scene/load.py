@@ -14,7 +14,14 @@ import numpy as np
 from fcm.files import NOT_THERE, no_file
 from fcm.model.scene import Scene
 from fcm.scene.contact_stiffness import notes_of_stiffness
-from fcm.scene.cyclic import check_diameters, note_of_stability, only_own, own_names, read_cyclic
+from fcm.scene.cyclic import (
+    check_diameters,
+    note_of_stability,
+    only_own,
+    own_names,
+    question_of_joints,
+    read_cyclic,
+)
 from fcm.scene.draft import Draft, forces_of, modes_of
 from fcm.scene.errors import Mistakes, SceneError, choices, kind, quoted, suggestion
 from fcm.scene.excitation import load_of, note_of_mass, notes_of_loads, read_base, read_loads
@@ -240,6 +247,7 @@ def _made(name: str, fields: dict[str, Any], told: Told | None) -> Scene:
             *scene.notes,
             *_notes_of_modes(scene),
             *note_of_stability(scene),
+            *question_of_joints(scene),
             *note_of_harmonics(scene.forces),
             *note_of_start(scene),
             *note_of_shared_normals(scene),

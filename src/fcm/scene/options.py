@@ -103,6 +103,7 @@ class ToleranceOptions(Frozen):
     floating_mass: float = 1e-3  # masses along axes of a structure that floats, which are the same
     scaled_shape: float = 1e-6  # how near to 1 the largest value of a shape is that was scaled to it
     same_direction: float = 1e-9  # directions that differ by no more are one
+    same_modes: float = 1e-9  # frequencies of a ring's diameters that differ by no more are one sector's
     right_angle: float = 0.01  # sine of the angle by which a normal may lean: about half a degree
     square: float = 1e-6  # cosine of the angle between two directions at right angles, at most
     # of lengths of directions, and cosine of the angle between them: so far are weights of three digits off

@@ -31,7 +31,7 @@ def modal_of_matrices(
     along theirs, outputs the rows that are only reported; `ends` are the lowest and highest angular frequency
     of the forces.
     """
-    if len(matrices.dofs) >= LIMITS.mesh_rows and abs(matrices.K - matrices.M).max() == 0.0:
+    if _same(matrices):
         top.wrong("structure", "stiffness and mass are the same matrix. Name the file of each")
         return None, np.zeros((len(matrices.dofs), 0)), []
     if mode := _exchanged_mesh(matrices, ends):
@@ -69,6 +69,16 @@ def modal_of_matrices(
             *of_rounding([found], damping.ratio[found.rigid :]),
         ],
     )
+
+
+def _same(matrices: Matrices) -> bool:
+    """Whether stiffness and mass are one matrix, with entries beside its diagonal.
+
+    Then every mode has 1 rad/s, and no structure but single masses on springs has that.
+    """
+    K, M = matrices.K, matrices.M
+    beside_diagonal = K.nnz > np.count_nonzero(K.diagonal())
+    return bool(beside_diagonal and abs(K - M).max() == 0.0)
 
 
 def _exchanged_mesh(matrices: Matrices, ends: tuple[float, float]) -> float:

@@ -39,8 +39,8 @@ def _of(interface: Interface, rigid: FloatArray, dofs: Names) -> Iterator[str]:
             node, share = worst
             yield Question(
                 f"contact {quoted(interface.name)}: its {SIDES[side]} move as no rigid body does at their "
-                f"places: node {node} is off most, by {share:.0%} of the motion. Is a column of the file "
-                "shifted, or a coordinate wrong?"
+                f"places: node {node} is off most, by {100.0 * share:.0f} % of the motion. Is a column of "
+                "the file shifted, or a coordinate wrong?"
             )
 
 

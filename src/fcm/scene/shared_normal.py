@@ -26,15 +26,24 @@ def note_of_shared_normals(scene: Scene) -> list[str]:
     doubled = [group for group in groups.values() if _counts_twice(group)]
     if not doubled:
         return []
-    one, other = _two_directions(scene, doubled[0])
     names = "; ".join(several([one.name for one in group]) for group in doubled[: MESSAGES.groups])
     more = f"; {counted(len(doubled), 'such place')} in all" if len(doubled) > MESSAGES.groups else ""
     return [
         f"contacts {names} have the same normal displacement and different tangential ones{more}. Their "
-        "preloads and normal stiffnesses add up there, as those of several contacts side by side. If it is "
-        f"one contact that slides in a plane, write it once with two directions, as in "
-        f"tangential = [{one}, {other}]"
+        f"preloads and normal stiffnesses add up there, as those of several contacts side by side"
+        f"{_instead(scene, doubled[0])}"
     ]
+
+
+def _instead(scene: Scene, group: list[Contact]) -> str:
+    """How contacts on lines are written that are meant as one in a plane; empty where some are in a plane."""
+    if any(one.second is not None for one in group):
+        return ""
+    one, other = _two_directions(scene, group)
+    return (
+        ". If it is one contact that slides in a plane, write it once with two directions, as in "
+        f"tangential = [{one}, {other}]"
+    )
 
 
 def _two_directions(scene: Scene, group: list[Contact]) -> list[str]:
