@@ -12,7 +12,7 @@ from fcm.accuracy.refinement import with_estimated_errors
 from fcm.harmonic_balance.system import System
 from fcm.response import trace
 from fcm.response.exact import trace_exact
-from fcm.results.local_maxima import lower_peaks
+from fcm.results.lower_peaks import lower_peaks
 from fcm.scene import load_scene, scene_from_dict
 from fcm.shooting.problem import OrbitProblem
 

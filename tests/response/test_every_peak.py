@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fcm.response import trace
-from fcm.results.local_maxima import lower_peaks
+from fcm.results.lower_peaks import lower_peaks
 from fcm.scene import load_scene
 
 from ..program import called

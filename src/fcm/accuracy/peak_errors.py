@@ -15,6 +15,7 @@ import numpy as np
 from fcm.accuracy.reference_curve import FollowedStretch, Indices, ReferenceCurve
 from fcm.accuracy.reference_stretch import ReferencePiece
 from fcm.frozen import Frozen
+from fcm.local_maxima import local_maxima
 from fcm.model.scene import FloatArray
 
 
@@ -75,9 +76,7 @@ def _between_minima(amplitude: FloatArray, least: float) -> list[tuple[int, int,
     >>> _between_minima(np.array([1.0, 3.0, 2.0, 4.0, 0.0]), 0.1)
     [(1, 0, 2), (3, 2, 4)]
     """
-    inner = amplitude[1:-1]
-    rises = (inner > amplitude[:-2]) & (inner >= amplitude[2:]) & (inner > least * amplitude.max(initial=0.0))
-    tops = (1 + np.flatnonzero(rises)).tolist()
+    tops = np.flatnonzero(local_maxima(amplitude[:, None], least)).tolist()
     minima = [i + int(amplitude[i : j + 1].argmin()) for i, j in pairwise((0, *tops, len(amplitude) - 1))]
     return list(zip(tops, minima, minima[1:], strict=False))
 

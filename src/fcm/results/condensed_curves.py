@@ -11,7 +11,7 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.frozen import Frozen
 from fcm.results.jumps import FrequencySweep
-from fcm.results.local_maxima import lower_peaks, rise_beside
+from fcm.results.lower_peaks import lower_peaks, rise_beside
 from fcm.stability.unstable_ranges import Stretch, unstable_stretches
 
 if TYPE_CHECKING:

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.local_maxima import local_maxima
 from fcm.results.options import RESULTS, PeakOptions
 
 _PARABOLA, _BEFORE, _BEHIND = (-1, 0, 1), (-2, -1, 0, 1), (-1, 0, 1, 2)  # points that polynomials go through
@@ -24,23 +25,15 @@ def lower_peaks(amplitude: FloatArray, options: PeakOptions = RESULTS.peaks) -> 
     >>> lower_peaks(np.transpose((u, v))).tolist()
     [[0, 1]]
     """
-    if len(amplitude) < 3:
+    points, dofs = np.nonzero(local_maxima(amplitude, options.least_share))
+    if not points.size:
         return np.empty((0, 2), dtype=np.intp)
-    top = np.fmax.reduce(amplitude, axis=0)
-    inner = amplitude[1:-1]
-    rises = (inner > amplitude[:-2]) & (inner >= amplitude[2:]) & (inner > options.least_share * top)
-    points, dofs = np.nonzero(rises)
-    several = np.bincount(dofs, minlength=top.size) > 1
-    several |= ~rises.any(axis=0) | (
-        np.where(rises, inner, 0.0).max(axis=0) < top
-    )  # the highest is at an end
     highest = np.where(np.isnan(amplitude), -np.inf, amplitude).argmax(axis=0)
     found = [
-        (d, k + 1)
+        (d, k)
         for d, k in zip(dofs.tolist(), points.tolist(), strict=True)
-        if several[d]
-        and k + 1 != highest[d]
-        and _prominence(amplitude[:, d], k + 1) > options.least_prominence * amplitude[k + 1, d]
+        if k != highest[d]
+        and _prominence(amplitude[:, d], k) > options.least_prominence * amplitude[k, d]
     ]
     return np.array(sorted(found), dtype=np.intp).reshape(-1, 2)
 
