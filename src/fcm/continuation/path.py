@@ -63,6 +63,18 @@ class Path(Frozen):
     evaluations: int  # of the equations, to follow it
     ended_by: int = -1  # which of the functions that were to end it did
 
+    def __repr__(self) -> str:
+        """Sizes and ends, without the arrays.
+
+        >>> z, mark = np.array([[0.0, 0.5], [1.0, 2.0]]), np.array([Mark.END, Mark.END])
+        >>> Path(z, z, mark, np.ones(2), Status.COMPLETE, 7)
+        Path(2 points, parameter 0.5 to 2, 0 folds: the curve reached the other end of its range)
+        """
+        count, folds = len(self.z), self.where(Mark.FOLD).size
+        ends = f", parameter {self.parameter[0]:.6g} to {self.parameter[-1]:.6g}" if count else ""
+        turns = f"{folds} fold{'s' * (folds != 1)}"
+        return f"Path({count} point{'s' * (count != 1)}{ends}, {turns}: {self.status.value})"
+
     @property
     def parameter(self) -> FloatArray:
         """The parameter at each point."""

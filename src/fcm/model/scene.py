@@ -14,6 +14,7 @@ import numpy.typing as npt
 from fcm.contact.contact_law import ContactLaw
 from fcm.frozen import Frozen
 from fcm.model.ring import Ring, with_own
+from fcm.units import UNIT
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -237,6 +238,24 @@ class Scene(Frozen):
     held: tuple[Held, ...] = ()  # that are not among the contacts: springs, or nothing, in their places
     draft: Source | None = field(default=None, repr=False, compare=False)  # what it was made of
     tuned: Scene | None = field(default=None, repr=False, compare=False)  # of a mistuned ring: a sector of it
+
+    def __repr__(self) -> str:
+        """Name and sizes, without the arrays.
+
+        >>> import fcm
+        >>> fcm.load_scene("yang1998")
+        Scene('yang1998': 2 degrees of freedom, 1 contact, 2 forces, 10 curves from 0.7 to 1.7 rad/s)
+        """
+        dofs, curves = len(self.reported or self.modal.dofs), max(len(self.curves), 1)
+        sizes = [
+            f"{dofs} degree{'s' * (dofs != 1)} of freedom",
+            f"{len(self.contacts)} contact{'s' * (len(self.contacts) != 1)}",
+            f"{len(self.forces)} force{'s' * (len(self.forces) != 1)}",
+            f"{curves} curve{'s' * (curves != 1)}",
+        ]
+        low, high = (f"{end / UNIT[self.frequency_unit]:.6g}" for end in self.frequency_range)
+        between = f" from {low} to {high} {self.frequency_unit}" if self.has_range else ""
+        return f"Scene({self.name or self.title!r}: {', '.join(sizes)}{between})"
 
     @property
     def has_range(self) -> bool:
