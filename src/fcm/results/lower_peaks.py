@@ -32,8 +32,7 @@ def lower_peaks(amplitude: FloatArray, options: PeakOptions = RESULTS.peaks) -> 
     found = [
         (d, k)
         for d, k in zip(dofs.tolist(), points.tolist(), strict=True)
-        if k != highest[d]
-        and _prominence(amplitude[:, d], k) > options.least_prominence * amplitude[k, d]
+        if k != highest[d] and _prominence(amplitude[:, d], k) > options.least_prominence * amplitude[k, d]
     ]
     return np.array(sorted(found), dtype=np.intp).reshape(-1, 2)
 
