@@ -17,6 +17,7 @@ import numpy as np
 from fcm.accuracy import refinement, unchecked_response
 from fcm.branches import force_level, search
 from fcm.branches import trace as branch_trace
+from fcm.branches.symmetry_loss import SymmetryLoss
 from fcm.response import refined
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
@@ -32,7 +33,7 @@ OFF = {
     "folds followed": [(search, "with_isolas", lambda system, found: found)],
     "branch points": [
         (search, "with_branching", lambda system, found: found),
-        (refined, "symmetry_loss", lambda system, found: search.SymmetryLoss()),
+        (refined, "symmetry_loss", lambda system, found: SymmetryLoss()),
     ],
     "prolongation": [
         (unchecked_response, "prolongated_solutions", lambda before, harmonics: []),

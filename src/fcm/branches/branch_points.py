@@ -10,15 +10,11 @@ changes its sign where a real eigenvalue passes zero without a fold: another bra
 The singular vector there leads to it: the solutions at a distance along that, across the branch, are looked
 for by Newton's method in a bordered system. A corner of the response may change the
 sign by a jump, and is treated alike.
-
-A symmetric motion has odd harmonics alone, and breaks its symmetry by even ones: so the sign is that of the
-balance with all even harmonics up to the highest as well, which the motion solves with none of these.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -42,62 +38,22 @@ class BranchPoint(Frozen):
     starts: tuple[FloatArray, ...]
 
 
-def with_even_harmonics(system: System) -> System:
-    """The system with all even harmonics up to its highest, too."""
-    return system.with_harmonics(tuple(sorted({*system.harmonics, *range(2, system.harmonics[-1] + 1, 2)})))
-
-
-def leading_harmonics(
-    system: System, point: BranchPoint, options: BranchingOptions = BRANCHING
-) -> tuple[int, ...]:
-    """By which harmonics of a system branches leave a branch point: those of which the displacements change
-    by a part of the greatest change at least."""
-    layout = system.layout
-    change = np.max([np.abs(layout.complex_ports(one - point.z)).max(axis=0) for one in point.starts], axis=0)
-    leads = change > options.min_leading_fraction * change.max()
-    return tuple(np.array(system.harmonics)[leads[1:]].tolist())
-
-
 def branch_points(
-    system: System,
-    harmonics: Sequence[int],
-    paths: Sequence[Path],
-    options: BranchingOptions = BRANCHING,
+    system: System, paths: Sequence[Path], options: BranchingOptions = BRANCHING
 ) -> Iterator[BranchPoint]:
-    """Those of paths of some harmonics, in a system that has these and others, or the same."""
+    """Those of paths of a system."""
     balance: Balance | None = None
-    newton: Newton | None = None
     for path in paths:
-        whole = path
-        if tuple(harmonics) != system.harmonics:
-            newton = newton or Newton(system.new_balance())
-            whole = _with_all(system, newton, path, tuple(harmonics), options)
-        change = whole.orientation[:-1] * whole.orientation[1:] < 0.0
-        for i in np.flatnonzero(change).tolist():
+        for i in sign_changes(path.orientation):
             balance = balance or system.new_balance()
-            point = branch_point_at(balance, balance, whole, i, options)
+            point = branch_point_at(balance, balance, path, i, options)
             if point.starts:
                 yield point
 
 
-def _with_all(
-    system: System, newton: Newton, path: Path, fewer: tuple[int, ...], options: BranchingOptions
-) -> Path:
-    """A path of fewer harmonics with the orientations that all of a system give it; NaN where it is no
-    solution with nothing of the others, as where these are driven."""
-    z, direction = system.extended(path.z, fewer), system.extended(path.direction, fewer)
-    orientation = np.full(len(z), np.nan)
-    for i, (one, way) in enumerate(zip(z, direction, strict=True)):
-        newton.problem.measure(one)
-        newton.scale[:], newton.z[:] = newton.problem.scale, one
-        row = way / np.asarray(newton.scale)
-        newton.row[:] = row / np.linalg.norm(row)
-        if not newton.take_tangent():
-            continue
-        off = np.asarray(newton.problem.residual) / np.asarray(newton.scale)[:-1]
-        if np.abs(off).max(initial=0.0) < options.min_residual:
-            orientation[i] = newton.orientation
-    return replace(path, z=z, direction=direction, orientation=orientation)
+def sign_changes(orientation: FloatArray) -> list[int]:
+    """The points before which, and after which, the determinant has another sign."""
+    return np.flatnonzero(orientation[:-1] * orientation[1:] < 0.0).tolist()
 
 
 def branch_point_at(

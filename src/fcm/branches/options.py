@@ -104,7 +104,8 @@ class BranchingOptions(Frozen):
     max_rounds: int = 4  # branches that leave branches that leave ...
     max_starts: int = 64  # starts
     min_residual: float = 1e-6  # of a displacement: harmonics that a motion would have more of belong to it
-    min_leading_fraction: float = 0.1  # of the greatest change, of harmonics by which a branch leaves another
+    max_displacement: float = 0.01  # relative, of a branch point's frequency by harmonics that lack
+    min_leading_fraction: float = 0.1  # of the greatest, of even harmonics by which a level loses symmetry
     max_level_step: float = 0.1  # longest, of branches that leave a curve of the level
     symmetry_points: int = 16  # of a path, all of which are symmetric if it is
 

@@ -4,23 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
-from fcm.branches.branch_points import (
-    BranchPoint,
-    branch_points,
-    leading_harmonics,
-    with_even_harmonics,
-)
+from fcm.branches.branch_points import BranchPoint, branch_points
 from fcm.branches.isolas import level_one_crossings
+from fcm.branches.mirror_images import symmetric_half
 from fcm.branches.options import BRANCHING, BranchingOptions
 from fcm.branches.prolongation import at_its_frequency
 from fcm.branches.symmetry import broken_symmetries
 from fcm.branches.symmetry_in_level import unsymmetric_solutions
 from fcm.branches.trace import Traced, with_further
-from fcm.continuation import Path, Status
 from fcm.continuation.all_branches import contains
-from fcm.frozen import Frozen
 from fcm.harmonic_balance.system import System
 
 
@@ -35,14 +27,6 @@ def with_isolas(system: System, found: Traced) -> Traced:
     if met.uncertain != found.folds_lost:
         found = replace(found, folds_lost=met.uncertain)
     return with_further(system, found, (), met.solutions) if met.solutions else found
-
-
-class SymmetryLoss(Frozen):
-    """Frequencies [rad/s] at which symmetric motions lose their symmetry by harmonics that are not balanced,
-    and which these are."""
-
-    frequencies: tuple[float, ...] = ()
-    harmonics: tuple[int, ...] = ()
 
 
 def with_unsymmetric(system: System, found: Traced) -> Traced:
@@ -69,19 +53,6 @@ def with_unsymmetric(system: System, found: Traced) -> Traced:
     return replace(found, symmetry_lost_in_level=tuple(lost)) if lost else found
 
 
-def symmetry_loss(system: System, found: Traced) -> SymmetryLoss:
-    """Where branches of a system leave symmetric ones by even harmonics that it lacks."""
-    whole = with_even_harmonics(system)
-    if whole.harmonics == system.harmonics or not system.scene.contacts:
-        return SymmetryLoss()
-    points = branch_points(whole, system.harmonics, found.branches.paths)
-    lead = [(float(one.z[-1]), leading_harmonics(whole, one)) for one in points]
-    every = [*lead, *found.symmetry_lost_in_level]
-    lost = [(omega, lacking) for omega, led in every if (lacking := {*led} - {*system.harmonics})]
-    harmonics = {h for _, lacking in lost for h in lacking}
-    return SymmetryLoss(tuple(dict.fromkeys(omega for omega, _ in lost)), tuple(sorted(harmonics)))
-
-
 def with_branching(system: System, found: Traced, options: BranchingOptions = BRANCHING) -> Traced:
     """With the branches that leave others at branch points, of two mirror images one."""
     if not system.scene.contacts:
@@ -89,7 +60,7 @@ def with_branching(system: System, found: Traced, options: BranchingOptions = BR
     known, left = 0, options.max_starts
     for _ in range(options.max_rounds):
         paths, known = found.branches.paths[known:], len(found.branches.paths)
-        for point in branch_points(system, system.harmonics, paths):
+        for point in branch_points(system, paths):
             if left == 0:
                 return found
             left -= 1
@@ -110,24 +81,7 @@ def _with_branches_of(system: System, found: Traced, point: BranchPoint) -> Trac
         if images and len(found.branches.paths) > len(paths):
             new, balance = found.branches.paths[-1], system.reset_balance()
             if any(contains(new, one, balance) for one in images):
-                new = _symmetric_half(new)
+                new = symmetric_half(new)
             branches = replace(found.branches, paths=(*found.branches.paths[:-1], new))
             found = replace(found, branches=branches, mirrored=(*found.mirrored, len(paths)))
     return found
-
-
-def _symmetric_half(path: Path) -> Path:
-    """Of a closed path that comes back through its branch points as its own image the way between these; all
-    of another one."""
-    changes = np.flatnonzero(path.orientation[:-1] * path.orientation[1:] < 0.0)
-    if path.status is not Status.CLOSED or len(changes) != 2:
-        return path
-    half = slice(int(changes[0]), int(changes[1]) + 2)
-    return replace(
-        path,
-        z=path.z[half],
-        direction=path.direction[half],
-        mark=path.mark[half],
-        orientation=path.orientation[half],
-        status=Status.COMPLETE,
-    )

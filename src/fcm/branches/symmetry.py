@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.branches.options import BRANCHING, BranchingOptions
+from fcm.continuation import Path
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
@@ -29,6 +30,23 @@ class Symmetry(Frozen):
         """Of a motion (unknown + 1,)."""
         blocks = z[:-1].reshape(len(self.counterpart), -1)
         return np.append(self.factor * blocks[self.counterpart], z[-1])
+
+
+def parts_of(system: System, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Of the displacements of a motion the greatest means and amplitudes of each even harmonic, which a
+    symmetric one has not; and those of the odd ones."""
+    parts = np.abs(system.layout.complex_ports(z)).max(axis=0, initial=0.0)
+    even = np.array([True, *(h % 2 == 0 for h in system.harmonics)])
+    return parts[even], parts[~even]
+
+
+def is_symmetric(system: System, path: Path, options: BranchingOptions = BRANCHING) -> bool:
+    """Whether the motions of a path are symmetric, and not linear, of which each is: they have odd harmonics
+    that are not driven."""
+    undriven = [h not in system.linear.driven for h in system.harmonics if h % 2]
+    rows = [parts_of(system, z) for z in path.z[:: max(len(path.z) // options.symmetry_points, 1)]]
+    symmetric = all((even < options.min_residual * odd.max()).all() for even, odd in rows)
+    return symmetric and any((odd[undriven] > options.min_residual * odd.max()).any() for _, odd in rows)
 
 
 def broken_symmetries(

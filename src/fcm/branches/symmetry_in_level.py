@@ -13,9 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fcm.branches.branch_points import branch_point_at
+from fcm.branches.branch_points import branch_point_at, sign_changes
 from fcm.branches.force_level import LevelRange, LevelSolutions, few_harmonics, level_curve
 from fcm.branches.options import BRANCHING, FOLDS, BranchingOptions
+from fcm.branches.symmetry import is_symmetric, parts_of
 from fcm.continuation import Events, FollowOptions, Path, Status, follow
 from fcm.continuation.all_branches import contains
 from fcm.harmonic_balance.cost_model import seconds_of
@@ -51,7 +52,7 @@ def unsymmetric_solutions(
 ) -> UnsymmetricSolutions:
     """Those that curves of the level lead to where it was followed, if a path of a system is symmetric."""
     few = system.with_harmonics(tuple(range(1, few_harmonics(system) + 1)))
-    if len(few.harmonics) < 2 or not any(_is_symmetric(system, path, options) for path in paths):
+    if len(few.harmonics) < 2 or not any(is_symmetric(system, path, options) for path in paths):
         return UnsymmetricSolutions()
     folds, work = system.option(FOLDS), system.work
     seconds = max(folds.work_fraction * work.seconds, folds.min_seconds)
@@ -73,7 +74,7 @@ def _past_branch_points(
     path = level_curve(few, omega, LevelRange(span))
     balance, known = few.new_balance(), list[Path]()
     level = ForceLevelProblem(balance, omega)
-    for i in np.flatnonzero(path.orientation[:-1] * path.orientation[1:] < 0.0).tolist():
+    for i in sign_changes(path.orientation):
         point = branch_point_at(level, balance, path, i, options)
         if not point.starts or any(contains(one, z, level) for one in known for z in point.starts):
             continue
@@ -106,26 +107,9 @@ def _branch_through(
     return ways
 
 
-def _parts(system: System, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Of the displacements of a motion the greatest means and amplitudes of each even harmonic, which a
-    symmetric one has not; and those of the odd ones."""
-    parts = np.abs(system.layout.complex_ports(z)).max(axis=0, initial=0.0)
-    even = np.array([True, *(h % 2 == 0 for h in system.harmonics)])
-    return parts[even], parts[~even]
-
-
-def _is_symmetric(system: System, path: Path, options: BranchingOptions) -> bool:
-    """Whether the motions of a path are symmetric, and not linear, of which each is: they have odd harmonics
-    that are not driven."""
-    undriven = [h not in system.linear.driven for h in system.harmonics if h % 2]
-    rows = [_parts(system, z) for z in path.z[:: max(len(path.z) // options.symmetry_points, 1)]]
-    symmetric = all((even < options.min_residual * odd.max()).all() for even, odd in rows)
-    return symmetric and any((odd[undriven] > options.min_residual * odd.max()).any() for _, odd in rows)
-
-
 def _leading_even(system: System, z: FloatArray, options: BranchingOptions) -> tuple[int, ...]:
     """The even harmonics of a motion that is not symmetric, without those small beside the others."""
-    parts, odd = _parts(system, z)
+    parts, odd = parts_of(system, z)
     if (parts < options.motion_tolerance * odd.max()).all():
         return ()
     leads = parts[1:] > options.min_leading_fraction * parts[1:].max()

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.branches.force_level import LevelSolutions, level_frequencies, solutions_at, solutions_in_turn
+from fcm.branches.mirror_images import without_images
 from fcm.branches.narrow_resonances import narrow_resonances
 from fcm.branches.options import LEVEL_CURVE, LevelCurveOptions
 from fcm.continuation import Branches, Events, FollowOptions, Mark, Path, all_branches, follow
@@ -108,7 +109,7 @@ def traced(
 
     user_values = [*levels, *(float(z[-1]) for z in near)]
     branches = _branches_through(system, starts(), user_values, progress)
-    response = Traced(branches, tuple(found), work, fewer_peaks=peaks)
+    response = _without_images(system, Traced(branches, tuple(found), work, fewer_peaks=peaks))
     lost = response.lost_peaks(system.option(LEVEL_CURVE))
     further = [omega for omega in level_frequencies(system, lost) if omega not in levels] if lost else []
     if not further:
@@ -126,7 +127,7 @@ def traced_from(
         return None
     places = [float(z[-1]) for z in near]
     branches = _branches_through(system, near, places, progress)
-    return replace(before, branches=branches, fewer_peaks=before.peaks)
+    return _without_images(system, replace(before, branches=branches, fewer_peaks=before.peaks))
 
 
 def with_levels(system: System, before: Traced) -> Traced:
@@ -168,6 +169,12 @@ def with_further(
     further = (path for path in branches.paths[len(known.paths) :] if not _is_unsteady(system, path))
     branches = Branches((*known.paths, *further), (*known.lost, *branches.lost))
     return replace(before, branches=branches, found=(*before.found, *found))
+
+
+def _without_images(system: System, found: Traced) -> Traced:
+    """With one of two branches that are mirror images."""
+    paths, mirrored = without_images(system, found.branches.paths)
+    return replace(found, branches=replace(found.branches, paths=paths), mirrored=mirrored)
 
 
 def _follow_shared(system: System) -> Follow:

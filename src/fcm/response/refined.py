@@ -17,7 +17,8 @@ from fcm.accuracy.options import VALIDITY
 from fcm.accuracy.refinement import OnTraced, RefinedResponse, enlarged, retrace
 from fcm.accuracy.stability_limits import StabilityLimit, distances_from, stability_limits
 from fcm.accuracy.stability_validity import on_other_branch, without_neighbour
-from fcm.branches.search import symmetry_loss, with_further_branches
+from fcm.branches.search import with_further_branches
+from fcm.branches.symmetry_loss import symmetry_loss
 from fcm.frozen import Frozen
 from fcm.harmonic_balance.reported_quantities import reported_at
 from fcm.harmonic_balance.response_quantities import ContactRecord

@@ -135,7 +135,7 @@ def every_balance(whole: Scene, poll: Poll, options: ShootingOptions = SHOOTING)
     from fcm.accuracy.further_levels import with_levels_below_peaks
     from fcm.accuracy.refinement import refined_response, retrace
     from fcm.accuracy.unchecked_response import unchecked_response
-    from fcm.branches.search import symmetry_loss
+    from fcm.branches.symmetry_loss import symmetry_loss
 
     single = _single_harmonic(whole, poll, options)
     if len(whole.contacts) >= options.balance.many_contacts:
