@@ -160,3 +160,12 @@ def test_a_scene_without_contacts():
 def test_a_scene_without_a_schedule():
     with pytest.raises(SimulationError, match="schedule"):
         simulate_schedule(yang())
+
+
+def test_a_scene_whose_exact_motion_is_not_computed_is_refused():
+    """Its second direction of sliding would be left out."""
+    scene = one_mode()
+    (contact,) = scene.contacts
+    plane = replace(scene, contacts=(replace(contact, second=np.zeros_like(contact.tangential)),))
+    with pytest.raises(SimulationError, match="but not of contacts in a plane"):
+        simulate(plane, 1.1, 5)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fcm.model.scene import FloatArray, Phase, Scene
+from fcm.model.scene import FloatArray, InTime, Phase, Scene, in_time
 from fcm.time_domain.contact_states import Codes
 from fcm.time_domain.cycle import Cycle
 from fcm.time_domain.errors import CycleError, SimulationError
@@ -52,7 +52,8 @@ def simulate(
     Raises
     ------
     SimulationError
-        If the frequency, the cycles or the state do not fit, or the contacts chatter without end.
+        If the frequency, the cycles or the state do not fit, or the contacts chatter without end; and of a
+        scene of which the exact motion is not computed (`fcm.model.scene.in_time`).
 
     Examples
     --------
@@ -92,6 +93,8 @@ def simulate_phases(
     options: TimeOptions = TIME,
 ) -> Motion:
     """The exact motion through phases, each continuing the last; see `simulate_schedule`."""
+    if (whether := in_time(scene)) is not InTime.COMPUTED:
+        raise SimulationError(f"{scene.name}: an exact motion is computed, but {whether.value}")
     state = State.rest(scene) if state is None else state
     total = sum(phase.cycles for phase in phases)
     done: list[Cycle] = []
