@@ -155,6 +155,38 @@ def test_dots_of_fold_curves_are_named():
         assert axes.get_title(loc="right") == f"shaded: several solutions{said}"
 
 
+def test_folds_that_go_from_end_to_end_have_their_window_between_them():
+    """Each was shaded down to its own chord. Two of one swept value have one window, others have none."""
+    number, none = np.linspace(1.0, 2.0, 5), np.zeros(5)
+
+    def track(frequency, swept):
+        return DrawnTrack("fold", number, frequency, number[:, None], none, none, none + 1.0, (swept,))
+
+    low, high, alone = track(1.0 + number**2, 3.0), track(2.0 + number**2, 3.0), track(9.0 + number, 4.0)
+    swept = {"contact.c.mu": ""}
+    figure = draw_tracked(DrawnTracking("level", ("u",), "Hz", (low, high, alone), swept=swept))
+    (patch,) = figure.axes[0].patches
+    assert patch.get_path().contains_point((1.5, 3.75)) and not patch.get_path().contains_point((1.5, 3.2))
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["3", "4"]
+
+
+def test_peaks_of_a_sweep_have_the_colours_of_what_was_swept():
+    number, none = np.linspace(1.0, 2.0, 5), np.zeros(5)
+    heights = np.outer(number, (1.0, 2.0))
+    tracks = tuple(
+        DrawnTrack(f"peak of {dof}", number, number, value * heights, none, none, none + 1.0, (value,))
+        for value in (3.0, 4.0) for dof in "uv"
+    )  # fmt: skip
+    swept = {"contact.c.n_0": "N"}
+    for dof, column in ((None, 0), ("v", 1)):
+        figure = draw_tracked(DrawnTracking("level", ("u", "v"), "Hz", tracks, swept=swept), dof)
+        upper, (legend,) = figure.axes[0], figure.legends
+        assert legend.get_title().get_text() == "$n_{0}$ (N)" and "uv"[column] in upper.get_ylabel()
+        drawn = [(line.get_color(), line.get_ydata()[0]) for line in upper.lines]
+        named = [line.get_color() for line in legend.get_lines()]
+        assert drawn == list(zip(named, [3.0 * (column + 1), 4.0 * (column + 1)], strict=True))
+
+
 @pytest.mark.parametrize("low, scale", [(1.0, "log"), (100.0, "linear"), (0.0, "linear"), (-5.0, "linear")])
 def test_a_number_over_decades_has_a_logarithmic_axis(low, scale):
     number, none = np.linspace(low, 200.0, 5), np.zeros(5)

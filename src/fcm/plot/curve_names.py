@@ -121,9 +121,27 @@ def name_at_side(
     """Name lines by what was swept, in a legend beside the axes; very many by a bar of their colours."""
     if not parameters[0]:
         return
-    names = [curve_label(one, False) for one in parameters]
+    differing, title = varying(parameters, units)
+    names = [curve_label(one, False) for one in differing]
     if len(names) > LAYOUT.bar_names:
-        colour_bar(figure, names, ", ".join(symbols(parameters[0], units)))
+        colour_bar(figure, names, ", ".join(title))
         return
-    title = ",\n".join(symbols(parameters[0], units))
-    figure.legend(lines, names, title=title, loc="outside right upper")
+    figure.legend(lines, names, title=",\n".join(title), loc="outside right upper")
+
+
+def varying(
+    parameters: Sequence[Mapping[str, float]], units: Mapping[str, str]
+) -> tuple[list[dict[str, float]], list[str]]:
+    """Of several swept quantities those that differ, and a title with the names of these; the others are
+    there with their value."""
+    same = {
+        key: value for key, value in parameters[0].items() if all(one[key] == value for one in parameters)
+    }
+    if len(same) == len(parameters[0]):
+        same = {}
+    title = symbols(parameters[0], units)
+    for i, (key, name) in enumerate(zip(parameters[0], symbols(parameters[0]), strict=True)):
+        if key in same:
+            unit = units.get(key, "").replace("$", r"\$")
+            title[i] = f"{name} = {curve_label({key: same[key]}, False)} {unit}".rstrip()
+    return [{key: one[key] for key in one if key not in same} for one in parameters], title

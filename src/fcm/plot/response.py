@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from fcm.plot.backbone import NAME as BACKBONE
 from fcm.plot.backbone import draw_backbone
-from fcm.plot.curve_names import label_at_peaks
+from fcm.plot.curve_names import label_at_peaks, varying
 from fcm.plot.error_panel import SHARES, draw_errors, has_errors, name_errors
 from fcm.plot.errors import PlotError
-from fcm.plot.labels import curve_label, frequency_label, symbols, with_unit
+from fcm.plot.labels import curve_label, frequency_label, with_unit
 from fcm.plot.measured import draw_measured, name_measured
 from fcm.plot.points import DrawnPoints, draw_points, name_points
 from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, wide
@@ -260,13 +261,15 @@ def _name_curves(
 def _legend(figure: Figure, curves: list[DrawnCurve], lines: list[Line2D], units: Mapping[str, str]) -> None:
     """Beside the axes; several swept quantities are named once, above their values."""
     several = len(curves[0].parameters) > 1
+    parameters, title = varying([curve.parameters for curve in curves], units)
+    curves = [replace(curve, parameters=one) for curve, one in zip(curves, parameters, strict=True)]
     if len(lines) > LAYOUT.bar_names:
         names = [_named(curve, units, names=False) for curve in curves]
-        colour_bar(figure, names, ", ".join(symbols(curves[0].parameters, units)))
+        colour_bar(figure, names, ", ".join(title))
         return
     figure.legend(
         lines,
         [_named(curve, units, names=not several) for curve in curves],
-        title=",\n".join(symbols(curves[0].parameters, units)) if several else None,
+        title=",\n".join(title) if several else None,
         loc="outside right upper",
     )

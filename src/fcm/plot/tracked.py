@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fcm.frozen import Frozen
+from fcm.plot.curve_names import name_at_side
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label, staying, symbols, with_unit
@@ -53,6 +55,7 @@ class DrawnTrack(Frozen):
     turn: FloatArray  # (point,) 1 where the number turns back
     trough: FloatArray  # (point,) 1 where a peak is none
     stable: FloatArray  # (point,) 1 where the motion is, 0 where not, NaN where that is not told
+    swept: tuple[float, ...] = ()  # values of the curve of the scene that it belongs to
 
 
 class DrawnTracking(Frozen):
@@ -67,6 +70,7 @@ class DrawnTracking(Frozen):
     length: str = ""
     unit: str = ""  # of the number
     at_bound: bool = False  # whether the optimum is at an end of the range of the number
+    swept: Mapping[str, str] = field(default_factory=dict)  # keys of what was swept, with their units
 
 
 @apart
@@ -79,12 +83,17 @@ def read_tracked(path: Path) -> DrawnTracking | None:
         names = (*_NEEDED[:4], _ALSO[0])
         number, frequency, amplitude, turn, trough = (floats(variables[name]) for name in names)
         stable = floats(variables["tracked_stable"]) if "tracked_stable" in variables else np.ones_like(turn)
+        of_sweep = [
+            one for name, one in variables.items() if name.startswith("track_") and hasattr(one, "key")
+        ]
+        values = np.array([floats(one) for one in of_sweep]).reshape(len(of_sweep), len(number))
         whats = [str(one) for one in np.atleast_1d(variables["track_what"][:])]
         tracks = []
         for i, what in enumerate(whats):
             there = np.isfinite(number[i])
             columns = (one[i][there] for one in (number, frequency, amplitude, turn, trough, stable))
-            tracks.append(DrawnTrack(what, *columns))
+            track = DrawnTrack(what, *columns)
+            tracks.append(replace(track, swept=tuple(values[:, i].tolist())))
         optimum, stays = None, ""
         if "optimum_peak" in variables and variables["optimum_peak"].shape == (1,):
             number_at, peak = (floats(variables[name]) for name in _OPTIMUM[:2])
@@ -106,6 +115,7 @@ def read_tracked(path: Path) -> DrawnTracking | None:
             str(getattr(variables["tracked_amplitude"], "units", "")),
             str(getattr(variables["tracked_number"], "units", "")),
             kind == ["bound"],
+            {str(one.key): str(getattr(one, "units", "")) for one in of_sweep},
         )
 
 
@@ -132,10 +142,11 @@ def _draw_folds(drawn: DrawnTracking) -> Figure:
     with house_style():
         figure = new_figure(LAYOUT.width, LAYOUT.height)
         axes = figure.subplots()
+        colours = _colours_of_sweep(tracks)
+        for number, frequency in _windows(tracks):
+            axes.fill(number, frequency, color=_SHADE, linewidth=0.0, zorder=0)
         for track in tracks:
-            # an open curve ends at an end of the range: the window goes on beyond it
-            axes.fill(track.number, track.frequency, color=_SHADE, linewidth=0.0, zorder=0)
-            _line(axes, track, track.frequency, "black")
+            _line(axes, track, track.frequency, colours.get(track.swept, "black"))
             at = track.turn == 1.0
             axes.plot(track.number[at], track.frequency[at], "o", markersize=3.5, color=_MARK, zorder=3)
         axes.set_ylabel(frequency_label(drawn.frequency_unit).replace("Frequency", "Frequency of folds"))
@@ -143,18 +154,53 @@ def _draw_folds(drawn: DrawnTracking) -> Figure:
         dots = "; dots: a window ends" if any((track.turn == 1.0).any() for track in tracks) else ""
         axes.set_title(f"shaded: several solutions{dots}", loc="right", fontsize=8)
         _name_lines(axes, tracks)
+        _name_swept(figure, drawn, colours)
     return figure
+
+
+def _windows(tracks: Sequence[DrawnTrack]) -> list[tuple[FloatArray, FloatArray]]:
+    """Numbers and frequencies around the windows with several solutions.
+
+    A curve that turns back comes to the number where it began, and has its window in it. Others go from end
+    to end: in the order of their frequencies two and two of one swept value have a window between them.
+    """
+    found, across = list[tuple[FloatArray, FloatArray]](), dict[tuple[float, ...], list[DrawnTrack]]()
+    for track in tracks:
+        if np.isclose(track.number[0], track.number[-1]):
+            found.append((track.number, track.frequency))
+        else:
+            across.setdefault(track.swept, []).append(track)
+    for group in across.values():
+        rising = sorted(group, key=lambda track: float(track.frequency.mean()))
+        for low, high in zip(rising[::2], rising[1::2], strict=False):
+            if len(group) % 2 == 0 and np.allclose(_ends(low), _ends(high)):
+                step = 1 if np.isclose(low.number[0], high.number[-1]) else -1
+                found.append(
+                    (
+                        np.concatenate((low.number, high.number[::step])),
+                        np.concatenate((low.frequency, high.frequency[::step])),
+                    )
+                )
+    return found
+
+
+def _ends(track: DrawnTrack) -> tuple[float, float]:
+    return float(track.number.min()), float(track.number.max())
 
 
 def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
     dof = None if dof is None else drawn.dofs[column_of(drawn.dofs, dof)]
     peaks = [one for one in drawn.tracks if one.what.startswith("peak of ")] or list(drawn.tracks)
+    if of_sweep := _colours_of_sweep(peaks):  # which take the colours, so that it is one degree of freedom
+        dof = dof or peaks[0].what.removeprefix("peak of ")
     wanted = [one for one in peaks if dof is None or one.what == f"peak of {dof}"] or peaks
     with house_style():
         figure = new_figure(LAYOUT.width, 1.3 * LAYOUT.height)
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
         names = list(dict.fromkeys(track.what for track in wanted))
-        colours = _colours(wanted, names)
+        colours = (
+            {id(track): of_sweep[track.swept] for track in wanted} if of_sweep else _colours(wanted, names)
+        )
         heights: list[float] = []
         for track in wanted:
             name = dof or track.what.removeprefix("peak of ")
@@ -177,6 +223,7 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
             logarithmic_axis(upper)
         if len({track.what for track in wanted}) > 1:
             figure.legend(*upper.get_legend_handles_labels(), loc="outside right upper")
+        _name_swept(figure, drawn, of_sweep)
         _name_lines(lower, wanted)
         _name_number(lower, drawn, wanted)
         _mark_optimum(upper, lower, drawn)
@@ -191,6 +238,22 @@ def _colours(tracks: Sequence[DrawnTrack], names: Sequence[str]) -> dict[int, st
         return {id(track): of_name[track.what] for track in tracks}
     rising = sorted(tracks, key=lambda track: float(np.nanmin(track.frequency, initial=np.inf)))
     return {id(track): colour for track, colour in zip(rising, sequence_colours(len(rising)), strict=True)}
+
+
+def _colours_of_sweep(tracks: Sequence[DrawnTrack]) -> dict[tuple[float, ...], str]:
+    """A colour for the curves of each swept value; none where nothing was swept."""
+    swept = list(dict.fromkeys(track.swept for track in tracks))
+    return dict(zip(swept, sequence_colours(len(swept)), strict=True)) if len(swept) > 1 else {}
+
+
+def _name_swept(figure: Figure, drawn: DrawnTracking, colours: Mapping[tuple[float, ...], str]) -> None:
+    """What was swept beside the axes, in its colours."""
+    from matplotlib.lines import Line2D
+
+    lines = [Line2D([], [], color=colour) for colour in colours.values()]
+    swept = [dict(zip(drawn.swept, values, strict=True)) for values in colours]
+    if lines:
+        name_at_side(figure, lines, swept, drawn.swept)
 
 
 def _line(axes: Axes, track: DrawnTrack, y: FloatArray, colour: str, label: str | None = None) -> None:
@@ -209,7 +272,8 @@ def _name_lines(axes: Axes, tracks: Sequence[DrawnTrack]) -> None:
     """What colours, dashed and dotted lines mean, where there are some."""
     stable = np.concatenate([track.stable[track.trough != 1.0] for track in tracks])
     peaks = {track.what for track in tracks if track.what != "fold"}
-    said = ["a colour for each peak"] if len(tracks) > 1 and len(peaks) == 1 else []
+    alike = len(peaks) == len({track.swept for track in tracks}) == 1
+    said = ["a colour for each peak"] if len(tracks) > 1 and alike else []
     said += ["dashed: no motion stays there"] if (stable == 0.0).any() else []
     said += ["dotted: stability unknown"] if np.isnan(stable).any() else []
     said += ["gap: it is no peak but a trough"] if any((one.trough == 1.0).any() for one in tracks) else []
