@@ -300,14 +300,14 @@ def _peaks(
 
 
 def _rounding_of_peaks(points: PointRecord, rounding: FloatArray, computed: bool) -> FloatArray:
-    """Relative rounding (dof,) of the greatest amplitudes; NaN where no contact is stiff, and none was told.
+    """Relative rounding (dof,) of the greatest amplitudes; -1 where no contact is stiff, and none was told.
 
     computed: the shapes are an eigensolver's, with rounding of their own. Then a displacement that is as far
     below the greatest as that has no digits.
     """
     highest, dofs = points.amplitude.argmax(axis=0), np.arange(points.amplitude.shape[1])
     if not rounding.any():
-        return np.full(dofs.size, np.nan)
+        return np.full(dofs.size, -1.0)
     size: FloatArray = points.amplitude[highest, dofs]
     found: FloatArray = rounding[highest, dofs]
     if computed:

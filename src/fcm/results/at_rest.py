@@ -55,7 +55,7 @@ def _at_rest(curve: Curve, options: RestOptions) -> BoolArray:
     size = np.fmax(size, [peak.amplitude for peak in peaks])
     rounding = np.array([peak.rounding for peak in peaks])
     told = (size == 0.0) | (rounding >= options.uncertain)
-    return np.where(np.isnan(rounding), at_rest(size, options), told)
+    return np.where(rounding < 0.0, at_rest(size, options), told)
 
 
 def _condensed(condensed: CondensedCurve, rest: BoolArray) -> CondensedCurve:

@@ -21,9 +21,7 @@ class Peak(NamedTuple):
         np.nan
     )  # greatest change, relative, by the residual friction of contacts that always stick; NaN: not known
     frequency_error: float = np.nan  # estimated, relative, of the frequency; NaN where it is not known
-    rounding: float = (
-        np.nan
-    )  # of the amplitude, relative; NaN where no contact is so stiff that it is looked at
+    rounding: float = -1.0  # of the amplitude, relative; -1 where no contact is stiff
 
 
 def stability_at_top(amplitude: FloatArray, stable: FloatArray) -> FloatArray:
