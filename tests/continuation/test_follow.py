@@ -543,6 +543,23 @@ def test_branches_that_nearly_meet_are_not_exchanged(longest, apart):
     assert np.sign(apart) * path.z[-1, 0] == pytest.approx(1.0, abs=1e-9)
 
 
+@pytest.mark.parametrize("longest", [0.02, 0.05, 0.1, 0.2])
+@pytest.mark.parametrize("bend", [0.0, 1.0, 30.0])
+def test_branches_that_meet_are_followed_straight_on(longest, bend):
+    """x (x - p - bend p^3) = 0 has a line and a cubic, which meet at p = 0."""
+
+    def f(x, p):
+        other = x - p - bend * p**3
+        return x * other, other + x, -x * (1.0 + 3.0 * bend * p * p)
+
+    for x in (0.0, 1.0):
+        begin, end = (x * (p + bend * p**3) for p in (-0.9137, 1.0))
+        path = follow(Planar(f), start(begin, -0.9137), (-0.9137, 1.0), options=FollowOptions(longest))
+        assert path.status is Status.COMPLETE and path.z[-1, 0] == pytest.approx(end, abs=1e-9)
+        (at,) = path.where(Mark.BRANCH)
+        assert path.parameter[at] == pytest.approx(0.0, abs=2e-4)
+
+
 def test_all_branches_once_each():
     """A circle and a line through the range, from five solutions on them."""
 

@@ -7,7 +7,7 @@ cdef class NewtonOptions(Options):
     cdef readonly double small_second_step, max_rounding, rounding_multiple
 
 cdef class StepOptions(Options):
-    cdef readonly double initial_step, min_step, min_cosine, min_cubic_cosine, any_turn_step, max_branch_step, max_miss, target_turn, target_miss, target_output_error, max_output_error_ratio, min_factor, max_factor
+    cdef readonly double initial_step, min_step, min_cosine, min_cubic_cosine, any_turn_step, max_branch_distance, max_miss, target_turn, target_miss, target_output_error, max_output_error_ratio, min_factor, max_factor
     cdef readonly double max_factor_hasty, safety, step_after_corner, resumed_fraction, retry_fraction
     cdef readonly int max_steps
     cdef readonly tuple retreats

@@ -52,6 +52,7 @@ cdef bint prediction_changes_sign(Stepper stepper, double step) except -1
 
 cpdef bint acceptable(Stepper stepper) except -1
 cdef bint keeps_orientation(Stepper stepper) except -1
+cdef bint passes_branch_point(Stepper stepper) except -1
 cdef bint within_turn(Stepper stepper) except -1
 cpdef bint smooth_step(Stepper stepper, double step) except -1
 cpdef double next_step(Stepper stepper) except -1

@@ -549,8 +549,8 @@ def acceptable(stepper: Stepper) -> cython.bint:
     options: StepOptions = stepper.options.step
     if stepper.step <= options.any_turn_step:
         changed: cython.bint = not keeps_orientation(stepper)
-        # where branches only nearly meet, each turns away, and a longer step would lead to the other
-        if changed and stepper.step > options.max_branch_step and not stepper.problem.labelled:
+        # where branches only nearly meet, each turns away, and a step across leads to the other
+        if changed and not stepper.problem.labelled and not passes_branch_point(stepper):
             return False
         # beyond a corner that turns by more than a right angle the way back is as near
         back: cython.bint = stepper.problem.rooted and changed and stepper.cosine < options.min_cosine
@@ -562,6 +562,20 @@ def acceptable(stepper: Stepper) -> cython.bint:
     ):
         return False
     return output_error(stepper) < options.max_output_error_ratio * options.target_output_error
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def passes_branch_point(stepper: Stepper) -> cython.bint:
+    """Whether a short step that changes the orientation leads across a point where branches meet.
+
+    Where they only nearly meet they are hyperbolas: a step from one to the other misses it, and turns, by
+    about the square of their distance over that of its length. Where they meet it does by what the curve
+    bends, and by rounding, which grows as the branch point comes near; at corners that nearly are one by what
+    these turn.
+    """
+    turned: cython.double = sqrt(max(1.0 - stepper.cosine * stepper.cosine, 0.0))
+    return stepper.step * sqrt(stepper.miss + turned) <= stepper.options.step.max_branch_distance
 
 
 @cython.cfunc
