@@ -72,10 +72,15 @@ class RefinedResponse(UncheckedResponse):
         return RefinedResponse(*own, self.peak, self.max_error, self.max_known_error, self.accuracy)
 
     @property
+    def height(self) -> FloatArray:
+        """Greatest amplitudes (dof,) over all branches."""
+        found: FloatArray = np.max([one.amplitude.max(axis=0) for one in self.quantities], axis=0)
+        return found
+
+    @property
     def dofs_of_interest(self) -> Mask:
         """Degrees of freedom (dof,) of whose peaks the accuracy is asked."""
-        heights = [one.amplitude.max(axis=0) for one in self.quantities]
-        return dofs_of_interest(self.system.scene, np.max(heights, axis=0))
+        return dofs_of_interest(self.system.scene, self.height)
 
     @property
     def agrees(self) -> bool:

@@ -58,12 +58,19 @@ def _seconds(found: RefinedResponse, more: tuple[int, ...], spent: float) -> flo
 
 
 def _dofs_short(found: RefinedResponse, accuracy: float) -> str:
-    """The degrees of freedom whose peaks fall short, the worst of them first; empty where all do, or none."""
+    """The degrees of freedom whose peaks fall short, the worst of them first. Empty where none do; where all
+    do, the worst if it is low beside the greatest peak."""
     asked, dofs = found.dofs_of_interest, found.system.scene.modal.dofs
     off = np.flatnonzero(asked & ~(found.peak <= accuracy))
-    if not 0 < off.size < np.count_nonzero(asked):
+    if not off.size:
         return ""
     worst = off[np.argsort(-np.nan_to_num(found.peak[off], nan=np.inf), kind="stable")]
+    if off.size == np.count_nonzero(asked):
+        share = found.height[worst[0]] / found.height[asked].max()
+        is_low = found.peak[worst[0]] == found.max_known_error and share < SENTENCES.low_peak
+        return (
+            f" (of {dofs[worst[0]]}, whose peak is {100.0 * share:.2g} % of the greatest)" if is_low else ""
+        )
     more = f" and {off.size - SENTENCES.max_dofs} more" if off.size > SENTENCES.max_dofs else ""
     named = ", ".join(dofs[i] for i in worst[: SENTENCES.max_dofs])
     return f" (of {np.count_nonzero(asked)} peaks, those of {named}{more})"

@@ -49,6 +49,8 @@ class SentenceOptions(Frozen):
     ----------
     max_dofs, max_harmonics, max_frequencies : int
         Of each kind at most.
+    low_peak : float
+        Share of the greatest peak, below which it is said of the peak with the greatest error how low it is.
     max_states : int
         Letters of a sequence of contact states: a contact that chatters has more, and the rest is cut off.
     resonance_tolerance : float
@@ -60,6 +62,7 @@ class SentenceOptions(Frozen):
     max_dofs: int = 3
     max_harmonics: int = 6
     max_frequencies: int = 5
+    low_peak: float = 0.1
     max_states: int = 60
     resonance_tolerance: float = 1e-5
     spring_ratio: float = 30.0
