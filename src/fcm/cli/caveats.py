@@ -43,7 +43,21 @@ def linear(summary: Mapping[str, Any]) -> str:
         return ""
     which = "on any curve" if len(curves) > 1 else "within the range"
     what, helps = _LINEAR[found.pop() if len(found) == 1 else "all_stick_or_open"]
+    held = next((curve["shakedown_at"] for curve in curves if "shakedown_at" in curve), None)
+    if held is not None:
+        return f"{what.format(which)}: the response is linear. {_shaken_down(summary, held)}"
     return f"{what.format(which)}: the response is linear. With {helps} it is not"
+
+
+def _shaken_down(summary: Mapping[str, Any], at: float) -> str:
+    """That contacts which stick would slip if they began unstressed, so that there may be other motions."""
+    unit = summary["frequency_unit"]
+    how = _how(summary).replace("--at F", f"--at {at:.5g}")
+    looks = f". {how} looks there" if how else ""
+    return (
+        f"One that began unstressed would slip at {at:.5g} {unit}: the friction force that slip leaves "
+        f"holds it, and changes normal loads. Motions in which it slips on may exist, too{looks}"
+    )
 
 
 def branches_uncertain(summary: Mapping[str, Any]) -> str:
@@ -290,6 +304,8 @@ def residual_friction(summary: Mapping[str, Any]) -> str:
     where = (
         f"on {len(curves)} of {every} curves " if len(curves) < every else ""
     )  # of the others it is unknown
+    if share == "0" and any("shakedown_at" in one for one in curves):
+        return ""
     if share == "0":
         return f"{_KEEPS}: {where}it changes no peak"
     how = _how(summary)

@@ -41,7 +41,7 @@ from fcm.response.master_dofs import of_all_dofs, with_master_dofs, with_tops
 from fcm.response.options import InterruptedOptions
 from fcm.response.refined import Refined, refined
 from fcm.response.request import ONE_HARMONIC, Request
-from fcm.response.undetermined_traction import residual_changes, undetermined
+from fcm.response.undetermined_traction import residual_changes, shakedown_at, undetermined
 from fcm.results.cause import Cause
 from fcm.results.contact_maxima import greatest_of
 from fcm.results.peak import Peak, stability_at_top
@@ -242,6 +242,7 @@ def _curve(response: Refined, quick: bool = False) -> Curve:
         uncertain_at=[one.omega for one in found.traced.found if not one.complete],
         folds_uncertain_at=list(found.traced.folds_lost),
         symmetry_lost=list(found.traced.symmetry_lost),
+        shakedown_at=np.nan if quick else shakedown_at(system, points.z[:, -1], words),
         levels=[one.omega for one in found.traced.found],
         folds_between=(FOLDS.min_level, FOLDS.max_level) if scene.contacts else None,
         mirrored=len(found.traced.mirrored),

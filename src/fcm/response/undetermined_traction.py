@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from fcm.branches.linear_limits import lowest_linear_limit, precompute
 from fcm.harmonic_balance.residual_traction import peak_changes
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
@@ -40,6 +41,27 @@ def undetermined(scene: Scene, states: npt.NDArray[np.str_]) -> npt.NDArray[np.b
         felt = np.array([_changes_load(scene, row == "E", (row == "E") & rough) for row in rows])
         found[still] = felt[which.ravel()]
     return found
+
+
+def shakedown_at(system: System, frequency: FloatArray, states: npt.NDArray[np.str_]) -> float:
+    """Where contacts that slip nowhere on a curve would slip if they began unstressed [rad/s], or NaN.
+
+    They shake down: the friction force that slip leaves holds them. Where it changes their normal load, too,
+    they may as well slip on, as the past decides (Klarbring, Ciavarella, Barber 2007). frequency (point,);
+    states (point, contact). The frequency is that at which they would begin to slip at the least force.
+    """
+    scene = system.scene
+    nothing = scene.loads or system.own_laws or not states.size or (states != states[0]).any()
+    if nothing or not np.isin(states[0], ("E", "S")).all():
+        return np.nan
+    rough = np.array([contact.mu * contact.k_u > 0.0 for contact in scene.contacts], dtype=np.bool_)
+    stuck = (states[0] == "E") & rough
+    if not stuck.any() or not _changes_load(scene, states[0] == "E", stuck, of_its_own=True):
+        return np.nan
+    precompute(system, frequency.tolist())
+    levels = np.array([lowest_linear_limit(system, omega) for omega in frequency.tolist()])
+    least = int(levels.argmin())
+    return float(frequency[least]) if levels[least] < CONTACT_CHANGES.shakedown_level else np.nan
 
 
 def residual_changes(
@@ -84,8 +106,11 @@ def residual_changes_at_levels(
     return found
 
 
-def _changes_load(scene: Scene, closed: npt.NDArray[np.bool_], stuck: npt.NDArray[np.bool_]) -> bool:
-    """Whether the residual friction of a contact that sticks changes the load of another, if both stay so."""
+def _changes_load(
+    scene: Scene, closed: npt.NDArray[np.bool_], stuck: npt.NDArray[np.bool_], of_its_own: bool = False
+) -> bool:
+    """Whether the residual friction of a contact that sticks changes the load of another, or of its own, if
+    all stay so."""
     modal, contacts = scene.modal, scene.contacts
     slides = [(i, way) for i, contact in enumerate(contacts) for way in contact.directions[:-1]]
     whose = np.array([i for i, _ in slides])
@@ -98,5 +123,6 @@ def _changes_load(scene: Scene, closed: npt.NDArray[np.bool_], stuck: npt.NDArra
         load = k_v[:, None] * (across @ np.linalg.solve(stiffness, along.T))  # (contact, friction)
     except np.linalg.LinAlgError:  # a mode is free to drift with it
         return True
-    load[whose, np.arange(whose.size)] = 0.0
+    if not of_its_own:
+        load[whose, np.arange(whose.size)] = 0.0
     return bool((np.abs(load[:, stuck[whose]]) > CONTACT_CHANGES.load_tolerance).any())

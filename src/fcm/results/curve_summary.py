@@ -56,6 +56,8 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
         out["mirrored_branches"] = curve.mirrored
     if condensed.linear:
         out[condensed.linear] = True
+    if np.isfinite(curve.shakedown_at):
+        out["shakedown_at"] = float(in_unit(curve.shakedown_at, unit))
     if curve.undetermined:
         out["may_not_be_unique"] = curve.undetermined
     out["peak"] = {

@@ -1,0 +1,69 @@
+"""Contacts that stick only by the friction force that slip has left: other motions may exist."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fcm.response.request import Request
+from fcm.response.trace import traced_curve
+from fcm.time_domain import simulate
+
+from .random_scenes import random_scene
+
+
+def _scene():
+    """Two contacts that push each other closed as they slip, one with hardly any preload, and two besides."""
+    scene = random_scene(300)
+    modal = replace(scene.modal, damping=np.maximum(scene.modal.damping, 3e-3))
+    return replace(scene, modal=modal)
+
+
+def test_where_contacts_shake_down_it_is_said_that_motions_which_slip_may_exist():
+    """From rest the exact motion comes to one in which a contact slips and opens, four times as high."""
+    scene = _scene()
+    curve = traced_curve(scene, Request(None, 1e-2))
+    low, high = scene.frequency_range
+    assert low <= curve.shakedown_at <= high
+    omega = 1.334
+    marched = simulate(scene, omega, 400).measures(last=2)
+    here = np.array([np.interp(omega, curve.frequency, one) for one in curve.amplitude.T])
+    assert np.allclose(marched[0].amplitude, marched[1].amplitude, rtol=1e-6)
+    assert marched[0].amplitude.max() > 3.0 * here.max()
+
+
+@pytest.mark.parametrize("share", [0.9, 1.1])
+def test_contacts_shake_down_from_the_force_on_at_which_they_would_slip(share):
+    """That is the least force with which a motion from rest slips at all, where its transient is small."""
+    scene = _scene()
+    curve = traced_curve(scene, Request((1,), 1e-2))
+    scarcely = replace(scene, frequency_range=(curve.shakedown_at - 1e-3, curve.shakedown_at))
+    onset = _onset(scene, curve.shakedown_at)
+    forces = tuple(replace(one, amplitude=share * onset * one.amplitude) for one in scene.forces)
+    found = traced_curve(replace(scarcely, forces=forces), Request((1,), 1e-2))
+    assert np.isfinite(found.shakedown_at) == (share > 1.0)
+
+
+def _onset(scene, omega):
+    """The level at which a contact slips or opens: from the motion of the stuck structure alone."""
+    modal, stuck = scene.modal, [one for one in scene.contacts if one.n_0 > 0.0]
+    stiffness = np.diag(modal.mass * modal.frequency**2).astype(complex)
+    stiffness += np.diag(-modal.mass * omega**2 + 2j * omega * modal.mass * modal.damping * modal.frequency)
+    for one in stuck:
+        for way, k in ((one.tangential, one.k_u), (one.normal, one.k_v)):
+            stiffness += k * np.outer(modal.shapes @ way, modal.shapes @ way)
+    force = sum(
+        one.amplitude * np.exp(1j * one.phase) * (modal.shapes @ one.direction) for one in scene.forces
+    )
+    x = modal.shapes.T @ np.linalg.solve(stiffness, force)
+    angle = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 20001))
+    levels = [np.inf]
+    for one in scene.contacts:
+        u, v = (np.real(way @ x * angle) for way in (one.tangential, one.normal))
+        reach = one.k_v * np.abs(v).max()
+        levels.append(abs(one.n_0) / reach)
+        if one.n_0 > 0.0 and one.mu > 0.0:
+            levels.append(one.mu * one.n_0 / (np.abs(one.k_u * u) - one.mu * one.k_v * v).max())
+    return min(levels)
