@@ -373,7 +373,7 @@ def test_numbers_of_contacts_and_energies_have_units_in_files_and_pictures(fcm, 
     )
     one = read_response(tmp_path / "s.nc")
     many = draw_response(replace(one, curves=one.curves * 13))
-    assert "$n_{0}$ (N), $k_{u}$ (N/mm), $\\mu$" in [axes.get_ylabel() for axes in many.axes]
+    assert "$n_{0}$ (N), $k_{u}$ = 1 N/mm, $\\mu$ = 0.4" in [axes.get_ylabel() for axes in many.axes]
 
 
 def test_of_levels_an_error_that_is_missing_is_not_said_to_have_been_sought_nor_all_of_them_missing():
