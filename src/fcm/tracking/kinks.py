@@ -65,14 +65,17 @@ class Circle:
         return self.at(angle)[1]
 
     def at(self, angle: float) -> tuple[FloatArray, float]:
-        """The point at an angle, 0 is straight ahead, and what is special there; NaN where there is none."""
+        """The point at an angle, 0 is straight ahead, and what is special there; NaN where there is none.
+
+        It is sought across the plane of the circle.
+        """
         z = self.z + self.radius * self.scale * (np.array([np.cos(angle), np.sin(angle)]) @ self.axes)
         for _ in range(self.options.max_iterations):
             try:
                 residual, matrix, special = self.problem.surface(z)
+                step = np.linalg.solve(np.concatenate((matrix, self.axes)), np.append(-residual, (0.0, 0.0)))
             except np.linalg.LinAlgError:  # the response has no one direction there
                 break
-            step = np.linalg.lstsq(matrix, -residual, rcond=None)[0]
             if np.linalg.norm(step) < self.options.tolerance:
                 return z, special
             z = z + self.scale * step
