@@ -109,5 +109,4 @@ def with_numbers(scene: Scene, numbers: Sequence[Number], values: FloatArray) ->
     more: dict[Address, float] = {}
     for number, value in zip(numbers, values.tolist(), strict=True):
         more |= number.values(value)
-    draft = scene.draft.fixed(scene, more)
-    return replace(scene.draft.curve(scene, {}, more), draft=draft, parameters={}, curves=())
+    return replace(scene.draft.curve(scene, {}, more, fix=True), parameters={}, curves=())

@@ -195,11 +195,13 @@ class Source(Protocol):
     @property
     def swept(self) -> tuple[SweptKey, ...]: ...
 
-    def curve(self, scene: Scene, values: Mapping[str, float], more: Mapping[Address, float] = {}) -> Scene:
-        """The scene with swept values, and then numbers at addresses."""
+    def curve(
+        self, scene: Scene, values: Mapping[str, float], more: Mapping[Address, float] = {}, fix: bool = False
+    ) -> Scene:
+        """The scene with swept values, and then numbers at addresses; fix: it is then made of these."""
 
-    def fixed(self, scene: Scene, more: Mapping[Address, float] = {}) -> Source:
-        """What a curve of the scene was made of, with its swept values, and then numbers at addresses."""
+    def fixed(self, scene: Scene) -> Source:
+        """What a curve of the scene was made of, with its swept values."""
 
     def at(self, used: npt.NDArray[np.bool_]) -> Source:
         """The same at some of the degrees of freedom."""

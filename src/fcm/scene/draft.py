@@ -30,15 +30,13 @@ class Draft(Frozen):
     parts: Parts
     swept: tuple[SweptKey, ...]
 
-    def curve(self, scene: Scene, values: Mapping[str, float], more: Mapping[Address, float] = {}) -> Scene:
-        """The scene with swept values, and then numbers at addresses; what does not change is shared."""
-        parts, draft = self.parts, self.parts
-        for one in self.swept:
-            for address in one.addresses:
-                draft = replaced(draft, address, values[one.key])
-        for address, value in more.items():
-            draft = replaced(draft, address, value)
-        changed: dict[str, Any] = {}
+    def curve(
+        self, scene: Scene, values: Mapping[str, float], more: Mapping[Address, float] = {}, fix: bool = False
+    ) -> Scene:
+        """The scene with swept values, and then numbers at addresses; what does not change is shared. fix: it
+        is then made of these."""
+        parts, draft = self.parts, self._with(values, more)
+        changed: dict[str, Any] = {"draft": Draft(draft, ())} if fix else {}
         if draft["modal"] is not parts["modal"] or _mistuned_otherwise(draft, parts):
             changed["modal"], changed["ring"] = modes_of(draft, scene.frequency_unit)
         elif scene.ring is not None and draft["cyclic"] is not parts["cyclic"]:
@@ -56,15 +54,19 @@ class Draft(Frozen):
         """What stands at addresses in a curve of the scene."""
         return [_at(self.fixed(scene).parts, address) for address in addresses]
 
-    def fixed(self, scene: Scene, more: Mapping[Address, float] = {}) -> Draft:
-        """What a curve of the scene was made of, its swept values in their places, and then numbers."""
-        parts: Any = self.parts
+    def fixed(self, scene: Scene) -> Draft:
+        """What a curve of the scene was made of, its swept values in their places."""
+        return Draft(self._with(scene.parameters, {}), ())
+
+    def _with(self, values: Mapping[str, float], more: Mapping[Address, float]) -> Parts:
+        """The parts with swept values, and then numbers at addresses."""
+        parts = self.parts
         for one in self.swept:
             for address in one.addresses:
-                parts = replaced(parts, address, scene.parameters[one.key])
+                parts = replaced(parts, address, values[one.key])
         for address, value in more.items():
             parts = replaced(parts, address, value)
-        return Draft(parts, ())
+        return parts
 
     def present(self, number: Number) -> list[tuple[float, float]]:
         """What stands at each address of a number, before any sweep, with its weight."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -40,10 +39,9 @@ class ParameterLine(NamedTuple):
             for number, value in zip(self.numbers, self.values(s), strict=True)
             for address, one in number.values(float(value)).items()
         }
-        moved = scene.draft.curve(scene, scene.parameters, every)
-        if any(number.key == LEVEL for number in self.numbers):  # which is relative to what was written
-            return moved
-        return replace(moved, draft=scene.draft.fixed(scene, every))  # of which the rates there are taken
+        # the rates there are taken of what it is made of; the level is relative to what was written
+        fix = all(number.key != LEVEL for number in self.numbers)
+        return scene.draft.curve(scene, scene.parameters, every, fix=fix)
 
 
 def along(number: Number) -> ParameterLine:
