@@ -246,9 +246,8 @@ def _say_errors(axes: Axes, modes: Sequence[DrawnMode]) -> None:
     """The greatest error, where too few are known for a panel."""
     known = np.concatenate([mode.error[mode.error > 0.0] for mode in modes])
     if known.size:
-        said = (
-            f"error by the harmonics left out: at most {float(known.max()):.2g}, told at {known.size} points"
-        )
+        points = f"{known.size} point{'s' * (known.size > 1)}"
+        said = f"error by the harmonics left out: at most {float(known.max()):.2g}, told at {points}"
         axes.set_title(said, loc="right", fontsize=LAYOUT.small_text)
 
 
