@@ -60,6 +60,12 @@ def rows_with(columns):
     return Rows(0.01 * rng.standard_normal((POINTS, 1)), rates[:, None, :], np.zeros(POINTS), POINTS)
 
 
+def test_numbers_of_which_none_has_an_effect_are_all_without():
+    """As of data far from the range: a traceback."""
+    told = estimated(parameters(2), np.array([1.0, 1.0]), rows_with([np.zeros(POINTS), np.zeros(POINTS)]))
+    assert told.without_effect.tolist() == [1.0, 1.0] and told.alike == () and (told.error == np.inf).all()
+
+
 def test_a_number_without_effect_has_no_error_and_spoils_no_other():
     x = np.linspace(0.5, 1.0, POINTS)
     alone = estimated(parameters(1), np.array([1.0]), rows_with([x]))

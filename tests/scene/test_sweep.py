@@ -149,10 +149,10 @@ REFUSED = [
     (
         "contact.shrud.n_0",
         [1],
-        'there is no such number in the scene to sweep; did you mean "contact.shroud.n_0"?',
+        'there is no such number in the scene; did you mean "contact.shroud.n_0"?',
     ),
     ("contact.shroud.n0", [1], 'did you mean "contact.shroud.n_0"?'),
-    ("contact.7.n_0", [1], 'there is no such number in the scene to sweep; contacts are "shroud"'),
+    ("contact.7.n_0", [1], 'there is no such number in the scene; contacts are "shroud"'),
     ("contact.shroud", [1], "there is no such number"),
     ("contact.shroud.name", [1], "there is no such number"),
     ("modal.damping.2", [1], "there is no such number"),
@@ -322,4 +322,4 @@ def test_a_number_that_another_mistake_hides_is_no_mistake(data, mistakes, case,
 def test_a_misspelled_number_is_said_beside_other_mistakes(data, mistakes):
     data["contact"][0]["mu"] = "x"
     data["sweep"] = {"contact.shrod.n_0": [1.0]}
-    assert 'no such number in the scene to sweep; did you mean "contact.shroud.n_0"?' in mistakes(data)
+    assert 'no such number in the scene; did you mean "contact.shroud.n_0"?' in mistakes(data)

@@ -66,7 +66,8 @@ def estimated(parameters: Parameters, values: FloatArray, rows: Rows, options: F
         parameters.log > 0.0, spread, spread * parameters.unit / np.maximum(abs(values), 1e-300)
     )
     close = [np.isclose(values, end, rtol=1e-4, atol=0.0) for end in (parameters.low, parameters.high)]
-    pairs = _alike(_floored(J[:, :, told].reshape(-1, told.size), options.rank_tolerance), options)
+    of_told = J[:, :, told].reshape(len(J) * J.shape[1], told.size)  # none, where no number has an effect
+    pairs = _alike(_floored(of_told, options.rank_tolerance), options) if told.size else []
     alike = tuple(
         (int(told[i]), int(told[j]), power)
         for i, j, power in pairs

@@ -44,7 +44,7 @@ class Addresses:
         if (members := self._members(key, path, mistakes)) is not None:
             return members
         if not self._excused(key, path, mistakes):
-            what = "there is no such number in the scene to sweep"
+            what = "there is no such number in the scene"
             hint = self._forces_meant() if key == LEVEL else self._contact_meant(key)
             mistakes.add(path, what + hint, *(() if hint else (key, self.numbers)))
         return ()
