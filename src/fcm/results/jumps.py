@@ -72,6 +72,9 @@ def swept(
     >>> found = swept(w, w[:, None] + [[0], [0], [0], [1], [2], [2], [2]], np.ones(7))
     >>> [(j.sweep, j.frequency, j.after.tolist()) for j in found.jumps], found.untold
     ([('up', 3.0, [5.0]), ('down', 2.0, [2.0])], [])
+    >>> w = np.array([1.0, 2.0, 3.0, np.nan, 2.5, 3.0])  # a stable branch leaves one that is not beyond
+    >>> swept(w, np.array([[1.0, 1.0, 1.0, np.nan, 1.0, 2.0]]).T, np.array([1, 1, 0, np.nan, 1, 1])).jumps
+    []
     >>> w = np.array([1.0, 2.0, np.nextafter(2.0, 1.0), 3.0])  # a peak at a corner is there twice
     >>> swept(w, w[:, None], np.ones(4)).jumps
     []
@@ -80,6 +83,7 @@ def swept(
     [('up', 1.0, 3.0), ('down', 3.0, 1.0)]
     """
     frequency, amplitude, stable = _once(frequency, amplitude, stable, options)
+    frequency, amplitude, stable = _with_branch_points(frequency, amplitude, stable, options)
     found = FrequencySweep([], [])
     for sweep in ("up", "down"):
         _sweep(frequency, amplitude, stable, sweep, found, options.amplitude_tolerance)
@@ -100,6 +104,34 @@ def _once(
     kept = np.concatenate(([0], np.flatnonzero(~again) + 1))
     best = np.maximum.reduceat(np.where(np.isnan(stable), UNKNOWN, stable), kept)
     return frequency[kept], amplitude[kept], np.where(best == UNKNOWN, np.nan, best)
+
+
+def _with_branch_points(
+    frequency: FloatArray, amplitude: FloatArray, stable: FloatArray, options: JumpOptions
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """With a stable point where a stable branch leaves another one, between two points of that, of which one
+    is stable."""
+    stays = stable == 1.0
+    runs = np.diff(np.concatenate(([False], stays, [False])).astype(int))
+    ends = np.union1d(np.flatnonzero(runs > 0), np.flatnonzero(runs < 0) - 1)
+    changes = np.flatnonzero(np.diff(stays) & np.isfinite(frequency[:-1] + frequency[1:]))
+    places = list[tuple[int, int]]()  # after a point, what another is there
+    for k in changes.tolist():
+        share = (frequency[ends] - frequency[k]) / (frequency[k + 1] - frequency[k])
+        for end, part in zip(ends.tolist(), share.tolist(), strict=True):
+            if 0.0 < part < 1.0:
+                there = (1.0 - part) * amplitude[k] + part * amplitude[k + 1]
+                tolerance = options.amplitude_tolerance * float(there.max())
+                if (np.abs(amplitude[end] - there) <= tolerance).all():
+                    places.append((k + 1, end))
+    if not places:
+        return frequency, amplitude, stable
+    at, what = np.array(places).T
+    return (
+        np.insert(frequency, at, frequency[what]),
+        np.insert(amplitude, at, amplitude[what], axis=0),
+        np.insert(stable, at, 1.0),
+    )
 
 
 def _sweep(
