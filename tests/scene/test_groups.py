@@ -222,8 +222,9 @@ def test_every_way_to_another_preload_means_the_total_of_the_pairs():
         assert number.value(scene) == 5.0
         moved = number.put(scene, 10.0)
         assert [one.n_0 for one in moved.contacts] == [2.0, 8.0]
-        fixed = moved.draft.fixed(moved, number.values(10.0)).curve(moved, {})
+        fixed = scene.draft.curve(scene, {}, number.values(10.0), fix=True)
         assert [one.n_0 for one in fixed.contacts] == [2.0, 8.0]
+        assert number_of(fixed, key).value(fixed) == 10.0
         rates = rates_of(System(scene, (1,)), key)
         assert rates.contact[:, 3].tolist() == [0.2, 0.8]
 
