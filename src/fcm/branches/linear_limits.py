@@ -7,14 +7,14 @@ slip, opens or closes.
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.branches.options import LINEAR_LIMITS
 from fcm.harmonic_balance.system import System
-from fcm.model.scene import Contact, FloatArray
+from fcm.model.scene import FloatArray
 from fcm.structure.linear import Linear
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -91,12 +91,11 @@ def _unknowns(system: System, ports: ComplexArray) -> FloatArray:
 
 def highest_linear_limit(system: System, omega: float) -> float:
     """A level beyond those at which a contact opens, closes or slips, all being stuck or open."""
-    levels, loads = [1.0], [abs(load) for load in system.loads_at_rest]
-    for ports in _on_ports(system, omega)[1:]:
-        for load, (variation, slip, contact) in zip(loads, _motions(system, ports, max), strict=True):
-            levels += [load / variation] if variation > 0.0 else []
-            levels += [2.0 * contact.mu * load / sum(slip)] if sum(slip) > 0.0 else []
-    return min(LINEAR_LIMITS.level_factor * max(levels), LINEAR_LIMITS.max_level)
+    loads = np.abs(system.loads_at_rest)
+    variation, slip = _motions(system, _on_ports(system, omega)[1:], np.max)
+    friction = 2.0 * np.array([one.mu for one in system.scene.contacts]) * loads
+    levels = (1.0, *_ratios(loads, variation), *_ratios(friction, slip.sum(axis=-1)))
+    return min(LINEAR_LIMITS.level_factor * float(max(levels)), LINEAR_LIMITS.max_level)
 
 
 def lowest_linear_limit(system: System, omega: float) -> float:
@@ -104,31 +103,48 @@ def lowest_linear_limit(system: System, omega: float) -> float:
     have a say in that."""
     if system.scene.loads or system.own_laws:
         return 0.0
-    levels = [LINEAR_LIMITS.max_level]
-    for variation, slip, contact in _motions(system, _on_ports(system, omega)[0], sum):
-        levels += [abs(contact.n_0) / variation] if variation > 0.0 else []
-        closed = contact.n_0 > 0.0 and contact.mu > 0.0 and max(slip) > 0.0
-        levels += [contact.mu * contact.n_0 / max(slip)] if closed else [0.0] if contact.n_0 == 0.0 else []
-    return min(levels)
+    return float(lowest_linear_limits(system, [omega])[0])
+
+
+def lowest_linear_limits(system: System, frequencies: Sequence[float]) -> FloatArray:
+    """The same at some frequencies (frequency,), without static loads and laws of one's own."""
+    contacts = system.scene.contacts
+    ports = np.array([_on_ports(system, omega)[0] for omega in frequencies])
+    n_0, mu = (np.array([getattr(one, name) for one in contacts], dtype=np.float64) for name in ("n_0", "mu"))
+    levels = np.full(len(frequencies), LINEAR_LIMITS.max_level)
+    if not contacts:
+        return levels
+    variation, slip = _motions(system, ports, np.sum)
+    friction = np.where((n_0 > 0.0) & (mu > 0.0), mu * n_0, np.inf)
+    for limit, motion in ((np.abs(n_0), variation), (friction, slip.max(axis=-1))):
+        at = np.divide(limit, motion, out=np.full_like(motion, np.inf), where=motion > 0.0)
+        levels = np.minimum(levels, at.min(axis=-1))
+    never: FloatArray = np.where((n_0 == 0.0).any(), 0.0, levels)
+    return never
+
+
+def _ratios(limit: FloatArray, motion: FloatArray) -> FloatArray:
+    """Levels at which motions (case, contact) come to limits (contact,)."""
+    moves = motion > 0.0
+    levels: FloatArray = np.broadcast_to(limit, motion.shape)[moves] / motion[moves]
+    return levels
 
 
 def _motions(
-    system: System, ports: ComplexArray, together: Callable[[Iterable[float]], float]
-) -> Iterator[tuple[float, tuple[float, float], Contact]]:
-    """Of each contact the variation of its load, and the sizes of the motions of its two limits.
+    system: System, ports: ComplexArray, together: Callable[..., FloatArray]
+) -> tuple[FloatArray, FloatArray]:
+    """Of each contact the variation of its load (..., contact), and the sizes of the motions of its two
+    limits (..., contact, 2), in the direction in which they are greater; of ports (..., driven, port).
 
     Those of the driven harmonics together: their sum is never less than that of the motion, and the greatest
     of them no more than 4 / pi times it.
     """
-    directions = system.layout.directions
-    every = ports.reshape(len(ports), -1, directions).swapaxes(0, 1).tolist()
-    for contact, each in zip(system.scene.contacts, every, strict=True):
-        across = [contact.mu * contact.k_v * V for *_, V in each]
-        pairs = [
-            (
-                together([abs(contact.k_u * U[d] - a) for U, a in zip(each, across, strict=True)]),
-                together([abs(contact.k_u * U[d] + a) for U, a in zip(each, across, strict=True)]),
-            )
-            for d in range(directions - 1)
-        ]
-        yield together([contact.k_v * abs(V) for *_, V in each]), max(pairs, key=sum), contact
+    contacts, directions = system.scene.contacts, system.layout.directions
+    mu, k_u, k_v = (np.array([getattr(one, name) for one in contacts]) for name in ("mu", "k_u", "k_v"))
+    each = ports.reshape(*ports.shape[:-1], len(contacts), directions)
+    along, across = k_u[:, None] * each[..., :-1], (mu * k_v * each[..., -1])[..., None]
+    limits = together(np.abs(np.stack((along - across, along + across), axis=-1)), axis=-4)
+    if directions > 2:
+        greater = limits.sum(axis=-1).argmax(axis=-1)[..., None, None]
+        limits = np.take_along_axis(limits, greater, axis=-2)
+    return together(k_v * np.abs(each[..., -1]), axis=-2), limits[..., 0, :]

@@ -15,8 +15,9 @@ from fcm.harmonic_balance.system import System
 def without_images(system: System, paths: Sequence[Path]) -> tuple[tuple[Path, ...], tuple[int, ...]]:
     """Of paths that are mirror images of one another one, and half of one that is its own; and the numbers of
     those whose images are left out."""
-    symmetric = next((path for path in paths if is_symmetric(system, path)), None)
-    if symmetric is None or len(paths) == 1:
+    several = paths if len(paths) > 1 else ()
+    symmetric = next((path for path in several if is_symmetric(system, path)), None)
+    if symmetric is None:
         return tuple(paths), ()
     middle, kept, mirrored = symmetric.z[len(symmetric.z) // 2], list[Path](), set[int]()
     for path in paths:

@@ -44,6 +44,8 @@ def is_symmetric(system: System, path: Path, options: BranchingOptions = BRANCHI
     """Whether the motions of a path are symmetric, and not linear, of which each is: they have odd harmonics
     that are not driven."""
     undriven = [h not in system.linear.driven for h in system.harmonics if h % 2]
+    if not any(undriven):
+        return False
     rows = [parts_of(system, z) for z in path.z[:: max(len(path.z) // options.symmetry_points, 1)]]
     symmetric = all((even < options.min_residual * odd.max()).all() for even, odd in rows)
     return symmetric and any((odd[undriven] > options.min_residual * odd.max()).any() for _, odd in rows)

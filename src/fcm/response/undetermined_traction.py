@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from fcm.branches.linear_limits import lowest_linear_limit, precompute
+from fcm.branches.linear_limits import lowest_linear_limits, precompute
 from fcm.harmonic_balance.residual_traction import peak_changes
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
@@ -59,7 +59,7 @@ def shakedown_at(system: System, frequency: FloatArray, states: npt.NDArray[np.s
     if not stuck.any() or not _changes_load(scene, states[0] == "E", stuck, of_its_own=True):
         return np.nan
     precompute(system, frequency.tolist())
-    levels = np.array([lowest_linear_limit(system, omega) for omega in frequency.tolist()])
+    levels = lowest_linear_limits(system, frequency.tolist())
     least = int(levels.argmin())
     return float(frequency[least]) if levels[least] < CONTACT_CHANGES.shakedown_level else np.nan
 
