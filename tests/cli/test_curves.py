@@ -9,7 +9,7 @@ import netCDF4
 import pytest
 
 from fcm.cli.balance import harmonics
-from fcm.cli.caveats import kept_friction, maybe_not_unique, residual_friction
+from fcm.cli.caveats import kept_friction, linear, maybe_not_unique, residual_friction
 from fcm.cli.columns import ranges
 from fcm.cli.curves import as_table, cost_and_error
 from fcm.model.scene import InTime
@@ -202,6 +202,19 @@ def test_what_friction_keeps_is_said_once_of_peaks_and_of_other_points():
     assert one == residual_friction({"curves": [known]} | run)
     assert other.endswith(maybe_not_unique({"curves": [unknown]} | run))
     assert all(text.count("a contact that never slips") == 1 for text in (both, one, other))
+
+
+def test_contacts_that_shake_down_are_not_said_to_be_as_they_are_whatever_their_past():
+    """Nor is another preload advised for slip: motions with slip may exist as it is."""
+    one = curve({"u": 1.0}) | {"may_not_be_unique": 3, "all_stick": True}
+    one["peak"]["u"]["residual_change"] = 0.0
+    run = {"method": "closed-form", "exact_motion": InTime.COMPUTED.value, "frequency_unit": "Hz"}
+    alone, shaken = {"curves": [one]} | run, {"curves": [one | {"shakedown_at": 1.25}]} | run
+    assert "it changes no peak" in residual_friction(alone) and residual_friction(shaken) == ""
+    assert "With less preload" in linear(alone) and "With less preload" not in linear(shaken)
+    assert "would slip at 1.25 Hz" in linear(shaken) and "--method exact --at 1.25 looks there" in linear(
+        shaken
+    )
 
 
 def test_what_does_not_move_has_no_column_of_jumps():

@@ -119,8 +119,7 @@ def lowest_linear_limits(system: System, frequencies: Sequence[float]) -> FloatA
     for limit, motion in ((np.abs(n_0), variation), (friction, slip.max(axis=-1))):
         at = np.divide(limit, motion, out=np.full_like(motion, np.inf), where=motion > 0.0)
         levels = np.minimum(levels, at.min(axis=-1))
-    never: FloatArray = np.where((n_0 == 0.0).any(), 0.0, levels)
-    return never
+    return np.zeros_like(levels) if (n_0 == 0.0).any() else levels  # without a preload no level is low enough
 
 
 def _ratios(limit: FloatArray, motion: FloatArray) -> FloatArray:
