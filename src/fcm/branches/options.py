@@ -113,6 +113,22 @@ class BranchingOptions(Frozen):
 BRANCHING = BranchingOptions()
 
 
+class FrictionOptions(Frozen):
+    """How friction is raised from none.
+
+    Attributes
+    ----------
+    difference : float
+        Part of the coefficients, by which the residual is differentiated: less than what is between a point
+        and the next change of a contact.
+    """
+
+    difference: float = 1e-9
+
+
+FRICTION = FrictionOptions()
+
+
 class LevelCurveOptions(Frozen):
     """How the level of the forces is followed at one frequency, from rest.
 

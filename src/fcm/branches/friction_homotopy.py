@@ -1,0 +1,90 @@
+"""Motions that slip beside one that sticks, found as friction is raised from none.
+
+Where friction presses its own contact together it may wedge it. Then a motion that sticks, by the friction
+that slip has left, exists beside one that slips, and no level of the forces leads from one to the other. The
+motion without friction leads to the second, as all coefficients of friction are raised at once. See
+Klarbring, Ciavarella and Barber, Shakedown in elastic contact problems with Coulomb friction (2007).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from fcm.branches.force_level import solutions
+from fcm.branches.options import FRICTION, FrictionOptions
+from fcm.branches.trace import Traced, with_further
+from fcm.continuation import Problem, follow
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray
+
+
+class FrictionProblem(Problem):
+    """A balance at omega, followed in the part of their coefficients of friction that contacts have.
+
+    >>> import fcm
+    >>> from fcm.harmonic_balance.system import System
+    >>> problem = FrictionProblem(System(fcm.load_scene("yang1998-n5"), (1,)), 1.0)
+    >>> problem.evaluate(np.append(np.ones(problem.unknowns), 0.5))
+    0
+    """
+
+    def __init__(self, system: System, omega: float, options: FrictionOptions = FRICTION) -> None:
+        self.difference = options.difference
+        self.balance = balance = system.new_balance()
+        super().__init__(balance.unknowns, balance.margins, 0, balance.rank)
+        self.group, self.residual, self.jacobian = balance.group, balance.residual, balance.jacobian
+        self.margin, self.kind, self.angle = balance.margin, balance.kind, balance.angle
+        self.unbounded, self.rooted, self.costly = balance.unbounded, balance.rooted, balance.costly
+        self.numbers = [(one.mu, one.k_u, one.k_v, one.n_0) for one in system.scene.contacts]
+        self.z = np.append(np.zeros(balance.unknowns), omega)
+
+    def _with_friction(self, z: FloatArray, part: float) -> FloatArray:
+        """The unknowns of the balance, whose contacts have that part of their coefficients."""
+        self.z[:-1] = z[:-1]
+        for law, (mu, *others) in zip(self.balance.laws, self.numbers, strict=True):
+            law.set_parameters(part * mu, *others)
+        return self.z
+
+    def evaluate(self, z: FloatArray) -> int:
+        self.balance.probe(self._with_friction(z, z[-1] + self.difference))
+        further = np.array(self.balance.residual)
+        self.balance.evaluate(self._with_friction(z, z[-1]))
+        last = 0 if self.rank else self.unknowns
+        np.asarray(self.jacobian)[:, last] = (further - np.asarray(self.residual)) / self.difference
+        return 0
+
+    def probe(self, z: FloatArray) -> int:
+        return int(self.balance.probe(self._with_friction(z, z[-1])))
+
+    def measure(self, z: FloatArray) -> int:
+        self.balance.measure(self._with_friction(z, z[-1]))
+        self.scale[:-1] = self.balance.scale[:-1]
+        return 0
+
+    def bound(self, z: FloatArray) -> int:
+        return int(self.balance.bound(self._with_friction(z, z[-1])))
+
+    def square(self, kind: int, z: FloatArray) -> float:
+        return float(self.balance.square(kind, self._with_friction(z, z[-1])))
+
+    def factor(self, row: FloatArray, scale: FloatArray) -> float:
+        return float(self.balance.factor(row, scale))
+
+    def solve(self, right: FloatArray) -> int:
+        return int(self.balance.solve(right))
+
+    def solved_sign(self) -> float:
+        return float(self.balance.solved_sign())
+
+
+def with_friction_raised(system: System, found: Traced, omega: float) -> Traced:
+    """With the branches through the solutions at omega that raising the friction from none leads to."""
+    contacts = tuple(replace(one, mu=0.0) for one in system.scene.contacts)
+    without = solutions(system.of(replace(system.scene, contacts=contacts)), omega).solutions
+    problem, starts = FrictionProblem(system, omega), list[FloatArray]()
+    for z in without:
+        raised = follow(problem, np.append(z[:-1], 0.0), (0.0, 1.0))
+        starts += [np.append(one[:-1], omega) for one in raised.z if one[-1] == 1.0]
+    return with_further(system, found, (), starts)
