@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from tests.branches.hunt import passings as passings_at
 
+import fcm
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.time_domain import simulate
@@ -31,6 +32,16 @@ def test_a_motion_that_slips_is_found_beside_one_in_which_friction_holds_all_con
     sizes = np.sort(passings.max(axis=1))
     assert sizes[-1] == pytest.approx(marched[0].amplitude.max(), rel=0.1)
     assert sizes[-1] > 3.0 * sizes[0]
+
+
+@pytest.mark.slow
+def test_the_exact_motion_that_slips_is_found_beside_one_in_which_friction_holds_all_contacts():
+    scene, omega = _scene(300), 1.334
+    curve = fcm.respond(scene, method="exact").isel(curve=0)
+    passing = np.flatnonzero(np.diff(np.sign(curve.frequency.values - omega)) != 0.0)
+    sizes = curve.amplitude.max("dof").values[passing]
+    marched = simulate(scene, omega, 400).measures(last=1)[0]
+    assert np.nanmax(sizes) == pytest.approx(marched.amplitude.max(), rel=0.05)
 
 
 def test_where_friction_leads_to_no_motion_that_slips_it_is_said_that_contacts_shake_down():

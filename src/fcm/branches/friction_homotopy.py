@@ -2,8 +2,7 @@
 
 Where friction presses its own contact together it may wedge it. Then a motion that sticks, by the friction
 that slip has left, exists beside one that slips, and no level of the forces leads from one to the other. The
-motion without friction leads to the second, as all coefficients of friction are raised at once. See
-Klarbring, Ciavarella and Barber, Shakedown in elastic contact problems with Coulomb friction (2007).
+motion without friction leads to the second, as all coefficients of friction are raised at once.
 """
 
 from __future__ import annotations
@@ -14,8 +13,10 @@ import numpy as np
 
 from fcm.branches.force_level import solutions
 from fcm.branches.options import FRICTION, FrictionOptions
+from fcm.branches.shakedown import may_wedge, shakedown_at
 from fcm.branches.trace import Traced, with_further
 from fcm.continuation import Problem, follow
+from fcm.harmonic_balance.response_quantities import ContactRecord
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray
 
@@ -79,12 +80,20 @@ class FrictionProblem(Problem):
         return float(self.balance.solved_sign())
 
 
-def with_friction_raised(system: System, found: Traced, omega: float) -> Traced:
-    """With the branches through the solutions at omega that raising the friction from none leads to."""
-    contacts = tuple(replace(one, mu=0.0) for one in system.scene.contacts)
-    without = solutions(system.of(replace(system.scene, contacts=contacts)), omega).solutions
+def with_friction_raised(system: System, found: Traced) -> Traced:
+    """With the branches to which raising the friction from none leads, where contacts shake down."""
+    paths, scene = found.branches.paths, system.scene
+    if not (paths and scene.contacts) or scene.loads or system.own_laws or not may_wedge(scene):
+        return found
+    z = np.concatenate([path.z for path in paths])
+    omega = shakedown_at(system, z[:, -1], ContactRecord.at(system, z).words)
+    if np.isnan(omega):
+        return found
+    contacts = tuple(replace(one, mu=0.0) for one in scene.contacts)
+    without = solutions(system.of(replace(scene, contacts=contacts)), omega).solutions
     problem, starts = FrictionProblem(system, omega), list[FloatArray]()
     for z in without:
         raised = follow(problem, np.append(z[:-1], 0.0), (0.0, 1.0))
         starts += [np.append(one[:-1], omega) for one in raised.z if one[-1] == 1.0]
-    return with_further(system, found, (), starts)
+    every = with_further(system, found, (), starts)
+    return every if len(every.branches.paths) > len(found.branches.paths) else found

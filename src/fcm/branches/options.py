@@ -114,15 +114,21 @@ BRANCHING = BranchingOptions()
 
 
 class FrictionOptions(Frozen):
-    """How friction is raised from none.
+    """Where contacts shake down, and how friction is raised from none.
 
     Attributes
     ----------
+    load_tolerance : float
+        Change of a contact's load, relative to the residual friction of another: less is rounding.
+    shakedown_level : float
+        Level of the forces below which a contact that began unstressed would slip, although none does at 1.
     difference : float
         Part of the coefficients, by which the residual is differentiated: less than what is between a point
         and the next change of a contact.
     """
 
+    load_tolerance: float = 1e-9
+    shakedown_level: float = 0.999
     difference: float = 1e-9
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from fcm.branches.branch_points import BranchPoint, branch_points
+from fcm.branches.friction_homotopy import with_friction_raised
 from fcm.branches.isolas import level_one_crossings
 from fcm.branches.mirror_images import symmetric_half
 from fcm.branches.options import BRANCHING, BranchingOptions
@@ -17,7 +18,15 @@ from fcm.harmonic_balance.system import System
 
 
 def with_further_branches(system: System, found: Traced) -> Traced:
-    """With isolated branches, and those through branch points, of the response and of levels."""
+    """With isolated branches, and those through branch points, of the response and of levels; and of the
+    motions that friction raised from none leads to."""
+    every = _with_connected(system, found)
+    raised = with_friction_raised(system, every)
+    return every if raised is every else _with_connected(system, raised)
+
+
+def _with_connected(system: System, found: Traced) -> Traced:
+    """With those that what is known leads to."""
     return with_unsymmetric(system, with_branching(system, with_isolas(system, found)))
 
 

@@ -249,15 +249,9 @@ class ContactChangeOptions(Frozen):
     ----------
     point_tolerance : float
         Distance, in the problem's scale, that rounding may put between the same point of two problems.
-    load_tolerance : float
-        Change of a contact's load, relative to the residual friction of another: less is rounding.
-    shakedown_level : float
-        Level of the forces below which a contact that began unstressed would slip, although none does at 1.
     """
 
     point_tolerance: float = 1e-8
-    load_tolerance: float = 1e-9
-    shakedown_level: float = 0.999
 
 
 CONTACT_CHANGES = ContactChangeOptions()

@@ -17,7 +17,6 @@ from fcm.accuracy.options import VALIDITY
 from fcm.accuracy.refinement import OnTraced, RefinedResponse, enlarged, retrace
 from fcm.accuracy.stability_limits import StabilityLimit, distances_from, stability_limits
 from fcm.accuracy.stability_validity import on_other_branch, without_neighbour
-from fcm.branches.friction_homotopy import with_friction_raised
 from fcm.branches.search import with_further_branches
 from fcm.branches.symmetry_loss import symmetry_loss
 from fcm.frozen import Frozen
@@ -26,7 +25,6 @@ from fcm.harmonic_balance.response_quantities import ContactRecord
 from fcm.model.scene import FloatArray, Scene
 from fcm.response.master_dofs import with_all_dofs
 from fcm.response.options import SWEEP
-from fcm.response.undetermined_traction import shakedown_at
 from fcm.stability.bifurcations import stability, with_points
 from fcm.stability.options import STABILITY
 
@@ -104,24 +102,15 @@ def _with_branches(
 ) -> tuple[Refined, Harmonics]:
     """With what levels below its peaks, its folds and its branch points lead to."""
     known, most = now.found.traced, _most(accuracy)
-    found = _with_further_branches(with_levels_below_peaks(now.found, most), most)
-    frequency = np.concatenate([path.z[:, -1] for path in found.traced.branches.paths])
-    states = ContactRecord.joined([one.contacts for one in found.errors]).words
-    held_at = shakedown_at(found.system, frequency, states)
-    if np.isfinite(held_at):
-        raised = with_friction_raised(found.system, found.traced, held_at)
-        found = _with_further_branches(with_traced(found, raised, most), most)
+    found = with_levels_below_peaks(now.found, most)
+    traced = with_further_branches(found.system, found.traced)
+    found = found if traced is found.traced else with_traced(found, traced, most)
     lost = symmetry_loss(found.system, found.traced)
     if lost.harmonics:
         found = replace(found, traced=replace(found.traced, symmetry_lost=lost.frequencies))
         return replace(now, found=found), tuple(sorted({*found.system.harmonics, *lost.harmonics}))
-    more = enlarged(found, most) if found.traced is not known and not found.agrees else found.system.harmonics
+    more = enlarged(found, most) if traced is not known and not found.agrees else found.system.harmonics
     return replace(now, found=found), more
-
-
-def _with_further_branches(found: RefinedResponse, most: float) -> RefinedResponse:
-    traced = with_further_branches(found.system, found.traced)
-    return found if traced is found.traced else with_traced(found, traced, most)
 
 
 def _with_events(

@@ -22,6 +22,7 @@ from fcm.accuracy.stability_validity import unreliable_points
 from fcm.accuracy.unchecked_response import ResponseInterrupted, UncheckedResponse, points_of
 from fcm.at_rest import RestOptions
 from fcm.branches.options import FOLDS
+from fcm.branches.shakedown import shakedown_at
 from fcm.contact.contact_law import ContactLawError
 from fcm.continuation import Mark
 from fcm.continuation.follow import Progress
@@ -41,7 +42,7 @@ from fcm.response.master_dofs import of_all_dofs, with_master_dofs, with_tops
 from fcm.response.options import InterruptedOptions
 from fcm.response.refined import Refined, refined
 from fcm.response.request import ONE_HARMONIC, Request
-from fcm.response.undetermined_traction import residual_changes, shakedown_at, undetermined
+from fcm.response.undetermined_traction import residual_changes, undetermined
 from fcm.results.cause import Cause
 from fcm.results.contact_maxima import greatest_of
 from fcm.results.peak import Peak, stability_at_top

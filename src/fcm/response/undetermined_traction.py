@@ -7,11 +7,10 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from fcm.branches.linear_limits import lowest_linear_limits, precompute
+from fcm.branches.shakedown import changes_load
 from fcm.harmonic_balance.residual_traction import peak_changes
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
-from fcm.response.options import CONTACT_CHANGES
 from fcm.structure.linear import Linear
 
 
@@ -38,30 +37,9 @@ def undetermined(scene: Scene, states: npt.NDArray[np.str_]) -> npt.NDArray[np.b
     still = stuck.any(axis=1) & ~changing.any(axis=1)
     if still.any():
         rows, which = np.unique(states[still], axis=0, return_inverse=True)
-        felt = np.array([_changes_load(scene, row == "E", (row == "E") & rough) for row in rows])
+        felt = np.array([changes_load(scene, row == "E", (row == "E") & rough) for row in rows])
         found[still] = felt[which.ravel()]
     return found
-
-
-def shakedown_at(system: System, frequency: FloatArray, states: npt.NDArray[np.str_]) -> float:
-    """Where contacts that slip nowhere on a curve would slip if they began unstressed [rad/s], or NaN.
-
-    They shake down: the friction force that slip leaves holds them. Where it changes their normal load, too,
-    they may as well slip on, as the past decides (Klarbring, Ciavarella, Barber 2007). frequency (point,);
-    states (point, contact). The frequency is that at which they would begin to slip at the least force.
-    """
-    scene = system.scene
-    nothing = scene.loads or system.own_laws or not states.size or (states != states[0]).any()
-    if nothing or not np.isin(states[0], ("E", "S")).all():
-        return np.nan
-    rough = np.array([contact.mu * contact.k_u > 0.0 for contact in scene.contacts], dtype=np.bool_)
-    stuck = (states[0] == "E") & rough
-    if not stuck.any() or not _changes_load(scene, states[0] == "E", stuck, of_its_own=True):
-        return np.nan
-    precompute(system, frequency.tolist())
-    levels = lowest_linear_limits(system, frequency.tolist())
-    least = int(levels.argmin())
-    return float(frequency[least]) if levels[least] < CONTACT_CHANGES.shakedown_level else np.nan
 
 
 def residual_changes(
@@ -104,25 +82,3 @@ def residual_changes_at_levels(
         change = residual_changes(there, z[one], amplitude[one], states[one], maybe[one])
         found = np.where(top == i, change, found)
     return found
-
-
-def _changes_load(
-    scene: Scene, closed: npt.NDArray[np.bool_], stuck: npt.NDArray[np.bool_], of_its_own: bool = False
-) -> bool:
-    """Whether the residual friction of a contact that sticks changes the load of another, or of its own, if
-    all stay so."""
-    modal, contacts = scene.modal, scene.contacts
-    slides = [(i, way) for i, contact in enumerate(contacts) for way in contact.directions[:-1]]
-    whose = np.array([i for i, _ in slides])
-    along = np.array([modal.shapes @ way for _, way in slides])
-    across = np.array([modal.shapes @ contact.normal for contact in contacts])
-    k_u, k_v = (np.array([getattr(contact, name) for contact in contacts]) for name in ("k_u", "k_v"))
-    stiffness: FloatArray = (along.T * (k_u * stuck)[whose]) @ along + (across.T * (k_v * closed)) @ across
-    stiffness += np.diag(modal.mass * modal.frequency**2)
-    try:
-        load = k_v[:, None] * (across @ np.linalg.solve(stiffness, along.T))  # (contact, friction)
-    except np.linalg.LinAlgError:  # a mode is free to drift with it
-        return True
-    if not of_its_own:
-        load[whose, np.arange(whose.size)] = 0.0
-    return bool((np.abs(load[:, stuck[whose]]) > CONTACT_CHANGES.load_tolerance).any())

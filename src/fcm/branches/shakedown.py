@@ -1,0 +1,89 @@
+"""Curves on which contacts stick by the friction force that slip has left: they shake down.
+
+Where that force changes their normal load, too, they may as well slip on, as the past decides. See Klarbring,
+Ciavarella and Barber, Shakedown in elastic contact problems with Coulomb friction (2007).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.branches.linear_limits import lowest_linear_limits, precompute
+from fcm.branches.options import FRICTION
+from fcm.harmonic_balance.system import System
+from fcm.model.scene import FloatArray, Scene
+
+
+def shakedown_at(system: System, frequency: FloatArray, states: npt.NDArray[np.str_]) -> float:
+    """Where contacts that slip nowhere on curves would slip if they began unstressed [rad/s], or NaN.
+
+    frequency (point,); states (point, contact). The frequency is that at which they would begin to slip at
+    the least force.
+    """
+    scene = system.scene
+    nothing = scene.loads or system.own_laws or not states.size or (states != states[0]).any()
+    if nothing or not np.isin(states[0], ("E", "S")).all():
+        return np.nan
+    rough = np.array([contact.mu * contact.k_u > 0.0 for contact in scene.contacts], dtype=np.bool_)
+    stuck = (states[0] == "E") & rough
+    if not stuck.any() or not changes_load(scene, states[0] == "E", stuck, of_its_own=True):
+        return np.nan
+    precompute(system, frequency.tolist())
+    levels = lowest_linear_limits(system, frequency.tolist())
+    least = int(levels.argmin())
+    return float(frequency[least]) if levels[least] < FRICTION.shakedown_level else np.nan
+
+
+def may_wedge(scene: Scene) -> bool:
+    r"""Whether friction forces may press their own contacts together by as much as holds them.
+
+    With all contacts closed, friction forces F change the limits :math:`\mu n` by G F. Forces of any size are
+    held only if :math:`|F_i| \le |(G F)_i|` at all contacts, and none are if the norm of G is below 1:
+
+    .. math:: G = \mu k_v A (K + A^T k_v A)^{-1} B^T
+
+    with the modal stiffness K, and the modes at the contacts: A across them, B along them.
+
+    >>> import fcm
+    >>> may_wedge(fcm.load_scene("yang1998-n5"))
+    False
+    """
+    modal, contacts = scene.modal, scene.contacts
+    along = np.array([modal.shapes @ way for one in contacts for way in one.directions[:-1]])
+    across = np.array([modal.shapes @ one.normal for one in contacts])
+    k_v, mu = np.array([(one.k_v, one.mu if one.k_u > 0.0 else 0.0) for one in contacts]).T
+    stiffness = (across.T * k_v) @ across + np.diag(modal.mass * modal.frequency**2)
+    try:
+        wedging = (mu * k_v)[:, None] * (across @ np.linalg.solve(stiffness, along.T))
+    except np.linalg.LinAlgError:  # a mode is free to drift with it
+        return True
+    return bool(np.linalg.norm(wedging, 2) >= 1.0)
+
+
+def changes_load(
+    scene: Scene, closed: npt.NDArray[np.bool_], stuck: npt.NDArray[np.bool_], of_its_own: bool = False
+) -> bool:
+    """Whether the residual friction of a contact that sticks changes the load of another, or of its own, if
+    all stay so; closed, stuck (contact,).
+
+    >>> import fcm
+    >>> every = np.array([True])
+    >>> changes_load(fcm.load_scene("yang1998-n5"), every, every, of_its_own=True)
+    True
+    """
+    modal, contacts = scene.modal, scene.contacts
+    slides = [(i, way) for i, contact in enumerate(contacts) for way in contact.directions[:-1]]
+    whose = np.array([i for i, _ in slides])
+    along = np.array([modal.shapes @ way for _, way in slides])
+    across = np.array([modal.shapes @ contact.normal for contact in contacts])
+    k_u, k_v = (np.array([getattr(contact, name) for contact in contacts]) for name in ("k_u", "k_v"))
+    stiffness: FloatArray = (along.T * (k_u * stuck)[whose]) @ along + (across.T * (k_v * closed)) @ across
+    stiffness += np.diag(modal.mass * modal.frequency**2)
+    try:
+        load = k_v[:, None] * (across @ np.linalg.solve(stiffness, along.T))  # (contact, friction)
+    except np.linalg.LinAlgError:  # a mode is free to drift with it
+        return True
+    if not of_its_own:
+        load[whose, np.arange(whose.size)] = 0.0
+    return bool((np.abs(load[:, stuck[whose]]) > FRICTION.load_tolerance).any())
