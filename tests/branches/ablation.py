@@ -35,6 +35,8 @@ OFF = {
         (search, "with_branching", lambda system, found: found),
         (refined, "symmetry_loss", lambda system, found: SymmetryLoss()),
     ],
+    "symmetry in the level": [(search, "with_unsymmetric", lambda system, found: found)],
+    "friction raised from none": [(search, "with_friction_raised", lambda system, found: found)],
     "prolongation": [
         (unchecked_response, "prolongated_solutions", lambda before, harmonics: []),
         (refinement, "prolongated_solutions", lambda before, harmonics: []),

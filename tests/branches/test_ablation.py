@@ -9,7 +9,9 @@ from fcm.scene import load_scene, scene_from_dict
 
 from ..response.test_leading import masses
 from ..response.test_narrow import around, with_mode
+from ..response.test_shakedown import wedged
 from .ablation import OFF, answer, changes, without
+from .relatives import KINDS
 from .test_further_levels import ONE_MODE
 from .test_low_harmonics import beyond
 
@@ -24,6 +26,8 @@ def one(folder, name, span=None):
 LOST = [
     ("folds followed", one(KNOWN, "far_isola"), 5, "branches 2 -> 1"),
     ("branch points", one(SCENES, "equal_stops"), 3, "peak x1"),
+    ("symmetry in the level", KINDS["stops"](16), 5, "branches 5 -> 4"),
+    ("friction raised from none", wedged(300), 3, "peak d0"),
     ("prolongation", one(KNOWN, "missed"), 8, "branches 4 -> 3"),
     ("levels in gaps", one(KNOWN, "between_resonances"), 3, "peak 30y"),
     ("levels at lost peaks", one(KNOWN, "isolated_by_harmonics"), 3, "peak 9x"),

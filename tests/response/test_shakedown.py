@@ -16,14 +16,15 @@ from fcm.time_domain import simulate
 from .random_scenes import random_scene
 
 
-def _scene(seed):
+def wedged(seed):
+    """A scene whose friction presses contacts together, with damping."""
     scene = random_scene(seed)
     return replace(scene, modal=replace(scene.modal, damping=np.maximum(scene.modal.damping, 3e-3)))
 
 
 def test_a_motion_that_slips_is_found_beside_one_in_which_friction_holds_all_contacts():
     """Two contacts push each other closed as they slip. From rest the exact motion goes on to slip."""
-    scene, omega = _scene(300), 1.334
+    scene, omega = wedged(300), 1.334
     curve = traced_curve(scene, Request((1, 2, 3), 1e-2))
     marched = simulate(scene, omega, 400).measures(last=2)
     assert np.allclose(marched[0].amplitude, marched[1].amplitude, rtol=1e-6)
@@ -36,7 +37,7 @@ def test_a_motion_that_slips_is_found_beside_one_in_which_friction_holds_all_con
 
 @pytest.mark.slow
 def test_the_exact_motion_that_slips_is_found_beside_one_in_which_friction_holds_all_contacts():
-    scene, omega = _scene(300), 1.334
+    scene, omega = wedged(300), 1.334
     curve = fcm.respond(scene, method="exact").isel(curve=0)
     passing = np.flatnonzero(np.diff(np.sign(curve.frequency.values - omega)) != 0.0)
     sizes = curve.amplitude.max("dof").values[passing]
@@ -45,7 +46,7 @@ def test_the_exact_motion_that_slips_is_found_beside_one_in_which_friction_holds
 
 
 def test_where_friction_leads_to_no_motion_that_slips_it_is_said_that_contacts_shake_down():
-    scene = _scene(355)
+    scene = wedged(355)
     curve = traced_curve(scene, Request((1,), 1e-2))
     low, high = scene.frequency_range
     assert low <= curve.shakedown_at <= high
@@ -57,7 +58,7 @@ def test_where_friction_leads_to_no_motion_that_slips_it_is_said_that_contacts_s
 @pytest.mark.parametrize("share", [0.9, 1.1])
 def test_contacts_shake_down_from_the_force_on_at_which_they_would_slip(share):
     """That is the least force with which a motion from rest slips at all, where its transient is small."""
-    scene = _scene(316)
+    scene = wedged(316)
     curve = traced_curve(scene, Request((1,), 1e-2))
     scarcely = replace(scene, frequency_range=(curve.shakedown_at - 1e-3, curve.shakedown_at))
     onset = _onset(scene, curve.shakedown_at)
