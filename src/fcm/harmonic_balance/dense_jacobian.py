@@ -124,7 +124,7 @@ def _extremes(
     theta: FloatArray = near
     h = np.asarray(harmonics, dtype=np.float64)
     for _ in range(options.max_iterations):
-        turned = np.exp(1j * np.outer(theta, h)) * X
+        turned = np.exp(1j * (theta[:, None] * h)) * X
         slope, bend = -(turned.imag @ h), -(turned.real @ (h * h))
         if not (bend[0] < 0.0 < bend[1]):
             break

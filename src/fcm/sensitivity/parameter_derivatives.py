@@ -193,7 +193,9 @@ def rates_of(system: System, address: str, options: SensitivityOptions = SENSITI
     contact = np.zeros((len(system.scene.contacts), 4))
     total = {name: np.zeros_like(getattr(system.linear, name)) for name in ARRAYS}
     for one, value, weight in number.each(system.scene):
-        contact += weight * (_numbers(one.put(system.scene, 1.0)) - _numbers(one.put(system.scene, 0.0)))
+        contact += weight * (
+            contact_numbers(one.put(system.scene, 1.0)) - contact_numbers(one.put(system.scene, 0.0))
+        )
         for name, rate in _linear(system, one, value, options):
             total[name] = total[name] + weight * rate
     return Rates(
@@ -201,8 +203,8 @@ def rates_of(system: System, address: str, options: SensitivityOptions = SENSITI
     )
 
 
-def _numbers(scene: Scene) -> FloatArray:
-    """Of each contact; each is linear in whatever number of a scene it depends on."""
+def contact_numbers(scene: Scene) -> FloatArray:
+    """mu, k_u, k_v, n_0 (contact, 4); each is linear in whatever number of a scene it depends on."""
     return np.array([(c.mu, c.k_u, c.k_v, c.n_0) for c in scene.contacts]).reshape(-1, 4)
 
 

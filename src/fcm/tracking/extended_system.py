@@ -16,6 +16,7 @@ from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg.lapack import dgetrf, dgetrs
 
 from fcm.continuation.problem import Problem
 from fcm.harmonic_balance.dense_jacobian import Amplitude, jacobian_of
@@ -43,11 +44,25 @@ class Condition(NamedTuple):
     omega: float = 0.0  # of an end of the range
 
 
-class Tangent(NamedTuple):
-    """Of the response curve, in the problem's scale, with row . t = 1; adjoint solves are with the matrix."""
+class Tangent:
+    """Of the response curve, t (unknown + 1,) in the problem's scale, with row . t = 1.
 
-    t: FloatArray  # (unknown + 1,)
-    matrix: FloatArray
+    The factors of its matrix (unknown + 1, unknown + 1) are kept for the adjoint. Raises LinAlgError where
+    that is singular.
+    """
+
+    def __init__(self, matrix: FloatArray) -> None:
+        last = np.zeros(len(matrix))
+        last[-1] = 1.0
+        *self._factors, info = dgetrf(matrix.T, overwrite_a=True)  # without a copy: of the transpose
+        if info > 0:
+            raise np.linalg.LinAlgError
+        self.t: FloatArray = dgetrs(*self._factors, last, trans=1)[0]
+
+    def adjoint(self, right: FloatArray) -> FloatArray:
+        """The solution (unknown + 1,) of the transposed equations."""
+        found: FloatArray = dgetrs(*self._factors, right)[0]
+        return found
 
 
 class Evaluation(NamedTuple):
@@ -157,10 +172,7 @@ class ExtendedSystem(Problem):
     def _tangent(self, jacobian: FloatArray) -> Tangent:
         scale = np.asarray(self.scale)[:-1]
         scaled = jacobian * scale / scale[:-1, None]
-        matrix = np.concatenate((scaled, self.row[None]))
-        right = np.zeros(self.n + 1)
-        right[-1] = 1.0
-        return Tangent(np.linalg.solve(matrix, right), matrix)
+        return Tangent(np.concatenate((scaled, self.row[None])))
 
     def _condition(self, y: FloatArray, here: Evaluation) -> tuple[float, FloatArray]:
         """g, without a unit, and its derivatives by (y, s)."""
@@ -193,7 +205,7 @@ class ExtendedSystem(Problem):
         if self.condition.kind is Kind.FOLD:
             special[-2] = 1.0 / scale[-1]
         value = float(special[:-1] @ (scale * t))
-        adjoint = np.linalg.solve(tangent.matrix.T, special[:-1] * scale)[:-1] / scale[:-1]
+        adjoint = tangent.adjoint(special[:-1] * scale)[:-1] / scale[:-1]
         ahead = scale * t / np.linalg.norm(t)
         step = self._difference_length(y, ahead)
         gradient = self._special_at(y + step * ahead, adjoint) - self._special_at(y - step * ahead, adjoint)

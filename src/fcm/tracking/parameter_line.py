@@ -13,7 +13,7 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.scene.address import LEVEL
 from fcm.scene.draft import Number
-from fcm.sensitivity.parameter_derivatives import Rates, law_rates, rates_of
+from fcm.sensitivity.parameter_derivatives import Rates, contact_numbers, law_rates, rates_of
 from fcm.structure.linear import linear_of
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -91,6 +91,8 @@ class VariedBalance:
         self.contacts, self.harmonics = len(system.scene.contacts), system.harmonics
         self._rates: list[Rates] = []
         self._contact_rates: FloatArray | None = None
+        self._at_zero: FloatArray | None = None
+        self.numbers = contact_numbers(system.scene)  # mu, k_u, k_v, n_0 (contact, 4) where they are
 
     @property
     def system(self) -> System:
@@ -114,12 +116,22 @@ class VariedBalance:
             return
         if self.structure:
             self.balance = self.system.new_balance()
-        for law, contact in zip(self.balance.laws, self.system.scene.contacts, strict=True):
-            law.mu, law.k_u, law.k_v, law.n_0 = contact.mu, contact.k_u, contact.k_v, contact.n_0
+        self.numbers = self._numbers(s)
+        for law, (mu, k_u, k_v, n_0) in zip(self.balance.laws, self.numbers.tolist(), strict=True):
+            law.mu, law.k_u, law.k_v, law.n_0 = mu, k_u, k_v, n_0
         if self.structure or not self._constant:
             self._rates = []
         if not self._constant:
             self._contact_rates = None
+
+    def _numbers(self, s: float) -> FloatArray:
+        """Of the contacts (contact, 4) at s: on a line where their rates are the same everywhere."""
+        if self.structure or not self._constant:
+            return contact_numbers(self.system.scene)
+        if self._at_zero is None:
+            self._at_zero = contact_numbers(self.line.scene(self.base.scene, 0.0))
+        numbers: FloatArray = self._at_zero + s * self.contact_rates()
+        return numbers
 
     def by_s(self, z: FloatArray) -> ParameterRates:
         """Rates by s at fixed z, where the balance was evaluated last."""
@@ -139,20 +151,20 @@ class VariedBalance:
 
     def _forces_by_s(self, z: FloatArray) -> FloatArray:
         """Rates of the contacts' forces, (unknown,); of a preload alone they are those of a mean load."""
-        balance, w, rates = self.balance, self.balance.width, self.contact_rates()
-        normal = balance.directions - 1
-        found = np.zeros(balance.unknowns)
-        for c, (rate, law) in enumerate(zip(rates, balance.laws, strict=True)):
-            here = slice(c * w, (c + 1) * w)
-            if rate.any() and not rate[:3].any() and law.k_v > 0.0:
-                by_load = np.array(balance.tangent[c, :, normal])
-                by_load[normal] += balance.counted[c]
-                by_load /= law.k_v
-                by_load[normal] -= float(law.n_0 > 0.0)  # what the structure at rest is in equilibrium with
-                found[here] = rate[3] * by_load
-            elif rate.any():
-                found[here] = rate @ law_rates(law, z[here])
-        return found
+        balance, rates, normal = self.balance, self.contact_rates(), self.balance.directions - 1
+        found = np.zeros((self.contacts, balance.width))
+        k_v, n_0 = self.numbers[:, 2], self.numbers[:, 3]
+        moved = rates.any(axis=1)
+        preload = moved & ~rates[:, :3].any(axis=1) & (k_v > 0.0)
+        by_load = np.asarray(balance.tangent)[preload, :, normal]
+        by_load[:, normal] += np.asarray(balance.counted)[preload]
+        by_load /= k_v[preload, None]
+        by_load[:, normal] -= n_0[preload] > 0.0  # what the structure at rest is in equilibrium with
+        found[preload] = rates[preload, 3:] * by_load
+        for c in np.flatnonzero(moved & ~preload).tolist():
+            here = slice(c * balance.width, (c + 1) * balance.width)
+            found[c] = rates[c] @ law_rates(balance.laws[c], z[here])
+        return found.ravel()
 
     @property
     def rates(self) -> list[Rates]:
