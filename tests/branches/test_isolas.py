@@ -7,18 +7,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fcm.accuracy.refinement import every_branch
+from fcm.accuracy.refinement import every_branch, with_errors
+from fcm.accuracy.unchecked_response import unchecked_response
 from fcm.branches.fold_continuation import Ending, Folds, folds_from
 from fcm.branches.force_level import level_frequencies, solutions
 from fcm.branches.isolas import level_one_crossings
-from fcm.branches.options import FoldOptions, LevelCurveOptions
+from fcm.branches.options import FoldOptions, LevelCurveOptions, LevelOptions
 from fcm.branches.surface import Surface
 from fcm.branches.trace import traced
 from fcm.continuation import Mark, Status
 from fcm.harmonic_balance.modal_condensation import CONDENSATION, CondensationOptions
+from fcm.harmonic_balance.options import HARMONIC_BALANCE, WorkOptions
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import Force
 from fcm.response.options import ResponseOptions
+from fcm.response.refined import refined
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.scene import load_scene
@@ -203,6 +206,30 @@ def test_a_closed_curve_of_folds_has_lost_nothing_and_others_their_open_ends():
     assert Folds(z, z, (Ending.RANGE, Ending.LONG)).lost == [3.0]
     assert Folds(z, z, (Ending.STALLED, Ending.CLOSED)).lost == []
     assert Folds(z, z, (Ending.CLOSED, Ending.LEVEL)).lost == [1.0]
+
+
+@pytest.mark.parametrize("distance, looked", [(0.4, True), (0.6, False)])
+@pytest.mark.parametrize("more", [(), tuple(range(1, 12))])
+def test_where_more_harmonics_have_no_motion_beside_a_curve_isolated_branches_are_not_looked_for(
+    distance, looked, more
+):
+    """If these would take too long, and as far as half the motion away; from where they may come is said."""
+    options = replace(HARMONIC_BALANCE, work=WorkOptions(max_seconds_repeated=0.0))
+    none = (LevelOptions(strong_harmonics=1),)
+    system = System(scene("closed_impact"), (1, 2, 3, 4), options=options, other_options=none)
+    every = unchecked_response(system)
+    main, *isolated = every.traced.branches.paths
+    assert isolated
+    alone = replace(every.traced, branches=replace(every.traced.branches, paths=(main,)))
+    found = with_errors(replace(every, traced=alone, quantities=every.quantities[:1]), ACCURACY)
+    (one,) = found.errors
+    far = np.full_like(one.truncation, distance), np.zeros_like(one.is_same_curve), np.ones_like(one.peak)
+    error = replace(one, truncation=far[0], is_same_curve=far[1], peak=far[2])
+    found = replace(found, errors=(error,), max_error=1.0, further=more)
+    there = refined(found, ACCURACY, system.scene, lambda *_: None, lambda *_: None).found
+    lost, (low, high) = there.traced.folds_lost, system.scene.frequency_range
+    assert bool(lost) == (bool(more) and not looked)
+    assert all(low <= omega <= high for omega in lost)
 
 
 def test_where_folds_are_lost_a_response_says_from_where_on():

@@ -297,6 +297,17 @@ def test_a_peak_at_which_no_motion_stays_is_marked():
     assert as_table({"curves": [curve({"u": 1.0})]}, "Hz").count("\n") == 1
 
 
+@pytest.mark.parametrize(
+    ("cause", "said"),
+    [({}, "more harmonics may tell"), ({"cause": "interrupted"}, "the run was interrupted before")],
+)
+def test_why_the_stability_of_a_lower_peak_is_unknown(cause, said):
+    one = curve({"u": 1.0}) | cause
+    lower = {"amplitude": 0.5, "frequency": 1.1, "error": 0.01, "stable": None}
+    one["peaks"] = {"u": [{"amplitude": 1.0, "frequency": 1.5, "error": 0.01, "stable": True}, lower]}
+    assert f"? stability is unknown there: {said}" in as_table({"curves": [one]}, "Hz").splitlines()
+
+
 def test_where_stability_is_not_told_is_a_table_of_its_own():
     """It is no jump. In the order in which the sweeps come there: on the way up first what lies lower."""
     jumps = [

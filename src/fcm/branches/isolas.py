@@ -66,6 +66,22 @@ def level_one_crossings(
     return LevelOneCrossings(tuple(solutions), tuple(dict.fromkeys(curves.uncertain)))
 
 
+def folds_to_follow(system: System, found: Sequence[LevelSolutions]) -> tuple[float, ...]:
+    """Frequencies [rad/s] of the folds of the level from which curves of folds may come to 1."""
+    begun = _begun(found, system.option(FOLDS))
+    return tuple(dict.fromkeys(float(turn.z[-1]) for turn, _ in begun))
+
+
+def _begun(
+    found: Sequence[LevelSolutions], options: FoldOptions
+) -> Iterator[tuple[LevelFold, tuple[int, ...]]]:
+    """The folds from which curves are followed, with the harmonics that each was found with."""
+    for one in found:
+        yield from (
+            (turn, one.harmonics) for turn in one.folds if turn.unfinished and options.covers(turn.level)
+        )
+
+
 class _Curves:
     """The curves of folds, each once, with the system that they are followed with.
 
@@ -75,12 +91,7 @@ class _Curves:
     def __init__(self, system: System, found: Sequence[LevelSolutions], options: FoldOptions) -> None:
         self.options, self.system = options, system
         self.few = system.harmonics[: few_harmonics(system)]
-        self.left = [
-            (turn, one.harmonics)
-            for one in found
-            for turn in one.folds
-            if turn.unfinished and options.covers(turn.level)
-        ]
+        self.left = list(_begun(found, options))
         self.lost = list[float]()  # frequencies at which curves were lost
         self.known = dict[tuple[int, ...], _CurvesWith]()
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from fcm.branches.branch_points import BranchPoint, branch_points
 from fcm.branches.friction_homotopy import with_friction_raised
-from fcm.branches.isolas import level_one_crossings
+from fcm.branches.isolas import folds_to_follow, level_one_crossings
 from fcm.branches.mirror_images import symmetric_half
 from fcm.branches.options import BRANCHING, BranchingOptions
 from fcm.branches.prolongation import at_its_frequency
@@ -17,17 +17,24 @@ from fcm.continuation.all_branches import contains
 from fcm.harmonic_balance.system import System
 
 
-def with_further_branches(system: System, found: Traced) -> Traced:
+def with_further_branches(system: System, found: Traced, isolated: bool = True) -> Traced:
     """With isolated branches, and those through branch points, of the response and of levels; and of the
-    motions that friction raised from none leads to."""
-    every = _with_connected(system, found)
+    motions that friction raised from none leads to.
+
+    Without isolated ones it is noted from where curves of folds would have been followed.
+    """
+    every = _with_connected(system, found, isolated)
     raised = with_friction_raised(system, every)
-    return every if raised is every else _with_connected(system, raised)
+    return every if raised is every else _with_connected(system, raised, isolated)
 
 
-def _with_connected(system: System, found: Traced) -> Traced:
+def _with_connected(system: System, found: Traced, isolated: bool) -> Traced:
     """With those that what is known leads to."""
-    return with_unsymmetric(system, with_branching(system, with_isolas(system, found)))
+    if isolated:
+        found = with_isolas(system, found)
+    else:
+        found = replace(found, folds_lost=folds_to_follow(system, found.found))
+    return with_unsymmetric(system, with_branching(system, found))
 
 
 def with_isolas(system: System, found: Traced) -> Traced:

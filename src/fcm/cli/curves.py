@@ -238,7 +238,7 @@ def _curves(
     if any(_at_edge(curve, dof) for curve in curves for dof in dofs):
         beyond = "beyond it the curve may rise further; fcm plot modes SCENE: resonances"
         lines.append(f"{_EDGE} at an end of the range: {beyond}")
-    lower = [one for curve in curves for dof in dofs for one in curve.get("peaks", {}).get(dof, ())]
+    lower = _lower_peaks(curves, dofs)
     marks = {_stability(curve, dof) for curve in curves for dof in dofs} | set(map(_mark_of, lower))
     if UNSTABLE in marks:
         lines.append(f"{UNSTABLE} {DOES_NOT_STAY}")
@@ -253,7 +253,8 @@ def _curves(
             "there"
         )
     if UNKNOWN in marks:
-        looked = any(UNKNOWN == _stability(curve, dof) for curve in judged for dof in dofs)
+        highest = [curve["peak"].get(dof) or {} for curve in judged for dof in dofs]
+        looked = UNKNOWN in map(_mark_of, [*highest, *_lower_peaks(judged, dofs)])
         lines.append(f"{UNKNOWN} {STABILITY_UNKNOWN if looked else STABILITY_NOT_YET_KNOWN}")
     if ranges_of:
         unknown = any(_residual(curve, dof) == "-" for curve in curves for dof in ranges_of)
@@ -299,6 +300,11 @@ def _at_edge(curve: Curve, dof: str) -> bool:
 def _at_rest(curve: Curve, dof: str) -> bool:
     """Whether a degree of freedom does not move."""
     return (curve["peak"].get(dof) or {}).get("amplitude") == 0.0
+
+
+def _lower_peaks(curves: Sequence[Curve], dofs: Sequence[str]) -> list[Mapping[str, Any]]:
+    """All peaks of degrees of freedom that have several."""
+    return [one for curve in curves for dof in dofs for one in curve.get("peaks", {}).get(dof, ())]
 
 
 def _stability(curve: Curve, dof: str) -> str:

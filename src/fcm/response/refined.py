@@ -103,14 +103,23 @@ def _with_branches(
     """With what levels below its peaks, its folds and its branch points lead to."""
     known, most = now.found.traced, _most(accuracy)
     found = with_levels_below_peaks(now.found, most)
-    traced = with_further_branches(found.system, found.traced)
+    traced = with_further_branches(found.system, found.traced, isolated=not _is_of_these_alone(found))
     found = found if traced is found.traced else with_traced(found, traced, most)
     lost = symmetry_loss(found.system, found.traced)
     if lost.harmonics:
         found = replace(found, traced=replace(found.traced, symmetry_lost=lost.frequencies))
         return replace(now, found=found), tuple(sorted({*found.system.harmonics, *lost.harmonics}))
-    more = enlarged(found, most) if traced is not known and not found.agrees else found.system.harmonics
+    is_new = len(traced.branches.paths) > len(known.branches.paths)
+    more = enlarged(found, most) if is_new and not found.agrees else found.system.harmonics
     return replace(now, found=found), more
+
+
+def _is_of_these_alone(found: RefinedResponse) -> bool:
+    """Whether a response falls short of its accuracy, more harmonics take too long, and beside some of its
+    motions these have none: nor need they have the folds of its level."""
+    options, short = found.system.option(VALIDITY), bool(found.further) and not found.reached
+    each = (without_neighbour(one.truncation, one.is_same_curve, options).any() for one in found.errors)
+    return short and any(each)
 
 
 def _with_events(

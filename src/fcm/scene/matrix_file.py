@@ -25,7 +25,7 @@ from fcm.scene.formats.labelled import Labelled
 from fcm.scene.matrix_market import read_matrix_market
 from fcm.scene.npz_file import Arrays, read_npz
 from fcm.scene.reader_process import NAMES, read_apart
-from fcm.scene.readers import matrix_and_rows, own_endings, own_reader, read_own
+from fcm.scene.readers import own_endings, own_reader, read_own
 
 ENDINGS = (
     *(".npz", ".mat", ".h5", ".hdf5", ".mtx", ".sti", ".mas", ".pch", ".op4"),
@@ -147,7 +147,7 @@ def _from_others(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
 def _from_own(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
     """By a reader of one's own."""
     every = read_own(path)
-    return {name: Labelled(*matrix_and_rows(name, one)) for name, one in every.items()}
+    return {name: Labelled(*_matrix_and_rows(name, one)) for name, one in every.items()}
 
 
 def _chosen(found: dict[str, Any], chosen: str, path: str) -> str:
@@ -195,3 +195,13 @@ _READERS = {
     ".pch": _from_dmig,
     **dict.fromkeys((".hb", ".rsa", ".rua", ".matrix"), _from_harwell_boeing),
 }
+
+
+def _matrix_and_rows(name: str, found: Any) -> tuple[Any, tuple[str, ...]]:
+    """A matrix that a reader has returned, and the names of its rows if it gave some."""
+    matrix, rows = found if isinstance(found, tuple) and len(found) == 2 else (found, ())
+    rows = tuple(map(str, rows))
+    matrix = matrix if scipy.sparse.issparse(matrix) else np.asarray(matrix)
+    if rows and len(rows) != matrix.shape[0]:
+        raise UnreadableError(f"{quoted(name)} has {matrix.shape[0]} rows and {len(rows)} names of rows")
+    return matrix, rows

@@ -13,10 +13,7 @@ from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-import scipy.sparse
-
-from fcm.scene.errors import kind, quoted
+from fcm.scene.errors import kind
 from fcm.scene.files import UnreadableError
 
 GROUP = "fcm.readers"
@@ -61,13 +58,3 @@ def read_own(path: Path) -> dict[str, Any]:
     if not isinstance(found, dict) or not all(isinstance(name, str) for name in found):
         raise UnreadableError(f"{said} returned {kind(found)}; a dict of arrays by their names is needed")
     return found
-
-
-def matrix_and_rows(name: str, found: Any) -> tuple[Any, tuple[str, ...]]:
-    """A matrix that a reader has returned, and the names of its rows if it gave some."""
-    matrix, rows = found if isinstance(found, tuple) and len(found) == 2 else (found, ())
-    rows = tuple(map(str, rows))
-    matrix = matrix if scipy.sparse.issparse(matrix) else np.asarray(matrix)
-    if rows and len(rows) != matrix.shape[0]:
-        raise UnreadableError(f"{quoted(name)} has {matrix.shape[0]} rows and {len(rows)} names of rows")
-    return matrix, rows
