@@ -17,6 +17,7 @@ import numpy.typing as npt
 from fcm.accuracy.embedded_pair import Mask
 from fcm.accuracy.options import PAIR, REFINEMENT, PairOptions, RefinementOptions
 from fcm.accuracy.reference_harmonics import keep_for_next, prolongation_to, reference_harmonics
+from fcm.accuracy.reference_pieces import distinct, lengths
 from fcm.accuracy.unchecked_response import UncheckedResponse
 from fcm.continuation import Mark, Path
 from fcm.frozen import Frozen
@@ -68,7 +69,7 @@ def required_harmonics(
     system, amplitudes = found.system, [one.amplitude for one in found.quantities]
     height = np.max([one.max(axis=0) for one in amplitudes], axis=0)
     size = np.where(dofs_of_interest(system.scene, height, options), height, np.inf)
-    places = list(_places(found.traced.branches.paths, amplitudes, size, options))
+    places = list(_places(found.traced.branches.paths, amplitudes, size, options, pair))
     share = _greatest_shares(
         FurtherHarmonics(system), np.array([one.path.z[one.tries[0]] for one in places]), size
     )
@@ -119,15 +120,25 @@ def needed(
 
 
 def _places(
-    paths: Sequence[Path], amplitudes: Sequence[FloatArray], height: FloatArray, options: RefinementOptions
+    paths: Sequence[Path],
+    amplitudes: Sequence[FloatArray],
+    height: FloatArray,
+    options: RefinementOptions,
+    pair: PairOptions,
 ) -> list[_SpecialPoint]:
-    """Tops of paths nearly as high as the height (dof,), which is infinite where none counts; and folds."""
+    """Tops of paths nearly as high as the height (dof,), which is infinite where none counts; and folds.
+
+    Of tops that lie closely together, as those of many degrees of freedom do, the first stands for all.
+    """
     found, dofs = [], len(height)
     for path, amplitude in zip(paths, amplitudes, strict=True):
         tops, most = amplitude.argmax(axis=0), amplitude.max(axis=0)
         rivals = most > options.rival_fraction * height
-        for top in np.unique(tops[rivals]).tolist():
-            counts = np.append(False, rivals & (tops == top))
+        every, place = np.unique(tops[rivals]), lengths(path)
+        alone = every[distinct(place[every], pair.peak_spacing * (place[-1] - place[0]))]
+        stands_for = alone[np.searchsorted(alone, tops, "right") - 1] if alone.size else tops
+        for top in alone.tolist():
+            counts = np.append(False, rivals & (stands_for == top))
             steps = (0, *(way * step for step in options.peak_offsets for way in (-1, 1)))
             tries = [top + step for step in steps if 0 <= top + step < len(path.z)]
             found.append(_SpecialPoint(path, amplitude, tries, counts))
