@@ -6,14 +6,14 @@ import re
 from collections.abc import Sequence
 
 MOST_DOFS = 4  # degrees of freedom whose peaks fit beside each other on a line of a table
-_ROTATION = re.compile(r"\d+[: _]?(r[xyz]|rot[xyz]?|th[xyz]?|theta[xyz]?)|\d+:[456]", re.IGNORECASE)
+_ROTATION = re.compile(r"(\d+|.+[: _])[: _]?(r[xyz]|rot[xyz]?|th[xyz]?|theta[xyz]?)|\d+:[456]", re.IGNORECASE)
 
 
 def is_rotation(dof: str) -> bool:
     """Whether a degree of freedom is that of a node about an axis, by its name.
 
-    >>> [is_rotation(dof) for dof in ("40rz", "40:6", "21th", "40z", "tip")]
-    [True, True, True, False, False]
+    >>> [is_rotation(dof) for dof in ("40rz", "40:6", "21th", "tip_rz", "40z", "tip")]
+    [True, True, True, True, False, False]
     """
     return _ROTATION.fullmatch(dof) is not None
 

@@ -50,6 +50,17 @@ def test_a_page_of_theory_has_equations_a_figure_its_modules_and_its_sources(pag
     assert sources and all(re.search(r"\b(?:18|19|20)\d\d\b", one) for one in sources)
 
 
+@pytest.mark.parametrize("page", sorted((GUIDE / "theory").glob("*.md")), ids=name_of)
+def test_each_source_of_a_page_of_theory_stands_where_it_is_used(page):
+    """By its first author and the year behind: Woodbury 1950, Den Hartog (1931)."""
+    body, _, sources = " ".join(read(page).split()).partition(" ## Sources - ")
+    for one in re.split(r" - (?=\S*[A-Z]\S*\.)", sources):
+        author, _, rest = one.partition(",")
+        name = re.sub(r"^(?:\S*\. ?-?)+", "", author)
+        years = re.findall(r"\b(?:18|19|20)\d\d\b", rest)
+        assert any(re.search(rf"{name}\b[^.;()]*[ (]{year}\b", body) for year in years), one
+
+
 def test_every_picture_is_shown():
     shown = {(page.parent / file).resolve() for page in PAGES for file, _ in links(page)}
     assert not [path.name for path in (GUIDE / "figures").rglob("*.*") if path.resolve() not in shown]

@@ -167,4 +167,4 @@ def test_nothing_is_chosen_by_rounding(fcm, tmp_path, what):
     (tmp_path / "s.toml").write_text(SCENES["slips"][0] + aim)
     done = fcm("respond", "s.toml")
     assert done.code == 2 and done.out == ""
-    assert ("tip_y has no peak" if what == "peak" else "tip_y does not move, beside rounding") in done.err
+    assert "optimum: tip_y does not move, beside rounding: no force reaches it" in done.err

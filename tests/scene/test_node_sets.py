@@ -182,10 +182,10 @@ def test_a_file_of_pairs_does_not_tell_its_sides(tmp_path):
     assert scene.interfaces[0].first.tolist()[2] == [0.0, 1.0, 0.0]
 
 
-def of_file(folder, partners, contact=(), nodes=()):
-    """The scene of pairs 1.. with partners, by a file and the mesh of both sides."""
-    rows = "".join(f"{1 + k},{node}\n" for k, node in enumerate(partners))
-    (folder / "pairs.csv").write_text(f"node,other\n{rows}")
+def of_file(folder, partners, contact=(), nodes=(), rows=""):
+    """The scene of pairs 1.. with partners, by a file, or its text, and the mesh of both sides."""
+    rows = rows or "node,other\n" + "".join(f"{1 + k},{node}\n" for k, node in enumerate(partners))
+    (folder / "pairs.csv").write_text(rows)
     first, second = places(0.05)
     (folder / "two.inp").write_text(deck(first, second))
     given = {"pairs": "pairs.csv", "mesh": "two.inp"} | dict(nodes)
@@ -229,3 +229,28 @@ def test_what_is_amiss_with_a_file_and_a_mesh_is_said(tmp_path, partners, nodes,
     with pytest.raises(SceneError) as caught:
         of_file(tmp_path, partners, nodes=nodes)
     assert words in str(caught.value)
+
+
+WRONG = [
+    (lambda at: at, None),
+    (lambda at: at + 0.025 * NORMAL, None),  # between both nodes
+    (lambda at: np.round(at, 1), None),
+    (lambda at: 1000.0 * at, "12 pairs are not where"),
+    (lambda at: at[:, [1, 0, 2]], "pairs are not where"),
+    (
+        lambda at: at + np.outer(np.arange(12) == 4, [0.0, 0.0, 1.0]),
+        "1 pair is not where the mesh has its nodes. Node 5 is",
+    ),
+]
+
+
+@pytest.mark.parametrize("moved, words", WRONG)
+def test_coordinates_of_a_file_that_are_not_those_of_the_mesh_are_asked_about(tmp_path, moved, words):
+    lines = ["node,other,x,y,z"]
+    lines += [
+        f"{1 + k},{RIGHT[k]},{x},{y},{z}" for k, (x, y, z) in enumerate(moved(places(0.05)[0]).tolist())
+    ]
+    scene = of_file(tmp_path, RIGHT, rows="\n".join(lines) + "\n")
+    asked = [note for note in scene.notes if "coordinates of the file" in note]
+    assert len(asked) == (words is not None) and all(words in note for note in asked)
+    assert scene.interfaces[0].first == pytest.approx(places(0.05)[0])

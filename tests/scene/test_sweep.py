@@ -9,7 +9,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from fcm.scene import scene_from_dict
+from fcm.scene import SceneError, scene_from_dict
 
 
 def swept(data, **sweep):
@@ -323,3 +323,32 @@ def test_a_misspelled_number_is_said_beside_other_mistakes(data, mistakes):
     data["contact"][0]["mu"] = "x"
     data["sweep"] = {"contact.shrod.n_0": [1.0]}
     assert 'no such number in the scene; did you mean "contact.shroud.n_0"?' in mistakes(data)
+
+
+REPEATED = [
+    ({"contact.shroud.n_0": [5, 20, 20.0, 80, 5]}, ['sweep."contact.shroud.n_0": has 5 more than once']),
+    ({"contact.shroud.n_0": {"from": 3, "to": 3, "count": 2}}, ["has 3 more than once"]),
+    (
+        {"paired": [{"contact.shroud.n_0": [1, 1, 1], "contact.shroud.mu": [0.1, 0.2, 0.1]}]},
+        ["sweep.paired[0]: has 1, 0.1 more than once"],
+    ),
+]
+
+
+@pytest.mark.parametrize("sweep, said", REPEATED)
+def test_a_value_that_is_there_twice_is_refused(data, sweep, said):
+    with pytest.raises(SceneError) as error:
+        scene_from_dict(data | {"sweep": sweep})
+    assert all(text in str(error.value) for text in said), error.value
+
+
+@pytest.mark.parametrize(
+    "sweep",
+    [
+        {"paired": [{"contact.shroud.n_0": [1, 1], "contact.shroud.mu": [0.1, 0.2]}]},
+        {"contact.shroud.n_0": {"normal": [5.0, 0.0], "count": 2}},
+        {"contact.shroud.n_0": [1, 2], "contact.shroud.mu": [0.1, 0.2]},
+    ],
+)
+def test_values_that_make_other_curves_or_are_drawn_may_be_there_twice(data, sweep):
+    assert len(scene_from_dict(data | {"sweep": sweep}).curves) >= 2

@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from fcm.accuracy.refinement import enlarged, every_branch, with_errors
+from fcm.at_rest import at_rest
 from fcm.harmonic_balance.cost_model import seconds_of_curve
 from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
@@ -221,9 +222,26 @@ def _downhill(task: PeakTask, harmonics: tuple[int, ...], progress: Progress | N
 
 
 def _no_peak(task: PeakTask) -> str:
-    dofs = " and ".join(task.scene.modal.dofs[target.dof] for target in task.targets)
-    why = f"{dofs} has no peak inside the range of frequencies"
+    each = [target.dof for target in task.targets]
+    dofs = " and ".join(task.scene.modal.dofs[dof] for dof in each)
+    branches = every_branch(task.system(task.with_values(task.bounds[:, 0]), (1,))).quantities
+    height = np.max([one.amplitude.max(axis=0, initial=0.0) for one in branches], axis=0, initial=0.0)
+    if height.size and at_rest(height)[each].all():
+        return f"optimum: {still(dofs, len(each))}"
+    have = "has" if len(each) == 1 else "have"
+    why = f"{dofs} {have} no peak inside the range of frequencies"
     return f"optimum: {why}; minimise greatest.NAME, or widen the range"
+
+
+def still(dofs: str, count: int) -> str:
+    """Of degrees of freedom that only rounding moves.
+
+    >>> still("8y", 1)
+    '8y does not move, beside rounding: no force reaches it. Minimise another degree of freedom'
+    """
+    verb, which = ("does", "it") if count == 1 else ("do", "them")
+    why = f"{dofs} {verb} not move, beside rounding: no force reaches {which}"
+    return f"{why}. Minimise another degree of freedom"
 
 
 def _optimal(

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from fcm.model.scene import Optimum, Scene
-from fcm.response.least_peak import Found, PeakTask, with_values
+from fcm.response.least_peak import Found, PeakTask, still, with_values
 from fcm.response.nearly_least import nearly_least
 from fcm.response.options import OPTIMUM, ResponseOptions
 from fcm.response.request import ResponseError, request_of
@@ -164,10 +164,9 @@ def _at(free: Scene, numbers: list[Number], optima: list[Optimal]) -> Scene:
 
 def _check_moves(found: Optimal, curve: Curve) -> None:
     """Raise ResponseError where what was minimised is rounding."""
-    still = [dof for dof, _ in found.active if curve.peaks[dof].amplitude == 0.0]
-    if still and found.value > 0.0:
-        verb = "does" if len(still) == 1 else "do"
-        raise ResponseError(f"optimum: {' and '.join(still)} {verb} not move, beside rounding")
+    unmoved = [dof for dof, _ in found.active if curve.peaks[dof].amplitude == 0.0]
+    if unmoved and found.value > 0.0:
+        raise ResponseError(f"optimum: {still(' and '.join(unmoved), len(unmoved))}")
 
 
 def _with_error(found: Optimal, curve: Curve) -> Optimal:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from fcm.model.question import Question
 from fcm.model.scene import FloatArray, Force, Load
+from fcm.rotational_dofs import is_rotation
 from fcm.scene.errors import bare, kind, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
@@ -18,7 +20,6 @@ from fcm.scene.rules import ANY, RULES
 from fcm.scene.section import Section
 
 TRANSLATIONS = ("x", "y", "z")
-ROTATIONS = ("rx", "ry", "rz")
 DIRECTIONS = {  # keys that are arrays over the degrees of freedom; second is of contacts in a plane alone
     "contact": ("tangential", "second", "normal"), "force": ("dof",), "load": ("dof",)
 }  # fmt: skip
@@ -94,11 +95,10 @@ def _translation(section: Section, axis: str, dofs: Names | None) -> FloatArray 
 def along_axis(name: str, axis: str) -> bool:
     """Whether a degree of freedom is called as an axis, or as a node and that.
 
-    >>> along_axis("x", "x"), along_axis("12x", "x"), along_axis("12rx", "x"), along_axis("max", "x")
-    (True, True, False, False)
+    >>> [along_axis(name, "x") for name in ("x", "12x", "tip_x", "12rx", "tip_rx", "max")]
+    [True, True, True, False, False, False]
     """
-    motion = motion_of(name)
-    return name.lower() == axis or (motion.endswith(axis) and not motion.endswith(f"r{axis}"))
+    return re.fullmatch(rf"(.*[\d_:. ])?{axis}", motion_of(name) or name, re.IGNORECASE) is not None
 
 
 def base_force(draft: dict[str, Any], dofs: tuple[str, ...]) -> Force:
@@ -137,7 +137,7 @@ def _net(weights: FloatArray | None, dofs: Names | None) -> FloatArray | None:
         return None
     loaded = np.flatnonzero(weights)
     along = np.array([[along_axis(dofs[i], axis) for i in loaded] for axis in TRANSLATIONS], dtype=np.bool_)
-    turning = np.array([motion_of(dofs[i])[-2:] in ROTATIONS for i in loaded], dtype=np.bool_)
+    turning = np.array([is_rotation(motion_of(dofs[i]) or dofs[i]) for i in loaded], dtype=np.bool_)
     if not (along.any(axis=0) | turning).all():
         return None
     each = along * weights[loaded]

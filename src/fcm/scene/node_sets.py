@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -21,7 +21,7 @@ from fcm.mesh.pairing import (
     side,
     turned,
 )
-from fcm.model.interface import Interface
+from fcm.model.interface import FloatArray, Interface
 from fcm.model.question import Question
 from fcm.scene.errors import choices, counted, quoted
 from fcm.scene.files import DataFileError, Files
@@ -111,7 +111,7 @@ def with_places(section: Section, found: Section, table: PairTable, files: Files
     couples = [(pair[0], pair[1]) for pair in pairs if len(pair) > 1]
     plane = _plane(section, mesh, couples or tuple(pair[0] for pair in pairs))
     interface = Interface(name, first, second, plane=plane)
-    said = _said_of_plane(section, interface, plane)
+    said = [*_said_of_places(name, table, first, second), *_said_of_plane(section, interface, plane)]
     if not couples:
         return replace(table, interface=interface, said=tuple(said))
     apart = np.linalg.norm(
@@ -133,6 +133,27 @@ def with_places(section: Section, found: Section, table: PairTable, files: Files
             "Is a column of the file shifted?"
         )
     return replace(table, interface=interface, said=(text, *said))
+
+
+def _said_of_places(name: str, table: PairTable, first: FloatArray, second: FloatArray) -> Iterator[Question]:
+    """Whether coordinates of the file are those of a mesh: of a node of the pair, or between both."""
+    if table.places is None:
+        return
+    along = second - first
+    length = np.maximum(np.sum(along**2, axis=1), np.finfo(float).tiny)
+    part = np.clip(np.sum((table.places - first) * along, axis=1) / length, 0.0, 1.0)
+    off = np.linalg.norm(table.places - first - part[:, None] * along, axis=1)
+    size = np.linalg.norm(np.ptp(np.concatenate((first, second)), axis=0)) or np.abs(first).max()
+    wrong = np.flatnonzero(off > TOLERANCES.placed * size)
+    if wrong.size:
+        worst = int(off.argmax())
+        there, meant = (", ".join(f"{x:g}" for x in where[worst]) for where in (table.places, first))
+        many = "1 pair is" if wrong.size == 1 else f"{wrong.size} pairs are"
+        yield Question(
+            f"contact {quoted(name)}: by the coordinates of the file {many} not where the mesh has its "
+            f"nodes. Node {table.pairs[worst][0]} is at {there} in the file, and at {meant} in the mesh, "
+            "which is used. Are both in the same unit, and of the same nodes?"
+        )
 
 
 def with_fitted(section: Section, table: PairTable) -> Section:

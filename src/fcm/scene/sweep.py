@@ -17,6 +17,7 @@ one [[sweep.paired]] table go in step, and must have as many values each.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import product
@@ -74,7 +75,9 @@ def read_sweep(top: Section, parts: Mapping[str, Any], others: Sequence[SweptKey
         if key == "paired":
             found += _paired(section, addresses)
         elif key != "correlation":
-            found.append(_swept(section, key, addresses, checked=key not in correlated))
+            one = _swept(section, key, addresses, checked=key not in correlated)
+            _note_repeated(section, quoted(key), [one])
+            found.append(one)
     swept = [*others, *(one for one in found if one is not None)]
     if correlation is not None:
         swept = _correlated(section, swept, correlation)
@@ -125,8 +128,18 @@ def _paired(section: Section, addresses: Addresses) -> list[SweptKey | None]:
             each = " and ".join(map(str, sorted(counts)))
             table.wrong("", f"its keys go in step, but have {each} values")
         elif None not in keys:
+            _note_repeated(table, "", keys)
             found += [replace(one, group=("paired", number)) for one in keys if one is not None]
     return found
+
+
+def _note_repeated(section: Section, key: str, keys: Sequence[SweptKey | None]) -> None:
+    """Note the first value of keys in step that would make a curve again; draws may be equal."""
+    listed = [one.values for one in keys if one is not None and not one.drawn]
+    rows = Counter(zip(*listed, strict=True)) if len(listed) == len(keys) else Counter[tuple[float, ...]]()
+    again = next((row for row, count in rows.items() if count > 1), None)
+    if again is not None:
+        section.wrong(key, f"has {', '.join(map(shown, again))} more than once; each curve is traced once")
 
 
 def _correlated(section: Section, swept: list[SweptKey], correlation: Correlation) -> list[SweptKey]:
