@@ -189,3 +189,15 @@ def test_an_optimum_says_for_which_numbers_no_peak_lies_within_the_frequencies(r
         "number": [0.1, 30.0],
     }  # beside which no lower one matters
     assert peaks_not_followed({"tracked": tracked | {"curves": [*curves, higher]}}) == ""
+
+
+@pytest.mark.parametrize(
+    ("gaps", "said"), [([1e3, 2e3], "on any curve"), ([1e3], "within the range"), ([1e3, 1e-3], "")]
+)
+def test_a_contact_that_never_touches_beside_another_that_slips_is_named(fcm, scene, gaps, said):
+    stop = '[[contact]]\nname = "stop"\ntangential = "u"\nnormal = "v"\n'
+    stop += "mu = 0.1\nk_u = 1.0\nk_v = 1.0\ngap = 1.0\n"
+    scene.write_text(scene.read_text() + stop + f'[sweep]\n"contact.stop.gap" = {gaps}\n')
+    run = fcm("respond", scene, "--harmonics", 1)
+    assert run.code == 0 and ("never touches" in run.err) == bool(said)
+    assert not said or f'1 contact never touches {said}: "stop". A smaller gap' in run.err

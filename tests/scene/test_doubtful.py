@@ -127,6 +127,8 @@ STEEL = {  # two modes, 35.6 and 93.2 Hz, as a program in N, m, kg writes it
         ({}, ""),
         ({"mass": [[2e-3, 0.0], [0.0, 2e-3]]}, "31.6 times as low"),
         ({"mass": [[2e3, 0.0], [0.0, 2e3]]}, "31.6 times as high"),
+        ({"mass": [[772.0, 0.0], [0.0, 772.0]], "force": "lbf"}, "divide the mass by 386"),
+        ({"mass": [[2e3, 0.0], [0.0, 2e3]], "force": "lbf"}, "are the units of the structure"),
         ({"unit": "rad/s"}, 'in Hz: frequency_unit = "Hz"'),
         ({"k_u": 1e12}, ""),  # a resonance lies between the free mode and the stuck one
         ({"mass": [[2e-5, 0.0], [0.0, 2e-5]]}, "are the units of the structure"),
@@ -145,6 +147,7 @@ def test_a_range_without_a_resonance_says_so_with_the_nearest_modes(change, word
         "contact": [contact | {key: change[key] for key in ("k_u", "k_v") if key in change}],
         "force": [{"dof": "u", "amplitude": 1.0}],
         "response": {"frequency": [40.0, 60.0]},
+        "units": {"length": "in", "force": change["force"]} if "force" in change else {},
     }
     said = resonance_doubt(scene_from_dict(data))
     assert words in said and bool(said) == bool(words)

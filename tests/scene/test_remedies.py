@@ -94,3 +94,9 @@ def test_a_period_that_is_not_found_is_said_in_the_unit_of_the_scene():
     given = scene_from_dict(scene(modal=free, contact=[contact], response={"frequency": [0.5, 1.5]}))
     with pytest.raises(SimulationError, match=r" at 1 Hz "):
         periodic(given, 2.0 * np.pi)
+
+
+def test_a_node_that_no_row_has_may_be_held(tmp_path):
+    of_rows = refused(structure=STRUCTURE, force=[{"dof": "9x", "amplitude": 1.0}])
+    assert "; one that is held has no row" in of_rows
+    assert "held" not in refused(modal=MODAL, force=[{"dof": "9x", "amplitude": 1.0}])

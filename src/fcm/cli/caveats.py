@@ -49,6 +49,26 @@ def linear(summary: Mapping[str, Any]) -> str:
     return f"{what.format(which)}: the response is linear. With {helps} it is not"
 
 
+def never_closed(summary: Mapping[str, Any]) -> str:
+    """Which contacts touch on no curve, beside others that do; empty if none, or if `linear` says so."""
+    curves = summary["curves"]
+    if not curves or linear(summary) or not all(curve.get("contacts") for curve in curves):
+        return ""
+    loads = [
+        {name: one["greatest_normal_force"] for name, one in curve["contacts"].items()} for curve in curves
+    ]
+    apart = [
+        name for name in loads[0] if all(one[name]["greatest"] == one[name]["error"] == 0.0 for one in loads)
+    ]
+    if not apart:
+        return ""
+    which = "1 contact never touches" if len(apart) == 1 else f"{len(apart)} contacts never touch"
+    where = "on any curve" if len(curves) > 1 else "within the range"
+    more = f" and {len(apart) - SENTENCES.named} more" if len(apart) > SENTENCES.named else ""
+    names = ", ".join(f'"{name}"' for name in apart[: SENTENCES.named]) + more
+    return f"{which} {where}: {names}. A smaller gap (a higher n_0) or more force helps"
+
+
 def _shaken_down(summary: Mapping[str, Any], at: float) -> str:
     """That contacts which stick would slip if they began unstressed, so that there may be other motions."""
     unit = summary["frequency_unit"]

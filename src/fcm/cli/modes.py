@@ -40,7 +40,7 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
             messages.info("- no share: there rigid-body modes yield to a static load without end")
         count, shown = len(found["modes"][0]["participation"]), len(_shown(found))
         if shown < count:
-            messages.info(f"{shown} of {count} directions of contacts and forces: --json has all")
+            messages.info(f"shown are {shown} of {count} directions of contacts and forces: --json has all")
         if missing := len(found["modes"]) - len(_listed(found["modes"])):
             stand = "mode stands" if missing == 1 else "modes stand"
             messages.info(f"{missing} more {stand} for flexibility: --json has all")

@@ -13,6 +13,7 @@ from fcm.cli.caveats import (
     kept_friction,
     linear,
     mirrored,
+    never_closed,
     not_confirmed,
     nothing_stable,
     peaks_not_followed,
@@ -105,6 +106,8 @@ def close(
         messages.detail(levels)
     if resonant and (stuck := linear(result)):
         messages.info(stuck)
+    if apart := never_closed(result):
+        messages.info(apart)
     if images := mirrored(result):
         messages.info(images)
     if kept := kept_friction(result):

@@ -14,6 +14,17 @@ from fcm.scene.options import LIMITS, MESSAGES, TOLERANCES
 from fcm.structure.ring import nodal_diameters
 
 METRE_AND_MILLIMETRE = float(np.sqrt(1000.0))  # of frequencies, where stiffness and mass mix the two systems
+POUND_AND_INCH = float(np.sqrt(386.09))  # of frequencies, by the acceleration of gravity in in/s^2
+METRIC_SLIPS = {  # what the frequencies are to be multiplied by: how that comes, and what helps
+    METRE_AND_MILLIMETRE: "the range would hold modes if frequencies were 31.6 times as high. So it is "
+    "with a stiffness in N/mm and a mass in kg: give the mass in t",
+    1.0 / METRE_AND_MILLIMETRE: "the range would hold modes if frequencies were 31.6 times as low. So it is "
+    "with a stiffness in N/m and a mass in t: give the mass in kg",
+}
+IMPERIAL_SLIPS = {
+    POUND_AND_INCH: "the range would hold modes if frequencies were 19.6 times as high. So it is with a "
+    "stiffness in lbf/in and a mass in lb: divide the mass by 386",
+}
 UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}
 
 FLEXIBILITY = "flexibility"  # the kind of a mode that stands for those left out
@@ -76,7 +87,8 @@ def resonance_doubt(scene: Scene) -> str:
     if scene.contacts:
         places += f" without contacts, at {_nearest(stuck, ends) / UNIT[unit]:.6g} {unit} while all stick"
     margin = (ends[1] / ends[0]) ** MESSAGES.range_margin  # at the very end a mode may be by chance
-    slip = _slip_of_units(opened[:1], stuck[:1], (ends[0] * margin, ends[1] / margin), unit)
+    within = (ends[0] * margin, ends[1] / margin)
+    slip = _slip_of_units(opened[:1], stuck[:1], within, unit, imperial="lbf" in scene.units)
     if not slip:
         slip = "are the units of the structure, of the contacts' stiffness and of the range those meant?"
     low, high = (f"{end / UNIT[unit]:.6g}" for end in ends)
@@ -170,7 +182,7 @@ def notes_of_modes(scene: Scene) -> list[str]:
     if rigid:
         of_open = f"0 ({counted(rigid, 'rigid-body mode')})" + (f", {of_open}" if opened.size else "")
     damped = f". Their damping ratios while stuck: {_listed(ratio[:most], 3)}" if omega.size else ""
-    among = ": of the first of each, of the second, and so on" if rigid else ""
+    among = ": of the first of each, rigid-body modes counted, and so on" if rigid else ""
     of_stuck = f"{_listed(omega[:most] / UNIT[unit])} {unit}" if omega.size else "none"
     said = [
         f"structure: first resonances with all contacts open: {of_open}; with all stuck: {of_stuck}{damped}. "
@@ -274,18 +286,15 @@ def _read(scene: Scene, frequency: FloatArray) -> list[str]:
     return said
 
 
-def _slip_of_units(opened: FloatArray, stuck: FloatArray, ends: tuple[float, float], unit: str) -> str:
+def _slip_of_units(
+    opened: FloatArray, stuck: FloatArray, ends: tuple[float, float], unit: str, imperial: bool = False
+) -> str:
     """By which usual slip of units the range [rad/s] would have the lowest resonance; else ''."""
     hertz = 2.0 * np.pi
     slips = {
         1.0 / hertz: 'the range would hold modes if its numbers were in Hz: frequency_unit = "Hz"',
         hertz: 'the range would hold modes if its numbers were in rad/s: frequency_unit = "rad/s"',
-        METRE_AND_MILLIMETRE: "the range would hold modes if frequencies were 31.6 times as high. So it is "
-        "with a stiffness in N/mm and a mass in kg: give the mass in t",
-        1.0
-        / METRE_AND_MILLIMETRE: "the range would hold modes if frequencies were 31.6 times as low. So it is "
-        "with a stiffness in N/m and a mass in t: give the mass in kg",
-    }
+    } | (IMPERIAL_SLIPS if imperial else METRIC_SLIPS)
     del slips[hertz if unit == "rad/s" else 1.0 / hertz]  # it is in that unit already
     return next(
         (text for factor, text in slips.items() if _resonance_within(opened * factor, stuck * factor, ends)),

@@ -50,11 +50,23 @@ class Names(tuple[str, ...]):
         own = [name for name in self if name.startswith(number) and not name[len(number)].isdecimal()]
         return f"; a number alone is no name: write {' or '.join(map(quoted, own[:6]))}" if own else ""
 
+    def held(self, name: str) -> str:
+        """What may be so of a name that no row has; empty where nothing is known of it."""
+        return ""
+
 
 class RowNames(Names):
     """The names of the rows of matrices."""
 
     key = "structure.dofs"
+
+    def held(self, name: str) -> str:
+        """A node and a direction may be one of a support.
+
+        >>> RowNames(("40x", "tip")).held("1x"), RowNames(("40x", "tip")).held("q")
+        ('; one that is held has no row', '')
+        """
+        return "; one that is held has no row" if motion_of(name) else ""
 
 
 def motion_of(name: str) -> str:

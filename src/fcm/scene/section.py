@@ -191,7 +191,7 @@ class Section:
             if of_node := dofs.of_node(dof):
                 self.wrong(key, f"{what}{of_node}")
             else:
-                self.wrong(key, f"{what}; {dofs.key} are {choices(dofs)}", dof, dofs)
+                self.wrong(key, f"{what}; {dofs.key} are {choices(dofs)}{dofs.held(dof)}", dof, dofs)
         return not unknown
 
 
