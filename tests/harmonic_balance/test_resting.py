@@ -87,8 +87,9 @@ def test_a_contact_that_slides_without_friction_takes_part_in_no_change():
     (exact,) = trace_exact(scene, at).curves
     swept = slice(0, 3)  # from one frequency to the next; from rest there are others, of several periods
     assert (exact.stable[swept] == 1.0).all() and (exact.orbits.repeats[swept] == 1).all()
-    assert (curve.stable == 1.0).all()
-    found = np.interp(at, curve.frequency, curve.amplitude[:, 5])
+    held = curve.regime[:, 0] == "E"  # beside a branch on which the slider slips
+    assert held.any() and (curve.stable[held] == 1.0).all()
+    found = np.interp(at, curve.frequency[held], curve.amplitude[held, 5])
     assert found == pytest.approx(exact.amplitude[swept, 5], rel=1e-3)
 
 
