@@ -90,8 +90,8 @@ def branches_uncertain(summary: Mapping[str, Any]) -> str:
 def folds_uncertain(summary: Mapping[str, Any]) -> str:
     """Where folds of the level were not followed to their end: branches may be missing; empty if nowhere."""
     what = (
-        "isolated branches may be missing {side} {}: there a fold of the level of the forces was lost. "
-        "The curve itself is whole"
+        "isolated branches may be missing {side} {}: from there a fold of the level of the forces was not "
+        "followed to its end. The curve itself is whole"
     )
     helps = f"{_BY_LEVEL} F, with F {{side}} {{}}"
     if how := _how(summary):
