@@ -155,8 +155,8 @@ def test_where_folds_of_the_level_were_lost_a_run_says_once_that_branches_may_be
     said = (
         "isolated branches may be missing beyond 1.207 rad/s (contact.0.n_0 = 1; on 2 of 3 curves): from "
         "there a fold of the level of the forces was not followed to its end. The curve itself is whole. "
-        "--level 0:4 --at F, with F beyond 1.207, or a sweep up and down by --method exact --at FROM:TO:COUNT, "
-        "looks there. All of them: folds_unsure_at of --json"
+        "--level 0:4 --at F, with F beyond 1.207, or a sweep up and down by --method exact --at "
+        "FROM:TO:COUNT, looks there. All of them: folds_unsure_at of --json"
     )
     assert run.code == 0 and run.err.count(said) == 1 and run.err.count("may be missing") == 1
     curves = json.loads(run.out)["curves"]
