@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.branches.hunt import passings as passings_at
 
 import fcm
 from fcm.response.request import Request
 from fcm.response.trace import traced_curve
 from fcm.time_domain import simulate
 
+from ..branches.hunt import passings as passings_at
 from .random_scenes import random_scene
 
 

@@ -85,15 +85,15 @@ def with_friction_raised(system: System, found: Traced) -> Traced:
     paths, scene = found.branches.paths, system.scene
     if not (paths and scene.contacts) or scene.loads or system.own_laws or not may_wedge(scene):
         return found
-    z = np.concatenate([path.z for path in paths])
-    omega = shakedown_at(system, z[:, -1], ContactRecord.at(system, z).words)
+    points = np.concatenate([path.z for path in paths])
+    omega = shakedown_at(system, points[:, -1], ContactRecord.at(system, points).words)
     if np.isnan(omega):
         return found
     contacts = tuple(replace(one, mu=0.0) for one in scene.contacts)
-    without = solutions(system.of(replace(scene, contacts=contacts)), omega).solutions
+    without_friction = solutions(system.of(replace(scene, contacts=contacts)), omega).solutions
     problem, starts = FrictionProblem(system, omega), list[FloatArray]()
-    for z in without:
-        raised = follow(problem, np.append(z[:-1], 0.0), (0.0, 1.0))
-        starts += [np.append(one[:-1], omega) for one in raised.z if one[-1] == 1.0]
+    for start in without_friction:
+        raised = follow(problem, np.append(start[:-1], 0.0), (0.0, 1.0))
+        starts += [np.append(z[:-1], omega) for z in raised.z if z[-1] == 1.0]
     every = with_further(system, found, (), starts)
     return every if len(every.branches.paths) > len(found.branches.paths) else found

@@ -6,6 +6,8 @@ Ciavarella and Barber, Shakedown in elastic contact problems with Coulomb fricti
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 
@@ -49,16 +51,12 @@ def may_wedge(scene: Scene) -> bool:
     >>> may_wedge(fcm.load_scene("yang1998-n5"))
     False
     """
-    modal, contacts = scene.modal, scene.contacts
-    along = np.array([modal.shapes @ way for one in contacts for way in one.directions[:-1]])
-    across = np.array([modal.shapes @ one.normal for one in contacts])
-    k_v, mu = np.array([(one.k_v, one.mu if one.k_u > 0.0 else 0.0) for one in contacts]).T
-    stiffness = (across.T * k_v) @ across + np.diag(modal.mass * modal.frequency**2)
+    rough = np.array([one.mu if one.k_u > 0.0 else 0.0 for one in scene.contacts])
     try:
-        wedging = (mu * k_v)[:, None] * (across @ np.linalg.solve(stiffness, along.T))
+        load, _ = _load_by_friction(scene, np.ones_like(rough), np.zeros_like(rough))
     except np.linalg.LinAlgError:  # a mode is free to drift with it
         return True
-    return bool(np.linalg.norm(wedging, 2) >= 1.0)
+    return bool(np.linalg.norm(rough[:, None] * load, 2) >= 1.0)
 
 
 def changes_load(
@@ -72,6 +70,20 @@ def changes_load(
     >>> changes_load(fcm.load_scene("yang1998-n5"), every, every, of_its_own=True)
     True
     """
+    try:
+        load, whose = _load_by_friction(scene, closed, stuck)
+    except np.linalg.LinAlgError:  # a mode is free to drift with it
+        return True
+    if not of_its_own:
+        load[whose, np.arange(whose.size)] = 0.0
+    return bool((np.abs(load[:, stuck[whose]]) > FRICTION.load_tolerance).any())
+
+
+def _load_by_friction(
+    scene: Scene, closed: npt.NDArray[Any], stuck: npt.NDArray[Any]
+) -> tuple[FloatArray, npt.NDArray[np.intp]]:
+    """Changes of loads by a unit of friction force (contact, friction), where contacts that are closed and
+    stuck (contact,) stay so; and whose each friction force is. Raises LinAlgError where a mode is free."""
     modal, contacts = scene.modal, scene.contacts
     slides = [(i, way) for i, contact in enumerate(contacts) for way in contact.directions[:-1]]
     whose = np.array([i for i, _ in slides])
@@ -80,10 +92,5 @@ def changes_load(
     k_u, k_v = (np.array([getattr(contact, name) for contact in contacts]) for name in ("k_u", "k_v"))
     stiffness: FloatArray = (along.T * (k_u * stuck)[whose]) @ along + (across.T * (k_v * closed)) @ across
     stiffness += np.diag(modal.mass * modal.frequency**2)
-    try:
-        load = k_v[:, None] * (across @ np.linalg.solve(stiffness, along.T))  # (contact, friction)
-    except np.linalg.LinAlgError:  # a mode is free to drift with it
-        return True
-    if not of_its_own:
-        load[whose, np.arange(whose.size)] = 0.0
-    return bool((np.abs(load[:, stuck[whose]]) > FRICTION.load_tolerance).any())
+    load: FloatArray = k_v[:, None] * (across @ np.linalg.solve(stiffness, along.T))
+    return load, whose
