@@ -34,11 +34,11 @@ ComplexArray = npt.NDArray[np.complex128]
 
 class PreciseFundamental(NamedTuple):
     """The fundamental where contacts are stiff: z (unknown + 1,) with it; X (dof,) of the degrees of freedom,
-    of use for those that are no combination of contacts' displacements, None where they are as the balance
-    has them; and how far the displacements (port,) and (dof,) are off by rounding."""
+    of use for those that are no combination of contacts' displacements; and how far the displacements (port,)
+    and (dof,) are off by rounding."""
 
     z: FloatArray
-    X: ComplexArray | None
+    X: ComplexArray
     ports: FloatArray
     dofs: FloatArray
 
@@ -70,22 +70,27 @@ def with_precise_fundamental(
     looked = stiff
     if (quick is not None or balance.rank) and stiff.size > options.max_points:
         looked = stiff[np.linspace(0, stiff.size - 1, options.max_points).round().astype(np.intp)]
+    attached = np.abs(displacements.attached)
     for i in looked:
-        z, tangent = made.z[i].copy(), points.tangent[i]
+        z = made.z[i].copy()
         balance.evaluate(z)
         found = None if quick is not None else _precise(balance, z, springs, forces, options)
         if found is None:
-            found = _as_balanced(balance, system.linear, springs, tangent, options)
-        made.z[i] = found.z
-        balance.evaluate(found.z)
-        balance.report(found.z, np.zeros(found.z.size))
-        made.X[i].real, made.X[i].imag, made.mean[i] = displacements.re, displacements.im, displacements.mean
-        made.amplitude[i], made.force[i] = displacements.amplitude, balance.force
-        if found.X is not None:
+            ports, dofs = _as_balanced(balance, system.linear, springs, points.tangent[i], options)
+        else:
+            made.z[i], ports, dofs = found.z, found.ports, found.dofs
+            balance.evaluate(found.z)
+            balance.report(found.z, np.zeros(found.z.size))
+            made.X[i].real, made.X[i].imag, made.mean[i] = (
+                displacements.re,
+                displacements.im,
+                displacements.mean,
+            )
+            made.amplitude[i], made.force[i] = displacements.amplitude, balance.force
             made.X[i, balance.receptance.first, apart] = found.X[apart]
             made.amplitude[i, apart] = np.abs(found.X[apart])
         size = np.where(made.amplitude[i] > 0.0, made.amplitude[i], np.inf)
-        rounding[i] = np.where(apart, found.dofs, found.ports @ np.abs(displacements.attached)) / size
+        rounding[i] = np.where(apart, dofs, ports @ attached) / size
     behind = np.searchsorted(looked, stiff)
     before = np.where(looked[behind] == stiff, behind, behind - 1)
     rounding[stiff] = np.maximum(rounding[looked[before]], rounding[looked[behind]])
@@ -205,8 +210,9 @@ def _precise(
 
 def _as_balanced(
     balance: Balance, linear: Linear, springs: FloatArray, tangent: FloatArray, options: DigitOptions
-) -> PreciseFundamental:
-    """The point evaluated last as it is; its rounding from what its equations are summed of."""
+) -> tuple[FloatArray, FloatArray]:
+    """How far the displacements (port,) and (dof,) of the point evaluated last are off by rounding, from what
+    its equations are summed of."""
     receptance, n, at = balance.receptance, balance.unknowns, _fundamental_positions(balance)
     force, x = np.asarray(balance.force), np.asarray(balance.evaluated)
     size, on_ports = np.hypot(x[at], x[at + 1]), np.hypot(force[at], force[at + 1])
@@ -226,7 +232,7 @@ def _as_balanced(
     compliance = np.hypot(np.asarray(modes.c_re)[j], np.asarray(modes.c_im)[j])
     shapes, external = np.abs(met.ports), np.hypot(modes.force_re[0], modes.force_im[0])
     on_modes = rounding * (external + shapes @ on_ports) + shapes @ (springs * ports)
-    return PreciseFundamental(x.copy(), None, ports, (compliance * on_modes) @ np.abs(met.dofs))
+    return ports, (compliance * on_modes) @ np.abs(met.dofs)
 
 
 def moved_across_curve(
@@ -250,10 +256,11 @@ def moved_across_curve(
             typical: FloatArray = scale[:-1] * np.sqrt(np.square(ways[:, :-1]).mean(axis=0))
             return options.deviation_factor * typical
         assert matrix is not None
-        inverse = np.linalg.inv(matrix)[:-1, :-1]
+        (off,) = wrong.nonzero()
+        inverse = np.linalg.solve(matrix, np.eye(wrong.size + 1)[:, off])[:-1]  # the columns that count
     except np.linalg.LinAlgError:
         return np.full(wrong.size, np.nan)
-    moved: FloatArray = scale[:-1] * (np.abs(inverse) @ wrong)
+    moved: FloatArray = scale[:-1] * (np.abs(inverse) @ wrong[off])
     return moved
 
 
