@@ -112,6 +112,7 @@ class _Search:
             _UnknownError(*one, system.harmonics) for one in zip(paths, quantities, errors, strict=True)
         ]
         self.followers = dict[int, StretchFollower]()
+        self.closed = list[FloatArray]()  # where pieces began that came back there
         for piece in self.known:
             _newly_known(piece, self.unknown)
 
@@ -138,6 +139,9 @@ class _Search:
         """First a piece from each, then on from where most is told."""
         left = list[_Front]()
         for k, i in self._places(interval):
+            if self.unknown[k].sought[i]:  # it leads nowhere
+                continue
+            self.unknown[k].sought[i] = True
             for front in self._fronts(k, i, by_level=False):
                 left += self._followed(front)
         self._follow(left)
@@ -185,7 +189,7 @@ class _Search:
         """The front where the piece from another is left, if that told of any point."""
         stretches, count = self._stretches(front.path), 0
         given = min(self.each, self.budget.seconds)
-        if given <= 0.0:
+        if given <= 0.0 or any(front.z is begin for begin in self.closed):
             return []
         stretches.budget = Budget(given)
         span = _gap(self.known, float(front.z[-1]), self.system.scene.frequency_range)
@@ -193,6 +197,8 @@ class _Search:
         spent = given - stretches.budget.seconds
         self.budget.seconds -= spent
         path = piece.path
+        if path.status is Status.CLOSED:
+            self.closed.append(front.z)
         if len(path.z) > 1:
             new = curve_piece(stretches.finer, piece)
             self.found[front.path].append(new)
@@ -223,8 +229,8 @@ class _Search:
 
 
 class _UnknownError:
-    """The points of a path whose errors are unknown, and whether they were tried, with the sizes of their
-    motions."""
+    """The points of a path whose errors are unknown, with the sizes of their motions; whether they were tried
+    at an interval, and whether the reference was sought from their motions at any."""
 
     def __init__(
         self, path: Path, quantities: ReportedQuantities, errors: Errors, harmonics: tuple[int, ...]
@@ -233,7 +239,7 @@ class _UnknownError:
         self.size[errors.is_same_curve] = np.inf
         if errors.reference == harmonics:  # it has none
             self.size[:] = np.inf
-        self.tried = np.zeros(len(self.size), dtype=np.bool_)
+        self.tried, self.sought = np.zeros((2, len(self.size)), dtype=np.bool_)
 
     @property
     def least(self) -> float:
