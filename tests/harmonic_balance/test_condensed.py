@@ -155,6 +155,22 @@ def test_contacts_that_stay_stuck_or_open_are_condensed(scene, harmonics):
     np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected[:, :-1]).max())
 
 
+def test_a_small_condensed_system_is_solved_as_it_is():
+    """Of the same contacts: to condense it to their forces takes longer, as each solution is corrected."""
+    rows, solutions = np.append(np.zeros(144), 1.0), []
+    for least, by_contacts in ((1, True), (18, True), (19, False)):
+        system = System(mostly_stuck(), (1,), condensation=replace(EVERY_MODE, min_unknowns=least))
+        problem = system.new_balance()
+        assert (problem.unknowns, problem.rank) == (144, 18)
+        newton, z = Newton(problem), np.append(np.zeros(problem.unknowns), 1.15)
+        problem.measure(z)
+        newton.scale[:], newton.z[:], newton.row[:] = problem.scale, z, rows
+        assert newton.correct(1.0)
+        assert problem.condensed.by_contacts == by_contacts
+        solutions.append(np.array(newton.z))
+    np.testing.assert_allclose(solutions[2], solutions[0], atol=1e-9 * np.abs(solutions[0][:-1]).max())
+
+
 def test_contacts_that_begin_to_slip_or_open_are_taken_back():
     """By a level of the forces at which all stick, one at which all slip, and back."""
     system = System(strip(24, n_0=3.0), (1, 3), condensation=EVERY_MODE)

@@ -20,7 +20,7 @@ is within 1 and 1 + y, with y the greatest yield of these modes, so that an iter
 of an error (Saad 2003, 6.11). As many modes are kept as make factorisation and iterations cheapest.
 
 Where most contacts stay stuck or open, the forces of the others may be fewer than these modes: then they are
-condensed to, see `fcm.harmonic_balance.linear_contacts`.
+condensed to, see `fcm.harmonic_balance.linear_contacts`. A small condensed system is solved as fast as it is.
 """
 
 from __future__ import annotations
@@ -42,7 +42,8 @@ class CondensationOptions(Frozen):
     Attributes
     ----------
     min_unknowns : int
-        Unknowns from which on that is faster.
+        Unknowns from which on that is faster; those of the condensed system, from which on it is to be
+        condensed to the forces of some contacts.
     max_fraction : float
         Of the unknowns, how large the condensed system may be.
     compliance_limits : tuple of float
@@ -182,7 +183,8 @@ class CondensedSystem:
         np.divide(row, scale, out=self.row)
         self.scale[:], self.omega = scale, self.answer.receptance.omega
         self.equations.set_closing_row(row, by, scale)
-        if self.linear_contacts.choose(self.tangent, self.equations.rank):
+        rank = self.equations.rank
+        if rank >= self.options.min_unknowns and self.linear_contacts.choose(self.tangent, rank):
             self.equations.held = self.linear_contacts
             self.sign = self.linear_contacts.factor(self.row, by)
         else:
