@@ -263,18 +263,24 @@ class ModalEquations:
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         m: cython.Py_ssize_t
+        last: cython.Py_ssize_t = self.each - 1
         for c in range(self.contacts):
+            first: cython.Py_ssize_t = c * self.each
             for d in range(self.each):
-                p: cython.Py_ssize_t = c * self.each + d
+                p: cython.Py_ssize_t = first + d
                 for i in range(self.parts):
+                    row: cython.Py_ssize_t = self.order[i, d]
                     for k in range(self.parts):
-                        for m in range(self.modes):
-                            self.by_mode[p, i, k, m] = 0.0
-                        for e in range(self.each):
-                            slope: cython.double = self.tangent[c, self.order[i, d], self.order[k, e]]
-                            if slope != 0.0:
-                                for m in range(self.modes):
-                                    self.by_mode[p, i, k, m] += slope * self.by_port[c * self.each + e, m]
+                        slope: cython.double = self.tangent[c, row, self.order[k, 0]]
+                        other: cython.double = self.tangent[c, row, self.order[k, last]] if last > 0 else 0.0
+                        for m in range(self.modes):  # both at once: no number is stored and loaded again
+                            self.by_mode[p, i, k, m] = (
+                                slope * self.by_port[first, m] + other * self.by_port[first + last, m]
+                            )
+                        for e in range(1, last):
+                            slope = self.tangent[c, row, self.order[k, e]]
+                            for m in range(self.modes):
+                                self.by_mode[p, i, k, m] += slope * self.by_port[first + e, m]
         by_mode, on_modes = self.sums
         with np.errstate(invalid="ignore", over="ignore"):  # where Newton's method has gone astray
             np.matmul(self.chosen, by_mode, out=on_modes)
@@ -432,10 +438,14 @@ class ModalEquations:
         w: cython.Py_ssize_t = self.width
         for c in range(self.contacts):
             for i in range(w):
-                total: cython.double = 0.0
-                for k in range(w):
-                    total += self.tangent[c, i, k] * x[c * w + k]
-                self.force[c * w + i] = total
+                even: cython.double = 0.0  # two sums that do not wait for one another
+                odd: cython.double = 0.0
+                for k in range(0, w - 1, 2):
+                    even += self.tangent[c, i, k] * x[c * w + k]
+                    odd += self.tangent[c, i, k + 1] * x[c * w + k + 1]
+                if w % 2:
+                    even += self.tangent[c, i, w - 1] * x[c * w + w - 1]
+                self.force[c * w + i] = even + odd
 
     @cython.cfunc
     @cython.exceptval(check=False)
