@@ -136,6 +136,34 @@ def test_neighbours_that_turn_against_each_other_are_told_from_a_fold():
     assert of_ring == pytest.approx(abs(growing[0]), rel=1e-6)
 
 
+def test_so_are_they_in_a_plane():
+    """As above, with tips that move sideways too; the wave is said to be unstable there."""
+    data = rings.scene_of("bladed-disk")
+    data.pop("sweep"), data.pop("units")
+    data["cyclic"] = {"sectors": 8, "engine_order": 1}
+    coupling = np.pad(rings.COUPLING, (0, 1)).tolist()
+    data["structure"] = {
+        "dofs": [*rings.DOFS, "side"], "mass": [1.2, 0.35, 0.25, 0.25], "damping": 0.001,
+        "stiffness": [
+            [1.016e8, -1e6, 0.0, 0.0], [-1e6, 3e6, -2e6, 0.0], [0.0, -2e6, 2e6, -2e5], [0.0, 0.0, -2e5, 3e6],
+        ],
+        "coupling": {"stiffness": coupling},
+    }  # fmt: skip
+    shroud, damper = data["contact"]
+    across = {"next.side": 1.0, "side": -1.0}
+    data["contact"] = [
+        shroud | {"tangential": [shroud["tangential"], across], "n_0": 20.0},
+        damper | {"tangential": [damper["tangential"], "side"]},
+    ]
+    one, whole = (System(scene_from_dict(found), (1, 2, 3)) for found in (data, rings.written_out(data)))
+    (z,) = solutions(one, 2.0 * np.pi * 240.0).solutions
+    growing = [value for value in multipliers(one, z, FINE) if abs(value) > 1.005]
+    assert len(growing) == 1 and growing[0].real < 0.0
+    (of_ring, *_) = multipliers(whole, rings.around(z, (1, 2, 3), 2, one.scene.ring), FINE)
+    assert of_ring == pytest.approx(abs(growing[0]), rel=1e-6)
+    assert multipliers_of(one, float(z[-1])).classify(z).stable == 0.0
+
+
 def test_stability_of_all_points_is_told_by_the_multipliers_of_few():
     """With one harmonic: modes of other diameters, some always near the negative axis, ask for no more."""
     system = System(scene_from_dict(rings.sector(12, 5)), (1,))

@@ -6,7 +6,7 @@ cdef class VariationalSteps:
     cdef readonly int[::1] state, fresh, held
     cdef int first
     cdef double tolerance, max_step, min_step, min_factor, max_factor, safety, end_factor, max_retry_factor
-    cdef double event_tolerance, min_gap, next
+    cdef double event_tolerance, min_gap, next, part
     cdef object filled
     cdef int[::1] order, whose, which
     cdef double[::1] angle
@@ -46,3 +46,6 @@ cdef class PlanarMonodromy(VariationalSteps):
     cdef void strain(self, int a) noexcept
     cdef void move(self) noexcept
     cdef double rest(self) noexcept
+
+cdef class RingPlanarMonodromy(PlanarMonodromy):
+    cdef object renumber, source

@@ -57,6 +57,8 @@ class VariationalSteps:
     ----------
     steps
         How many the last period took.
+    part
+        The angle that is followed, a period.
     state, fresh, held : (contact,)
         The state of each contact now; whether it has just closed, and slips; and how many numbers it
         remembers at the beginning of the period.
@@ -75,7 +77,7 @@ class VariationalSteps:
         self.whose, self.which, self.order = np.zeros((3, most), dtype=np.intc)
         self.state, self.fresh, self.held = np.zeros((3, self.contacts), dtype=np.intc)
         self.events = self.steps = self.first = 0
-        self.next = 0.0
+        self.next, self.part = 0.0, TWO_PI
         self.filled = np.zeros((0, 0))
 
     def matrix(self) -> npt.NDArray[np.float64]:
@@ -127,18 +129,21 @@ class VariationalSteps:
             self.state[c], self.fresh[c] = self.sequence.state_at(c, start), 0
             self.held[c] = self.sequence.remembers(c, start)
         found: cython.bint = self.begin(omega)
-        for i in range(self.events + 1):
-            e = self.order[(self.first + i) % self.events] if i < self.events else -1
-            at: cython.double = self.angle[e] if e >= 0 else start + TWO_PI
+        for i in range(self.events):
+            e = self.order[(self.first + i) % self.events]
+            at: cython.double = self.angle[e]
             if at < start:
                 at += TWO_PI
-            if found and (at - now > self.event_tolerance or e < 0):
-                opens: cython.bint = e >= 0 and self.state[self.whose[e]] == SLIP
+            if not found or at >= start + self.part:
+                break
+            if at - now > self.event_tolerance:
+                opens: cython.bint = self.state[self.whose[e]] == SLIP
                 opens = opens and self.sequence.state[self.whose[e], self.which[e]] == SEPARATION
                 found = self.propagate(now, at - now, opens)
                 now = at
-            if found and e >= 0:
+            if found:
                 self.apply_event(self.whose[e], self.which[e])
+        found = found and self.propagate(now, start + self.part - now, False)
         self.filled = self.disturbances() if found else np.full((1, 1), np.nan)
         return 0
 
@@ -844,3 +849,33 @@ class PlanarMonodromy(VariationalSteps):
                 for j in range(self.columns):
                     self.memory[2 * c, j] = self.after[2 * c, j]
         return 0
+
+
+@cython.cclass
+class RingPlanarMonodromy(PlanarMonodromy):
+    """As `PlanarMonodromy`, of the contacts of all sectors, in a part of a period.
+
+    part is the angle that is followed; renumber (mode, mode) renumbers the sectors in the coordinates of
+    modes that are not far, and source (contact,) is the contact whose memory has the place of each
+    afterwards.
+    """
+
+    def __init__(
+        self,
+        shapes: npt.NDArray[np.float64],
+        natural: npt.NDArray[np.float64],
+        damping: npt.NDArray[np.float64],
+        far: npt.NDArray[np.bool_],
+        sequence: PlanarSequence,
+        part: float,
+        renumber: npt.NDArray[np.float64],
+        source: npt.NDArray[np.intp],
+    ) -> None:
+        PlanarMonodromy.__init__(self, shapes, natural, damping, far, sequence)
+        self.part, self.renumber, self.source = part, renumber, source
+
+    def disturbances(self) -> npt.NDArray[np.float64]:
+        """The rows (q, q', memory) now, as the sectors are numbered at the beginning."""
+        rows = [2 * self.source[c] + i for c in range(self.contacts) for i in range(self.held[c])]
+        q, p = self.renumber @ np.asarray(self.q), self.renumber @ np.asarray(self.p)
+        return np.concatenate((q, p, np.asarray(self.memory)[rows]))

@@ -2,8 +2,9 @@ r"""Floquet multipliers of a wave that travels around a ring of sectors.
 
 The motion repeats after n sectors, n = sectors / gcd(engine_order, sectors), and so do the disturbances that
 are looked at: with n = sectors these are all that there are. Their growth in the n-th part of a period, seen
-from the wave, is an eigenvalue of `RingMonodromy`; one that is real and above 1 leaves at a fold of the curve
-of travelling waves, another one breaks up the wave, even where it is a real multiplier of the whole period.
+from the wave, is an eigenvalue of `RingMonodromy`, in a plane of `RingPlanarMonodromy`; one that is real and
+above 1 leaves at a fold of the curve of travelling waves, another one breaks up the wave, even where it is a
+real multiplier of the whole period.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from fcm.stability.disturbance import Stiffness
 from fcm.stability.monodromy import RingMonodromy
 from fcm.stability.multipliers import Multipliers, VariationalProblem, quasi_static_modes
 from fcm.stability.options import STABILITY, StabilityOptions
-from fcm.stability.planar_monodromy import PlanarMonodromy
+from fcm.stability.planar_monodromy import RingPlanarMonodromy
 from fcm.stability.state_sequence import BalancedSequence, PlanarSequence
 from fcm.structure.ring import RingLinear
 
@@ -86,10 +87,13 @@ class RingMultipliers(Multipliers):
         seen = linear.receptance(np.array(finer, dtype=np.float64))
         self.finer = EnrichedMotion(seen, system.exact_laws(tuple(finer)), harmonics, spectrum)
         self.ring, self.planar = ring, system.scene.planar
-        if self.planar:  # of the whole period
+        near = around.selected(~far)
+        source = np.roll(np.arange(n * self.contacts), sector_shifts(ring) * self.contacts)
+        turned = 2.0 * np.pi / n, near.renumber, source
+        if self.planar:
             structure = around.ports, around.natural, around.damping, far
             self.fine, self.plain = (
-                VariationalProblem(states, PlanarMonodromy(*structure, states))
+                VariationalProblem(states, RingPlanarMonodromy(*structure, states, *turned))
                 for states in (
                     PlanarSequence(contact, tuple(numbers), options.planar) for numbers in (finer, harmonics)
                 )
@@ -98,13 +102,9 @@ class RingMultipliers(Multipliers):
             soft = None
             if far.any():
                 soft = (around.ports[far].T * around.natural[far] ** -2.0) @ around.ports[far]
-            near = around.selected(~far)
             stiffness = Stiffness(near.ports, near.natural, near.damping, soft, contact)
-            source = np.roll(np.arange(n * self.contacts), sector_shifts(ring) * self.contacts)
             self.fine, self.plain = (
-                VariationalProblem(
-                    states, RingMonodromy(stiffness, states, 2.0 * np.pi / n, near.renumber, source)
-                )
+                VariationalProblem(states, RingMonodromy(stiffness, states, *turned))
                 for states in (BalancedSequence(contact, numbers) for numbers in (finer, harmonics))
             )
         self.shifts = {
@@ -138,15 +138,11 @@ class RingMultipliers(Multipliers):
     ) -> list[Classification]:
         """As `Multipliers.classified`; in a part of a period multipliers turn by as much less towards -1."""
         found = Multipliers.classify_all(self, z, at_fold, without_neighbour, sufficient)
-        if self.planar:
-            return found
         n = self.ring.period
         return [one._replace(angle_to_flip=min(one.angle_to_flip * n, np.pi)) for one in found]
 
     def of_period(self, values: list[complex]) -> list[complex]:
         """Magnitudes of a whole period, with the angles of its part."""
-        if self.planar:
-            return values
         return [abs(value) ** (self.ring.period - 1) * value for value in values]
 
 
