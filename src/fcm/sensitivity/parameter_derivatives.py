@@ -26,7 +26,7 @@ from fcm.harmonic_balance.system import System
 from fcm.model.scene import FloatArray, Scene
 from fcm.scene.draft import Number, number_of
 from fcm.sensitivity.options import SENSITIVITY, SensitivityOptions
-from fcm.structure.layout import Layout
+from fcm.structure.layout import layout_of
 from fcm.structure.linear import Linear, linear_of
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -130,7 +130,7 @@ class Rates(Frozen):
 def law_rates(law: Law, x: FloatArray, options: SensitivityOptions = SENSITIVITY) -> FloatArray:
     """Derivatives of a contact's forces by mu, k_u, k_v, n_0, (4, width), at its unknowns x (width,)."""
     mu, k_u, k_v, n_0 = law.mu, law.k_u, law.k_v, law.n_0
-    layout = Layout(1, law.directions, (x.size // law.directions - 1) // 2)
+    layout = layout_of(1, law.directions, (x.size // law.directions - 1) // 2)
     normal, mean = layout.of_normal, law.directions - 1
     unit = np.ascontiguousarray(np.where(normal, k_v, k_u) * x)  # with stiffnesses of 1
     load = unit * normal

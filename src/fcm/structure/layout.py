@@ -83,6 +83,11 @@ class Layout(Frozen):
         found: npt.NDArray[np.bool_] = np.concatenate((means, np.tile(np.repeat(means, 2), self.harmonics)))
         return found
 
+    @cached_property
+    def places(self) -> tuple[IntArray, ...]:
+        """Where the unknowns of a contact's displacement along each direction are, each (1 + 2 harmonic,)."""
+        return tuple(np.flatnonzero(self.along(direction)) for direction in range(self.directions))
+
     def harmonic_of(self, harmonics: Sequence[int]) -> IntArray:
         """Which of the harmonics an unknown of a contact is of, 0 for the means, (width,)."""
         each = [self.directions, *[self.stride] * self.harmonics]

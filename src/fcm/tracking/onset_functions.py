@@ -27,7 +27,7 @@ import numpy.typing as npt
 
 from fcm.harmonic_balance.contact_law import Law, PlanarLaw
 from fcm.model.scene import FloatArray
-from fcm.structure.layout import Layout
+from fcm.structure.layout import layout_of
 from fcm.tracking.options import TRACKING, TrackingOptions
 
 KINDS = ("separation", "closing", "slip")
@@ -193,8 +193,8 @@ def kinds_of(law: Law) -> tuple[str, ...]:
 
 def _places(law: Law, x: FloatArray, direction: int) -> npt.NDArray[np.intp]:
     """Where the numbers of a displacement are among the unknowns: mean, then Re, Im of each harmonic."""
-    layout = Layout(1, law.directions, (x.size // law.directions - 1) // 2)
-    return np.flatnonzero(layout.along(direction % law.directions))
+    layout = layout_of(1, law.directions, (x.size // law.directions - 1) // 2)
+    return layout.places[direction]
 
 
 def _polynomial(x: FloatArray, law: Law, direction: int) -> ComplexArray:

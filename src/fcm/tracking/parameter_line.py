@@ -94,6 +94,14 @@ class VariedBalance:
         self._at_zero: FloatArray | None = None
         self.numbers = contact_numbers(system.scene)  # mu, k_u, k_v, n_0 (contact, 4) where they are
 
+    def another(self) -> VariedBalance:
+        """The same with a balance of its own; what is the same everywhere is found once for all."""
+        if not self.structure and self._constant:
+            self._numbers(0.0)
+        made = copy(self)
+        made.balance = self.base.new_balance()
+        return made
+
     @property
     def system(self) -> System:
         """With the numbers where they are."""

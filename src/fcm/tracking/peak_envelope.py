@@ -64,6 +64,7 @@ class MonotonePiece:
         self.tracked_points = [track.points[i] for i in order]
         self.s, self.height = track.s[order], track.amplitude[order, dof]
         self._problems: dict[Condition | None, ExtendedSystem] = {}
+        self._heights: dict[float, PieceHeight] = {}
 
     def covers(self, s: float) -> bool:
         """Whether it is a function there."""
@@ -75,6 +76,11 @@ class MonotonePiece:
 
     def at(self, s: float) -> PieceHeight:
         """Exactly, or by the chord where Newton's method does not come to it."""
+        if s not in self._heights:
+            self._heights[s] = self._at(s)
+        return self._heights[s]
+
+    def _at(self, s: float) -> PieceHeight:
         guess, i, part, _ = self._guess(s)
         if (solved := self._solved(s)) is not None:
             return self._height(*solved)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import Enum
+from functools import cached_property
 
 import numpy as np
 
@@ -55,11 +56,14 @@ class TrackingSetup(Frozen):
     peaks_only: bool = False  # a peak ends where it meets a trough, and the number turns back
     options: TrackingOptions = TRACKING
 
+    @cached_property
+    def varied(self) -> VariedBalance:
+        """The balance that is moved along the line, as it is before."""
+        return VariedBalance(self.system, self.line)
+
     def tracked(self, condition: Condition) -> ExtendedSystem:
         """The problem of a condition, with a balance of its own."""
-        return ExtendedSystem(
-            VariedBalance(self.system, self.line), condition, self.span[1] - self.span[0], self.options
-        )
+        return ExtendedSystem(self.varied.another(), condition, self.span[1] - self.span[0], self.options)
 
 
 def kinks(setup: TrackingSetup) -> list[float]:
