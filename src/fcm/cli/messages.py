@@ -61,9 +61,11 @@ class Messages:
         self._share = min(max(fraction, self._share), 1.0)
         if self._share * self._curves >= 1.0 and now - self._begun >= remarks.time_told:
             self._say_time(now - self._begun)
-        if self.verbosity >= 0 and not sys.stderr.isatty():
-            self._say_progress(now, text)
-        if self.verbosity < 0 or now - self._drawn < remarks.redraw or not sys.stderr.isatty():
+        if self.verbosity < 0:
+            return
+        if not sys.stderr.isatty():
+            return self._say_progress(now, text)
+        if now - self._drawn < remarks.redraw:
             return
         full = int(remarks.bar * self._share)
         line = f"[{'#' * full}{'.' * (remarks.bar - full)}] {int(100 * self._share):3d} %  {text}"
