@@ -24,7 +24,7 @@ def test_bands_are_drawn(fcm, result, tmp_path):
     [
         ((95, 5), "the percentages must rise"),
         ((-5, 5), "is not in the range 0.0<=x<=100.0"),
-        ((5, 95, "--dof", "x"), "no degree of freedom 'x'"),
+        ((5, 95, "--dof", "x"), 'no degree of freedom "x"'),
     ],
 )
 def test_what_is_wrong_is_said(fcm, result, args, said):

@@ -292,9 +292,9 @@ def test_nonsense_is_said(fcm, tmp_path, args, said):
     ("args", "said"),
     [
         ((), "has 2 curves; say which by --curve 0 to --curve 1"),
-        (("--curve", 2), "there is no curve 2; it has 2 curves, 0 to 1"),
+        (("--curve", 2), "there is no curve 2; it has 2 curves, numbers 0 to 1"),
         (("--curve", 0, "--at", 3), "curve 0 goes from 0.7 to 1.7 rad/s, not to 3"),
-        (("--curve", 0, "--contact", "blade"), "there is no contact 'blade'; it has shroud"),
+        (("--curve", 0, "--contact", "blade"), 'there is no contact "blade"; it has "shroud"'),
         (("--curve", 0, "--at", 1, "--solution", 2), "there are 1 at this frequency"),
         (("--curve", 0, "--phi", 1), "--phi is of no use with a FILE"),
         (("--curve", 0, "--harmonic", "u", 2, 1, 0), "--harmonic is of no use with a FILE"),

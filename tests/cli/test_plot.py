@@ -46,7 +46,7 @@ def test_options_reach_the_picture(fcm, result, tmp_path):
         (["-o", "a.jpg"], ".png or .svg or .pdf"),
         (["-o", "a"], ".png or .svg or .pdf"),
         (["-o", "no/a.png"], "there is no folder"),
-        (["--dof", "w"], "no degree of freedom 'w'; the file has u, v"),
+        (["--dof", "w"], 'no degree of freedom "w"; the file has "u", "v"'),
     ],
 )
 def test_wrong_options_write_nothing(fcm, result, tmp_path, args, said):

@@ -61,7 +61,7 @@ def test_modes_are_counted_as_in_the_table_of_modes(fcm, scene, result):
 
 @pytest.mark.parametrize(
     ("args", "said"),
-    [(["--dof", "x"], "no degree of freedom 'x'"), (["--curve", 3], "the file has the curves 0 to 0")],
+    [(["--dof", "x"], 'no degree of freedom "x"'), (["--curve", 3], "the file has 1 curve, number 0")],
 )
 def test_what_is_not_there_to_draw_is_said(fcm, result, args, said):
     done = fcm("plot", "sensitivity", result, *args)

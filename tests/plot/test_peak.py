@@ -173,7 +173,7 @@ def test_decades_of_positive_values_are_logarithmic():
     ("more", "said"),
     [
         ({"dof": "w"}, "no degree of freedom 'w'; the file has u, v"),
-        ({"against": "x"}, "'x' was not swept; the file has contact.shroud.n_0"),
+        ({"against": "x"}, '"x" was not swept; the file has "contact.shroud.n_0"'),
     ],
 )
 def test_what_is_not_there(more, said):

@@ -62,5 +62,7 @@ def history(
 def _chosen(motions: tuple[DrawnMotion, ...], curves: tuple[int, ...]) -> tuple[DrawnMotion, ...]:
     """The motions of some curves."""
     if max(curves) >= len(motions):
-        raise click.BadParameter(f"--curve {max(curves)}: the file has the curves 0 to {len(motions) - 1}.")
+        from fcm.plot.read import curves_there
+
+        raise click.BadParameter(f"--curve {max(curves)}: the file has {curves_there(len(motions))}.")
     return tuple(motions[i] for i in dict.fromkeys(curves))

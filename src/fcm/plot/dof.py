@@ -23,14 +23,13 @@ def column_of(dofs: Sequence[str], dof: str | None, whose: str = "the file has")
         return 0
     if dof in dofs:
         return dofs.index(dof)
-    from fcm.scene.errors import suggestion
+    from fcm.scene.errors import choices, quoted, suggestion
     from fcm.scene.names import Names
 
     if found := Names(dofs).find(dof):
         return dofs.index(found)
-    more = f", ... ({len(dofs)} in all)" if len(dofs) > READ.dofs_named else ""
-    listed = f"{whose} {', '.join(dofs[: READ.dofs_named])}{more}"
-    raise PlotError(f"no degree of freedom {dof!r}; {listed}{suggestion(dof, dofs)}")
+    listed = f"{whose} {choices(dofs, READ.dofs_named)}"
+    raise PlotError(f"no degree of freedom {quoted(dof)}; {listed}{suggestion(dof, dofs)}")
 
 
 def asked_for(attribute: object, dofs: Sequence[str]) -> tuple[str, ...]:

@@ -69,9 +69,11 @@ def peak_page(peaks: Peaks, dof: str | None, against: str | None, path: Path) ->
 
     keys = list(peaks.parameters)
     if not keys:
-        raise PlotError("the file has one curve: there is nothing to draw its peak against")
+        raise PlotError("nothing was swept: the file holds one curve, and one peak. Give the scene a [sweep]")
     if against is not None and against not in keys:
-        raise PlotError(f"nothing was swept as {against!r}; swept were {', '.join(keys)}")
+        from fcm.scene.errors import choices, quoted
+
+        raise PlotError(f"{quoted(against)} was not swept; the file has {choices(keys)}")
     key, shown, figure = against or keys[0], column_of(peaks.dofs, dof), _plotly().Figure()
     order = np.argsort(peaks.parameters[key], kind="stable")
     for number, name in enumerate(peaks.dofs):

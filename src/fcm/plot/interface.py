@@ -16,7 +16,7 @@ from fcm.plot.dof import asked_for, greatest_column
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, short_names, with_unit
 from fcm.plot.pairs import direction_name, plane_view
-from fcm.plot.read import LEVEL, FloatArray, floats, on_curve, opened, swept_units, swept_values
+from fcm.plot.read import LEVEL, FloatArray, curves_there, floats, on_curve, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
 from fcm.plot.style import COLUMN, LAYOUT, TWO_COLUMNS, house_style, new_figure
 from fcm.results.contact_states import STATES, contact_states
@@ -151,8 +151,7 @@ def points_of(
         If the curve, a frequency or a modal amplitude is not in the file.
     """
     if not 0 <= curve < len(file.frequency):
-        last = len(file.frequency) - 1
-        raise PlotError(f"{file.path}: there is no curve {curve}; it has the curves 0 to {last}")
+        raise PlotError(f"{file.path}: there is no curve {curve}; it has {curves_there(len(file.frequency))}")
     if not np.isfinite(file.frequency[curve]).any():
         raise PlotError(f"{file.path}: curve {curve} has no points")
     if amplitude and file.modal_amplitude is None:

@@ -14,7 +14,7 @@ from fcm.frozen import Frozen
 from fcm.plot.dof import greatest_column
 from fcm.plot.errors import PlotError
 from fcm.plot.options import READ
-from fcm.plot.read import FloatArray, floats, on_curve, opened, read_response
+from fcm.plot.read import FloatArray, curves_there, floats, on_curve, opened, read_response
 from fcm.plot.reader_process import apart
 
 _ENERGY = "dissipated_energy"
@@ -265,8 +265,7 @@ def _row(file: LoopFile, curve: int | None) -> int:
         raise PlotError(f"{file.path}: has {count} curves; say which by --curve 0 to --curve {count - 1}")
     row = 0 if curve is None else curve
     if row >= count:
-        has = f"{count} curves, 0 to {count - 1}" if count > 1 else f"{count} curve"
-        raise PlotError(f"{file.path}: there is no curve {row}; it has {has}")
+        raise PlotError(f"{file.path}: there is no curve {row}; it has {curves_there(count)}")
     return row
 
 
@@ -298,10 +297,10 @@ def busiest(file: LoopFile) -> tuple[str, str]:
 def _names(file: LoopFile) -> str:
     """The contacts, of many those that take most energy, first the one that takes most."""
     if len(file.contacts) <= READ.contacts_named:
-        return ", ".join(file.contacts)
+        return ", ".join(f'"{name}"' for name in file.contacts)
     first = np.argsort(-file.energy, kind="stable")[: READ.contacts_named]
     most = "that take most energy in a cycle" if file.energy.any() else "first in the file"
-    names = ", ".join(file.contacts[i] for i in first.tolist())
+    names = ", ".join(f'"{file.contacts[i]}"' for i in first.tolist())
     return f"of {len(file.contacts)} those {most}: {names}"
 
 
@@ -310,5 +309,7 @@ def _column(file: LoopFile, contact: str | None) -> int:
         raise PlotError(f"{file.path}: its scene has no contact, and so no loop")
     name = busiest(file)[0] if contact is None else contact
     if name not in file.contacts:
-        raise PlotError(f"{file.path}: there is no contact {name!r}; it has {_names(file)}")
+        from fcm.scene.errors import quoted
+
+        raise PlotError(f"{file.path}: there is no contact {quoted(name)}; it has {_names(file)}")
     return file.contacts.index(name)

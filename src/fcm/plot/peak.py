@@ -140,7 +140,9 @@ def _key(peaks: Peaks, against: str | None) -> str:
             "its peaks by fcm respond --track peaks --over KEY"
         )
     if against is not None and against not in peaks.parameters:
-        raise PlotError(f"{against!r} was not swept; the file has {', '.join(peaks.parameters)}")
+        from fcm.scene.errors import choices, quoted
+
+        raise PlotError(f"{quoted(against)} was not swept; the file has {choices(peaks.parameters)}")
     return next(iter(peaks.parameters)) if against is None else against
 
 

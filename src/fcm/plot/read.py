@@ -76,6 +76,15 @@ class DrawnResponse(Frozen):
         return leading_column(self.dofs, dof, amplitudes, self.asked)
 
 
+def curves_there(count: int) -> str:
+    """How many curves a file has, and their numbers.
+
+    >>> curves_there(1), curves_there(10)
+    ('1 curve, number 0', '10 curves, numbers 0 to 9')
+    """
+    return "1 curve, number 0" if count == 1 else f"{count} curves, numbers 0 to {count - 1}"
+
+
 def ends(curves: Sequence[DrawnCurve]) -> tuple[float, float]:
     """The lowest and the highest frequency of all."""
     low = min(float(np.nanmin(curve.frequency)) for curve in curves)

@@ -12,7 +12,7 @@ from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import staying, with_mode
 from fcm.plot.options import READ
-from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
+from fcm.plot.read import FloatArray, curves_there, floats, opened, swept_units, swept_values
 from fcm.plot.reader_process import apart
 from fcm.plot.style import LAYOUT, house_style, new_figure
 
@@ -77,7 +77,7 @@ def draw_sensitivity(drawn: DrawnSensitivity, dof: str | None = None, curve: int
     """The figure of one peak: bars of its height, and of its frequency."""
     column = column_of(drawn.dofs, dof)
     if curve >= len(drawn.parameters):
-        raise PlotError(f"no curve {curve}; the file has the curves 0 to {len(drawn.parameters) - 1}")
+        raise PlotError(f"there is no curve {curve}; the file has {curves_there(len(drawn.parameters))}")
     height, frequency = drawn.height[curve, column], drawn.frequency[curve, column]
     shown = _greatest(height, frequency)
     if shown.size == 0:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.plot.errors import PlotError
-from fcm.plot.read import DrawnCurve, DrawnResponse
+from fcm.plot.read import LEVEL, DrawnCurve, DrawnResponse
 from fcm.plot.unfinished import Unfinished
 
 Window = tuple[float, float]
@@ -26,7 +26,9 @@ def within(response: DrawnResponse, window: Window) -> DrawnResponse:
     if not any(np.isfinite(curve.frequency).any() for curve in curves):
         every = np.concatenate([curve.frequency for curve in response.curves] or [np.full(1, np.nan)])
         there = every[np.isfinite(every)]
-        ends = f"; the curves go from {there.min():g} to {there.max():g}" if there.size else ""
+        unit = response.frequency_unit  # or "level", which has none
+        last = f"{there.max():g}" + ("" if unit == LEVEL else f" {unit}") if there.size else ""
+        ends = f"; the curves go from {there.min():g} to {last}" if last else ""
         raise PlotError(f"the window {low:g} to {high:g} shows nothing{ends}")
     measured = tuple(
         replace(
